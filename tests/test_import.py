@@ -1,0 +1,49 @@
+"""`import liehom` is quick, and leaves the large libraries for the functions that use them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+LIMIT_SECONDS = 0.3
+TRIALS = 8
+LATE = ("scipy", "sympy", "networkx", "matplotlib", "jax", "numba", "typer", "rich")
+
+TIMED_IMPORT = "import time; t = time.perf_counter(); import liehom; print(time.perf_counter() - t)"
+LOADED = "import sys, liehom; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
+
+
+def python(code: str) -> str:
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    return run.stdout
+
+
+def test_import_takes_less_than_the_limit() -> None:
+    # the best of several: the other times measure what else the machine was doing
+    ratio = min(float(python(TIMED_IMPORT)) for _ in range(TRIALS)) / LIMIT_SECONDS
+    assert ratio < 1, f"import liehom takes {ratio:.2f} times the {LIMIT_SECONDS} s allowed"
+
+
+def test_import_loads_none_of_the_large_libraries() -> None:
+    loaded = set(python(LOADED).split())
+    assert "liehom" in loaded
+    assert not loaded.intersection(LATE), f"imported at start: {sorted(loaded.intersection(LATE))}"
+
+
+def test_version_is_the_one_of_the_package() -> None:
+    import liehom
+
+    metadata = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert liehom.__version__ == metadata["project"]["version"]
