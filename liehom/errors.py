@@ -1,0 +1,130 @@
+"""The exceptions of liehom: everything the library refuses is a `LiehomError`.
+
+Each error says what was found, what would be right and, where there is a position (an index, a pair of
+basis elements, a key of a file), carries it as an attribute.  Imports nothing.
+"""
+
+from __future__ import annotations
+
+
+class LiehomError(Exception):
+    """Root of all exceptions raised by liehom.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> issubclass(lh.errors.JacobiError, lh.errors.LiehomError)
+    True
+    """
+
+
+class InputError(LiehomError, ValueError):
+    """An argument has a wrong value: a parameter out of range, a shape that does not fit, a bad option."""
+
+
+class ShapeError(InputError):
+    """An array, vector or matrix has the wrong shape or length."""
+
+
+class FieldError(InputError):
+    """A number is not in the field at hand, or the data do not define a real number field."""
+
+
+class ParseError(InputError):
+    """A text is not a value of the whitelist grammar (integers, + - * / **, parentheses, sqrt, the field's name)."""
+
+
+class FormatError(InputError):
+    """A file or JSON object does not have the documented form; nothing of it has been used."""
+
+
+class SingularError(LiehomError, ArithmeticError):
+    """A linear system has no solution, or a matrix that should be invertible is singular."""
+
+
+class StructureError(InputError):
+    """Structure constants do not define a Lie algebra (indices, antisymmetry)."""
+
+
+class JacobiError(StructureError):
+    """The Jacobi identity fails; `indices` is the triple (i, j, k), `value` the coefficients of the cyclic sum."""
+
+    def __init__(self, indices: tuple[int, int, int], value: dict[int, str], names: tuple[str, str, str]) -> None:
+        self.indices = indices
+        self.value = value
+        terms = " + ".join(f"({v})*e{k}" for k, v in sorted(value.items()))
+        super().__init__(
+            f"the Jacobi identity fails for (i, j, k) = {indices}, that is for {', '.join(names)}: "
+            f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0"
+        )
+
+
+class NotASubalgebraError(InputError):
+    """The span of the given rows is not closed; `pair` names the two rows whose bracket leaves it."""
+
+    def __init__(self, pair: tuple[int, int], bracket: str) -> None:
+        self.pair = pair
+        super().__init__(
+            f"the rows do not span a subalgebra: the bracket of rows {pair[0]} and {pair[1]} is {bracket}, "
+            "which is not in their span; add it, or pass the rows through subalgebra_generated_by"
+        )
+
+
+class DependentRowsError(InputError):
+    """Rows that should be a basis are linearly dependent; `dependent` lists rows that the earlier ones span."""
+
+    def __init__(self, rank: int, dependent: list[int], what: str = "rows") -> None:
+        self.rank = rank
+        self.dependent = dependent
+        super().__init__(
+            f"the {what} are linearly dependent: rank {rank}; number(s) {', '.join(map(str, dependent))} "
+            "lie in the span of the earlier ones; leave them out"
+        )
+
+
+class NotAnIdealError(InputError):
+    """A subspace that should be an ideal is not."""
+
+
+class HomomorphismError(InputError):
+    """A linear map does not respect the bracket; `pair` names two basis elements that show it."""
+
+    def __init__(self, pair: tuple[int, int], what: str) -> None:
+        self.pair = pair
+        super().__init__(what)
+
+
+class RepresentationError(HomomorphismError):
+    """Matrices do not satisfy rho([x, y]) = rho(x) rho(y) - rho(y) rho(x); `pair` names i, j."""
+
+
+class NotClosedError(InputError):
+    """Matrices do not span a Lie algebra; `pair` names two whose commutator leaves the span."""
+
+    def __init__(self, pair: tuple[int, int], what: str) -> None:
+        self.pair = pair
+        super().__init__(what)
+
+
+class CatalogError(InputError):
+    """A name is not in the catalogue; the message lists the nearest ones."""
+
+
+class CertificateError(LiehomError):
+    """A certificate does not prove its verdict; `check` names the check that failed."""
+
+    def __init__(self, check: str, message: str) -> None:
+        self.check = check
+        super().__init__(f"{check}: {message}")
+
+
+class CertificateFormatError(CertificateError, FormatError):
+    """A certificate does not have the documented form (unknown kind or key, value that does not parse)."""
+
+
+class UndecidedError(LiehomError, TypeError):
+    """A verdict that is not proved was used as a truth value."""
+
+
+class InternalError(LiehomError, RuntimeError):
+    """The library reached a state that a theorem excludes: a bug, please report it."""

@@ -1,0 +1,25 @@
+"""Which numbers, and the linear algebra over them: QQ, real number fields, float64.
+
+In reading order: `field` (the interfaces), `exact` and `exact_matrix` (QQ and QQ(a)), `number_fields` (from
+what a user writes), `polynomial` (root counts), `balls` (certain signs), `floating` (float64), `subspace`,
+`grammar` (how values are read).
+"""
+
+from liehom.scalars.exact import QQ as QQ
+from liehom.scalars.exact import AlgebraicNumber as AlgebraicNumber
+from liehom.scalars.exact import NumberField as NumberField
+from liehom.scalars.exact import RationalField as RationalField
+from liehom.scalars.exact_matrix import ExactField as ExactField
+from liehom.scalars.exact_matrix import ExactMatrix as ExactMatrix
+from liehom.scalars.field import Field as Field
+from liehom.scalars.field import Matrix as Matrix
+from liehom.scalars.field import Scalar as Scalar
+from liehom.scalars.floating import RR as RR
+from liehom.scalars.floating import FloatField as FloatField
+from liehom.scalars.floating import FloatMatrix as FloatMatrix
+from liehom.scalars.floating import RankDecision as RankDecision
+from liehom.scalars.number_fields import common_field as common_field
+from liehom.scalars.number_fields import exact_value as exact_value
+from liehom.scalars.number_fields import number_field as number_field
+from liehom.scalars.polynomial import Polynomial as Polynomial
+from liehom.scalars.subspace import Subspace as Subspace
