@@ -1,0 +1,193 @@
+"""What README and docs promise: names exist, examples run, files parse, public names are explained."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import importlib
+import inspect
+import io
+import json
+import re
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+MAPPED = ("paper-map.md", "notation.md")
+BUILTIN = {"ValueError"}
+NO_API_PAGE = {"__init__", "cli", "errors"}  # cli: docs/command-line.md; errors: docs/errors.md
+
+
+def read(*parts: str) -> str:
+    return ROOT.joinpath(*parts).read_text(encoding="utf-8")
+
+
+def blocks(text: str, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def resolve(dotted: str) -> Any:
+    """The object behind a dotted name: the longest importable prefix, then attributes."""
+    parts = dotted.split(".")
+    for length in range(len(parts), 0, -1):
+        try:
+            found: Any = importlib.import_module(".".join(parts[:length]))
+        except ModuleNotFoundError as error:
+            if error.name is None or not dotted.startswith(error.name):
+                raise
+            continue
+        for name in parts[length:]:
+            found = getattr(found, name)
+        return found
+    raise ModuleNotFoundError(dotted)
+
+
+def dotted_names() -> list[str]:
+    names = {name for page in MAPPED for name in re.findall(r"`(liehom(?:\.\w+)+)`", read("docs", page))}
+    return sorted(names)
+
+
+@pytest.mark.parametrize("name", dotted_names())
+def test_name_in_the_paper_map_or_the_notation_exists(name: str) -> None:
+    assert resolve(name) is not None
+
+
+def test_resolving_a_name_that_does_not_exist_fails() -> None:
+    with pytest.raises(AttributeError):
+        resolve("liehom.errors.NoSuchThing")
+
+
+@pytest.mark.parametrize("path", sorted(set(re.findall(r"`(tests/[^`]+)`", read("docs", "paper-map.md")))))
+def test_test_in_the_paper_map_exists(path: str) -> None:
+    file, _, function = path.partition("::")
+    assert (ROOT / file).is_file()
+    assert f"def {function}" in read(file)
+
+
+@pytest.mark.parametrize(
+    "name", sorted(set(re.findall(r"`(\w+Error)`", read("docs", "errors.md"))) - BUILTIN)
+)
+def test_error_in_the_table_exists(name: str) -> None:
+    assert issubclass(resolve(f"liehom.errors.{name}"), resolve("liehom.errors.LiehomError"))
+
+
+def test_readme_begins_with_two_commands_of_one_line() -> None:
+    demo, tests = blocks(read("README.md"), "sh")[:2]
+    for command in (demo, tests):
+        assert command.count("\n") == 1
+        assert command.startswith("python3 -m venv ")
+    assert "'.[plot]'" in demo
+    assert demo.rstrip().endswith("liehom demo")
+    assert "'.[test]'" in tests
+    assert "pytest" in tests
+
+
+def test_the_gate_runs_the_command_of_the_readme() -> None:
+    gate = read(".ci", "run")
+    assert "README.md" in gate
+    assert "pytest" not in gate, "the gate extracts the command; a second copy would drift"
+
+
+def expected_value(line: str) -> str | None:
+    """The Python literal that a trailing comment begins with, if it does: `# True, or ...` promises True."""
+    comment = line.rpartition("#")[2] if "#" in line else ""
+    promised = re.split(r"[,:]", comment.strip())[0]
+    try:
+        ast.literal_eval(promised)
+    except (SyntaxError, ValueError):
+        return None
+    return promised
+
+
+def run_block(block: str, namespace: dict[str, Any]) -> int:
+    """Execute a block of a page and compare values with the comments behind them; how many were compared."""
+    compared = 0
+    lines = block.splitlines()
+    for statement in ast.parse(block).body:
+        source = textwrap.dedent("\n".join(lines[statement.lineno - 1 : statement.end_lineno]))
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            if isinstance(statement, ast.Expr):
+                value = eval(source, namespace)
+            else:
+                exec(source, namespace)
+                continue
+        promised = expected_value(lines[(statement.end_lineno or statement.lineno) - 1])
+        if promised is not None:
+            assert (printed.getvalue().strip() or repr(value)) == promised, source
+            compared += 1
+    return compared
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md"])
+def test_python_on_the_page_runs_and_gives_what_it_says(page: str) -> None:
+    namespace: dict[str, Any] = {}
+    assert sum(run_block(block, namespace) for block in blocks(read(page), "python")) >= 2
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/formats.md"])
+def test_json_on_the_page_is_read_and_is_full(page: str, tmp_path: Path) -> None:
+    import liehom as lh
+
+    pairs = []
+    for number, block in enumerate(blocks(read(page), "json")):
+        data = json.loads(block)
+        if "structure_constants" in data or "point" in data:
+            file = tmp_path / f"{number}.json"
+            file.write_text(block, encoding="utf-8")
+            pairs.append(lh.load(file))
+        elif data.get("format") == "liehom-certificate":
+            assert lh.verify_certificate(pairs[0], data)
+    assert pairs
+    assert all(lh.decide_fullness(pair).full for pair in pairs)
+
+
+def test_every_layer_has_an_api_page() -> None:
+    there = {path.stem for path in (DOCS / "api").glob("*.md")}
+    layers = {
+        path.stem
+        for path in (ROOT / "liehom").iterdir()
+        if path.suffix == ".py" or (path / "__init__.py").is_file()
+    }
+    assert layers - there - NO_API_PAGE == set()
+
+
+def public_names() -> list[str]:
+    """What `liehom/__init__.py` exports: `__all__`, or every `X as X`."""
+    tree = ast.parse(read("liehom", "__init__.py"))
+    names = {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if alias.asname == alias.name
+    }
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            names.update(ast.literal_eval(node.value))
+    return sorted(name for name in names if not name.startswith("_"))
+
+
+def test_there_are_public_names() -> None:
+    import liehom
+
+    assert {"LieAlgebra", "Pair", "decide_fullness", "verify_certificate"} <= set(public_names())
+    assert all(hasattr(liehom, name) for name in public_names())
+
+
+def test_public_names_are_explained_with_an_example() -> None:
+    """Modules are explained by their contents, exceptions by the sentence that says when they are raised."""
+    import liehom
+
+    missing = []
+    for name in public_names():
+        thing = getattr(liehom, name)
+        doc = inspect.getdoc(thing) or ""
+        is_exempt = inspect.ismodule(thing) or (inspect.isclass(thing) and issubclass(thing, Exception))
+        if not doc or (not is_exempt and not re.search(r"^Examples?:?$", doc, flags=re.MULTILINE)):
+            missing.append(name)
+    assert not missing, f"no docstring with an Examples section: {missing}"
