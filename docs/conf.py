@@ -25,6 +25,9 @@ default_role = "code"
 
 autodoc_default_options = {"members": True, "show-inheritance": True, "member-order": "bysource"}
 autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike"}  # not the page-long union behind it
+python_use_unqualified_type_names = True
 napoleon_use_ivar = True  # an attribute described in a section is not described a second time
 napoleon_use_rtype = False
 
