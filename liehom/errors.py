@@ -31,7 +31,7 @@ class FieldError(InputError):
 
 
 class ParseError(InputError):
-    """A text is not a value of the whitelist grammar (integers, + - * / **, parentheses, sqrt, the field's name)."""
+    """A text is not a value of the whitelist grammar (integers, ``+ - * / **``, parentheses, ``sqrt``, names)."""
 
 
 class FormatError(InputError):

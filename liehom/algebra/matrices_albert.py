@@ -62,9 +62,7 @@ def albert_product(
     return np.concatenate([diagonal, *(doubled[:, :, i, j] for i, j in _PLACES)], axis=2)
 
 
-def f4(
-    signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, int] = OCTONIONS
-) -> IntegerArray:
+def f4(signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
     """f4 on R^27: the derivations of the Albert algebra; they fix the identity E_1 + E_2 + E_3.
 
     Parameters

@@ -284,9 +284,7 @@ def with_quaternion_scalars(
     (5, 4, 4)
     """
     if scalars not in (0, 1, 3):
-        raise InputError(
-            f"over H there are 0, 1 (for u(1)) or 3 (for sp(1)) commuting scalars; got {scalars!r}"
-        )
+        raise InputError(f"over H there are 0, 1 (for u(1)) or 3 (for sp(1)) commuting scalars; got {scalars!r}")
     return join(family, quaternion_scalars(family.shape[1] // 4, parameters=parameters)[:scalars])
 
 

@@ -5,10 +5,8 @@ what a user writes), `polynomial` (root counts), `balls` (certain signs), `float
 `grammar` (how values are read).
 """
 
-from liehom.scalars.exact import QQ as QQ
-from liehom.scalars.exact import AlgebraicNumber as AlgebraicNumber
+from liehom.scalars.algebraic_number import AlgebraicNumber as AlgebraicNumber
 from liehom.scalars.exact import NumberField as NumberField
-from liehom.scalars.exact import RationalField as RationalField
 from liehom.scalars.exact_matrix import ExactField as ExactField
 from liehom.scalars.exact_matrix import ExactMatrix as ExactMatrix
 from liehom.scalars.field import Field as Field
@@ -22,4 +20,6 @@ from liehom.scalars.number_fields import common_field as common_field
 from liehom.scalars.number_fields import exact_value as exact_value
 from liehom.scalars.number_fields import number_field as number_field
 from liehom.scalars.polynomial import Polynomial as Polynomial
+from liehom.scalars.rational import QQ as QQ
+from liehom.scalars.rational import RationalField as RationalField
 from liehom.scalars.subspace import Subspace as Subspace

@@ -1,166 +1,26 @@
-"""QQ and real number fields QQ(a), on python-flint.
+"""Real number fields QQ(a), on python-flint.
 
 A real number field is QQ(a) for one real root a of an irreducible integer polynomial f, singled out by an
 isolating interval; signs are those of this embedding, found by ball arithmetic of growing precision.
 Elements are polynomials in the algebraic integer b = c a, c the leading coefficient of f, so that all
-products stay integral.  Imports balls, exact_matrix, grammar, errors.
+products stay integral.  Imports algebraic_number, balls, exact_matrix, grammar, rational, errors.
 """
 
 from __future__ import annotations
 
-import functools
-import numbers
-import re
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any, final
 
 import flint
-import numpy as np
 
 from liehom.errors import FieldError
 from liehom.scalars import grammar
+from liehom.scalars.algebraic_number import AlgebraicNumber
 from liehom.scalars.balls import isolate_real_root, root_ball, working_precision
-from liehom.scalars.exact_matrix import FIRST_PRIME, ExactField
-from liehom.scalars.field import Scalar
+from liehom.scalars.exact_matrix import ExactField
+from liehom.scalars.rational import QQ, prime, rational_from_text, rational_number, refused
 
-_INTEGER = re.compile(r"[-+]?[0-9]+", re.ASCII)
-_FRACTION = re.compile(r"[-+]?[0-9]+/[0-9]+", re.ASCII)
 MAX_PRECISION = 1 << 22
-
-
-def _rational(value: Any) -> Any:
-    """The ``flint.fmpq`` that a Python, numpy, flint or sympy rational number is, else None."""
-    if isinstance(value, flint.fmpq):
-        return value
-    if isinstance(value, (bool, np.bool_)):
-        return None
-    if isinstance(value, (int, flint.fmpz)):
-        return flint.fmpq(value)
-    if isinstance(value, numbers.Rational):  # int, Fraction, numpy integers, sympy Rational
-        return flint.fmpq(int(value.numerator), int(value.denominator))
-    if getattr(value, "is_Rational", False):
-        return flint.fmpq(int(value.p), int(value.q))
-    return None
-
-
-def _rational_from_text(text: str) -> Any:
-    """The rational that a plain integer or fraction denotes, else None (fast path of the grammar)."""
-    stripped = text.strip()
-    if _INTEGER.fullmatch(stripped):
-        return flint.fmpq(flint.fmpz(stripped.removeprefix("+")))
-    if _FRACTION.fullmatch(stripped):
-        top, bottom = stripped.removeprefix("+").split("/")
-        if bottom.strip("0"):
-            return flint.fmpq(flint.fmpz(top), flint.fmpz(bottom))
-    return None
-
-
-def _refused(value: Any, field: Field_) -> FieldError:
-    if isinstance(value, (float, np.floating)):
-        shown = Fraction(float(value)).limit_denominator(1000) if np.isfinite(value) else "p/q"
-        return FieldError(
-            f"{value!r} is a float, and {field.name} is exact: write a fraction such as '{shown}', "
-            "or ask for numerical arithmetic (float64)"
-        )
-    return FieldError(f"{value!r} of type {type(value).__name__} is not an element of {field.name}")
-
-
-@final
-class RationalField(ExactField):
-    """The field QQ of rational numbers; its elements are ``flint.fmpq``. Use the instance `QQ`.
-
-    Examples
-    --------
-    >>> from liehom.scalars import QQ
-    >>> QQ.convert("-6/4"), QQ.sign(QQ.convert("-6/4"))
-    (-3/2, -1)
-    """
-
-    __slots__ = ()
-
-    @property
-    def name(self) -> str:
-        return "QQ"
-
-    @property
-    def degree(self) -> int:
-        return 1
-
-    @property
-    def zero(self) -> Scalar:
-        return flint.fmpq(0)
-
-    @property
-    def one(self) -> Scalar:
-        return flint.fmpq(1)
-
-    def convert(self, value: Any) -> Scalar:
-        if isinstance(value, str):
-            rational = _rational_from_text(value)
-            return rational if rational is not None else self._evaluate(value)
-        rational = _rational(value)
-        if rational is not None:
-            return rational
-        if isinstance(value, AlgebraicNumber) and value.is_rational():
-            return value.coordinates[0]
-        raise _refused(value, self)
-
-    def _evaluate(self, text: str) -> Scalar:
-        return grammar.evaluate(grammar.parse(text), flint.fmpq, {}, {"sqrt": self.sqrt})
-
-    def sqrt(self, value: Scalar) -> Scalar:
-        """The non-negative square root; `FieldError` if it is not rational."""
-        numerator, denominator = flint.fmpz(value.p), flint.fmpz(value.q)
-        if numerator < 0:
-            raise FieldError(f"sqrt({value}) is not real")
-        top, bottom = numerator.isqrt(), denominator.isqrt()
-        if top * top != numerator or bottom * bottom != denominator:
-            raise FieldError(f"sqrt({value}) is not in QQ; give the field, such as number_field('sqrt({value})')")
-        return flint.fmpq(top, bottom)
-
-    def format(self, value: Scalar) -> str:
-        return str(value)
-
-    def sign(self, value: Scalar) -> int:
-        return int(value > 0) - int(value < 0)
-
-    def to_float(self, value: Scalar) -> float:
-        try:
-            return int(value.p) / int(value.q)
-        except OverflowError:
-            with working_precision(64):
-                return float(flint.arb(value))
-
-    def coordinates(self, value: Scalar) -> list[Any]:
-        return [value]
-
-    def from_coordinates(self, coordinates: Sequence[Any]) -> Scalar:
-        return coordinates[0]
-
-    def power_coordinates(self, exponent: int) -> list[int]:
-        return [1]
-
-    def residue(self, attempt: int = 0) -> tuple[int, int]:
-        return _prime(attempt), 0
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, RationalField)
-
-    def __hash__(self) -> int:
-        return hash("QQ")
-
-
-@functools.cache
-def _prime(attempt: int) -> int:
-    """The `attempt`-th prime at or below 2^61 - 1."""
-    candidate = FIRST_PRIME if attempt == 0 else _prime(attempt - 1) - 2
-    while not flint.fmpz(candidate).is_prime():
-        candidate -= 2
-    return candidate
-
-
-QQ = RationalField()
 
 
 @final
@@ -189,14 +49,26 @@ class NumberField(ExactField):
     (2, 1, '1/2 + 1/2*a')
     """
 
-    __slots__ = ("_balls", "_modulus", "_powers", "_residues", "interval", "leading", "minpoly", "root_index", "symbol")
+    __slots__ = (
+        "_balls",
+        "_modulus",
+        "_powers",
+        "_residues",
+        "interval",
+        "leading",
+        "minpoly",
+        "root_index",
+        "symbol",
+    )
 
     def __init__(self, symbol: str, minpoly: Sequence[Any], interval: tuple[Any, Any]) -> None:
         polynomial = flint.fmpq_poly([QQ.convert(c) for c in minpoly])
         if polynomial.degree() < 2:
             raise FieldError("the minimal polynomial of a number field must have degree at least 2")
         integral = polynomial.numer()
-        integral = integral // integral.content() if integral[integral.degree()] > 0 else -(integral // integral.content())
+        integral = (
+            integral // integral.content() if integral[integral.degree()] > 0 else -(integral // integral.content())
+        )
         factors = integral.factor()[1]
         if len(factors) != 1 or factors[0][1] != 1:
             shown = ", ".join(str(f) for f, _ in factors)
@@ -247,14 +119,14 @@ class NumberField(ExactField):
                 return AlgebraicNumber(self, flint.fmpq_poly([value.coordinates[0]]))
             raise FieldError(f"{value} of {value.field.name} is not in {self.name}")
         if isinstance(value, str):
-            rational = _rational_from_text(value)
+            rational = rational_from_text(value)
             return self._evaluate(value) if rational is None else self._embedded(rational)
-        rational = _rational(value)
+        rational = rational_number(value)
         if rational is not None:
             return self._embedded(rational)
         if getattr(value, "is_real", False) and hasattr(value, "free_symbols"):  # a sympy expression
             return self._evaluate(str(value))
-        raise _refused(value, self)
+        raise refused(value, self)
 
     def _embedded(self, rational: Any) -> AlgebraicNumber:
         return AlgebraicNumber(self, flint.fmpq_poly([rational]))
@@ -344,7 +216,7 @@ class NumberField(ExactField):
         start = [p for p, _ in self._residues]
         while True:
             index += 1
-            p = _prime(index)
+            p = prime(index)
             if p in start:
                 continue
             image = flint.nmod_poly([int(c) % p for c in self._modulus.coeffs()], p)
@@ -360,118 +232,3 @@ class NumberField(ExactField):
 
     def __hash__(self) -> int:
         return hash((self.minpoly, self.root_index))
-
-
-@final
-class AlgebraicNumber:
-    """An element of a real number field; made by arithmetic or ``field.convert``.
-
-    Comparisons are those of the field's real embedding.
-
-    Examples
-    --------
-    >>> K = NumberField("a", [-2, 0, 1], (1, 2))
-    >>> K.generator > "7/5", 1 / K.generator
-    (True, 1/2*a)
-    """
-
-    __slots__ = ("field", "polynomial")
-
-    def __init__(self, field: NumberField, polynomial: Any) -> None:
-        self.field = field
-        self.polynomial = polynomial
-
-    @property
-    def coordinates(self) -> list[Any]:
-        """Rational coordinates in powers of the integral generator."""
-        return [self.polynomial[i] for i in range(self.field.degree)]
-
-    def is_rational(self) -> bool:
-        """Whether the number is rational."""
-        return bool(self.polynomial.degree() < 1)
-
-    def _operand(self, other: Any) -> Any:
-        if isinstance(other, AlgebraicNumber) and other.field is self.field:
-            return other.polynomial
-        try:
-            return self.field.convert(other).polynomial
-        except FieldError:
-            return None
-
-    def _made(self, polynomial: Any) -> AlgebraicNumber:
-        return AlgebraicNumber(self.field, polynomial)
-
-    def __add__(self, other: Any) -> AlgebraicNumber:
-        right = self._operand(other)
-        return NotImplemented if right is None else self._made(self.polynomial + right)
-
-    __radd__ = __add__
-
-    def __sub__(self, other: Any) -> AlgebraicNumber:
-        right = self._operand(other)
-        return NotImplemented if right is None else self._made(self.polynomial - right)
-
-    def __rsub__(self, other: Any) -> AlgebraicNumber:
-        return -self + other
-
-    def __neg__(self) -> AlgebraicNumber:
-        return self._made(-self.polynomial)
-
-    def __mul__(self, other: Any) -> AlgebraicNumber:
-        right = self._operand(other)
-        if right is None:
-            return NotImplemented
-        return self._made((self.polynomial * right) % flint.fmpq_poly(self.field.modulus))
-
-    __rmul__ = __mul__
-
-    def inverse(self) -> AlgebraicNumber:
-        """1 divided by the number; ZeroDivisionError for zero."""
-        if self.polynomial.is_zero():
-            raise ZeroDivisionError("division by zero in a number field")
-        common, left, _ = self.polynomial.xgcd(flint.fmpq_poly(self.field.modulus))
-        return self._made(left / common[0])
-
-    def __truediv__(self, other: Any) -> AlgebraicNumber:
-        right = self._operand(other)
-        return NotImplemented if right is None else self * self._made(right).inverse()
-
-    def __rtruediv__(self, other: Any) -> AlgebraicNumber:
-        return self.inverse() * other
-
-    def __pow__(self, exponent: int) -> AlgebraicNumber:
-        base = self if exponent >= 0 else self.inverse()
-        result, exponent = self.field.one, abs(exponent)
-        while exponent:
-            if exponent & 1:
-                result = result * base
-            base, exponent = base * base, exponent >> 1
-        return result
-
-    def __eq__(self, other: object) -> bool:
-        right = self._operand(other)
-        return NotImplemented if right is None else bool(self.polynomial == right)
-
-    def __hash__(self) -> int:
-        return hash(tuple((int(c.p), int(c.q)) for c in self.coordinates))
-
-    def __lt__(self, other: Any) -> bool:
-        return self.field.sign(self - other) < 0
-
-    def __le__(self, other: Any) -> bool:
-        return self.field.sign(self - other) <= 0
-
-    def __gt__(self, other: Any) -> bool:
-        return self.field.sign(self - other) > 0
-
-    def __ge__(self, other: Any) -> bool:
-        return self.field.sign(self - other) >= 0
-
-    def __float__(self) -> float:
-        return self.field.to_float(self)
-
-    def __repr__(self) -> str:
-        return self.field.format(self)
-
-
-Field_ = RationalField | NumberField

@@ -8,6 +8,7 @@ finds pivots modulo primes and verifies the lifted result exactly.  Imports fiel
 
 from __future__ import annotations
 
+import itertools
 from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 from math import lcm
@@ -77,6 +78,15 @@ class ExactField(Field):
         rest = tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree - 1))
         return ExactMatrix(self, (first, *rest), den).normalized()
 
+    def from_parts(self, parts: Sequence[Sequence[int]], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
+        """The matrix with these integer coordinates (one list per power of the generator) over a denominator."""
+        made = tuple(flint.fmpz_mat(nrows, ncols, p if isinstance(p, list) else list(p)) for p in parts)
+        return ExactMatrix(self, made, den).normalized()
+
+    def from_integer_coordinates(self, coordinates: Sequence[int], den: int = 1) -> Scalar:
+        """The element with these integer coordinates over a denominator."""
+        return self.from_coordinates([flint.fmpq(c, den) for c in coordinates])
+
     def zeros(self, nrows: int, ncols: int) -> ExactMatrix:
         return ExactMatrix(self, tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree)), 1)
 
@@ -135,7 +145,6 @@ class ExactMatrix(Matrix):
         return self._field.from_coordinates([flint.fmpq(a[index], self.den) for a in self.parts])
 
     def entries(self) -> list[Scalar]:
-        """The entries row after row."""
         if self._field.degree == 1:
             first = self.parts[0]
             return (flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)).entries()  # type: ignore[no-any-return]
@@ -161,9 +170,17 @@ class ExactMatrix(Matrix):
         return self._rearranged([i * n + j for i in rows for j in columns], len(rows), len(columns))
 
     def reshape(self, nrows: int, ncols: int) -> ExactMatrix:
-        """The same entries row after row in another shape."""
         parts = tuple(flint.fmpz_mat(nrows, ncols, a.entries()) for a in self.parts)
         return ExactMatrix(self._field, parts, self.den)
+
+    def split_rows(self, nrows: int, ncols: int) -> list[ExactMatrix]:
+        size = nrows * ncols
+        tables = [a.entries() for a in self.parts]
+        blocks = []
+        for i in range(self.nrows):
+            parts = tuple(flint.fmpz_mat(nrows, ncols, t[i * size : (i + 1) * size]) for t in tables)
+            blocks.append(ExactMatrix(self._field, parts, self.den))
+        return blocks
 
     def _rearranged(self, places: list[int], nrows: int, ncols: int) -> ExactMatrix:
         parts = []
@@ -405,7 +422,7 @@ class ExactMatrix(Matrix):
 
 def _sign_changes(signs: Sequence[int]) -> int:
     kept = [s for s in signs if s]
-    return sum(1 for a, b in zip(kept, kept[1:], strict=False) if a != b)
+    return sum(1 for a, b in itertools.pairwise(kept) if a != b)
 
 
 def _pivots(reduced: ExactMatrix, rank: int, ncols: int) -> list[int]:

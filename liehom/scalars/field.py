@@ -107,6 +107,18 @@ class Matrix(ABC):
     def trace(self) -> Scalar:
         """The sum of the diagonal."""
 
+    @abstractmethod
+    def reshape(self, nrows: int, ncols: int) -> Any:
+        """The same entries row after row in another shape."""
+
+    @abstractmethod
+    def split_rows(self, nrows: int, ncols: int) -> list[Any]:
+        """Each row as a matrix of shape (nrows, ncols)."""
+
+    @abstractmethod
+    def entries(self) -> list[Scalar]:
+        """The entries row after row."""
+
     # -- linear algebra ----------------------------------------------------------------------------------
     @abstractmethod
     def rank(self) -> int:
@@ -160,6 +172,11 @@ class Field(ABC):
         """What the field is called in messages and reprs, such as 'QQ', 'QQ(sqrt(2))', 'float64'."""
 
     @property
+    def degree(self) -> int:
+        """The degree over QQ of an exact field; 1 for float64."""
+        return 1
+
+    @property
     @abstractmethod
     def zero(self) -> Scalar:
         """The number 0."""
@@ -188,6 +205,10 @@ class Field(ABC):
     @abstractmethod
     def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> Any:
         """The matrix with these rows; give `shape` where it may have no rows or no columns."""
+
+    @abstractmethod
+    def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> Any:
+        """The matrix with these field elements, row after row."""
 
     @abstractmethod
     def zeros(self, nrows: int, ncols: int) -> Any:

@@ -115,7 +115,6 @@ class FloatField(Field):
         return FloatMatrix(self, np.array(table, dtype=np.float64).reshape(nrows, ncols))
 
     def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> FloatMatrix:
-        """The matrix with these floats, row after row."""
         return FloatMatrix(self, np.array(entries, dtype=np.float64).reshape(nrows, ncols))
 
     def zeros(self, nrows: int, ncols: int) -> FloatMatrix:
@@ -163,7 +162,6 @@ class FloatMatrix(Matrix):
         return float(self.array[index])
 
     def entries(self) -> list[float]:
-        """The entries row after row."""
         return [float(x) for x in self.array.ravel()]
 
     def to_rows(self) -> list[list[float]]:
@@ -177,8 +175,10 @@ class FloatMatrix(Matrix):
         return self._made(array if columns is None else array[:, list(columns)])
 
     def reshape(self, nrows: int, ncols: int) -> FloatMatrix:
-        """The same entries row after row in another shape."""
         return self._made(self.array.reshape(nrows, ncols))
+
+    def split_rows(self, nrows: int, ncols: int) -> list[FloatMatrix]:
+        return [self._made(row.reshape(nrows, ncols)) for row in self.array]
 
     def _made(self, array: Any) -> FloatMatrix:
         return FloatMatrix(self._field, array)
@@ -250,7 +250,9 @@ class FloatMatrix(Matrix):
     def solve(self, right: FloatMatrix) -> FloatMatrix:
         solution, *_ = np.linalg.lstsq(self.array, right.array, rcond=self._field.rtol)
         size = float(np.abs(right.array).max(initial=0.0)) + float(np.abs(self.array).max(initial=0.0))
-        if float(np.abs(self.array @ solution - right.array).max(initial=0.0)) > 1e3 * self._field.rtol * max(size, 1e-300):
+        if float(np.abs(self.array @ solution - right.array).max(initial=0.0)) > 1e3 * self._field.rtol * max(
+            size, 1e-300
+        ):
             raise SingularError("the linear system has no solution within the tolerance")
         return self._made(solution)
 

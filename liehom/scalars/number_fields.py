@@ -14,8 +14,9 @@ import flint
 from liehom.errors import FieldError
 from liehom.scalars import grammar
 from liehom.scalars.balls import real_root_balls, working_precision
-from liehom.scalars.exact import QQ, NumberField, RationalField
+from liehom.scalars.exact import NumberField
 from liehom.scalars.field import Scalar
+from liehom.scalars.rational import QQ, RationalField
 
 
 def number_field(

@@ -7,15 +7,17 @@ squarefree, factor the norm over QQ, take greatest common divisors.  Imports exa
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any, final
 
 import flint
 
 from liehom.errors import FieldError, InternalError
-from liehom.scalars.exact import QQ, NumberField
+from liehom.scalars.exact import NumberField
 from liehom.scalars.exact_matrix import ExactField
 from liehom.scalars.field import Scalar
+from liehom.scalars.rational import QQ
 
 
 @final
@@ -227,7 +229,7 @@ class Polynomial:
                 sign = self.field.sign(p(at))
             if sign:
                 signs.append(sign)
-        return sum(1 for a, b in zip(signs, signs[1:], strict=False) if a != b)
+        return sum(1 for a, b in itertools.pairwise(signs) if a != b)
 
     def count_real_roots(self, low: Any = None, high: Any = None) -> int:
         """Number of distinct real roots in the interval (low, high] (unbounded where None); Sturm's theorem.

@@ -1,0 +1,271 @@
+"""Subalgebra: a subspace of a Lie algebra that is closed under the bracket; and the standard ones.
+
+Closure is proved at construction.  The basis is kept as given; `subspace` is canonical.
+Imports lie_algebra, scalars, errors.
+"""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+from liehom.algebra.lie_algebra import LieAlgebra, table_from_blocks
+from liehom.errors import DependentRowsError, NotAnIdealError, NotASubalgebraError, ShapeError
+from liehom.scalars import Scalar, Subspace
+from liehom.scalars.quotient import Quotient, quotient
+
+
+@final
+class Subalgebra:
+    """A subalgebra h of g, given by the rows of a basis.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        The algebra g around.
+    rows : sequence of rows, or a matrix
+        Coefficients in the basis of g, shape (k, n), independent. No rows: the zero subalgebra.
+    check : bool, optional
+        Prove closure (default). False is for callers that have proved it.
+
+    Raises
+    ------
+    DependentRowsError, NotASubalgebraError, ShapeError
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> h = lh.so(3).subalgebra([[0, 0, 1]])
+    >>> h.dimension, [0, 0, 5] in h, h.is_ideal()
+    (1, True, False)
+    """
+
+    __slots__ = ("_quotient", "_subspace", "algebra", "basis")
+
+    def __init__(self, algebra: LieAlgebra, rows: Any, *, check: bool = True) -> None:
+        self.algebra = algebra
+        self.basis = rows if hasattr(rows, "nrows") else _matrix(algebra, rows)
+        self._subspace: Subspace | None = None
+        self._quotient: Quotient | None = None
+        if self.basis.ncols != algebra.dimension:
+            raise ShapeError(f"rows of length {self.basis.ncols} in an algebra of dimension {algebra.dimension}")
+        if check:
+            self._prove()
+
+    def _prove(self) -> None:
+        rank = self.basis.rank()
+        if rank < self.basis.nrows:
+            raise DependentRowsError(rank, _dependent(self.basis), "rows of the subalgebra")
+        projection = self.quotient().projection
+        failure = self.algebra.table.first_nonzero(self.basis, self.basis, projection)
+        if failure is not None:
+            a, b = failure
+            bracket = self.algebra.bracket(self.basis.row(a), self.basis.row(b))
+            shown = ", ".join(self.algebra.field.format(x) for x in bracket)
+            raise NotASubalgebraError((a, b), f"({shown})")
+
+    # -- properties --------------------------------------------------------------------------------------
+    @property
+    def dimension(self) -> int:
+        """The dimension."""
+        return int(self.basis.nrows)
+
+    @property
+    def codimension(self) -> int:
+        """dim g - dim h."""
+        return self.algebra.dimension - self.dimension
+
+    @property
+    def subspace(self) -> Subspace:
+        """The subspace of g with its canonical basis."""
+        if self._subspace is None:
+            self._subspace = Subspace(self.algebra.field, self.basis, self.algebra.dimension)
+        return self._subspace
+
+    def quotient(self) -> Quotient:
+        """Coordinates on g/h (cached): a basis of h, a complement, and the projection, with small numbers."""
+        if self._quotient is None:
+            self._quotient = quotient(self.basis)
+        return self._quotient
+
+    def rows(self) -> list[list[Scalar]]:
+        """The basis as lists of field elements."""
+        return self.basis.to_rows()  # type: ignore[no-any-return]
+
+    def __contains__(self, x: Any) -> bool:
+        return bool((self.algebra.row(x) @ self.quotient().projection).is_zero())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Subalgebra) and self.algebra == other.algebra and self.subspace == other.subspace
+
+    __hash__ = None  # type: ignore[assignment]
+
+    # -- verbs -------------------------------------------------------------------------------------------
+    def as_algebra(self, name: str | None = None) -> LieAlgebra:
+        """The subalgebra as a Lie algebra in its own basis.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.gl(2).subalgebra([[0, 1, 0, 0], [1, 0, 0, -1]]).as_algebra().dimension
+        2
+        """
+        k = self.dimension
+        whole = self.algebra.field.identity(self.algebra.dimension)
+        blocks = []
+        for block in self.algebra.table.contract(self.basis, self.basis, whole):
+            blocks.append(self.basis.T.solve(block.T).T)
+        # A closed subspace of a Lie algebra: the axioms hold.
+        return LieAlgebra(table_from_blocks(self.algebra.field, k, blocks), name=name, check=False)
+
+    def is_ideal(self) -> bool:
+        """Whether [g, h] lies in h."""
+        whole = self.algebra.field.identity(self.algebra.dimension)
+        return self.algebra.table.first_nonzero(self.basis, whole, self.quotient().projection) is None
+
+    def quotient_algebra(self, name: str | None = None) -> LieAlgebra:
+        """g/h for an ideal h, in the basis of the complement of `quotient`; `NotAnIdealError` otherwise."""
+        if not self.is_ideal():
+            raise NotAnIdealError("a quotient algebra needs an ideal: [g, h] does not lie in h")
+        data = self.quotient()
+        blocks = self.algebra.table.contract(data.lift, data.lift, data.projection)
+        # The bracket of g descends to the quotient by an ideal.
+        return LieAlgebra(table_from_blocks(self.algebra.field, self.codimension, blocks), name=name, check=False)
+
+    def conjugated(self, matrix: Any) -> Subalgebra:
+        """The image under an automorphism of g, given by its matrix (n, n) on columns; closure is proved."""
+        return Subalgebra(self.algebra, self.basis @ matrix.T)
+
+    def __repr__(self) -> str:
+        around = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
+        return f"<subalgebra of dimension {self.dimension} in {around} over {self.algebra.field.name}>"
+
+
+def _matrix(algebra: LieAlgebra, rows: Any) -> Any:
+    table = [list(row) for row in rows]
+    for i, row in enumerate(table):
+        if len(row) != algebra.dimension:
+            raise ShapeError(f"row {i} of the subalgebra has length {len(row)}, expected {algebra.dimension}")
+    return algebra.field.matrix(table, (len(table), algebra.dimension))
+
+
+def _dependent(basis: Any) -> list[int]:
+    """Rows in the span of the earlier ones."""
+    if basis.field.exact:
+        independent = set(basis.T.echelon()[1])
+        return [i for i in range(basis.nrows) if i not in independent]
+    ranks = [basis.select(rows=range(i)).rank() for i in range(basis.nrows + 1)]
+    return [i for i in range(basis.nrows) if ranks[i + 1] == ranks[i]]
+
+
+def _span(algebra: LieAlgebra, rows: Any) -> Any:
+    matrix = rows.basis if isinstance(rows, Subalgebra) else rows if hasattr(rows, "nrows") else _matrix(algebra, rows)
+    return matrix.row_space()
+
+
+def _products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
+    """A basis of the span of [left, right]."""
+    n = algebra.dimension
+    blocks = algebra.table.contract(left, right, algebra.field.identity(n))
+    return algebra.field.stack_rows(blocks, n).row_space()
+
+
+def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
+    """The least subalgebra that contains the rows.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> generated(lh.so(3), [[1, 0, 0], [0, 1, 0]]).dimension
+    3
+    """
+    n = algebra.dimension
+    span, before = _span(algebra, rows), -1
+    while before < span.nrows:
+        before = span.nrows
+        span = algebra.field.stack_rows([span, _products(algebra, span, span)], n).row_space()
+    return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
+
+
+def ideal_generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
+    """The least ideal that contains the rows.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> ideal_generated(lh.gl(2), [[1, 0, 0, 0]]).dimension
+    4
+    """
+    n = algebra.dimension
+    whole = algebra.field.identity(n)
+    span, before = _span(algebra, rows), -1
+    while before < span.nrows:
+        before = span.nrows
+        span = algebra.field.stack_rows([span, _products(algebra, span, whole)], n).row_space()
+    return Subalgebra(algebra, span, check=False)  # an ideal is a subalgebra
+
+
+def centralizer(algebra: LieAlgebra, rows: Any) -> Subalgebra:
+    """The subalgebra {x : [x, r] = 0 for each row r}.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> centralizer(lh.so(3), [[1, 0, 0]]).dimension
+    1
+    """
+    n = algebra.dimension
+    span = _span(algebra, rows)
+    blocks = algebra.table.contract(span, algebra.field.identity(n), algebra.field.identity(n))
+    conditions = algebra.field.stack_columns(blocks, n) if blocks else algebra.field.zeros(n, 0)
+    return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
+
+
+def normalizer(subalgebra: Subalgebra) -> Subalgebra:
+    """The subalgebra {x : [x, h] is in h}.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> normalizer(lh.sl(2).subalgebra([[0, 0, 1]])).dimension
+    1
+    """
+    algebra = subalgebra.algebra
+    n = algebra.dimension
+    blocks = algebra.table.contract(subalgebra.basis, algebra.field.identity(n), subalgebra.quotient().projection)
+    conditions = algebra.field.stack_columns(blocks, n) if blocks else algebra.field.zeros(n, 0)
+    return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
+
+
+def derived_series(algebra: LieAlgebra) -> list[Subalgebra]:
+    """g, [g, g], ... down to the first term that repeats.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [h.dimension for h in derived_series(lh.gl(2))]
+    [4, 3]
+    """
+    terms = [algebra.field.identity(algebra.dimension)]
+    while True:
+        following = _products(algebra, terms[-1], terms[-1])
+        if following.nrows == terms[-1].nrows:
+            return [Subalgebra(algebra, t, check=False) for t in terms]  # [I, I] of an ideal is an ideal
+        terms.append(following)
+
+
+def lower_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
+    """g, [g, g], [g, [g, g]], ... down to the first term that repeats.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [h.dimension for h in lower_central_series(lh.heisenberg(1))]
+    [3, 1, 0]
+    """
+    whole = algebra.field.identity(algebra.dimension)
+    terms = [whole]
+    while True:
+        following = _products(algebra, whole, terms[-1])
+        if following.nrows == terms[-1].nrows:
+            return [Subalgebra(algebra, t, check=False) for t in terms]  # [g, I] of an ideal is an ideal
+        terms.append(following)
