@@ -1,6 +1,19 @@
 """liehom: Lie algebras, isotropy and fullness, exactly. (Docstring to be completed as the layers land.)"""
 
+from liehom.algebra.constructions import abelian as abelian
+from liehom.algebra.constructions import direct_sum as direct_sum
+from liehom.algebra.constructions import euclidean as euclidean
+from liehom.algebra.constructions import gl as gl
+from liehom.algebra.constructions import heisenberg as heisenberg
+from liehom.algebra.constructions import semidirect_sum as semidirect_sum
+from liehom.algebra.constructions import sl as sl
+from liehom.algebra.constructions import so as so
+from liehom.algebra.constructions import sp as sp
+from liehom.algebra.constructions import su as su
+from liehom.algebra.constructions import u as u
+from liehom.algebra.homomorphism import Homomorphism as Homomorphism
 from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
+from liehom.algebra.simple import simple as simple
 from liehom.algebra.subalgebra import Subalgebra as Subalgebra
 from liehom.representations.pair import Pair as Pair
 from liehom.representations.representation import Representation as Representation

@@ -15,7 +15,7 @@ from liehom.algebra.sparse_commutators import entries_of, private_places, sparse
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.algebra.tables import field_of_values
 from liehom.errors import DependentRowsError, InputError, NotClosedError, ShapeError
-from liehom.scalars import Field
+from liehom.scalars import QQ, ExactField, Field
 
 
 @final
@@ -51,6 +51,9 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
     given = list(matrices)
     if given and all(hasattr(a, "nrows") for a in given):
         made = given
+    elif given and all(_is_integer_square(a) for a in given) and (field is None or isinstance(field, ExactField)):
+        over = QQ if field is None else field
+        made = [over.from_integers(a.ravel().tolist(), len(a), len(a)) for a in given]
     else:
         tables = [a.tolist() if hasattr(a, "tolist") else [list(row) for row in a] for a in given]
         if field is None:
@@ -65,6 +68,10 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
         if a.shape != made[0].shape or a.nrows != a.ncols:
             raise ShapeError(f"matrix {i} has shape {a.shape}, expected the square shape of matrix 0, {made[0].shape}")
     return made
+
+
+def _is_integer_square(a: Any) -> bool:
+    return isinstance(a, np.ndarray) and a.dtype.kind == "i" and a.ndim == 2 and a.shape[0] == a.shape[1]
 
 
 def _listed(row: Any) -> list[Any]:
@@ -139,6 +146,8 @@ def lie_closure(
 
 
 def _independent(basis: list[Any], drop: bool) -> tuple[int, ...]:
+    if _private(basis) is not None:
+        return tuple(range(len(basis)))
     size = basis[0].nrows ** 2
     flat = basis[0].field.stack_rows([a.reshape(1, size) for a in basis], size)
     rank = flat.rank()
@@ -155,6 +164,14 @@ def _independent(basis: list[Any], drop: bool) -> tuple[int, ...]:
     return tuple(kept)
 
 
+def _private(basis: list[Any]) -> list[int] | None:
+    """For each matrix over QQ a place where it alone is not zero (so that they are independent), or None."""
+    field = basis[0].field
+    if not field.exact or field.degree > 1:
+        return None
+    return private_places([entries_of(a) for a in basis], basis[0].nrows)
+
+
 class _Span:
     """The span of independent matrices, with coordinates read from entries that determine them."""
 
@@ -163,10 +180,17 @@ class _Span:
         self.field = basis[0].field
         size = basis[0].nrows ** 2
         self.size = size
-        self.flat = self.field.stack_rows([a.reshape(1, size) for a in basis], size)
+        self._flat: Any = None
         self.leaving = (0, 0)
         self._places: list[int] | None = None
         self._inverse: Any = None
+
+    @property
+    def flat(self) -> Any:
+        """The matrix (d, N*N) with one flattened matrix a row."""
+        if self._flat is None:
+            self._flat = self.field.stack_rows([a.reshape(1, self.size) for a in self.basis], self.size)
+        return self._flat
 
     def _determined(self) -> tuple[list[int], Any]:
         """Flat positions that determine an element of the span, and the inverse of the basis there."""
@@ -178,8 +202,8 @@ class _Span:
     def _is_sparse(self) -> bool:
         if not self.field.exact or self.field.degree > 1:
             return False
-        filled = sum(1 for x in self.flat.parts[0].entries() if x)
-        return filled <= len(self.basis) * max(2 * self.basis[0].nrows, self.size // 6)
+        filled = sum(1 for a in self.basis for x in a.parts[0].entries() if x)
+        return bool(filled <= len(self.basis) * max(2 * self.basis[0].nrows, self.size // 6))
 
     def _coordinates(self, rows: Any) -> Any:
         if self.field.exact:
@@ -223,7 +247,7 @@ class _Span:
         return StructureConstants(self.field, len(self.basis), entries)
 
     def _sparse_commutators(self) -> StructureConstants | None:
-        private = private_places([entries_of(a) for a in self.basis], self.basis[0].nrows)
+        private = _private(self.basis)
         places, inverse = (None, None) if private is not None else self._determined()
         found = sparse_commutator_table(self.basis, places, inverse)
         if isinstance(found, StructureConstants):

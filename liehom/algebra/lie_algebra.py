@@ -158,7 +158,7 @@ class LieAlgebra:
         --------
         >>> import liehom as lh
         >>> lh.so(3).bracket([1, 0, 0], ["1/2", 1, 0])
-        array([0, 0, -1], dtype=object)
+        array([0, 0, 1], dtype=object)
         """
         if self.dimension == 0:
             return self._vector([])
