@@ -185,8 +185,20 @@ def parse(text: str, names: Collection[str] = (), functions: Collection[str] = (
     return tree
 
 
+def _chain(tree: Node) -> tuple[Node, list[tuple[str, Node]]]:
+    """The first operand of a chain of + - * /, and its (operator, operand) pairs; chains may be very long."""
+    steps = []
+    while isinstance(tree, Operation) and len(tree.operands) == 2 and tree.operator != "**":
+        tree, right = tree.operands[0], (tree.operator, tree.operands[1])
+        steps.append(right)
+    return tree, steps[::-1]
+
+
 def sqrt_arguments(tree: Node) -> list[Node]:
     """The arguments of all ``sqrt`` in a tree, innermost first."""
+    first, steps = _chain(tree)
+    if steps:
+        return [found for operand in (first, *(right for _, right in steps)) for found in sqrt_arguments(operand)]
     match tree:
         case Call(_, argument):
             return [*sqrt_arguments(argument), argument]
@@ -223,6 +235,12 @@ def evaluate(
     >>> evaluate(parse("2**3 - 1/2"), flint.fmpq, {}, {})
     15/2
     """
+    first, steps = _chain(tree)
+    if steps:
+        total = evaluate(first, number, names, functions)
+        for operator, right in steps:
+            total = _combined(operator, total, evaluate(right, number, names, functions))
+        return total
     match tree:
         case Number(value):
             return number(value)
@@ -232,18 +250,19 @@ def evaluate(
             return functions[function](evaluate(argument, number, names, functions))
         case Operation("**", (base, exponent)):
             return _power(evaluate(base, number, names, functions), _integer_exponent(exponent))
-    values = [evaluate(operand, number, names, functions) for operand in tree.operands]
-    match tree.operator:
-        case "neg":
-            return -values[0]
+    return -evaluate(tree.operands[0], number, names, functions)
+
+
+def _combined(operator: str, left: Any, right: Any) -> Any:
+    match operator:
         case "+":
-            return values[0] + values[1]
+            return left + right
         case "-":
-            return values[0] - values[1]
+            return left - right
         case "*":
-            return values[0] * values[1]
+            return left * right
     try:
-        return values[0] / values[1]
+        return left / right
     except ZeroDivisionError:
         raise ParseError("division by zero in a value") from None
 
@@ -257,6 +276,9 @@ def _power(base: Any, exponent: int) -> Any:
 
 def _bits(tree: Node) -> int:
     """An upper estimate of the size of the value, so that towers of powers are refused before they are computed."""
+    first, steps = _chain(tree)
+    if steps:
+        return _bits(first) + sum(_bits(right) for _, right in steps)
     match tree:
         case Number(value):
             return int(value.bit_length()) + 1
@@ -266,7 +288,7 @@ def _bits(tree: Node) -> int:
             return _bits(argument)
         case Operation("**", (base, exponent)):
             return _bits(base) * max(1, abs(_integer_exponent(exponent)))
-    return sum(_bits(operand) for operand in tree.operands)
+    return _bits(tree.operands[0])
 
 
 def _integer_exponent(tree: Node) -> int:

@@ -18,6 +18,9 @@ from liehom.scalars.exact import NumberField
 from liehom.scalars.field import Scalar
 from liehom.scalars.rational import QQ, RationalField
 
+MAX_RADICALS = 4
+MAX_RADICAND_BITS = 200
+
 
 def number_field(
     generator: Any, interval: tuple[Any, Any] | None = None, name: str = "a"
@@ -80,12 +83,16 @@ def common_field(texts: Iterable[str]) -> RationalField | NumberField:
             continue
         for argument in grammar.sqrt_arguments(grammar.parse(text)):
             if grammar.sqrt_arguments(argument):
-                nested.append(grammar.Call("sqrt", argument))
+                nested += [grammar.Call("sqrt", argument)] if grammar.Call("sqrt", argument) not in nested else []
                 continue
             kernel = _kernel(grammar.evaluate(argument, flint.fmpq, {}, {}))
             if kernel != 1 and kernel not in radicals:
                 radicals.append(kernel)
+            if len(radicals) + len(nested) > 16 * MAX_RADICALS:
+                raise _too_many_radicals()
     radicals = _independent(radicals)
+    if len(radicals) + len(nested) > MAX_RADICALS:
+        raise _too_many_radicals()
     if not nested and len(radicals) <= 1:
         return _quadratic(radicals[0]) if radicals else QQ
     terms: list[grammar.Node] = [grammar.Call("sqrt", grammar.Number(flint.fmpz(d))) for d in radicals]
@@ -106,6 +113,13 @@ def exact_value(text: str) -> Scalar:
     return common_field([text]).convert(text)
 
 
+def _too_many_radicals() -> FieldError:
+    return FieldError(
+        f"more than {MAX_RADICALS} different square roots: a field with all of them has a very large degree; "
+        "state a field by its minimal polynomial, or use fewer"
+    )
+
+
 def _kernel(value: Any) -> int:
     """The squarefree integer d with sqrt(value) a rational multiple of sqrt(d)."""
     if value < 0:
@@ -113,6 +127,8 @@ def _kernel(value: Any) -> int:
     product = flint.fmpz(value.p) * flint.fmpz(value.q)
     if product == 0 or product.isqrt() ** 2 == product:
         return 1
+    if product.bit_length() > MAX_RADICAND_BITS:
+        raise FieldError(f"the number under a square root has {product.bit_length()} bits, too many to factor")
     kernel = flint.fmpz(1)
     for prime, multiplicity in product.factor():
         if multiplicity % 2:
@@ -125,6 +141,8 @@ def _independent(radicals: list[int]) -> list[int]:
     kept: list[int] = []
     products = {1}
     for d in radicals:
+        if len(kept) > MAX_RADICALS:
+            break
         if d in products:
             continue
         kept.append(d)
