@@ -8,7 +8,7 @@ and sparse integer products whose size excludes overflow.  Imports scalars, erro
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from math import lcm
+from math import gcd, lcm
 from typing import Any, final
 
 import numpy as np
@@ -45,6 +45,25 @@ class StructureConstants:
         self.parts, self.den = _integers(field, values)
         self._dense: Any = None
         self._sparse: Any = None
+
+    @classmethod
+    def from_integers(
+        cls, field: Any, dimension: int, i: Any, j: Any, k: Any, numerators: Sequence[int], den: int = 1
+    ) -> StructureConstants:
+        """The table with rational entries numerators[x] / den at (i[x], j[x], k[x]), distinct places with i < j.
+
+        Zero entries are dropped.  This is the quick way for large tables: no field element is made.
+        """
+        made = cls.__new__(cls)
+        made.field, made.dimension = field, dimension
+        order = [x for x in np.lexsort((k, j, i)).tolist() if numerators[x]]
+        made.i, made.j, made.k = i[order], j[order], k[order]
+        common = gcd(den, *(numerators[x] for x in order)) if den != 1 else 1
+        first = [numerators[x] // common for x in order]
+        made.parts = (first, *([0] * len(order) for _ in range(field.degree - 1)))
+        made.den = den // common
+        made._dense = made._sparse = None
+        return made
 
     # -- entries -----------------------------------------------------------------------------------------
     def __len__(self) -> int:

@@ -1,0 +1,24 @@
+"""JSON in and out: pairs, representations and certificates as files, read strictly.
+
+json_text            a text to a JSON object: no duplicate keys, no NaN, unknown keys named
+values               lists of JSON values to numbers of a field, quickly
+pair_file            {"dimension", "structure_constants", "subalgebra", ...} to a Pair
+representation_file  {"matrices", "point", "generator", ...} to a Representation and a Problem
+files                `load`, `load_pair`, `load_problem`, `loads`, `from_json`, `to_json`, `dump`
+
+Whatever is refused raises `FormatError` or a more specific child of `InputError` that names the key or the
+index; values are parsed by the whitelist grammar of `liehom.scalars`, never executed.
+"""
+
+from liehom.io.files import dump as dump
+from liehom.io.files import from_json as from_json
+from liehom.io.files import load as load
+from liehom.io.files import load_pair as load_pair
+from liehom.io.files import load_problem as load_problem
+from liehom.io.files import loads as loads
+from liehom.io.files import to_json as to_json
+from liehom.io.json_text import parse_object as parse_object
+from liehom.io.json_text import read_object as read_object
+from liehom.io.representation_file import Problem as Problem
+
+__all__ = ["load", "load_pair", "load_problem", "loads", "from_json", "to_json", "dump", "Problem"]

@@ -1,0 +1,169 @@
+"""The verbs: load, load_pair, load_problem, loads, from_json, to_json, dump.
+
+Imports json_text, pair_file, representation_file, fullness.certificate.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal, overload
+
+from liehom.errors import FormatError
+from liehom.io import pair_file, representation_file
+from liehom.io.json_text import kind_of, parse_object, read_object, shown
+from liehom.io.representation_file import Problem
+from liehom.representations.pair import Pair
+from liehom.representations.representation import Representation
+
+FORMATS = (pair_file.FORMAT, representation_file.FORMAT)
+
+
+def load(path: str | os.PathLike[str]) -> Pair | Representation:
+    """Read a file: a Pair from a pair file or a representation file with a point, else a Representation.
+
+    Parameters
+    ----------
+    path : path_like
+        A JSON file as described in the chapter on file formats.
+
+    Raises
+    ------
+    FormatError, ParseError, ShapeError
+        If it is not of the documented form; names the key and the index.
+    JacobiError, NotASubalgebraError, DependentRowsError, NotClosedError
+        If it does not describe what it should.
+
+    Examples
+    --------
+    >>> import liehom as lh, tempfile, os
+    >>> file = os.path.join(tempfile.mkdtemp(), "pair.json")
+    >>> lh.io.dump(lh.Pair(lh.LieAlgebra({}, dimension=2), []), file)
+    >>> lh.io.load(file)
+    <pair of dimensions 2/0 over QQ>
+    """
+    return from_json(read_object(path))
+
+
+def load_pair(path: str | os.PathLike[str]) -> Pair:
+    """Read a pair; a representation file must have a point.
+
+    Raises
+    ------
+    FormatError
+        As `load`, and for a representation file without a point.
+    """
+    found = load(path)
+    if not isinstance(found, Pair):
+        raise FormatError("this representation file has no 'point', so it describes no pair")
+    return found
+
+
+def load_problem(path: str | os.PathLike[str]) -> Problem:
+    """Read a representation file with its point, generator and options; the point may have floats."""
+    return _problem(read_object(path))
+
+
+@overload
+def loads(text: str) -> Pair | Representation: ...
+
+
+@overload
+def loads(text: str, *, problem: Literal[True]) -> Problem: ...
+
+
+def loads(text: str, *, problem: bool = False) -> Pair | Representation | Problem:
+    """As `load` (or `load_problem`), from a text.
+
+    Examples
+    --------
+    >>> loads('{"dimension": 1, "structure_constants": [], "subalgebra": []}')
+    <pair of dimensions 1/0 over QQ>
+    """
+    data = parse_object(text)
+    return _problem(data) if problem else from_json(data)
+
+
+def from_json(data: Mapping[str, Any]) -> Pair | Representation:
+    """As `load`, from a parsed JSON object.
+
+    Examples
+    --------
+    >>> from_json({"dimension": 2, "structure_constants": [[0, 1, 2, "1"]], "subalgebra": []})
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: structure_constants[0]: the index k = 2 is out of range, expected 0 to 1
+    """
+    if _format(data) == representation_file.FORMAT:
+        return representation_file.read_representation(data)
+    return pair_file.read_pair(data)
+
+
+def _problem(data: Mapping[str, Any]) -> Problem:
+    if _format(data) != representation_file.FORMAT:
+        raise FormatError("this is a pair file, expected a representation file, with 'matrices'")
+    return representation_file.read_problem(data)
+
+
+def _format(data: Any) -> str:
+    """The stated format, or the one whose keys are there."""
+    if not isinstance(data, Mapping):
+        raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
+    stated = data.get("format")
+    if stated is not None and stated not in FORMATS:
+        raise FormatError(f"format is {shown(stated)}, expected {' or '.join(map(repr, FORMATS))}")
+    if stated is None:
+        return representation_file.FORMAT if "matrices" in data else pair_file.FORMAT
+    return str(stated)
+
+
+def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
+    """The JSON object of a pair, a representation (with a point, if given), or a certificate or verdict.
+
+    Raises
+    ------
+    FormatError
+        For anything else.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> to_json(lh.Pair(lh.LieAlgebra({(0, 1): {1: "1/2"}}), [[1, 0]]))["structure_constants"]
+    [[0, 1, 1, '1/2']]
+    """
+    if isinstance(thing, Pair):
+        return pair_file.write_pair(thing)
+    if isinstance(thing, Representation):
+        return representation_file.write_representation(thing, point)
+    if callable(getattr(thing, "to_json", None)):
+        return dict(thing.to_json())
+    raise FormatError(f"a {type(thing).__name__} has no file format; expected a pair, representation or certificate")
+
+
+def dump(thing: Any, path: str | os.PathLike[str], *, point: Any = None) -> None:
+    """Write `to_json` of a thing to a file, one line per entry or row.
+
+    Raises
+    ------
+    FormatError
+        If the thing has no format, or the file cannot be written.
+    """
+    text = _laid_out(to_json(thing, point=point))
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise FormatError(f"{str(path)!r} cannot be written: {error.strerror}") from None
+
+
+def _laid_out(data: dict[str, Any]) -> str:
+    """JSON with one key per line, and lists of lists with one inner list per line."""
+    parts = []
+    for key, value in data.items():
+        if isinstance(value, list) and value and isinstance(value[0], list):
+            inner = ",\n  ".join(json.dumps(x, allow_nan=False) for x in value)
+            parts.append(f"{json.dumps(key)}: [\n  {inner}\n ]")
+        else:
+            parts.append(f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}")
+    return "{" + ",\n ".join(parts) + "}\n"

@@ -1,0 +1,178 @@
+"""From a text to a JSON object, strictly: one object, no key twice, no NaN, no infinity.
+
+Imports errors.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NoReturn
+
+from liehom.errors import FormatError
+
+SHOWN = 60
+LONGEST_INT = 4000
+"""Integers of more digits are kept as texts: Python refuses to read them, the grammar of values does not."""
+
+
+def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The JSON object that a file holds.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, is not UTF-8, or does not hold one JSON object.
+
+    Examples
+    --------
+    >>> read_object("no/such/file.json")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: 'no/such/file.json' cannot be read: No such file or directory
+    """
+    try:
+        text = Path(path).read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FormatError(f"{str(path)!r} is not a text in UTF-8 (byte {error.start}), so not a JSON file") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise FormatError(f"{str(path)!r} cannot be read: {reason}") from None
+    return parse_object(text)
+
+
+def parse_object(text: str) -> dict[str, Any]:
+    """The JSON object that a text holds.
+
+    Raises
+    ------
+    FormatError
+        Where the text is not JSON, is not an object, gives a key twice, or holds NaN or an infinity.
+
+    Examples
+    --------
+    >>> parse_object('{"dimension": 2, "dimension": 3}')
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: the key 'dimension' is given twice
+    """
+    try:
+        data = _decoded(text)
+    except json.JSONDecodeError as error:
+        raise FormatError(f"not JSON: {error.msg} at line {error.lineno}, column {error.colno}") from None
+    except RecursionError:
+        raise FormatError("not a file of liehom: its lists or objects are nested too deeply") from None
+    if not isinstance(data, dict):
+        raise FormatError(f"a file holds one JSON object {{...}}, this one holds {kind_of(data)}")
+    return data
+
+
+def _decoded(text: str) -> Any:
+    options: dict[str, Any] = {"object_pairs_hook": _distinct, "parse_constant": _no_constant}
+    try:
+        return json.loads(text, **options)
+    except json.JSONDecodeError:
+        raise
+    except ValueError:  # an integer of more digits than Python reads
+        return json.loads(text, parse_int=_integer, **options)
+
+
+def _integer(digits: str) -> int | str:
+    return int(digits) if len(digits) <= LONGEST_INT else digits
+
+
+def _distinct(items: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(items)
+    if len(found) < len(items):
+        seen: set[str] = set()
+        for key, _ in items:
+            if key in seen:
+                raise FormatError(f"the key {key!r} is given twice")
+            seen.add(key)
+    return found
+
+
+def _no_constant(name: str) -> NoReturn:
+    raise FormatError(f"the file holds {name}, expected finite numbers")
+
+
+# -- what the readers of the formats share ---------------------------------------------------------------
+def check_keys(data: Mapping[str, Any], required: Collection[str], optional: Collection[str], what: str) -> None:
+    """Refuse unknown and missing keys, naming them."""
+    unknown = [key for key in data if key not in required and key not in optional]
+    if unknown:
+        named = ", ".join(shown(key) for key in unknown[:5])
+        known = ", ".join(sorted([*required, *optional]))
+        raise FormatError(f"unknown key {named} in {what}; known: {known}")
+    missing = [key for key in required if key not in data]
+    if missing:
+        raise FormatError(f"the key {', '.join(map(repr, missing))} is missing in {what}")
+
+
+def check_header(data: Mapping[str, Any], expected: str) -> None:
+    """Refuse another `format` than the expected one, and another `version` than 1; both may be absent."""
+    if "format" in data and data["format"] != expected:
+        raise FormatError(f"format is {shown(data['format'])}, expected {expected!r}")
+    if "version" in data and (type(data["version"]) is not int or data["version"] != 1):
+        raise FormatError(f"version is {shown(data['version'])}, expected 1")
+
+
+def is_float64(data: Mapping[str, Any]) -> bool:
+    """Whether the file asks for numerical arithmetic."""
+    if "arithmetic" not in data:
+        return False
+    value = data["arithmetic"]
+    if value not in ("exact", "float64"):
+        raise FormatError(f"arithmetic is {shown(value)}, expected 'float64' (or 'exact', as without the key)")
+    if value == "float64" and "field" in data:
+        raise FormatError("a file has either 'arithmetic': 'float64' or a 'field', not both")
+    return bool(value == "float64")
+
+
+def as_list(value: Any, what: str) -> list[Any]:
+    """A JSON list (from Python: also a tuple), or a `FormatError`."""
+    if not isinstance(value, (list, tuple)):
+        raise FormatError(f"{what} must be a list, not {kind_of(value)}")
+    return list(value) if isinstance(value, tuple) else value
+
+
+def kind_of(value: Any) -> str:
+    """What a JSON value is, in words."""
+    match value:
+        case None:
+            return "null"
+        case bool():
+            return "a truth value"
+        case dict():
+            return "an object"
+        case list() | tuple():
+            return "a list"
+        case str():
+            return "a text"
+        case int() | float():
+            return "a number"
+    return f"a {type(value).__name__}"
+
+
+def shown(value: Any) -> str:
+    """A short repr for messages, safe for huge integers and odd characters."""
+    try:
+        text = ascii(value)
+    except (ValueError, RecursionError):  # an integer of too many digits for Python to print
+        return f"{kind_of(value)} too long to show"
+    return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
+
+
+def fraction_for(value: float) -> str:
+    """The fraction that a float was probably meant to be, as a text.
+
+    Examples
+    --------
+    >>> fraction_for(0.1), fraction_for(2.0)
+    ('1/10', '2')
+    """
+    plausible = value == 0 or 1e-12 < abs(value) < 1e15
+    return str(Fraction(repr(value))) if plausible else "p/q"
