@@ -15,8 +15,14 @@ from liehom.algebra.homomorphism import Homomorphism as Homomorphism
 from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
 from liehom.algebra.simple import simple as simple
 from liehom.algebra.subalgebra import Subalgebra as Subalgebra
+from liehom.representations.constructions import adjoint as adjoint
+from liehom.representations.constructions import coadjoint as coadjoint
+from liehom.representations.constructions import defining as defining
+from liehom.representations.constructions import sym_conjugation as sym_conjugation
+from liehom.representations.constructions import trivial as trivial
 from liehom.representations.pair import Pair as Pair
 from liehom.representations.representation import Representation as Representation
+from liehom.representations.symbolic import symbolic_isotropy as symbolic_isotropy
 from liehom.scalars.number_fields import number_field as number_field
 from liehom.scalars.rational import QQ as QQ
 

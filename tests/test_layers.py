@@ -37,7 +37,8 @@ BELOW: dict[str, tuple[str, ...]] = {
 # libraries behind one door: only modules that start with one of these names may import them
 DOORS: dict[str, tuple[str, ...]] = {
     "flint": ("liehom.scalars",),
-    "sympy.polys": ("liehom.scalars",),
+    # points with symbols in them: linear algebra over a field of rational functions, by DomainMatrix
+    "sympy.polys": ("liehom.scalars", "liehom.representations.symbolic"),
     "networkx": ("liehom.algebra",),
     "matplotlib": ("liehom.plotting", "liehom.paper"),
     "jax": ("liehom.integrators", "liehom.series"),

@@ -109,3 +109,34 @@ def _equal(product: Entries, coordinates: dict[int, Any], tables: list[Entries])
         for place, w in tables[k].items():
             rest[place] = rest.get(place, 0) - v * w
     return all(v == 0 for v in rest.values())
+
+
+def first_difference(basis: list[Any], table: StructureConstants) -> tuple[int, int] | None:
+    """The first pair i < j of matrices over QQ with [A_i, A_j] different from sum_k c[i, j, k] A_k, or None.
+
+    Parameters
+    ----------
+    basis : list of ExactMatrix
+        One per basis element of the table, over QQ, (N, N).
+    table : StructureConstants
+        Over QQ.
+    """
+    den = lcm(*(a.den for a in basis))
+    tables = [entries_of(a, den // a.den) for a in basis]
+    by_row, by_column = _by_index(tables)
+    brackets: dict[int, dict[int, list[tuple[int, int]]]] = {}
+    for (i, j), terms in table.by_pair().items():
+        if i < j:
+            brackets.setdefault(i, {})[j] = terms
+    for i in range(len(basis)):
+        products = _commutators(i, tables, by_row, by_column)
+        expected = brackets.get(i, {})
+        for j in sorted(products.keys() | expected.keys()):
+            # products hold den^2 [A_i, A_j], tables den A_k, and the values of the table are over table.den
+            rest = {place: v * table.den for place, v in products.get(j, {}).items()}
+            for k, v in expected.get(j, ()):
+                for place, w in tables[k].items():
+                    rest[place] = rest.get(place, 0) - den * int(v) * w
+            if any(rest.values()):
+                return i, j
+    return None

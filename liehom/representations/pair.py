@@ -5,11 +5,14 @@ Imports algebra.
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
 from liehom.scalars import Field
+
+if TYPE_CHECKING:
+    from liehom.representations.representation import Representation
 
 
 @final
@@ -70,6 +73,25 @@ class Pair:
             blocks = self.algebra.table.contract(data.subspace, data.lift, data.projection)
             self._isotropy = [block.T for block in blocks]
         return self._isotropy
+
+    def isotropy_representation(self) -> Representation:
+        """The representation of h on g/h, h as a Lie algebra in the basis of ``subalgebra``.
+
+        Coordinates on g/h are those of ``subalgebra.quotient()``.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.Pair(lh.so(3), [[0, 0, 1]]).isotropy_representation()
+        <representation of <Lie algebra of dimension 1 over QQ> on QQ^2>
+        """
+        from liehom.representations.representation import Representation
+
+        data = self.subalgebra.quotient()
+        blocks = self.algebra.table.contract(self.subalgebra.basis, data.lift, data.projection)
+        # [z, [w, x]] - [w, [z, x]] = [[z, w], x] in g, and all three maps descend to g/h.
+        matrices = [block.T for block in blocks]
+        return Representation(self.subalgebra.as_algebra(), matrices, size=self.dimension, check=False)
 
     def coordinates(self, x: Any) -> Any:
         """The coordinates of x mod h in the complement of ``subalgebra.quotient()``, a row matrix (1, d)."""

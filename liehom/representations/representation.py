@@ -10,10 +10,20 @@ from typing import Any, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure import lie_closure, square_matrices
-from liehom.errors import RepresentationError, ShapeError
+from liehom.errors import FieldError, InputError, RepresentationError, ShapeError
+from liehom.representations.bracket_proof import failing_pair
+from liehom.representations.induced import (
+    EntryMap,
+    block_map,
+    dual_map,
+    exterior_power_map,
+    left_factor_map,
+    right_factor_map,
+    symmetric_power_map,
+)
 from liehom.representations.pair import Pair
 from liehom.representations.stabilizer import orbit_dimension, stabilizer
-from liehom.scalars import Field
+from liehom.scalars import Field, FloatField
 
 
 @final
@@ -64,6 +74,11 @@ class Representation:
         made = tuple(square_matrices(matrices, algebra.field))
         if len(made) != algebra.dimension:
             raise ShapeError(f"{len(made)} matrices for an algebra of dimension {algebra.dimension}")
+        for i, a in enumerate(made):
+            if a.field != algebra.field:
+                raise FieldError(
+                    f"matrix {i} is over {a.field.name}, the algebra over {algebra.field.name}; use over()"
+                )
         if not made and size is None:
             raise ShapeError("a representation of the zero algebra needs its size")
         self.algebra = algebra
@@ -171,22 +186,128 @@ class Representation:
         """
         return Pair(self.algebra, self.isotropy(point))
 
+    # -- constructions -----------------------------------------------------------------------------------
+    def dual(self) -> Representation:
+        """The dual representation x -> -rho(x)^T, in the dual basis.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.adjoint(lh.so(3)).dual() == lh.coadjoint(lh.so(3))
+        True
+        """
+        return self._induced(dual_map(self.size))  # -[A, B]^T = [-A^T, -B^T]
+
+    def direct_sum(self, other: Representation) -> Representation:
+        """The direct sum with another representation of the same algebra: block matrices, this one first.
+
+        Raises
+        ------
+        InputError
+            If the other is a representation of another algebra.
+        """
+        self._require_same_algebra(other)
+        total = self.size + other.size
+        return self._joined(other, block_map(self.size, total, 0), block_map(other.size, total, self.size))
+
+    def tensor(self, other: Representation) -> Representation:
+        """The tensor product rho(x) (x) 1 + 1 (x) sigma(x), basis e_i (x) f_j in lexicographic order of (i, j).
+
+        Raises
+        ------
+        InputError
+            If the other is a representation of another algebra.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining(lh.so(3)).tensor(lh.trivial(lh.so(3), 2)).size
+        6
+        """
+        self._require_same_algebra(other)
+        n, m = self.size, other.size
+        return self._joined(other, left_factor_map(n, m), right_factor_map(n, m))
+
+    def symmetric_power(self, k: int) -> Representation:
+        """The action on Sym^k by derivations, in monomials x_i1 ... x_ik, i1 <= ... <= ik, in lexicographic order.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.defining(lh.sl(2)).symmetric_power(2).matrices[0])  # on x^2, xy, y^2
+        [0, 1, 0]
+        [0, 0, 2]
+        [0, 0, 0]
+        """
+        return self._induced(symmetric_power_map(self.size, k))  # [D_A, D_B] = D_[A, B] for derivations
+
+    def exterior_power(self, k: int) -> Representation:
+        """The action on Lambda^k by derivations, in wedges e_i1 ^ ... ^ e_ik, i1 < ... < ik, lexicographically.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining(lh.so(4)).exterior_power(2).size
+        6
+        """
+        return self._induced(exterior_power_map(self.size, k))  # [D_A, D_B] = D_[A, B] for derivations
+
+    def restriction(self, subalgebra: Subalgebra) -> Representation:
+        """The restriction to a subalgebra, as a representation of ``subalgebra.as_algebra()``.
+
+        Raises
+        ------
+        InputError
+            If it is a subalgebra of another algebra.
+        """
+        if subalgebra.algebra is not self.algebra and subalgebra.algebra != self.algebra:
+            raise InputError("the subalgebra belongs to another Lie algebra")
+        n = self.size
+        flat = self.field.stack_rows([a.reshape(1, n * n) for a in self.matrices], n * n)
+        made = (subalgebra.basis @ flat).split_rows(n, n) if self.matrices else []
+        return self._proved(subalgebra.as_algebra(), made, n)  # a homomorphism restricted to a subalgebra
+
+    def over(self, field: Field) -> Representation:
+        """The same matrices read in another field that contains their entries.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> rho = lh.defining(lh.so(3)).over(lh.number_field("sqrt(2)"))
+        >>> rho.isotropy(["sqrt(2)", 1, 0]).rows()
+        [[0, -1/2*sqrt(2), 1]]
+        """
+        made = [self._read_in(field, a) for a in self.matrices]
+        return self._proved(self.algebra.over(field), made, self.size, name=self.name)  # the same identities
+
+    def _read_in(self, field: Field, matrix: Any) -> Any:
+        if isinstance(field, FloatField):
+            return field.from_entries(matrix.to_numpy().ravel().tolist(), self.size, self.size)
+        return field.matrix(matrix.to_rows(), (self.size, self.size))
+
+    def _induced(self, entry_map: EntryMap) -> Representation:
+        return self._proved(self.algebra, [entry_map(a) for a in self.matrices], entry_map.target)
+
+    def _joined(self, other: Representation, left: EntryMap, right: EntryMap) -> Representation:
+        pairs = zip(self.matrices, other.matrices, strict=True)
+        # The two summands commute, and each is a representation.
+        return self._proved(self.algebra, [left(a) + right(b) for a, b in pairs], left.target)
+
+    def _proved(self, algebra: LieAlgebra, matrices: Any, size: int, name: str | None = None) -> Representation:
+        """A representation whose identity the caller has proved (the reason stands where this is called)."""
+        return Representation(algebra, matrices, size=size, name=name, check=False)
+
+    def _require_same_algebra(self, other: Representation) -> None:
+        if other.algebra is not self.algebra and other.algebra != self.algebra:
+            raise InputError(f"representations of two algebras, {self.algebra!r} and {other.algebra!r}")
+
     def _prove(self) -> None:
-        pairs = self.algebra.table.by_pair()
-        zero = self.field.zeros(self.size, self.size)
-        den = self.algebra.table.den
-        for i in range(len(self.matrices)):
-            for j in range(i + 1, len(self.matrices)):
-                a, b = self.matrices[i], self.matrices[j]
-                expected = zero
-                for k, v in pairs.get((i, j), ()):
-                    expected = expected + self.matrices[k].scale(v)
-                if pairs.get((i, j)) and den != 1 and self.field.degree == 1:
-                    expected = expected.scale(self.field.one / self.field.convert(den))
-                if not (a @ b - b @ a - expected).is_zero():
-                    raise RepresentationError(
-                        (i, j), f"not a representation: rho([e{i}, e{j}]) differs from [rho(e{i}), rho(e{j})]"
-                    )
+        failure = failing_pair(self.algebra, self.matrices)
+        if failure is not None:
+            i, j = failure
+            raise RepresentationError(
+                (i, j), f"not a representation: rho([e{i}, e{j}]) differs from [rho(e{i}), rho(e{j})]"
+            )
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Representation):

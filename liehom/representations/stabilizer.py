@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
-from liehom.errors import ShapeError
+from liehom.errors import InputError, ShapeError
 
 
 def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Any:
@@ -16,10 +16,17 @@ def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: 
     ------
     ShapeError
         If the point does not have N coordinates.
+    InputError
+        If a coordinate has free symbols.
+    FieldError
+        If a coordinate is not in the field.
     """
     values = list(point)
     if len(values) != size:
         raise ShapeError(f"the point has {len(values)} coordinates, the representation acts on {size}")
+    symbols = sorted({str(s) for v in values for s in getattr(v, "free_symbols", ())})
+    if symbols:
+        raise InputError(f"the point has the free symbols {', '.join(symbols)}; use liehom.symbolic_isotropy")
     column = algebra.field.matrix([values], (1, size)).T
     rows = [(a @ column).T for a in matrices]
     return algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)

@@ -1,0 +1,223 @@
+"""Representations made from a Lie algebra alone: defining, adjoint, coadjoint, trivial; conjugation on Sym(k).
+
+What is made from a representation (dual, sums, products, powers, restriction) are methods of `Representation`.
+Imports representation, induced, algebra.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from liehom.algebra import LieAlgebra
+from liehom.algebra import matrix_families as families
+from liehom.algebra.classical import classical_matrices
+from liehom.algebra.closure import lie_closure
+from liehom.algebra.simple import exceptional_matrices
+from liehom.errors import InputError, RepresentationError, ShapeError
+from liehom.representations.induced import congruence_map, monomials
+from liehom.representations.representation import Representation
+from liehom.scalars import QQ, Field
+
+_CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
+_SO_STAR = re.compile(r"so\*\(([0-9]*[02468])\)")
+
+
+def defining(algebra: LieAlgebra | str) -> Representation:
+    """The defining representation of a classical or exceptional algebra by its standard matrices.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra or str
+        An algebra whose name is one of 'gl(n)', 'sl(n)' (also 'sl(n,C)', 'sl(n,H)'), 'so(p)', 'so(p,q)',
+        'so(n,C)', 'so*(2n)', 'su(p,q)', 'u(p,q)', 'sp(p,q)' (quaternionic), 'sp(2n,R)', 'sp(2n,C)',
+        'spin(p,q)', or an exceptional one such as 'g2', 'g2(2)', 'f4', 'e6(-26)', in the basis of its
+        standard matrices; or such a name.
+
+    Returns
+    -------
+    Representation
+        Of that very algebra. C^n is R^(2n) and H^n is R^(4n).
+
+    Raises
+    ------
+    InputError, CatalogError
+        If the name is not known.
+    RepresentationError
+        If the algebra does not have the basis of the standard matrices (after a change of basis, say).
+
+    Notes
+    -----
+    The forms of f4 and e6 act on the Albert algebra of dimension 27; spin(p, q) acts on a real spin representation.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.so(3, 1)
+    >>> rho = lh.defining(g)
+    >>> rho.size, rho.algebra is g, lh.defining("su(2)").size
+    (4, True, 4)
+    """
+    name = algebra if isinstance(algebra, str) else algebra.name
+    matrices = standard_matrices(name)
+    if isinstance(algebra, str):
+        made = lie_closure(matrices, close=False, name=name)
+        # The constants are those of the commutators themselves.
+        return Representation(made.algebra, made.matrices, name="defining", check=False)
+    size = int(matrices.shape[1])
+    convert, make = algebra.field.convert, algebra.field.from_entries
+    over = [make([convert(x) for x in a.ravel().tolist()], size, size) for a in matrices]
+    if len(over) != algebra.dimension:
+        raise RepresentationError(
+            (0, 0), f"{algebra!r} does not have the dimension {len(over)} of the standard matrices of {name}"
+        )
+    return Representation(algebra, over, size=size, name="defining")
+
+
+def standard_matrices(name: str | None) -> Any:
+    """The integer matrices, shape (dim, N, N), that a name stands for.
+
+    Raises
+    ------
+    InputError, CatalogError
+        If the name is not known.
+
+    Examples
+    --------
+    >>> standard_matrices("so(4)").shape, standard_matrices("sp(4,R)").shape
+    ((6, 4, 4), (10, 4, 4))
+    """
+    text = (name or "").replace(" ", "")
+    if match := _CLASSICAL.fullmatch(text):
+        kind, first, second = match.groups()
+        parameter = 0 if second is None else int(second) if second.isdigit() else second
+        return classical_matrices(kind, int(first), parameter)
+    if match := _SO_STAR.fullmatch(text):
+        return families.so_star(int(match[1]) // 2)
+    if text[:2] in ("g2", "f4", "e6"):
+        return exceptional_matrices(text)
+    known = "so(4), so(3,1), su(2), sl(3), sl(2,C), gl(2), sp(2), sp(4,R), so*(6), spin(7), g2, f4, e6(-26)"
+    raise InputError(f"no defining representation is known for {name!r}; names are such as {known}")
+
+
+def adjoint(algebra: LieAlgebra) -> Representation:
+    """The adjoint representation x -> ad x on g.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.adjoint(lh.so(3)).size
+    3
+    """
+    n = algebra.dimension
+    matrices = [algebra.ad(algebra.field.unit(n, i)) for i in range(n)]
+    # ad [x, y] = [ad x, ad y] is the Jacobi identity, which the algebra has proved.
+    return Representation(algebra, matrices, size=n, name="adjoint", check=False)
+
+
+def coadjoint(algebra: LieAlgebra) -> Representation:
+    """The coadjoint representation x -> -(ad x)^T on the dual of g, in the dual basis.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.coadjoint(lh.heisenberg(1)).orbit_dimension([0, 0, 1])
+    2
+    """
+    dual = adjoint(algebra).dual()
+    return Representation(algebra, dual.matrices, size=dual.size, name="coadjoint", check=False)  # a dual
+
+
+def trivial(algebra: LieAlgebra, n: int = 1) -> Representation:
+    """The representation of g on K^n by zero.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.trivial(lh.so(3), 2).isotropy([1, 0]).dimension
+    3
+    """
+    if isinstance(n, bool) or not isinstance(n, int) or n < 0:
+        raise InputError(f"the dimension of a trivial representation is an integer at least 0, got {n!r}")
+    zero = algebra.field.zeros(n, n)
+    # All commutators and all images vanish.
+    return Representation(algebra, [zero] * algebra.dimension, size=n, name="trivial", check=False)
+
+
+def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation:
+    """so(k) on the symmetric matrices Sym(k) by S -> A S - S A.
+
+    Parameters
+    ----------
+    k : int
+        Size of the matrices, at least 1.
+    algebra : LieAlgebra, optional
+        A copy of so(k) in its standard basis (default: a new one named 'so(k)').
+
+    Returns
+    -------
+    Representation
+        On K^(k (k + 1) / 2); coordinates are the entries S[i, j], i <= j, in lexicographic order of (i, j), as
+        `symmetric_to_vector` and `vector_to_symmetric` have them.
+
+    Examples
+    --------
+    The isotropy of a matrix with eigenvalues of multiplicities 3 and 1 is so(3):
+
+    >>> rho = sym_conjugation(4)
+    >>> rho.isotropy(symmetric_to_vector([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]])).dimension
+    3
+    """
+    rho = defining(f"so({k})" if algebra is None else algebra)
+    induced = congruence_map(k)
+    # A^T = -A: S -> A S + S A^T, and (A S + S A^T) is the restriction of A (x) 1 + 1 (x) A to symmetric tensors.
+    if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.size != k:
+        raise InputError(f"conjugation on Sym({k}) needs so({k}) by skew matrices")
+    made = [induced(a) for a in rho.matrices]
+    return Representation(rho.algebra, made, size=induced.target, name=f"conjugation on Sym({k})", check=False)
+
+
+def symmetric_to_vector(matrix: Any) -> list[Any]:
+    """The entries S[i, j], i <= j, of a symmetric matrix in lexicographic order of (i, j).
+
+    Raises
+    ------
+    ShapeError, InputError
+        If the matrix is not square, or not symmetric.
+
+    Examples
+    --------
+    >>> symmetric_to_vector([[1, 2], [2, 3]])
+    [1, 2, 3]
+    """
+    rows = matrix.to_rows() if hasattr(matrix, "to_rows") else [list(row) for row in matrix]
+    k = len(rows)
+    if any(len(row) != k for row in rows):
+        raise ShapeError(f"a symmetric matrix is square, got {k} rows of lengths {[len(row) for row in rows]}")
+    for i, j in monomials(k, 2):
+        if rows[i][j] != rows[j][i]:
+            raise InputError(f"the matrix is not symmetric: entries ({i}, {j}) and ({j}, {i}) differ")
+    return [rows[i][j] for i, j in monomials(k, 2)]
+
+
+def vector_to_symmetric(vector: Sequence[Any], field: Field = QQ) -> Any:
+    """The symmetric matrix with these entries S[i, j], i <= j, in lexicographic order of (i, j).
+
+    Raises
+    ------
+    ShapeError
+        If the length is not k (k + 1) / 2.
+
+    Examples
+    --------
+    >>> print(vector_to_symmetric([1, 2, 3]))
+    [1, 2]
+    [2, 3]
+    """
+    values = list(vector)
+    k = next((k for k in range(len(values) + 1) if k * (k + 1) // 2 >= len(values)), 0)
+    if k * (k + 1) // 2 != len(values):
+        raise ShapeError(f"a vector of length {len(values)} is not one of k (k + 1) / 2 entries")
+    position = {place: x for x, place in enumerate(monomials(k, 2))}
+    return field.matrix([[values[position[min(i, j), max(i, j)]] for j in range(k)] for i in range(k)], (k, k))
