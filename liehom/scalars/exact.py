@@ -189,6 +189,11 @@ class NumberField(ExactField):
             self._balls[precision] = root_ball(self._modulus, self.root_index, precision)
         return self._balls[precision]
 
+    def ball(self, value: AlgebraicNumber, precision: int) -> Any:
+        """A ball (``flint.arb``) around an element, found with the given working precision in bits."""
+        with working_precision(precision):
+            return self._value_ball(value.polynomial, precision)
+
     def to_float(self, value: AlgebraicNumber) -> float:
         with working_precision(128):
             return float(self._value_ball(value.polynomial, 128))

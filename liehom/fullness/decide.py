@@ -1,0 +1,162 @@
+"""decide_fullness: is a pair (g, h) full, and why?
+
+The steps are those of the theory page: trivial cases, the rank at sample points, invariant forms, nilpotent
+ideals, the commutant, construction of a definite form, spectral search for dominance.  Every step only
+proposes a certificate; the verdict is what the certificate proves.  Imports the steps, verdict, numerical.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from typing import Any
+
+from liehom.errors import InternalError
+from liehom.fullness import proposals
+from liehom.fullness.certificate import Certificate
+from liehom.fullness.describe import full_reason
+from liehom.fullness.dominance import Dominant, find_dominant
+from liehom.fullness.eigenwitness import eigenvector_witness
+from liehom.fullness.forms import decide_by_forms
+from liehom.fullness.isotropy_algebra import IsotropyAlgebra
+from liehom.fullness.numerical import decide_numerically
+from liehom.fullness.positive_form import full_by_positive_form
+from liehom.fullness.reducible import nilpotent_ideal_witness, split_by_commutant, traceless_commutant
+from liehom.fullness.verdict import Full, NotFull, Verdict
+from liehom.fullness.witnesses import eta_of_witness, numerical_eta, numerical_eta_of_commutant
+from liehom.representations import Pair
+from liehom.representations.intertwiners import commutant, invariant_forms
+
+Report = Callable[[str], None]
+FIRST_TRIES, ROUNDS = 40, 6
+
+
+def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None) -> Verdict:
+    """Decide whether a pair is full, with a certificate.
+
+    Parameters
+    ----------
+    pair : Pair
+    seed : int, optional
+        Of the random choices; they affect which certificate is found and how fast, never the verdict.
+    progress : callable, optional
+        Called with a line of text as each step begins.
+
+    Returns
+    -------
+    Full or NotFull
+        For exact pairs (QQ or a real number field), always, with a certificate that `verify` checks.
+    NumericallyFull or NumericallyNotFull
+        For pairs over float64, with the singular value and gap that they rest on.
+
+    Notes
+    -----
+    (g, h) is full if every eta outside h satisfies h + [h, eta] + R eta = g (Lewis and Olver 2001,
+    Definition 6, (6.4)). The paper leaves open which pairs are full; the procedure decides it pair by pair.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(decide_fullness(lh.pair("so(4)/so(3)")))
+    full: h acts on g/h = R^3 as so(3), compact and transitive on the sphere; checked at one point
+    >>> decide_fullness(lh.pair("so(3,1)/so(2,1)")).full
+    False
+    """
+    report = progress if progress is not None else _silent
+    if not pair.field.exact:
+        return decide_numerically(pair, seed=seed)
+    if pair.dimension <= 1:
+        reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
+        return Full(pair, proposals.trivial(pair.field), reason[pair.dimension])
+    for attempt in range(3):
+        verdict = _decide(IsotropyAlgebra(pair, attempt), seed + attempt, report)
+        if verdict is not None:
+            return verdict
+    raise InternalError("no certificate was found, though one exists; please report this pair")
+
+
+def _silent(_: str) -> None:
+    return
+
+
+def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | None:
+    report("rank at sample points")
+    rng = random.Random(seed)
+    x, certificate = _sample(action, rng)
+    if certificate is not None:
+        return _not_full(action, certificate, "the rank drops at a rational point")
+    report("invariant forms")
+    forms = invariant_forms(action.traceless, action.size, action.field)
+    if forms.symmetric:
+        return _by_forms(action, forms.symmetric, x)
+    report("nilpotent ideals")
+    certificate = nilpotent_ideal_witness(action)
+    if certificate is not None:
+        return _not_full(action, certificate, "a nilpotent ideal of the isotropy algebra kills an invariant subspace")
+    report("commutant")
+    basis = commutant(action.traceless, action.size, action.field)
+    imaginary = traceless_commutant(action, basis)
+    certificate = split_by_commutant(action, imaginary)
+    if certificate is not None:
+        return _reducible(action, certificate)
+    report("definite form")
+    certificate = full_by_positive_form(action, imaginary)
+    if certificate is not None:
+        return Full(action.pair, certificate, full_reason(action, len(basis), compact=False))
+    return _by_dominance(action, seed, report)
+
+
+def _sample(action: IsotropyAlgebra, rng: random.Random) -> tuple[Any, Certificate | None]:
+    """A point of rank d, or a rational witness: random points first, then the axes."""
+    first = None
+    points = [action.random_point(rng) for _ in range(3)]
+    points += [action.field.unit(action.size, i).T for i in range(action.size)]
+    for x in points:
+        if action.rank_at(x) < action.size:
+            phi = action.action_rows(x).null_space().select(rows=[0])
+            return x, proposals.rational_witness(action, x, phi)
+        first = x if first is None else first
+    return first, None
+
+
+def _by_forms(action: IsotropyAlgebra, symmetric: tuple[Any, ...], x: Any) -> Verdict:
+    certificate = decide_by_forms(action, symmetric, x)
+    if certificate.full:
+        dimension = len(commutant(action.traceless, action.size, action.field))
+        return Full(action.pair, certificate, full_reason(action, dimension, compact=True))
+    kind = "an indefinite or degenerate form" if len(symmetric) == 1 else f"{len(symmetric)} independent forms"
+    return _not_full(action, certificate, f"the isotropy keeps {kind} up to scale, and the rank drops on a null vector")
+
+
+def _reducible(action: IsotropyAlgebra, certificate: Certificate) -> NotFull:
+    reason = "the isotropy representation is reducible over the reals: its commutant is not a division algebra"
+    if certificate.kind == "commutant":
+        eta = numerical_eta_of_commutant(action, certificate)
+        return NotFull(action.pair, certificate, reason, eta_numerical=eta)
+    return _not_full(action, certificate, reason)
+
+
+def _by_dominance(action: IsotropyAlgebra, seed: int, report: Report) -> NotFull | None:
+    tries = FIRST_TRIES
+    for round_number in range(ROUNDS):
+        report(f"spectral search, {tries} random elements")
+        dominant = find_dominant(action, tries, seed + round_number)
+        if dominant is not None:
+            return _with_exact_eta(action, dominant)
+        tries *= 2
+    return None
+
+
+def _with_exact_eta(action: IsotropyAlgebra, dominant: Dominant) -> NotFull:
+    reason = "the top eigenspace of an element of h moves in too few directions (weight count below d)"
+    witness = eigenvector_witness(action, [dominant.element])
+    if witness is None:
+        eta = numerical_eta(action, dominant.top)
+        return NotFull(action.pair, dominant.certificate, reason, eta_numerical=eta)
+    both = Certificate(witness.kind, {**witness.fields, "also": dominant.certificate}, witness.field)
+    return _not_full(action, both, reason)
+
+
+def _not_full(action: IsotropyAlgebra, certificate: Certificate, reason: str) -> NotFull:
+    eta, field, rank = eta_of_witness(action, certificate)
+    return NotFull(action.pair, certificate, reason, eta=eta, eta_field=field, rank=rank)

@@ -1,0 +1,224 @@
+"""Verdicts: what a decision returns, with its proof or with the gap that a numerical answer rests on.
+
+Imports certificate, verify, representations, errors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal, final
+
+from liehom.errors import UndecidedError
+from liehom.fullness.certificate import Certificate
+from liehom.fullness.verify import verify_certificate
+from liehom.representations import Pair
+from liehom.scalars import Field
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class Full:
+    """The pair is full: rank [rho(h) x, x] = d for every x != 0 in g/h.
+
+    Attributes
+    ----------
+    pair : Pair
+    certificate : Certificate
+        Of kind 'trivial' or 'full'.
+    reason : str
+        One sentence. Names of groups in it are read off dimensions; the certificate does not rest on them.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> verdict = lh.decide_fullness(lh.pair("so(4)/so(3)"))
+    >>> verdict, bool(verdict), verdict.verify()
+    (<full: so(4)/so(3)>, True, True)
+    """
+
+    pair: Pair
+    certificate: Certificate
+    reason: str
+
+    @property
+    def full(self) -> Literal[True]:
+        """True."""
+        return True
+
+    def verify(self) -> bool:
+        """Run the independent checker on the certificate; True, or `CertificateError`."""
+        return verify_certificate(self.pair, self.certificate)
+
+    def to_json(self) -> dict[str, Any]:
+        """The verdict as a JSON object."""
+        return {"full": True, "proved": True, "reason": self.reason, "certificate": self.certificate.to_json()}
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __repr__(self) -> str:
+        return f"<full: {_title(self.pair)}>"
+
+    def __str__(self) -> str:
+        return f"full: {self.reason}"
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class NotFull:
+    """The pair is not full: some eta outside h has rank [h, [h, eta], eta] < dim g.
+
+    Attributes
+    ----------
+    pair : Pair
+    certificate : Certificate
+        Of kind 'witness', 'commutant' or 'dominance'.
+    reason : str
+        One sentence.
+    eta : list or None
+        An exact eta at which the rank drops, coefficients in the basis of g over `eta_field`.
+    eta_field : Field or None
+        The input field, or the number field that eta needs.
+    rank : int or None
+        The exact rank of [rho(h) eta, eta] in g/h.
+    eta_numerical : list of float or None
+        Where no exact eta was found: one rounded to floats. The proof is the certificate, not this vector.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> verdict = lh.decide_fullness(lh.pair("so(3,1)/so(2,1)"))
+    >>> verdict.full, verdict.rank, verdict.rank_defect, verdict.verify()
+    (False, 2, 1, True)
+    """
+
+    pair: Pair
+    certificate: Certificate
+    reason: str
+    eta: list[Any] | None = None
+    eta_field: Field | None = None
+    rank: int | None = None
+    eta_numerical: list[float] | None = None
+
+    @property
+    def full(self) -> Literal[False]:
+        """False."""
+        return False
+
+    @property
+    def rank_defect(self) -> int | None:
+        """dim g/h minus the rank at eta; None where eta is numerical only."""
+        return None if self.rank is None else self.pair.dimension - self.rank
+
+    def verify(self) -> bool:
+        """Run the independent checker on the certificate; True, or `CertificateError`."""
+        return verify_certificate(self.pair, self.certificate)
+
+    def to_json(self) -> dict[str, Any]:
+        """The verdict as a JSON object."""
+        out: dict[str, Any] = {"full": False, "proved": True, "reason": self.reason}
+        if self.eta is not None and self.eta_field is not None:
+            out["eta"] = [self.eta_field.format(v) for v in self.eta]
+            out["eta_field"] = self.eta_field.name
+            out["rank"], out["rank_defect"] = self.rank, self.rank_defect
+        if self.eta_numerical is not None:
+            out["eta_numerical"] = self.eta_numerical
+        out["certificate"] = self.certificate.to_json()
+        return out
+
+    def __bool__(self) -> bool:
+        return False
+
+    def __repr__(self) -> str:
+        return f"<not full: {_title(self.pair)}>"
+
+    def __str__(self) -> str:
+        return f"not full: {self.reason}"
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class _Numerical:
+    """What both numerical verdicts carry."""
+
+    pair: Pair
+    reason: str
+    smallest: float
+    gap: float
+    eta: list[float] = field(default_factory=list)
+
+    @property
+    def certificate(self) -> None:
+        """None: a numerical verdict is not proved."""
+        return
+
+    def verify(self) -> bool:
+        """Always raises `UndecidedError`: there is nothing to verify."""
+        raise UndecidedError("a numerical verdict has no certificate; give exact numbers to have a proof")
+
+    def __bool__(self) -> bool:
+        raise UndecidedError("a numerical verdict is not a proof and has no truth value; read its attribute `full`")
+
+    def to_json(self) -> dict[str, Any]:
+        """The verdict as a JSON object."""
+        return {
+            "full": self.full,  # type: ignore[attr-defined]
+            "proved": False,
+            "reason": self.reason,
+            "smallest_singular_value": self.smallest,
+            "gap": self.gap,
+            "eta_numerical": self.eta,
+            "certificate": None,
+        }
+
+
+@final
+class NumericallyFull(_Numerical):
+    """Numerically full: the least singular value of [rho(h) x, x] over many starts on the sphere stays away from 0.
+
+    Attributes
+    ----------
+    smallest : float
+        The least value found of sigma_d / sigma_1.
+    gap : float
+        smallest divided by the tolerance of the field.
+    eta : list of float
+        Where it was found, in the basis of g.
+    """
+
+    __slots__ = ()
+
+    @property
+    def full(self) -> Literal[True]:
+        """True, numerically."""
+        return True
+
+    def __repr__(self) -> str:
+        return f"<numerically full: {_title(self.pair)}, least singular value {self.smallest:.3g}>"
+
+
+@final
+class NumericallyNotFull(_Numerical):
+    """Numerically not full: an eta was found where the least singular value is below the tolerance.
+
+    Attributes
+    ----------
+    smallest, gap, eta
+        As in `NumericallyFull`; here gap is the tolerance divided by `smallest`.
+    """
+
+    __slots__ = ()
+
+    @property
+    def full(self) -> Literal[False]:
+        """False, numerically."""
+        return False
+
+    def __repr__(self) -> str:
+        return f"<numerically not full: {_title(self.pair)}, least singular value {self.smallest:.3g}>"
+
+
+Verdict = Full | NotFull | NumericallyFull | NumericallyNotFull
+
+
+def _title(pair: Pair) -> str:
+    return pair.name or f"dimensions {pair.algebra.dimension}/{pair.subalgebra.dimension}"
