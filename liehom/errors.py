@@ -128,3 +128,11 @@ class UndecidedError(LiehomError, TypeError):
 
 class InternalError(LiehomError, RuntimeError):
     """The library reached a state that a theorem excludes: a bug, please report it."""
+
+
+class ConformanceError(LiehomError):
+    """An object fails a check of the conformance suite `liehom.testing`; `check` names it."""
+
+    def __init__(self, check: str, message: str) -> None:
+        self.check = check
+        super().__init__(f"{check}: {message}")
