@@ -66,7 +66,8 @@ class AlgebraicNumber:
         return NotImplemented if right is None else self._made(self.polynomial - right)
 
     def __rsub__(self, other: Any) -> AlgebraicNumber:
-        return -self + other
+        right = self._operand(other)
+        return NotImplemented if right is None else self._made(right - self.polynomial)
 
     def __neg__(self) -> AlgebraicNumber:
         return self._made(-self.polynomial)
@@ -91,7 +92,8 @@ class AlgebraicNumber:
         return NotImplemented if right is None else self * self._made(right).inverse()
 
     def __rtruediv__(self, other: Any) -> AlgebraicNumber:
-        return self.inverse() * other
+        right = self._operand(other)
+        return NotImplemented if right is None else self.inverse() * self._made(right)
 
     def __pow__(self, exponent: int) -> AlgebraicNumber:
         base = self if exponent >= 0 else self.inverse()

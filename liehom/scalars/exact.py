@@ -134,7 +134,8 @@ class NumberField(ExactField):
     def _evaluate(self, text: str) -> AlgebraicNumber:
         names = {self.symbol: self.generator} if self.symbol.isidentifier() else {}
         tree = grammar.parse(text, names)
-        return grammar.evaluate(tree, lambda n: self._embedded(flint.fmpq(n)), names, {"sqrt": self.sqrt})
+        made = grammar.evaluate(tree, lambda n: self._embedded(flint.fmpq(n)), names, {"sqrt": self.sqrt})
+        return self.convert(made)
 
     def sqrt(self, value: AlgebraicNumber) -> AlgebraicNumber:
         """The non-negative square root; `FieldError` if it is not in the field."""
@@ -146,7 +147,7 @@ class NumberField(ExactField):
             return value
         for factor, _ in Polynomial(self, [-value, self.zero, self.one]).factor():
             if factor.degree == 1:
-                root = -factor.coefficients[0] / factor.coefficients[1]
+                root: AlgebraicNumber = -factor.coefficients[0] / factor.coefficients[1]
                 return root if self.sign(root) > 0 else -root
         raise FieldError(f"sqrt({value}) is not in {self.name}")
 

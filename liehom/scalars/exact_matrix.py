@@ -65,11 +65,11 @@ class ExactField(Field):
     def from_entries(self, entries: Sequence[Scalar], nrows: int, ncols: int) -> ExactMatrix:
         """The matrix with these field elements, row after row."""
         if self.degree == 1:
-            numerators, den = flint.fmpq_mat(nrows, ncols, list(entries)).numer_denom()
-            return ExactMatrix(self, (numerators,), int(den))
+            numerators, common = flint.fmpq_mat(nrows, ncols, list(entries)).numer_denom()
+            return ExactMatrix(self, (numerators,), int(common))
         parts = list(zip(*map(self.coordinates, entries), strict=True)) or [()] * self.degree
         split = [flint.fmpq_mat(nrows, ncols, list(part)).numer_denom() for part in parts]
-        den = lcm(*(int(d) for _, d in split))
+        den: int = lcm(*(int(d) for _, d in split))
         return ExactMatrix(self, tuple(a * (den // int(d)) for a, d in split), den)
 
     def from_integers(self, entries: Sequence[Any], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
@@ -147,7 +147,7 @@ class ExactMatrix(Matrix):
     def entries(self) -> list[Scalar]:
         if self._field.degree == 1:
             first = self.parts[0]
-            return (flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)).entries()  # type: ignore[no-any-return]
+            return (flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)).entries()
         columns = [a.entries() for a in self.parts]
         den = self.den
         return [self._field.from_coordinates([flint.fmpq(c, den) for c in x]) for x in zip(*columns, strict=True)]
@@ -367,13 +367,14 @@ class ExactMatrix(Matrix):
         reduced, pivots = joined.echelon()
         if pivots and pivots[-1] >= n:
             raise SingularError("the linear system has no solution")
-        solution = reduced.select(columns=range(n, n + k))
+        solution: ExactMatrix = reduced.select(columns=range(n, n + k))
         if len(pivots) == n:
             return solution
         placed = self._field.zeros(n, len(pivots)).T.to_rows()
         for i, pivot in enumerate(pivots):
             placed[i][pivot] = self._field.one
-        return self._field.matrix(placed, (len(pivots), n)).T @ solution
+        spread: ExactMatrix = self._field.matrix(placed, (len(pivots), n)).T @ solution
+        return spread
 
     def inverse(self) -> ExactMatrix:
         n = self.nrows

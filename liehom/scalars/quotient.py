@@ -56,8 +56,8 @@ def quotient(basis: Matrix) -> Quotient:
     (True, True)
     """
     if isinstance(basis, FloatMatrix):
-        lift = basis.null_space()
-        return Quotient(basis.row_space(), lift, lift.T)
+        across = basis.null_space()
+        return Quotient(basis.row_space(), across, across.T)
     if not isinstance(basis, ExactMatrix):
         raise TypeError(f"no quotient over {basis.field}")
     reduced, pivots = basis.echelon()
@@ -108,7 +108,7 @@ def _by_lattice(basis: ExactMatrix) -> Quotient:
             break
         bits *= 2
     unimodular = flint.fmpz_mat([row[:n] for row in reduced])
-    dual, sign = unimodular.inv().numer_denom()
+    dual, sign = flint.fmpq_mat(unimodular).inv().numer_denom()
     # T unimodular: the inverse is integral; its columns are the dual basis.
     whole = ExactMatrix(field, (dual.transpose(),), int(sign)).normalized()
     functions = ExactMatrix(field, (unimodular,), 1).select(rows=range(d)).T

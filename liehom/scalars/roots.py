@@ -28,7 +28,8 @@ def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
     with working_precision(precision):
         if isinstance(f.field, NumberField):
             return list(flint.acb_poly([f.field.ball(c, precision) for c in f.coefficients]).roots())
-        return [r for r, _ in flint.fmpq_poly(list(f.coefficients)).complex_roots()]
+        pairs: Any = flint.fmpq_poly(list(f.coefficients)).complex_roots()
+        return [root for root, _ in pairs]
 
 
 def simplest_between(low: Any, high: Any) -> Any:
