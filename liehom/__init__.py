@@ -15,6 +15,8 @@ from liehom.algebra.homomorphism import Homomorphism as Homomorphism
 from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
 from liehom.algebra.simple import simple as simple
 from liehom.algebra.subalgebra import Subalgebra as Subalgebra
+from liehom.catalog.pairs import pair as pair
+from liehom.catalog.pairs import pair_names as pair_names
 from liehom.representations.constructions import adjoint as adjoint
 from liehom.representations.constructions import coadjoint as coadjoint
 from liehom.representations.constructions import defining as defining

@@ -56,7 +56,7 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     else:
         triple = _failure_by_generators(table)
     if triple is not None:
-        _fail(table, triple, _cyclic_sum(table, *triple), names)
+        _fail(table, triple, _cyclic_sum(_brackets(table), table.field.zero, *triple), names)
 
 
 def _fail(
@@ -70,17 +70,23 @@ def _fail(
 Triple = tuple[int, int, int]
 
 
-def _cyclic_sum(table: StructureConstants, i: int, j: int, k: int) -> dict[int, Any]:
-    """The non-zero coefficients of [[i, j], k] + [[j, k], i] + [[k, i], j]."""
+def _brackets(table: StructureConstants) -> dict[tuple[int, int], list[tuple[int, Any]]]:
     brackets: dict[tuple[int, int], list[tuple[int, Any]]] = {}
     for a, b, c, v in table:
         brackets.setdefault((a, b), []).append((c, v))
         brackets.setdefault((b, a), []).append((c, -v))
+    return brackets
+
+
+def _cyclic_sum(
+    brackets: dict[tuple[int, int], list[tuple[int, Any]]], zero: Any, i: int, j: int, k: int
+) -> dict[int, Any]:
+    """The non-zero coefficients of [[i, j], k] + [[j, k], i] + [[k, i], j]."""
     total: dict[int, Any] = {}
     for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
         for middle, v in brackets.get((a, b), ()):
             for m, w in brackets.get((middle, c), ()):
-                total[m] = total.get(m, table.field.zero) + v * w
+                total[m] = total.get(m, zero) + v * w
     return {m: v for m, v in total.items() if v != 0}
 
 
@@ -174,8 +180,9 @@ def _first_in(table: StructureConstants, pair: tuple[int, int] | None) -> Triple
     if pair is None:
         return None
     n, (i, j) = table.dimension, pair
-    failing = [tuple(sorted((i, j, k))) for k in range(n) if k not in (i, j) and _cyclic_sum(table, i, j, k)]
-    return failing[0]  # type: ignore[return-value]  # x is a combination of basis elements, so one of them fails
+    brackets, zero = _brackets(table), table.field.zero
+    others = (k for k in range(n) if k not in (i, j) and _cyclic_sum(brackets, zero, i, j, k))
+    return tuple(sorted((i, j, next(others))))  # type: ignore[return-value]  # x is a combination of basis elements, so one of them fails
 
 
 def _generate(table: StructureConstants, elements: list[Any], adjoints: list[Any]) -> bool:

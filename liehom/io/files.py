@@ -120,7 +120,9 @@ def _format(data: Any) -> str:
 
 
 def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
-    """The JSON object of a pair, a representation (with a point, if given), or a certificate or verdict.
+    """The JSON object of a pair, a representation (with a point, if given), a certificate or a verdict.
+
+    A mapping is taken to be a JSON object already.
 
     Raises
     ------
@@ -137,6 +139,8 @@ def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
         return pair_file.write_pair(thing)
     if isinstance(thing, Representation):
         return representation_file.write_representation(thing, point)
+    if isinstance(thing, Mapping):
+        return dict(thing)
     if callable(getattr(thing, "to_json", None)):
         return dict(thing.to_json())
     raise FormatError(f"a {type(thing).__name__} has no file format; expected a pair, representation or certificate")
