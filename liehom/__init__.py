@@ -17,6 +17,10 @@ from liehom.algebra.simple import simple as simple
 from liehom.algebra.subalgebra import Subalgebra as Subalgebra
 from liehom.catalog.pairs import pair as pair
 from liehom.catalog.pairs import pair_names as pair_names
+from liehom.homogeneous.failure_cone import failure_cone as failure_cone
+from liehom.homogeneous.orbit_types import orbit_types as orbit_types
+from liehom.homogeneous.range_condition import range_condition as range_condition
+from liehom.homogeneous.relative_invariant import relative_invariant as relative_invariant
 from liehom.representations.constructions import adjoint as adjoint
 from liehom.representations.constructions import coadjoint as coadjoint
 from liehom.representations.constructions import defining as defining
