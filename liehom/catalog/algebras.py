@@ -1,0 +1,147 @@
+"""Lie algebras and representations by name.
+
+Imports names, linear, algebra, representations.
+"""
+
+from __future__ import annotations
+
+from liehom.algebra import LieAlgebra, abelian, direct_sum, euclidean, heisenberg, semidirect_sum
+from liehom.algebra.classical import linear_algebra
+from liehom.algebra.closure import lie_closure
+from liehom.algebra.matrix_basis import IntegerArray
+from liehom.catalog.linear import is_linear, linear_matrices
+from liehom.catalog.names import Expression, Sum, Term, parse_expression, unknown
+from liehom.errors import CatalogError
+from liehom.representations import Representation
+
+EXAMPLES = (
+    "so(3)",
+    "so(3,1)",
+    "so(3,C)",
+    "so*(6)",
+    "su(3)",
+    "su(2,1)",
+    "u(2)",
+    "sp(3)",
+    "sp(2,1)",
+    "sp(4,R)",
+    "sp(4,C)",
+    "sl(3)",
+    "sl(3,C)",
+    "sl(2,H)",
+    "gl(2)",
+    "spin(7)",
+    "spin(9,1)",
+    "g2",
+    "g2(2)",
+    "f4",
+    "f4(-20)",
+    "f4(4)",
+    "e6(-26)",
+    "e6(6)",
+    "upper(3)",
+    "heisenberg(1)",
+    "e(3)",
+    "R^2",
+    "aff(1)",
+    "affine(so(3))",
+    "so(3)+sl(2)",
+)
+
+
+def algebra(name: str) -> LieAlgebra:
+    """The Lie algebra with a catalogue name; a sum is the direct sum.
+
+    Parameters
+    ----------
+    name : str
+        Such as 'so(3)', 'su(2,1)', 'sp(4,R)', 'f4(-20)', 'e(3)', 'heisenberg(2)', 'R^2', 'so(3)+sl(2)'.
+
+    Raises
+    ------
+    CatalogError
+        If the name is not in the catalogue; lists the nearest ones.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.catalog.algebra("sl(2, H)"), lh.catalog.algebra("so(3)+R").dimension
+    (<Lie algebra sl(2,H) of dimension 15 over QQ>, 4)
+    """
+    return algebra_of(parse_expression(name))
+
+
+def representation(name: str) -> Representation:
+    """The representation with a catalogue name: a linear Lie algebra on the space of its matrices.
+
+    Parameters
+    ----------
+    name : str
+        Such as 'so(4)', 'g2', 'spin(9,1)', 'sl(2,H)+sp(1)', 'tensor(sl(4),sl(2))', 'S2(gl(2))', or 'sym(4)',
+        which is so(4) by conjugation on Sym(4); see `liehom.catalog.linear` for all heads.
+
+    Raises
+    ------
+    CatalogError
+        If the name is not in the catalogue; lists the nearest ones.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.catalog.representation("g2")
+    <representation g2: of <Lie algebra g2 of dimension 14 over QQ> on QQ^7>
+    """
+    tree = parse_expression(name)
+    if not is_linear(tree):
+        raise unknown(name, EXAMPLES, "representation")
+    return representation_of(linear_matrices(tree), str(tree))
+
+
+def algebra_of(tree: Expression) -> LieAlgebra:
+    """The Lie algebra of a parsed name."""
+    if isinstance(tree, Sum):
+        return direct_sum(*map(algebra_of, tree.terms), name=str(tree))
+    if tree.head == "0" or tree.head.startswith("R"):
+        return abelian(_power(tree))
+    if tree.head == "e":
+        return euclidean(_single(tree))
+    if tree.head == "heisenberg":
+        return heisenberg(_single(tree))
+    if tree == Term("aff", (1,)):
+        return affine_algebra(linear_matrices(Term("gl", (1,))), "aff(1)")
+    if tree.head == "affine" and len(tree.items) == 1 and not isinstance(tree.items[0], int):
+        return affine_algebra(linear_matrices(tree.items[0]), str(tree))
+    if tree.head == "sym" and not tree.after:
+        return algebra_of(Term("so", tree.items))
+    if not is_linear(tree):
+        raise unknown(str(tree), EXAMPLES, "algebra")
+    return linear_algebra(linear_matrices(tree), str(tree))
+
+
+def affine_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebra:
+    """The affine algebra h + R^N of a linear Lie algebra h, the translations last."""
+    # The matrices are the basis of h itself: a representation.
+    return semidirect_sum(linear_algebra(matrices), matrices, size=matrices.shape[1], name=name, check=False)
+
+
+def representation_of(matrices: IntegerArray, name: str) -> Representation:
+    """The defining representation of a closed integer matrix basis."""
+    size = int(matrices.shape[1])
+    if len(matrices) == 0:
+        return Representation(linear_algebra(matrices, name), [], size=size, name=name)
+    made = lie_closure(matrices, close=False, name=name)
+    # The structure constants are those of the matrices.
+    return Representation(made.algebra, made.matrices, size=size, name=name, check=False)
+
+
+def _power(term: Term) -> int:
+    if term.items or term.after:
+        raise CatalogError(f"R^n is written with a circumflex, as in R^2; got {term}")
+    return 0 if term.head == "0" else int(term.head[2:] or 1)
+
+
+def _single(term: Term) -> int:
+    values = term.integers()
+    if len(values) != 1 or term.after:
+        raise CatalogError(f"{term.head} takes one integer, got {term}")
+    return values[0]

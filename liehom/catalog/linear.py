@@ -1,0 +1,235 @@
+"""From a name to matrices: linear Lie algebras as integer matrix bases.
+
+classical       gl, sl, so, su, u, sp, spin with the parameters of `liehom.algebra.classical`; so*(2n)
+other scalars   sl(n,Q(sqrt(c))), sl(n,Q(a,b)): over a quadratic field, or over the quaternion algebra (a, b)
+exceptional     g2, g2(2), f4, f4(-20), f4(4), e6(-26), e6(6)
+forms           form(d1,...,dn): so of the diagonal quadratic form
+commutative     field(c0,...,c_(n-1)): Q[t]/(t^n + ... + c0) on itself; diag(...), spiral(a,b), R (scalars)
+triangular      upper(n), strict(n)
+from others     dual(X), tensor(X,Y), blocks(X,Y,...), copies(k,X), Sk(X), Lk(X); sym(n): so(n) on Sym(n)
+with scalars    X+R, X+u(1), X+sp(1), X+sl(1,Q(a,b)): scalars that commute with X
+
+Imports names, algebra.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+
+from liehom.algebra import matrix_families as families
+from liehom.algebra.classical import classical_matrices
+from liehom.algebra.matrix_basis import IntegerArray, stack, unit
+from liehom.algebra.simple import exceptional_matrices
+from liehom.catalog.names import Expression, Item, Sum, Term, terms
+from liehom.errors import CatalogError
+
+CLASSICAL = ("gl", "sl", "so", "su", "u", "sp", "spin")
+EXCEPTIONAL = ("g2", "f4", "e6")
+MAX_SIZE = 64
+MAX_SPIN = 16
+
+
+def linear_matrices(tree: Expression) -> IntegerArray:
+    """The matrix basis that a name stands for, shape (dim, N, N).
+
+    Raises
+    ------
+    CatalogError
+        If the name stands for no linear Lie algebra.
+
+    Examples
+    --------
+    >>> from liehom.catalog.names import parse_expression
+    >>> linear_matrices(parse_expression("sl(2,H)+sp(1)")).shape
+    (18, 8, 8)
+    """
+    first, *scalars = terms(tree)
+    matrices = _term_matrices(first)
+    if not scalars:
+        return matrices
+    return families.join(matrices, *(_scalars(first, extra, matrices.shape[1]) for extra in scalars))
+
+
+def is_linear(tree: Expression) -> bool:
+    """Whether the heads of a name are those of linear Lie algebras."""
+    return all(t.head in (*CLASSICAL, *EXCEPTIONAL, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree))
+
+
+def scalar_parameters(term: Term) -> tuple[int, ...]:
+    """Squares of the units of the scalars over which a classical algebra lives: () for R, (-1,) for C, ...
+
+    Examples
+    --------
+    >>> scalar_parameters(Term("su", (3,))), scalar_parameters(Term("sp", (2,)))
+    ((-1,), (-1, -1))
+    """
+    second = term.items[1] if len(term.items) > 1 else 0
+    if isinstance(second, Term):
+        return _ground(second)
+    return {"su": (-1,), "u": (-1,), "sp": (-1, -1), "so*": (-1, -1)}.get(term.head, ())
+
+
+def _ground(letter: Term) -> tuple[int, ...]:
+    """The parameters of R, C, H, Q(sqrt(c)), Q(a,b)."""
+    if letter.head in "RCH" and not letter.items:
+        return {"R": (), "C": (-1,), "H": (-1, -1)}[letter.head]
+    if letter.head == "Q":
+        if len(letter.items) == 1 and isinstance(letter.items[0], Term) and letter.items[0].head == "sqrt":
+            return letter.items[0].integers()
+        if len(letter.items) == 2:
+            return letter.integers()
+    raise CatalogError(f"{letter} are no scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
+
+
+def _term_matrices(term: Term) -> IntegerArray:
+    if term.after:
+        raise CatalogError(f"{term} is no linear Lie algebra: unexpected ';'")
+    if term.head in CLASSICAL:
+        return _classical(term)
+    if term.head in EXCEPTIONAL:
+        return exceptional_matrices(str(term))
+    power = re.fullmatch(r"([SL])(\d+)", term.head)
+    if power:
+        build = families.symmetric_power if power[1] == "S" else families.exterior_power
+        return build(linear_matrices(_one(term)), int(power[2]))
+    if term.head not in _HEADS:
+        raise CatalogError(f"{term} is no linear Lie algebra of the catalogue; see liehom.catalog.linear for the heads")
+    return _HEADS[term.head](term)
+
+
+def _classical(term: Term) -> IntegerArray:
+    if not 1 <= len(term.items) <= 2 or not isinstance(term.items[0], int):
+        raise CatalogError(f"{term.head} takes a size and perhaps a second parameter, as in {term.head}(3); got {term}")
+    n, second = term.items[0], term.items[1] if len(term.items) == 2 else 0
+    _refuse_large(term, n, second if isinstance(second, int) else 0)
+    if isinstance(second, int):
+        return classical_matrices(term.head, n, second)
+    if isinstance(second, Sum):
+        raise CatalogError(f"{second} are no scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
+    ground = _ground(second)
+    if second.head != "Q":
+        return classical_matrices(term.head, n, second.head)
+    if term.head != "sl":
+        raise CatalogError(f"{term} is not in the catalogue; over {second} there is sl(n,{second})")
+    if len(ground) == 1:
+        return families.complex_sl(n, parameter=ground[0])
+    return families.quaternionic_sl(n, parameters=(ground[0], ground[1]))
+
+
+def _refuse_large(term: Term, first: int, second: int = 0) -> None:
+    total, limit = first + second, MAX_SPIN if term.head == "spin" else MAX_SIZE
+    if total * 2 ** len(scalar_parameters(term)) > limit:
+        raise CatalogError(f"{term} is larger than what the catalogue builds, {limit} real dimensions")
+
+
+def _scalars(first: Term, extra: Term, size: int) -> IntegerArray:
+    """Scalars on R^size that commute with a classical algebra over C, H or another ground."""
+    if extra == Term("R"):
+        return np.eye(size, dtype=np.int64)[None]
+    ground = scalar_parameters(first)
+    if extra == Term("u", (1,)) and len(ground) == 1:
+        return families.complex_structure(size // 2, parameter=ground[0])[None]
+    if len(ground) == 2:
+        units = families.quaternion_scalars(size // 4, parameters=(ground[0], ground[1]))
+        if extra == Term("u", (1,)):
+            return units[:1]
+        same = extra.head == "sl" and len(extra.items) == 2 and scalar_parameters(extra) == ground
+        if (extra == Term("sp", (1,)) and ground == (-1, -1)) or (same and extra.items[0] == 1):
+            return units
+    raise CatalogError(f"{extra} does not act by scalars that commute with {first}; for blocks write blocks(X,Y)")
+
+
+def _expression(item: Item) -> Expression:
+    if isinstance(item, int):
+        raise CatalogError(f"expected a linear Lie algebra, got the number {item}")
+    return item
+
+
+def _one(term: Term) -> Expression:
+    if len(term.items) != 1:
+        raise CatalogError(f"{term.head} takes one linear Lie algebra, got {term}")
+    return _expression(term.items[0])
+
+
+def _size(term: Term) -> int:
+    values = term.integers()
+    if len(values) != 1 or values[0] < 1:
+        raise CatalogError(f"{term.head} takes one positive integer, got {term}")
+    _refuse_large(term, values[0])
+    return values[0]
+
+
+def _so_star(term: Term) -> IntegerArray:
+    size = _size(term)
+    if size % 2:
+        raise CatalogError(f"so*(2n) is named by its even size; got {term}")
+    return families.so_star(size // 2)
+
+
+def _spiral(term: Term) -> IntegerArray:
+    values = term.integers()
+    if len(values) < 2:
+        raise CatalogError(f"spiral takes the growth and at least one frequency, got {term}")
+    growth, *frequencies = values
+    matrix = growth * np.eye(2 * len(frequencies), dtype=np.int64)
+    for k, omega in enumerate(frequencies):
+        matrix[2 * k, 2 * k + 1], matrix[2 * k + 1, 2 * k] = -omega, omega
+    return matrix[None]
+
+
+def _triangular(term: Term, above: int) -> IntegerArray:
+    n = _size(term)
+    return stack((unit(n, i, j) for i in range(n) for j in range(i + above, n)), n)
+
+
+def _tensor(term: Term) -> IntegerArray:
+    if len(term.items) != 2:
+        raise CatalogError(f"tensor takes two linear Lie algebras, got {term}")
+    return families.tensor_sum(*(linear_matrices(_expression(x)) for x in term.items))
+
+
+def _blocks(term: Term) -> IntegerArray:
+    """The direct sum of algebras on the direct sum of their spaces."""
+    parts = [linear_matrices(_expression(x)) for x in term.items]
+    total = sum(part.shape[1] for part in parts)
+    placed, offset = [], 0
+    for part in parts:
+        placed.append(at_offset(part, offset, total))
+        offset += part.shape[1]
+    return families.join(*placed)
+
+
+def at_offset(matrices: IntegerArray, offset: int, size: int) -> IntegerArray:
+    """The matrices as a block that begins at the offset in matrices of the given size, zero elsewhere."""
+    n = matrices.shape[1]
+    out = np.zeros((len(matrices), size, size), dtype=np.int64)
+    out[:, offset : offset + n, offset : offset + n] = matrices
+    return out
+
+
+def _copies(term: Term) -> IntegerArray:
+    if len(term.items) != 2 or not isinstance(term.items[0], int) or term.items[0] < 1:
+        raise CatalogError(f"copies takes a positive number and a linear Lie algebra, got {term}")
+    one = np.eye(term.items[0], dtype=np.int64)
+    matrices = linear_matrices(_expression(term.items[1]))
+    return stack((np.kron(one, a) for a in matrices), len(one) * matrices.shape[1])
+
+
+_HEADS: dict[str, Callable[[Term], IntegerArray]] = {
+    "so*": _so_star,
+    "R": lambda term: np.ones((1, 1, 1), dtype=np.int64),
+    "form": lambda term: families.orthogonal(term.integers()),
+    "field": lambda term: families.companion_powers(term.integers()),
+    "diag": lambda term: np.diag(np.array(term.integers(), dtype=np.int64))[None],
+    "spiral": _spiral,
+    "upper": lambda term: _triangular(term, 0),
+    "strict": lambda term: _triangular(term, 1),
+    "dual": lambda term: -linear_matrices(_one(term)).transpose(0, 2, 1),
+    "tensor": _tensor,
+    "blocks": _blocks,
+    "copies": _copies,
+    "sym": lambda term: families.congruence(families.so(_size(term))),
+}

@@ -1,0 +1,231 @@
+"""The grammar of catalogue names: text to tree and back.
+
+    pair    =  sum '/' sum  |  term                 so(4)/so(3), sp(3)/sp(2)+sp(1), affine(g2), sym(4;3,1)
+    sum     =  term { '+' term }
+    term    =  head [ '(' items [ ';' items ] ')' ]
+    items   =  item { ',' item },   item = integer | sum
+    head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0'
+
+Blanks are ignored.  Printing a tree and parsing it again gives the same tree; `parse` drops parameters that
+say nothing, so that 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.  Imports errors.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TypeAlias, final
+
+from liehom.errors import CatalogError
+
+_TOKEN = re.compile(r"\s*(?:(R\^\d+)|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A head with its parameters: ``so(3,1)``, ``g2``, ``sym(4;3,1)``.
+
+    Attributes
+    ----------
+    head : str
+    items : tuple of int, Term or Sum
+    after : tuple of int
+        What stands behind the semicolon.
+    """
+
+    head: str
+    items: tuple[Item, ...] = ()
+    after: tuple[int, ...] = ()
+
+    def __str__(self) -> str:
+        if not self.items:
+            return self.head
+        inside = ",".join(map(str, self.items))
+        return f"{self.head}({inside};{','.join(map(str, self.after))})" if self.after else f"{self.head}({inside})"
+
+    def integers(self) -> tuple[int, ...]:
+        """The parameters, if all are integers; `CatalogError` otherwise."""
+        found = tuple(x for x in self.items if isinstance(x, int))
+        if len(found) != len(self.items):
+            raise CatalogError(f"the parameters of {self} must be integers")
+        return found
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """Two or more terms: ``sp(2)+sp(1)``."""
+
+    terms: tuple[Term, ...]
+
+    def __str__(self) -> str:
+        return "+".join(map(str, self.terms))
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """An algebra and a subalgebra: ``so(4)/so(3)``."""
+
+    top: Expression
+    bottom: Expression
+
+    def __str__(self) -> str:
+        return f"{self.top}/{self.bottom}"
+
+
+Expression: TypeAlias = Term | Sum
+Item: TypeAlias = int | Term | Sum
+Name: TypeAlias = Term | Sum | Quotient
+
+
+def parse(text: str) -> Name:
+    """The tree of a name.
+
+    Raises
+    ------
+    CatalogError
+        If the text does not follow the grammar; says where.
+
+    Examples
+    --------
+    >>> str(parse("so(4, 0) / so(3)"))
+    'so(4)/so(3)'
+    >>> parse("g2/su(3")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.CatalogError: 'g2/su(3' is not a name of the catalogue: expected ')' at position 7
+    """
+    if not isinstance(text, str):
+        raise CatalogError(f"a name is a text such as 'so(4)/so(3)', got {text!r}")
+    return _Parser(text).name()
+
+
+def parse_expression(text: str) -> Expression:
+    """The tree of a name without '/'.
+
+    Raises
+    ------
+    CatalogError
+        If the text does not follow the grammar, or names a pair.
+    """
+    tree = parse(text)
+    if isinstance(tree, Quotient):
+        raise CatalogError(f"{text!r} is the name of a pair, not of an algebra")
+    return tree
+
+
+def terms(tree: Expression) -> tuple[Term, ...]:
+    """The summands; of a term itself."""
+    return tree.terms if isinstance(tree, Sum) else (tree,)
+
+
+def unknown(text: str, known: Iterable[str], what: str) -> CatalogError:
+    """The error for a name that follows the grammar but stands for nothing, with the nearest known names.
+
+    Examples
+    --------
+    >>> unknown("so(4)/so(9)", ["so(4)/so(3)", "g2/su(3)"], "pair")
+    CatalogError("'so(4)/so(9)' is not the name of a pair in the catalogue; the nearest are so(4)/so(3)")
+    """
+    near = get_close_matches(text, list(known), n=3, cutoff=0.5)
+    hint = f"; the nearest are {', '.join(near)}" if near else ""
+    return CatalogError(f"{text!r} is not the name of {_article(what)} in the catalogue{hint}")
+
+
+def _article(what: str) -> str:
+    return f"an {what}" if what[0] in "aeiou" else f"a {what}"
+
+
+def canonical(term: Term) -> Term:
+    """The term without parameters that say nothing."""
+    if len(term.items) == 2 and not term.after:
+        silent: Item = Term("R") if term.head in ("gl", "sl") else 0
+        if term.items[1] == silent and term.head in ("gl", "sl", "so", "su", "u", "sp", "spin"):
+            return Term(term.head, term.items[:1])
+    return term
+
+
+class _Parser:
+    """Recursive descent over the tokens of one text."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.tokens: list[tuple[str, int]] = []
+        self.at = 0
+        position = 0
+        while text[position:].strip():
+            match = _TOKEN.match(text, position)
+            if match is None:
+                skipped = len(text[position:]) - len(text[position:].lstrip())
+                raise self.error(f"unexpected {text[position + skipped]!r}", position + skipped)
+            self.tokens.append((match[0].strip(), match.end() - len(match[0].strip())))
+            position = match.end()
+
+    def error(self, what: str, position: int) -> CatalogError:
+        return CatalogError(f"{self.text!r} is not a name of the catalogue: {what} at position {position}")
+
+    def peek(self) -> str:
+        return self.tokens[self.at][0] if self.at < len(self.tokens) else ""
+
+    def position(self) -> int:
+        return self.tokens[self.at][1] if self.at < len(self.tokens) else len(self.text)
+
+    def accept(self, token: str) -> bool:
+        found = self.peek() == token
+        self.at += found
+        return found
+
+    def expect(self, token: str) -> None:
+        if not self.accept(token):
+            raise self.error(f"expected {token!r}", self.position())
+
+    def name(self) -> Name:
+        top = self.sum()
+        tree: Name = Quotient(top, self.sum()) if self.accept("/") else top
+        if self.peek():
+            raise self.error(f"unexpected {self.peek()!r}", self.position())
+        return tree
+
+    def sum(self) -> Expression:
+        found = [self.term()]
+        while self.accept("+"):
+            found.append(self.term())
+        return Sum(tuple(found)) if len(found) > 1 else found[0]
+
+    def term(self) -> Term:
+        head = self.peek()
+        if head == "0":
+            self.at += 1
+            return Term("0")
+        if not head[:1].isalpha():
+            raise self.error("expected a name such as so(3)", self.position())
+        self.at += 1
+        if head.startswith("R^"):
+            n = int(head[2:])
+            return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
+        if not self.accept("("):
+            return Term(head)
+        items = [self.item()]
+        while self.accept(","):
+            items.append(self.item())
+        after: list[int] = []
+        if self.accept(";"):
+            after.append(self.integer())
+            while self.accept(","):
+                after.append(self.integer())
+        self.expect(")")
+        return canonical(Term(head, tuple(items), tuple(after)))
+
+    def item(self) -> Item:
+        return self.integer() if self.peek().lstrip("-").isdigit() else self.sum()
+
+    def integer(self) -> int:
+        token = self.peek()
+        if not token.lstrip("-").isdigit():
+            raise self.error("expected an integer", self.position())
+        self.at += 1
+        return int(token)

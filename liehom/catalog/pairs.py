@@ -1,0 +1,181 @@
+"""Pairs by name: an algebra of matrices, and the subalgebra that a name under the bar stands for.
+
+affine(H)       H + R^N over H                       sym(n;m1,m2,...)   so(n), a symmetric matrix with multiplicities
+G/0, G/G        trivial ones                         e(n)/so(n), aff(1)/R, R^n/R^m, heisenberg(n)/R
+G/Pk, G/P       the stabiliser of a k-dimensional subspace of the scalars, isotropic where G preserves a form;
+                P = P1; in e6, of the line of an idempotent; in g2(2), of a null line
+G/B             sl(n) and gl(n): of a complete flag
+G/H             what the table of `special` names; otherwise H as blocks of the matrices of G, wherever they fit
+
+Imports subalgebras, linear, algebras, names, representations.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.algebra.classical import linear_algebra
+from liehom.algebra.matrix_basis import IntegerArray
+from liehom.catalog.algebras import affine_algebra, algebra_of
+from liehom.catalog.claims import CLAIMS
+from liehom.catalog.linear import is_linear, linear_matrices
+from liehom.catalog.names import Expression, Quotient, Term, parse, terms, unknown
+from liehom.catalog.special import parabolic_rows, special_rows
+from liehom.catalog.subalgebras import coordinates, placements, preserving
+from liehom.errors import CatalogError
+from liehom.representations import Pair
+
+
+def pair(name: str) -> Pair:
+    """The pair with a catalogue name.
+
+    Parameters
+    ----------
+    name : str
+        Such as 'so(4)/so(3)', 'su(3)/u(2)', 'sl(3)/P1', 'affine(spin(9,1)+R)', 'sym(4;3,1)'; `pair_names` lists
+        one of each kind, and sizes are free.
+
+    Returns
+    -------
+    Pair
+        Its name is the given one in canonical form; it prints as the call that makes it.
+
+    Raises
+    ------
+    CatalogError
+        If the name is not in the catalogue; lists the nearest ones.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.pair("so(4)/so(3)"), lh.pair("sl(3, R)/P1").name
+    (pair('so(4)/so(3)'), 'sl(3)/P1')
+    >>> lh.pair("so(4)/so(5)")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.CatalogError: 'so(4)/so(5)' is not the name of a pair in the catalogue; the nearest are ...
+    """
+    tree = parse(name)
+    if isinstance(tree, Quotient):
+        return _quotient(tree)
+    if isinstance(tree, Term) and tree.head == "affine":
+        return _affine(tree)
+    if isinstance(tree, Term) and tree.head == "sym" and tree.after:
+        return _symmetric(tree)
+    raise unknown(str(tree), CLAIMS, "pair")
+
+
+def pair_names() -> tuple[str, ...]:
+    """Names of pairs of every kind, full ones first.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.pair_names()[:2]
+    ('so(2)/so(1)', 'so(3)/so(2)')
+    """
+    return tuple(CLAIMS)
+
+
+def _made(algebra: LieAlgebra, rows: IntegerArray, name: object, *, check: bool = False) -> Pair:
+    matrix = algebra.field.from_integers(rows.ravel().tolist(), len(rows), algebra.dimension)  # type: ignore[attr-defined]
+    return Pair(algebra, Subalgebra(algebra, matrix, check=check), name=str(name))
+
+
+def _affine(tree: Term) -> Pair:
+    if len(tree.items) != 1 or isinstance(tree.items[0], int) or tree.after or not is_linear(tree.items[0]):
+        raise unknown(str(tree), CLAIMS, "pair")
+    matrices = linear_matrices(tree.items[0])
+    algebra = affine_algebra(matrices, str(tree))
+    # The linear part of an affine algebra is a subalgebra.
+    return _made(algebra, _first(len(matrices), algebra.dimension), tree)
+
+
+def _symmetric(tree: Term) -> Pair:
+    """so(n) with the stabiliser of diag(1, ..., 1, 2, ..., 2, ...) in the symmetric matrices."""
+    (n,) = tree.integers() if len(tree.items) == 1 else (0,)
+    if n < 1 or any(m < 1 for m in tree.after) or sum(tree.after) != n:
+        raise CatalogError(f"sym(n;m1,m2,...) needs positive multiplicities with sum n; got {tree}")
+    matrices = linear_matrices(Term("so", (n,)))
+    point = np.diag(np.repeat(np.arange(1, len(tree.after) + 1), tree.after))
+    rows = preserving(matrices, commuting=[point])
+    return _made(linear_algebra(matrices, f"so({n})"), rows, tree)  # a stabiliser
+
+
+def _quotient(tree: Quotient) -> Pair:
+    top, bottom = tree.top, tree.bottom
+    plain = _not_linear(top, bottom)
+    if plain is not None:
+        return _made(*plain, tree)
+    if not is_linear(top):
+        raise unknown(str(tree), CLAIMS, "pair")
+    matrices = linear_matrices(top)
+    algebra = linear_algebra(matrices, str(top))
+    rows = _rows(top, bottom, matrices)
+    if rows is not None:
+        return _made(algebra, rows, tree)  # it preserves something: see `preserving`
+    rows = _included(matrices, bottom)
+    if rows is not None:
+        return _made(algebra, rows, tree, check=True)
+    raise unknown(str(tree), CLAIMS, "pair")
+
+
+def _rows(top: Expression, bottom: Expression, matrices: IntegerArray) -> IntegerArray | None:
+    """The rows of a subalgebra that preserves something, or None."""
+    if bottom == Term("0"):
+        return np.zeros((0, len(matrices)), dtype=np.int64)
+    if not isinstance(top, Term):
+        return None
+    if isinstance(bottom, Term) and not bottom.items and re.fullmatch(r"P\d*|B", bottom.head):
+        return parabolic_rows(top, bottom.head, matrices)
+    return special_rows(top, bottom, matrices)
+
+
+def _included(matrices: IntegerArray, bottom: Expression) -> IntegerArray | None:
+    """The subalgebra whose matrices are blocks, in some order and place, of elements of the algebra."""
+    if not is_linear(bottom):
+        return None
+    size = matrices.shape[1]
+    try:
+        whole = linear_matrices(bottom)
+    except CatalogError:  # a sum of blocks is no algebra with scalars
+        whole = None
+    if whole is not None and whole.shape[1] == size:
+        rows = coordinates(matrices, whole)
+        if rows is not None:
+            return rows
+    for placed in placements([linear_matrices(t) for t in terms(bottom)], size):
+        rows = coordinates(matrices, placed)
+        if rows is not None:
+            return rows
+    return None
+
+
+def _not_linear(top: Expression, bottom: Expression) -> tuple[LieAlgebra, IntegerArray] | None:
+    """Abelian, Euclidean and Heisenberg algebras with the subalgebras that have a name."""
+    if not isinstance(top, Term) or not isinstance(bottom, Term):
+        return None
+    known = top.head in ("0", "R", "e", "heisenberg", "aff", "affine") or top.head.startswith("R^")
+    if not known or (top.head == "R" and bottom.head not in ("0", "R")):
+        return None
+    algebra = algebra_of(top)
+    n = algebra.dimension
+    if bottom.head == "0":
+        return algebra, _first(0, n)
+    if top.head[0] in "0R" and bottom.head[0] == "R" and algebra_of(bottom).dimension <= n:
+        return algebra, _first(algebra_of(bottom).dimension, n)
+    if (top.head == "e" and bottom == Term("so", top.items)) or (top.head == "aff" and bottom == Term("R")):
+        return algebra, _first(algebra_of(bottom).dimension, n)
+    if top.head == "heisenberg" and bottom == Term("R"):
+        return algebra, np.eye(n, dtype=np.int64)[-1:]
+    if top.head == "affine" and len(top.items) == 1 and top.items[0] == bottom:
+        return algebra, _first(algebra_of(bottom).dimension, n)
+    return None
+
+
+def _first(k: int, n: int) -> IntegerArray:
+    """The rows of the first k basis elements."""
+    return np.eye(n, dtype=np.int64)[:k]

@@ -1,0 +1,113 @@
+"""Subalgebras of linear Lie algebras by what they preserve, and by inclusion of matrices.
+
+Each condition is linear in the element X of g, and those that satisfy it are closed under commutators:
+
+    X W in W for a subspace W,   X v = 0,   X T = T X,   X^T F + F X = 0.
+
+Imports linear, algebra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import permutations
+from math import prod
+
+import numpy as np
+
+from liehom.algebra.closure import square_matrices
+from liehom.algebra.matrix_basis import IntegerArray, null_space
+from liehom.algebra.sparse_commutators import entries_of, private_places
+from liehom.catalog.linear import at_offset
+
+NOTHING: Sequence[IntegerArray] = ()
+
+
+def preserving(
+    matrices: IntegerArray,
+    *,
+    subspaces: Sequence[IntegerArray] = NOTHING,
+    points: Sequence[IntegerArray] = NOTHING,
+    commuting: Sequence[IntegerArray] = NOTHING,
+    forms: Sequence[IntegerArray] = NOTHING,
+) -> IntegerArray:
+    """Basis of the combinations of the matrices that satisfy all conditions, as rows of coefficients (m, dim).
+
+    Parameters
+    ----------
+    matrices : (dim, N, N) integers
+    subspaces : sequence of (r, N) integers
+        Rows that span the subspaces to keep.
+    points : sequence of (N,) integers
+        Vectors to kill.
+    commuting, forms : sequences of (N, N) integers
+
+    Examples
+    --------
+    The upper triangular matrices of sl(2):
+
+    >>> from liehom.algebra.matrix_families import sl
+    >>> preserving(sl(2), subspaces=[np.array([[1, 0]])]).tolist()
+    [[1, 0, 0], [0, 0, 1]]
+    """
+    transposed = matrices.transpose(0, 2, 1)
+    conditions = [null_space(w) @ matrices @ w.T for w in subspaces]
+    conditions += [matrices @ v for v in points]
+    conditions += [matrices @ t - t @ matrices for t in commuting]
+    conditions += [transposed @ f + f @ matrices for f in forms]
+    flat = [c.reshape(len(matrices), prod(c.shape[1:])) for c in conditions]
+    system = np.concatenate([np.zeros((len(matrices), 1), dtype=np.int64), *flat], axis=1).T
+    return null_space(system[system.any(axis=1)].reshape(-1, len(matrices)))
+
+
+def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray | None:
+    """Coefficients (m, dim) of elements in a matrix basis, scaled to integers; None if one is not in the span.
+
+    Each row may be multiplied by a positive integer: what matters is the span of the rows.
+    """
+    if matrices.shape[1:] != elements.shape[1:]:
+        return None
+    if len(elements) == 0 or len(matrices) == 0:
+        rows = np.zeros((len(elements), len(matrices)), dtype=np.int64)
+        return rows if not elements.any() else None
+    flat = matrices.reshape(len(matrices), -1)
+    wanted = elements.reshape(len(elements), -1)
+    places = private_places([entries_of(a) for a in square_matrices(list(matrices))], matrices.shape[1])
+    if places is None:
+        return _solved(flat, wanted)
+    own = flat[range(len(flat)), places]
+    scale = int(np.lcm.reduce(np.abs(own)))
+    rows = wanted[:, places] * (scale // own)
+    used = np.flatnonzero(rows.any(axis=0))
+    largest = max(np.abs(rows).sum(axis=1).max(initial=0) * np.abs(flat).max(), scale * np.abs(wanted).max(initial=0))
+    kind: type = float if largest < 2**53 else object  # float products are exact below, and faster
+    product = rows[:, used].astype(kind) @ flat[used].astype(kind)
+    return rows if np.array_equal(product, scale * wanted.astype(kind)) else None
+
+
+def _solved(flat: IntegerArray, wanted: IntegerArray) -> IntegerArray | None:
+    """The coefficients from the linear relations of both families together."""
+    m, n = len(wanted), len(flat)
+    relations = null_space(np.concatenate([flat, wanted]).T)
+    if len(relations) != m:
+        return None
+    # The basis is independent, so each wanted element is the free column of one relation.
+    free = relations[:, n:]
+    if np.count_nonzero(free) != m:
+        return None
+    rows: IntegerArray = -np.sign(free.sum(axis=1, keepdims=True)) * relations[:, :n]
+    return rows
+
+
+def placements(parts: Sequence[IntegerArray], size: int) -> Iterator[IntegerArray]:
+    """The ways to put families of matrices as consecutive blocks on R^size, in any order, from either end."""
+    total = sum(part.shape[1] for part in parts)
+    if total > size:
+        return
+    for order in permutations(parts):
+        for start in sorted({0, size - total}):
+            offset, placed = start, []
+            for part in order:
+                placed.append(at_offset(part, offset, size))
+                offset += part.shape[1]
+            yield np.concatenate(placed)
