@@ -21,11 +21,12 @@ from liehom.fullness.forms import decide_by_forms
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
 from liehom.fullness.numerical import decide_numerically
 from liehom.fullness.positive_form import full_by_positive_form
-from liehom.fullness.reducible import nilpotent_ideal_witness, split_by_commutant, traceless_commutant
+from liehom.fullness.reducible import certificate_of, kernel_witness
 from liehom.fullness.verdict import Full, NotFull, Verdict
 from liehom.fullness.witnesses import eta_of_witness, numerical_eta, numerical_eta_of_commutant
 from liehom.representations import Pair
 from liehom.representations.intertwiners import commutant, invariant_forms
+from liehom.representations.irreducibility import nilpotent_ideal_rows, split_by_commutant, traceless
 
 Report = Callable[[str], None]
 FIRST_TRIES, ROUNDS = 40, 6
@@ -90,15 +91,16 @@ def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | Non
     if forms.symmetric:
         return _by_forms(action, forms.symmetric, x)
     report("nilpotent ideals")
-    certificate = nilpotent_ideal_witness(action)
-    if certificate is not None:
-        return _not_full(action, certificate, "a nilpotent ideal of the isotropy algebra kills an invariant subspace")
+    rows = nilpotent_ideal_rows(action.traceless, action.size, action.field)
+    if rows.nrows:
+        reason = "a nilpotent ideal of the isotropy algebra kills an invariant subspace"
+        return _not_full(action, kernel_witness(action, rows), reason)
     report("commutant")
     basis = commutant(action.traceless, action.size, action.field)
-    imaginary = traceless_commutant(action, basis)
-    certificate = split_by_commutant(action, imaginary)
-    if certificate is not None:
-        return _reducible(action, certificate)
+    imaginary = traceless(basis, action.size, action.field)
+    split = split_by_commutant(imaginary, action.size, action.field)
+    if split is not None:
+        return _reducible(action, certificate_of(action, split))
     report("definite form")
     certificate = full_by_positive_form(action, imaginary)
     if certificate is not None:

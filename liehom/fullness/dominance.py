@@ -19,6 +19,7 @@ import numpy.typing as npt
 from liehom.fullness import proposals
 from liehom.fullness.certificate import Certificate
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
+from liehom.representations.irreducibility import combination
 from liehom.scalars import Polynomial
 from liehom.scalars.modular import pivot_columns
 from liehom.scalars.roots import complex_root_balls, count_or_none, simplest_between
@@ -138,10 +139,7 @@ class _Search:
         """The certificate with exact counts, its cuts chosen between balls; None if it does not work out."""
         action = self.action
         numbers = [action.field.convert(int(c)) for c in coefficients]
-        x = action.field.zeros(action.size, action.size)
-        for c, a in zip(numbers, action.traceless, strict=True):
-            if c != 0:
-                x = x + a.scale(c)
+        x = combination(action.traceless, numbers)
         weights = Polynomial(action.field, x.characteristic_coefficients())
         roots = Polynomial(action.field, self._adjoint(x).characteristic_coefficients())
         for cut, eps in _cuts(weights, roots):

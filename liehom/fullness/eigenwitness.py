@@ -13,6 +13,7 @@ from typing import Any
 from liehom.fullness import proposals
 from liehom.fullness.certificate import Certificate
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
+from liehom.representations.irreducibility import combination
 from liehom.scalars import QQ, NumberField, Polynomial
 from liehom.scalars.roots import largest_real_root_interval
 
@@ -47,21 +48,13 @@ def _elements(action: IsotropyAlgebra, extra: list[Any], tries: int) -> Iterator
     basis = action.traceless
     yield from basis
     for coefficients in extra:
-        yield _combined(action, coefficients)
+        yield combination(basis, coefficients)
     rng = random.Random(3)
     for _ in range(tries):
         a, b = rng.choice(basis), rng.choice(basis)
         bracket = a @ b - b @ a
         yield bracket if not bracket.is_zero() else a + b
         yield a + b.scale(rng.choice((-1, 1, 2)))
-
-
-def _combined(action: IsotropyAlgebra, coefficients: list[Any]) -> Any:
-    total = action.field.zeros(action.size, action.size)
-    for c, a in zip(coefficients, action.traceless, strict=True):
-        if c != 0:
-            total = total + a.scale(c)
-    return total
 
 
 def _rational(action: IsotropyAlgebra, x: Any, value: Any) -> Certificate | None:

@@ -13,11 +13,11 @@ from typing import Any
 from liehom.algebra import lie_closure
 from liehom.fullness import proposals
 from liehom.fullness.certificate import Certificate
-from liehom.fullness.forms import orthogonal_basis
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
-from liehom.fullness.reducible import anticommutator_gram, trace_form, traceless_commutant
 from liehom.fullness.spinor_form import vector_module_form
 from liehom.representations.intertwiners import commutant, invariant_forms
+from liehom.representations.irreducibility import anticommutator_gram, combination, trace_form, traceless
+from liehom.scalars.forms import orthogonal_basis
 from liehom.scalars.modular import pivot_columns
 
 
@@ -81,7 +81,7 @@ def _complex_case(action: IsotropyAlgebra, imaginary: list[Any], m: int) -> Any:
     symplectic = 2 * m * (2 * m + 1)
     if size == 4 * m * m:
         derived = _derived(action)
-        units = traceless_commutant(action, commutant(derived, d, action.field))
+        units = traceless(commutant(derived, d, action.field), d, action.field)
         return quaternionic_form(action, units) if len(units) == 3 and m >= 2 else None
     if size in (symplectic, symplectic + 1):
         derived = action.traceless if size == symplectic else _derived(action)
@@ -103,7 +103,7 @@ def _derived(action: IsotropyAlgebra) -> list[Any]:
 
 def quaternionic_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Any:
     """1 + sum u^T u / |u|^2 over orthogonal imaginary units u of the commutant; None if some square is not negative."""
-    gram = anticommutator_gram(action, imaginary)
+    gram = anticommutator_gram(imaginary, action.size, action.field)
     if gram is None:
         return None
     field, d = action.field, action.size
@@ -111,9 +111,7 @@ def quaternionic_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Any:
     for row, value in zip(*orthogonal_basis(gram), strict=True):
         if field.sign(value) >= 0:
             return None
-        unit = field.zeros(d, d)
-        for c, t in zip(row.row(0), imaginary, strict=True):
-            unit = unit + t.scale(c)
+        unit = combination(imaginary, row.row(0))
         form = form + (unit.T @ unit).scale(-1 / value)
     return form
 
@@ -181,7 +179,7 @@ def complex_symplectic_form(skew: Any, structure: Any) -> Any:
 
 def _with_quaternion_factor(action: IsotropyAlgebra, m: int) -> Any:
     """sl(m,H) + sp(1): the three-dimensional ideal, where Killing form = (2/m) trace form, gives the units."""
-    field, d = action.field, action.size
+    field = action.field
     algebra = lie_closure(action.traceless).algebra
     if algebra.dimension != action.dimension:
         return None
@@ -189,10 +187,4 @@ def _with_quaternion_factor(action: IsotropyAlgebra, m: int) -> Any:
     rows = difference.null_space()
     if rows.nrows != 3:
         return None
-    units = []
-    for i in range(3):
-        total = field.zeros(d, d)
-        for c, a in zip(rows.row(i), action.traceless, strict=True):
-            total = total + a.scale(c)
-        units.append(total)
-    return quaternionic_form(action, units)
+    return quaternionic_form(action, [combination(action.traceless, rows.row(i)) for i in range(3)])

@@ -11,10 +11,10 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from liehom.fullness.forms import orthogonal_basis
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
-from liehom.fullness.reducible import trace_form
 from liehom.representations.intertwiners import invariant_forms
+from liehom.representations.irreducibility import combination, trace_form
+from liehom.scalars.forms import orthogonal_basis
 
 
 def vector_module_form(action: IsotropyAlgebra) -> Any:
@@ -38,9 +38,7 @@ def vector_module_form(action: IsotropyAlgebra) -> Any:
     sign = 1 if positive == 1 else -1
     rows, values = orthogonal_basis(form)
     timelike = next(r for r, v in zip(rows, values, strict=True) if field.sign(v) == sign)
-    candidate = field.zeros(d, d)
-    for c, p in zip(timelike.row(0), module, strict=True):
-        candidate = candidate + p.scale(c)
+    candidate = combination(module, timelike.row(0))
     return candidate if candidate.signature()[0] == d else -candidate
 
 
