@@ -15,7 +15,6 @@ from liehom.errors import ShapeError, UndecidedError
 from liehom.representations import Pair
 from liehom.scalars import FloatMatrix, RankDecision
 from liehom.scalars.linear_forms import LinearForms
-from liehom.scalars.modular import independent_rows
 
 SAMPLES = 6
 MAX_PROOF_DIMENSION = 10
@@ -150,7 +149,7 @@ def pencil(pair: Pair) -> LinearForms:
         raise ShapeError("g/h is zero: there is no matrix of linear forms")
     matrices = [pair.field.identity(d), *pair.isotropy_matrices()]
     flat = pair.field.stack_rows([a.reshape(1, d * d) for a in matrices], d * d)
-    chosen = [matrices[i] for i in independent_rows(flat)]
+    chosen = [matrices[i] for i in flat.T.echelon()[1]]
     # Column j of part i is A_j e_i.
     return LinearForms(
         [pair.field.stack_columns([a.select(columns=[i]) for a in chosen], d) for i in range(d)],
@@ -161,7 +160,7 @@ def _at(pair: Pair, row: Any, *, generic: bool) -> RangeCondition:
     d, field = pair.dimension, pair.field
     psi = row.row(0)
     if d == 0:
-        return RangeCondition(True, 0, 0, psi, None, row.is_zero() or not generic, generic, "h = g: nothing to reach")
+        return RangeCondition(True, 0, 0, psi, None, not generic, generic, "h = g: nothing to reach")
     x = row @ pair.subalgebra.quotient().projection
     equilibrium = _vanishes(x, row)
     images = [(a @ x.T).T for a in pair.isotropy_matrices()]

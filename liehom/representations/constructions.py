@@ -12,7 +12,7 @@ from typing import Any
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra import matrix_families as families
-from liehom.algebra.classical import classical_matrices
+from liehom.algebra.classical import classical_matrices, linear_algebra
 from liehom.algebra.closure import lie_closure
 from liehom.algebra.simple import exceptional_matrices
 from liehom.errors import InputError, RepresentationError, ShapeError
@@ -61,11 +61,13 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     """
     name = algebra if isinstance(algebra, str) else algebra.name
     matrices = standard_matrices(name)
+    size = int(matrices.shape[1])
+    if isinstance(algebra, str) and not len(matrices):
+        return Representation(linear_algebra(matrices, name), [], size=size, name="defining")
     if isinstance(algebra, str):
         made = lie_closure(matrices, close=False, name=name)
         # The constants are those of the commutators themselves.
         return Representation(made.algebra, made.matrices, name="defining", check=False)
-    size = int(matrices.shape[1])
     convert, make = algebra.field.convert, algebra.field.from_entries
     over = [make([convert(x) for x in a.ravel().tolist()], size, size) for a in matrices]
     if len(over) != algebra.dimension:
