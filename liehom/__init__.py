@@ -1,35 +1,64 @@
-"""liehom: Lie algebras, isotropy and fullness, exactly. (Docstring to be completed as the layers land.)"""
+"""liehom: Lie algebras and isotropy analysis, exact where the input is exact.
 
-from liehom.algebra.constructions import abelian as abelian
-from liehom.algebra.constructions import direct_sum as direct_sum
-from liehom.algebra.constructions import euclidean as euclidean
-from liehom.algebra.constructions import gl as gl
-from liehom.algebra.constructions import heisenberg as heisenberg
-from liehom.algebra.constructions import semidirect_sum as semidirect_sum
-from liehom.algebra.constructions import sl as sl
-from liehom.algebra.constructions import so as so
-from liehom.algebra.constructions import sp as sp
-from liehom.algebra.constructions import su as su
-from liehom.algebra.constructions import u as u
-from liehom.algebra.homomorphism import Homomorphism as Homomorphism
-from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
-from liehom.algebra.simple import simple as simple
-from liehom.algebra.subalgebra import Subalgebra as Subalgebra
-from liehom.catalog.pairs import pair as pair
-from liehom.catalog.pairs import pair_names as pair_names
-from liehom.homogeneous.failure_cone import failure_cone as failure_cone
-from liehom.homogeneous.orbit_types import orbit_types as orbit_types
-from liehom.homogeneous.range_condition import range_condition as range_condition
-from liehom.homogeneous.relative_invariant import relative_invariant as relative_invariant
-from liehom.representations.constructions import adjoint as adjoint
-from liehom.representations.constructions import coadjoint as coadjoint
-from liehom.representations.constructions import defining as defining
-from liehom.representations.constructions import sym_conjugation as sym_conjugation
-from liehom.representations.constructions import trivial as trivial
-from liehom.representations.pair import Pair as Pair
-from liehom.representations.representation import Representation as Representation
-from liehom.representations.symbolic import symbolic_isotropy as symbolic_isotropy
-from liehom.scalars.number_fields import number_field as number_field
-from liehom.scalars.rational import QQ as QQ
+The layers, in reading order; each imports only those above it in this list:
+
+`errors`           what the library refuses, and why
+`scalars`          QQ, real number fields, float64, and linear algebra over them
+`algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
+`representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners
+`homogeneous`      the range condition at a point and generically, orbit types
+`fullness`         is a pair full? the decision, its certificates, the independent checker
+`catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
+`io`               JSON files in and out
+`testing`          a public conformance suite
+`cli`              the command line
+"""
+
+from liehom import errors as errors
+from liehom.algebra import Homomorphism as Homomorphism
+from liehom.algebra import LieAlgebra as LieAlgebra
+from liehom.algebra import Subalgebra as Subalgebra
+from liehom.algebra import abelian as abelian
+from liehom.algebra import direct_sum as direct_sum
+from liehom.algebra import euclidean as euclidean
+from liehom.algebra import gl as gl
+from liehom.algebra import heisenberg as heisenberg
+from liehom.algebra import semidirect_sum as semidirect_sum
+from liehom.algebra import simple as simple
+from liehom.algebra import sl as sl
+from liehom.algebra import so as so
+from liehom.algebra import sp as sp
+from liehom.algebra import su as su
+from liehom.algebra import u as u
+from liehom.catalog import pair as pair
+from liehom.fullness import Certificate as Certificate
+from liehom.fullness import Full as Full
+from liehom.fullness import NotFull as NotFull
+from liehom.fullness import NumericallyFull as NumericallyFull
+from liehom.fullness import NumericallyNotFull as NumericallyNotFull
+from liehom.fullness import decide_fullness as decide_fullness
+from liehom.fullness import decide_numerically as decide_numerically
+from liehom.fullness import verify_certificate as verify_certificate
+from liehom.homogeneous import failure_cone as failure_cone
+from liehom.homogeneous import orbit_types as orbit_types
+from liehom.homogeneous import range_condition as range_condition
+from liehom.homogeneous import relative_invariant as relative_invariant
+from liehom.io import dump as dump
+from liehom.io import load as load
+from liehom.io import load_problem as load_problem
+from liehom.representations import Pair as Pair
+from liehom.representations import Representation as Representation
+from liehom.representations import adjoint as adjoint
+from liehom.representations import coadjoint as coadjoint
+from liehom.representations import defining as defining
+from liehom.representations import sym_conjugation as sym_conjugation
+from liehom.representations import symbolic_isotropy as symbolic_isotropy
+from liehom.representations import trivial as trivial
+from liehom.scalars import QQ as QQ
+from liehom.scalars import RR as RR
+from liehom.scalars import FloatField as FloatField
+from liehom.scalars import NumberField as NumberField
+from liehom.scalars import Subspace as Subspace
+from liehom.scalars import number_field as number_field
 
 __version__ = "0.1.0"
