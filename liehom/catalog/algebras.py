@@ -89,7 +89,7 @@ def representation(name: str) -> Representation:
     --------
     >>> import liehom as lh
     >>> lh.catalog.representation("g2")
-    <representation g2: of <Lie algebra g2 of dimension 14 over QQ> on QQ^7>
+    <representation 'g2' of <Lie algebra g2 of dimension 14 over QQ> on QQ^7>
     """
     tree = parse_expression(name)
     if not is_linear(tree):

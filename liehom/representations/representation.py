@@ -381,7 +381,7 @@ class Representation:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        title = f"{self.name}: " if self.name else ""
+        title = f"{self.name!r} " if self.name else ""
         return f"<representation {title}of {self.algebra!r} on {self.field.name}^{self.size}>"
 
 
