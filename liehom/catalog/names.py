@@ -4,7 +4,7 @@
     sum     =  term { '+' term }
     term    =  head [ '(' items [ ';' items ] ')' ]
     items   =  item { ',' item },   item = integer | sum
-    head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0'
+    head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
 
 Blanks are ignored.  Printing a tree and parsing it again gives the same tree; `parse` drops parameters that
 say nothing, so that 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.  Imports errors.

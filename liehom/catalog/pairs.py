@@ -74,7 +74,7 @@ def pair_names() -> tuple[str, ...]:
     Examples
     --------
     >>> import liehom as lh
-    >>> lh.pair_names()[:2]
+    >>> lh.catalog.pair_names()[:2]
     ('so(2)/so(1)', 'so(3)/so(2)')
     """
     return tuple(CLAIMS)

@@ -72,7 +72,7 @@ def _exceptional(name: str, matrices: IntegerArray) -> Rows:
         "g2(2)/su(2,1)": (plus,),
         "g2(2)/sl(3)": (minus,),
         "spin(7)/g2": (0,),
-        "spin(4,3)/g2(2)": (0,),
+        "spin(4,3)/g2(2)": (0, 7),  # e0 is a null vector here
         "spin(9)/spin(7)": (0,),
     }
     if name not in points:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import permutations
 from math import prod
+from typing import Any
 
 import numpy as np
 
@@ -50,6 +51,8 @@ def preserving(
     >>> preserving(sl(2), subspaces=[np.array([[1, 0]])]).tolist()
     [[1, 0, 0], [0, 0, 1]]
     """
+    if len(matrices) == 0:
+        return np.zeros((0, 0), dtype=np.int64)
     transposed = matrices.transpose(0, 2, 1)
     conditions = [null_space(w) @ matrices @ w.T for w in subspaces]
     conditions += [matrices @ v for v in points]
@@ -80,8 +83,8 @@ def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray 
     rows = wanted[:, places] * (scale // own)
     used = np.flatnonzero(rows.any(axis=0))
     largest = max(np.abs(rows).sum(axis=1).max(initial=0) * np.abs(flat).max(), scale * np.abs(wanted).max(initial=0))
-    kind: type = float if largest < 2**53 else object  # float products are exact below, and faster
-    product = rows[:, used].astype(kind) @ flat[used].astype(kind)
+    kind: Any = float if largest < 2**53 else object  # float products are exact below, and faster
+    product: Any = rows[:, used].astype(kind) @ flat[used].astype(kind)
     return rows if np.array_equal(product, scale * wanted.astype(kind)) else None
 
 
