@@ -65,6 +65,8 @@ class Certificate:
     field: ExactField = QQ
 
     def __post_init__(self) -> None:
+        if not isinstance(self.field, ExactField):
+            raise _malformed(f"a certificate over {self.field!r} proves nothing; the field must be exact")
         schema = _SCHEMA.get(self.kind) if isinstance(self.kind, str) else None
         if schema is None:
             raise _malformed(f"the kind is {self.kind!r}, expected one of {', '.join(_SCHEMA)}")
