@@ -148,6 +148,10 @@ class Matrix(ABC):
     def signature(self) -> tuple[int, int, int]:
         """Numbers of (positive, negative, zero) eigenvalues of a symmetric matrix."""
 
+    def is_positive_definite(self) -> bool:
+        """Whether a symmetric matrix is positive definite."""
+        return self.signature()[0] == self.nrows
+
 
 class Field(ABC):
     """A field of real numbers together with its matrices.
