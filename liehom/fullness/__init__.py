@@ -2,6 +2,8 @@
 
 from liehom.fullness.certificate import Certificate as Certificate
 from liehom.fullness.decide import decide_fullness as decide_fullness
+from liehom.fullness.failure import FailureReport as FailureReport
+from liehom.fullness.failure import failure_report as failure_report
 from liehom.fullness.numerical import decide_numerically as decide_numerically
 from liehom.fullness.verdict import Full as Full
 from liehom.fullness.verdict import NotFull as NotFull

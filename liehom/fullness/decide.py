@@ -85,7 +85,7 @@ def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | Non
     rng = random.Random(seed)
     x, certificate = _sample(action, rng)
     if certificate is not None:
-        return _not_full(action, certificate, "the rank drops at a rational point")
+        return _not_full(action, certificate, "a sample point is a counterexample")
     report("invariant forms")
     forms = invariant_forms(action.traceless, action.size, action.field)
     if forms.symmetric:
@@ -161,4 +161,6 @@ def _with_exact_eta(action: IsotropyAlgebra, dominant: Dominant) -> NotFull:
 
 def _not_full(action: IsotropyAlgebra, certificate: Certificate, reason: str) -> NotFull:
     eta, field, rank = eta_of_witness(action, certificate)
+    if rank is not None:
+        reason = f"{reason}; the rank of [rho(h) eta, eta] is {rank} of {action.size}"
     return NotFull(action.pair, certificate, reason, eta=eta, eta_field=field, rank=rank)

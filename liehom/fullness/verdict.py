@@ -10,6 +10,7 @@ from typing import Any, Literal, final
 
 from liehom.errors import UndecidedError
 from liehom.fullness.certificate import Certificate
+from liehom.fullness.failure import FailureReport, failure_report
 from liehom.fullness.verify import verify_certificate
 from liehom.representations import Pair
 from liehom.scalars import Field
@@ -109,6 +110,17 @@ class NotFull:
     def rank_defect(self) -> int | None:
         """dim g/h minus the rank at eta; None where eta is numerical only."""
         return None if self.rank is None else self.pair.dimension - self.rank
+
+    def where_it_fails(self) -> FailureReport:
+        """Whether (6.3) holds for generic psi, and certified subsets of the cone on which it fails.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.decide_fullness(lh.pair("so(3,1)/so(2,1)")).where_it_fails())
+        the range condition (6.3) holds for generic psi; it fails on a cone containing ...
+        """
+        return failure_report(self.pair, self.certificate)
 
     def verify(self) -> bool:
         """Run the independent checker on the certificate; True, or `CertificateError`."""

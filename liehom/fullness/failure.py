@@ -1,0 +1,77 @@
+"""Where (6.3) fails for a pair that is not full: generically or on a cone, and certified parts of the cone.
+
+The forms, subspaces and dominant elements that decide fullness are exactly what the cone is made of.
+Imports isotropy_algebra, homogeneous, representations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+from liehom.fullness.certificate import Certificate
+from liehom.fullness.isotropy_algebra import IsotropyAlgebra
+from liehom.homogeneous import FailureSet, RangeCondition, failure_cone, range_condition
+from liehom.representations import Pair
+from liehom.representations.intertwiners import invariant_forms
+from liehom.representations.irreducibility import nilpotent_ideal_rows
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class FailureReport:
+    """Whether the range condition holds generically, and certified subsets of where it fails.
+
+    Attributes
+    ----------
+    generic : RangeCondition
+    parts : tuple of FailureSet
+    """
+
+    generic: RangeCondition
+    parts: tuple[FailureSet, ...]
+
+    def __str__(self) -> str:
+        if self.generic.holds is False:
+            return "the range condition (6.3) holds for no psi"
+        head = "holds for generic psi" if self.generic.holds else "not proved to hold for generic psi"
+        if not self.parts:
+            return f"the range condition (6.3) {head}; it fails on a cone that contains eta"
+        return f"the range condition (6.3) {head}; it fails on a cone containing " + "; ".join(
+            part.description for part in self.parts
+        )
+
+
+def failure_report(pair: Pair, certificate: Certificate | None = None) -> FailureReport:
+    """Where the range condition fails, for an exact pair that is not full.
+
+    Parameters
+    ----------
+    pair : Pair
+    certificate : Certificate, optional
+        Of the verdict; a dominance or commutant certificate (or the second one of a witness) adds its eigenspace.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(failure_report(lh.pair("so(3,1)/so(2,1)")).generic.holds)
+    True
+    """
+    generic = range_condition(pair)
+    if generic.holds is False:
+        return FailureReport(generic, ())
+    action = IsotropyAlgebra(pair)
+    forms: list[Any] = []
+    subspaces: list[Any] = []
+    for form in invariant_forms(action.traceless, action.size, action.field).symmetric:
+        positive, negative, zero = form.signature()
+        if zero:
+            subspaces.append(form.null_space())
+        elif positive and negative:
+            forms.append(form)
+    rows = nilpotent_ideal_rows(action.traceless, action.size, action.field)
+    if rows.nrows:
+        subspaces.append(rows.null_space())
+    second = certificate.fields.get("also", certificate) if certificate is not None else None
+    parts = failure_cone(pair, forms=forms, subspaces=subspaces, certificate=second)
+    return FailureReport(generic, tuple(parts))
