@@ -1,0 +1,310 @@
+"""The commands of ``liehom``: each gathers its input, calls one function of the library, and prints.
+
+Imports guard, inputs, show; the library inside the commands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from liehom.cli.guard import NO, NUMERICAL, YES, guarded
+
+if TYPE_CHECKING:
+    from liehom.representations import Pair
+
+app = typer.Typer(
+    name="liehom",
+    help="Lie algebras, isotropy and fullness: exact answers with proofs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+PairArgument = Annotated[str, typer.Argument(metavar="PAIR", help="A pair file, or a name such as 'so(4)/so(3)'.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object instead.")]
+
+
+def _run(action: Callable[[], int]) -> None:
+    raise typer.Exit(guarded(action))
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        import liehom
+
+        typer.echo(f"liehom {liehom.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Lie algebras, isotropy and fullness: exact answers with proofs."""
+
+
+@app.command()
+def fullness(
+    pair: PairArgument,
+    certificate: Annotated[str | None, typer.Option(metavar="OUT", help="Write the certificate to this file.")] = None,
+    json: JsonOption = False,
+) -> None:
+    """Is the pair full, and why?  Exit code 0: full, 1: not full, 3: numerical only."""
+    _run(lambda: _fullness(pair, certificate, json))
+
+
+def _fullness(text: str, out: str | None, as_json: bool) -> int:
+    from liehom.cli.inputs import pair_argument
+    from liehom.cli.show import show_answer, show_json
+    from liehom.errors import InputError
+    from liehom.fullness.decide import decide_fullness
+    from liehom.io import dump
+
+    pair = pair_argument(text)
+    if out is not None and not pair.field.exact:
+        raise InputError("a numerical answer has no certificate; give exact numbers, or leave --certificate out")
+    verdict = decide_fullness(pair)
+    proved = verdict.certificate is not None
+    if proved:
+        verdict.verify()
+    code = NUMERICAL if not proved else YES if verdict.full else NO
+    if out is not None:
+        dump(verdict.certificate, out)
+    if as_json:
+        show_json({**verdict.to_json(), "pair": _facts(text, pair)})
+        return code
+    answer = ("full" if verdict.full else "not full") + ("" if proved else " (numerical, not proved)")
+    rows = [("pair", _described(text, pair)), *_evidence(verdict)]
+    if out is not None:
+        rows.append(("written to", out))
+    show_answer(f"{answer}: {verdict.reason}", rows, code)
+    return code
+
+
+def _evidence(verdict: Any) -> list[tuple[str, str]]:
+    """What the verdict rests on, in lines."""
+    from liehom.cli.show import short_vector
+
+    data = verdict.to_json()
+    rows = []
+    if data.get("eta") is not None:
+        rows.append(("eta", short_vector(data["eta"])))
+        definition = _definition(verdict.eta_field)
+        if definition:
+            rows.append(("where", definition))
+        rows.append(("rank at eta", f"{data['rank']}, short of dim g/h by {data['rank_defect']}"))
+    elif data.get("eta_numerical"):
+        rows.append(("eta, numerically", short_vector([f"{x:.6g}" for x in data["eta_numerical"]])))
+    if verdict.certificate is None:
+        rows.append(("least singular value", f"{data['smallest_singular_value']:.3g}"))
+        rows.append(("gap", f"{data['gap']:.3g} (in units of the tolerance)"))
+    else:
+        rows.append(("certificate", f"{verdict.certificate.kind}, verified by the independent checker"))
+    return rows
+
+
+def _definition(field: Any) -> str:
+    """How the generator of a number field is defined, in words; nothing for QQ."""
+    if not hasattr(field, "minpoly"):
+        return ""
+    terms = [f"{c} {field.symbol}^{i}" if i else str(c) for i, c in enumerate(field.minpoly) if c]
+    low, high = field.interval
+    equation = " + ".join(reversed(terms)).replace("+ -", "- ")
+    return f"{field.symbol} = {field.to_float(field.generator):.6g}... is the root of {equation} in [{low}, {high}]"
+
+
+def _facts(text: str, pair: Pair) -> dict[str, Any]:
+    return {
+        "name": text,
+        "dimension": pair.algebra.dimension,
+        "subalgebra_dimension": pair.subalgebra.dimension,
+        "field": pair.field.name,
+    }
+
+
+def _described(text: str, pair: Pair) -> str:
+    n, k = pair.algebra.dimension, pair.subalgebra.dimension
+    return f"{text}: dim g = {n}, dim h = {k}, dim g/h = {n - k}, over {pair.field.name}"
+
+
+@app.command()
+def verify(
+    pair: PairArgument,
+    certificate: Annotated[str, typer.Argument(metavar="CERT", help="A certificate file.")],
+    json: JsonOption = False,
+) -> None:
+    """Does the certificate prove its verdict for the pair?  Exit code 0: yes, 1: a check fails."""
+    _run(lambda: _verify(pair, certificate, json))
+
+
+def _verify(text: str, file: str, as_json: bool) -> int:
+    from liehom.cli.inputs import pair_argument
+    from liehom.cli.show import show_answer, show_json
+    from liehom.errors import CertificateError, CertificateFormatError
+    from liehom.fullness.certificate import Certificate
+    from liehom.fullness.verify import verify_certificate
+    from liehom.io import read_object
+
+    pair = pair_argument(text)
+    certificate = Certificate.from_json(read_object(file))
+    failure = None
+    try:
+        verify_certificate(pair, certificate)
+    except CertificateFormatError:
+        raise
+    except CertificateError as error:
+        if not as_json:
+            raise
+        failure = {"check": error.check, "message": str(error)}
+    claim = "full" if certificate.full else "not full"
+    if as_json:
+        data = {"verified": failure is None, "full": certificate.full, "kind": certificate.kind, "failure": failure}
+        show_json({**data, "pair": _facts(text, pair)})
+    else:
+        rows = [("pair", _described(text, pair)), ("certificate", f"{file}, kind {certificate.kind}")]
+        show_answer(f"verified: the certificate proves that the pair is {claim}", rows)
+    return YES if failure is None else NO
+
+
+@app.command()
+def isotropy(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A representation file.")],
+    point: Annotated[
+        str | None, typer.Option(metavar="ROW", help="The point, such as '1,0,-2/3'; default: that of the file.")
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """The isotropy subalgebra and the orbit dimension of a representation at a point."""
+    _run(lambda: _isotropy(file, point, json))
+
+
+def _isotropy(file: str, point: str | None, as_json: bool) -> int:
+    from liehom.cli.inputs import point_in
+    from liehom.cli.show import short_vector, show_answer, show_json
+    from liehom.errors import FormatError
+    from liehom.io import load_problem
+    from liehom.scalars import RR
+
+    problem = load_problem(file)
+    rho, at = problem.representation, list(problem.point or ())
+    if point is not None:
+        rho, at = point_in(rho, point)
+    elif problem.point is None:
+        if problem.start is None:
+            raise FormatError("the file has no 'point': give one with --point")
+        rho, at = rho.over(RR), list(problem.start)
+    isotropy = rho.isotropy(at)
+    dimension = rho.algebra.dimension
+    write = rho.field.format
+    rows = [[write(x) for x in row] for row in isotropy.rows()]
+    code = YES if rho.field.exact else NUMERICAL
+    if as_json:
+        show_json(
+            {
+                "dimension": dimension,
+                "isotropy_dimension": isotropy.dimension,
+                "orbit_dimension": dimension - isotropy.dimension,
+                "point": [write(x) for x in at],
+                "isotropy": rows,
+                "appended": [list(pair) for pair in rho.appended],
+                "field": rho.field.name,
+                "proved": rho.field.exact,
+            }
+        )
+        return code
+    facts = [
+        ("representation", f"{file}: dim g = {dimension} on {rho.field.name}^{rho.size}"),
+        ("point", short_vector([write(x) for x in at])),
+    ]
+    if rho.appended:
+        facts.append(("brackets appended", ", ".join(f"[{i}, {j}]" for i, j in rho.appended[:12])))
+    facts += [("isotropy" if i == 0 else "", short_vector(row)) for i, row in enumerate(rows[:12])]
+    if len(rows) > 12:
+        facts.append(("", f"... and {len(rows) - 12} more rows"))
+    label = "" if rho.field.exact else " (numerical)"
+    sentence = f"the isotropy subalgebra has dimension {isotropy.dimension}, the orbit {dimension - isotropy.dimension}"
+    show_answer(sentence + label, facts, code)
+    return code
+
+
+@app.command(name="range")
+def range_(
+    pair: PairArgument,
+    psi: Annotated[
+        str | None, typer.Option(metavar="ROW", help="An element of g, such as '1,0,-2/3'; default: a generic one.")
+    ] = None,
+    json: JsonOption = False,
+) -> None:
+    """Does the range condition hold: for generic eta, or for the one given?"""
+    _run(lambda: _range(pair, psi, json))
+
+
+def _range(text: str, psi: str | None, as_json: bool) -> int:
+    from liehom.cli.inputs import pair_argument, row_in
+    from liehom.cli.show import short_vector, show_answer, show_json
+    from liehom.homogeneous.range_condition import range_condition
+
+    pair = pair_argument(text)
+    row = None if psi is None else row_in(pair.field, psi, "psi")
+    found = range_condition(pair, row)
+    exact = pair.field.exact
+    write = pair.field.format
+    missing = None if found.missing is None else [write(x) for x in found.missing]
+    tested = [write(x) for x in found.psi]
+    code = YES if exact else NUMERICAL
+    if as_json:
+        data: dict[str, Any] = {"holds": found.holds, "rank": found.rank, "missing": missing}
+        data |= {"equilibrium": found.equilibrium, "psi": tested, "message": found.message}
+        show_json({**data, "generic": found.generic, "proved": exact, "pair": _facts(text, pair)})
+        return code
+    state = {True: "holds", False: "fails", None: "is not decided"}[found.holds]
+    sentence = f"the range condition {state} {'for generic psi' if found.generic else 'at psi'}: {found.message}"
+    rows = [("pair", _described(text, pair)), ("rank", f"{found.rank} of dim g/h = {pair.dimension}")]
+    rows.append(("psi" if row is not None else "sample psi", short_vector(tested)))
+    if missing is not None:
+        rows.append(("missing", f"the covector {short_vector(missing)} vanishes on h, psi and [h, psi]"))
+    show_answer(sentence + ("" if exact else " (numerical)"), rows, code)
+    return code
+
+
+@app.command()
+def catalog(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="A pair to print, as a pair file.")] = None,
+    json: JsonOption = False,
+) -> None:
+    """List the names that the other commands understand, or print the pair of one as a file."""
+    _run(lambda: _catalog(name, json))
+
+
+def _catalog(name: str | None, as_json: bool) -> int:
+    from liehom.catalog import pair, pair_names
+    from liehom.cli.show import show_json, show_table
+    from liehom.io import to_json
+
+    if name is not None:
+        show_json(to_json(pair(name)))
+        return YES
+    names = list(pair_names())
+    if as_json:
+        show_json({"pairs": names})
+        return YES
+    show_table(["pairs of the catalogue"], [[name] for name in names], header=False)
+    return YES
+
+
+@app.command()
+def demo(json: JsonOption = False) -> None:
+    """A tour: fullness of several pairs with their certificates verified, isotropy, the range condition."""
+
+    def action() -> int:
+        from liehom.cli.demo import run_demo
+
+        return run_demo(json)
+
+    _run(action)

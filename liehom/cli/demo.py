@@ -1,0 +1,116 @@
+"""``liehom demo``: a tour over the example files. Imports show, io, fullness, homogeneous."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import liehom.io
+from liehom.cli.guard import YES
+from liehom.cli.show import show_json, show_table
+from liehom.errors import FormatError
+from liehom.fullness.decide import decide_fullness
+from liehom.homogeneous.range_condition import range_condition
+from liehom.representations import Pair
+
+PAIRS: tuple[tuple[str, str], ...] = (
+    ("so4_so3", "the sphere S^3"),
+    ("so5_so4_scrambled", "the sphere S^4 in a random basis"),
+    ("g2_su3", "the sphere S^6 under G2"),
+    ("sl3_P1", "the projective plane"),
+    ("so31_so21", "de Sitter space: the null cone is in the way"),
+    ("anisotropic", "so(x^2 + y^2 - 3 z^2) and translations: null vectors only over QQ(sqrt(3))"),
+    ("ellipsoid_sqrt2", "the ellipsoid x^2 + y^2 + sqrt(2) z^2 = 1"),
+    ("so4_so3_float", "the sphere S^3 in floating point"),
+)
+
+
+def examples_folder() -> Path:
+    """Where the example files are: in the installed package, else beside it in a checkout.
+
+    Raises
+    ------
+    FormatError
+        If they are in neither place.
+    """
+    package = Path(__file__).resolve().parent.parent
+    for folder in (package / "examples", package.parent / "examples"):
+        if (folder / "so4_so3.json").is_file():
+            return folder
+    raise FormatError(f"the example files are neither in {package / 'examples'} nor beside the package")
+
+
+def run_demo(as_json: bool) -> int:
+    """Decide, verify and report on the example files."""
+    folder = examples_folder()
+    start = time.perf_counter()
+    if as_json:
+        verdicts = [{"file": f"{name}.json", **_decided(folder, name)[1].to_json()} for name, _ in PAIRS]
+        show_json({"examples": str(folder), "verdicts": verdicts})
+        return YES
+    print(f"Files from {folder}\n")
+    _tour_of_verdicts(folder)
+    _tour_of_a_certificate(folder)
+    _tour_of_isotropy(folder)
+    _tour_of_the_range_condition(folder)
+    print(f"\nDone in {time.perf_counter() - start:.1f} s. Next: liehom fullness FILE, liehom catalog, liehom --help")
+    return YES
+
+
+def _pair(folder: Path, name: str) -> Pair:
+    return liehom.io.load_pair(folder / f"{name}.json")
+
+
+def _decided(folder: Path, name: str) -> tuple[Pair, Any]:
+    pair = _pair(folder, name)
+    verdict = decide_fullness(pair)
+    if verdict.certificate is not None:
+        verdict.verify()
+    return pair, verdict
+
+
+def _tour_of_verdicts(folder: Path) -> None:
+    print("1. Is h full in g, that is: [h, eta] + R eta + h = g for every eta outside h?\n")
+    rows = []
+    for name, meaning in PAIRS:
+        pair, verdict = _decided(folder, name)
+        answer = "full" if verdict.full else "not full"
+        kind = f"{verdict.certificate.kind}, verified" if verdict.certificate is not None else "none: numerical"
+        dimensions = f"{pair.algebra.dimension}/{pair.subalgebra.dimension}"
+        rows.append((f"{name}.json", dimensions, pair.field.name, answer, kind, meaning))
+    show_table(("file", "dim g/dim h", "over", "verdict", "certificate", "what it is"), rows)
+
+
+def _tour_of_a_certificate(folder: Path) -> None:
+    print("\n2. Why, in one sentence each\n")
+    for name in ("g2_su3", "so31_so21"):
+        pair, verdict = _decided(folder, name)
+        print(f"  {name}: {verdict}")
+        if not verdict.full and verdict.eta is not None:
+            eta = ", ".join(pair.field.format(x) for x in verdict.eta)
+            print(f"    eta = ({eta}): the rank is {verdict.rank} of {pair.dimension} there")
+
+
+def _tour_of_isotropy(folder: Path) -> None:
+    print("\n3. Isotropy at a point: SO(3) conjugates symmetric 3 x 3 matrices (a b c; b d e; c e f)\n")
+    rho = liehom.io.load_problem(folder / "sym3.json").representation
+    rows = []
+    for text, point in (
+        ("diag(1, 1, 2)", [1, 0, 0, 1, 0, 2]),
+        ("diag(1, 2, 3)", [1, 0, 0, 2, 0, 3]),
+        ("the identity", [1, 0, 0, 1, 0, 1]),
+    ):
+        pair = rho.pair(point)
+        answer = "full" if decide_fullness(pair).full else "not full"
+        rows.append((text, str(pair.subalgebra.dimension), str(rho.orbit_dimension(point)), answer))
+    show_table(("point", "dim isotropy", "dim orbit", "full"), rows)
+
+
+def _tour_of_the_range_condition(folder: Path) -> None:
+    print("\n4. The range condition in de Sitter space: at a generic psi, on the null cone, inside h\n")
+    pair, verdict = _decided(folder, "so31_so21")
+    for text, psi in (("generic", None), ("null", verdict.eta), ("in h", pair.subalgebra.rows()[0])):
+        found = range_condition(pair, psi)
+        state = {True: "holds", False: "fails", None: "not decided"}[found.holds]
+        print(f"  {text:<8} {state}: rank {found.rank} of {found.dimension}; {found.message}")

@@ -1,0 +1,67 @@
+"""Exit codes: every command runs under `guarded`, which turns exceptions into documented codes.
+
+Messages go to standard error; a command prints to standard output only when it has its whole answer.
+Imports errors.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+
+from liehom.errors import CertificateError, CertificateFormatError, InternalError, LiehomError
+
+YES, NO, BAD_INPUT, NUMERICAL, INTERNAL, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 3, 70, 130, 141
+
+
+def guarded(action: Callable[[], int]) -> int:
+    """The exit code of an action, whatever it raises.
+
+    Examples
+    --------
+    >>> guarded(lambda: 0)
+    0
+    """
+    try:
+        code = action()
+        sys.stdout.flush()
+    except CertificateFormatError as error:
+        return _said(f"error: {error}", BAD_INPUT)
+    except CertificateError as error:
+        return _said(f"the certificate fails: {error}", NO)
+    except InternalError as error:
+        return _said(f"internal error: {error}", INTERNAL)
+    except LiehomError as error:
+        return _said(f"error: {error}", BAD_INPUT)
+    except KeyboardInterrupt:
+        return _said("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        return close_output()
+    except Exception as error:  # noqa: BLE001  the top of the program: whatever is left is a bug
+        return _said(_bug_report(error), INTERNAL)
+    return code
+
+
+def close_output() -> int:
+    """After the reader of a pipe has gone: keep the interpreter from flushing into it again."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return BROKEN_PIPE
+
+
+def _said(message: str, code: int) -> int:
+    print(f"liehom: {message}", file=sys.stderr)
+    return code
+
+
+def _bug_report(error: Exception) -> str:
+    if os.environ.get("LIEHOM_TRACEBACK"):
+        import traceback
+
+        traceback.print_exc()
+    kind = type(error).__name__
+    text = str(error)[:500]
+    return (
+        f"internal error ({kind}: {text}); this is a bug in liehom, please report it with the input "
+        "(LIEHOM_TRACEBACK=1 shows where it arose)"
+    )

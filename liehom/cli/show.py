@@ -1,0 +1,89 @@
+"""What a command prints: panels on a terminal, plain lines in a pipe, one object with --json. Imports nothing
+of liehom."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+STYLES = {0: "green", 1: "red", 3: "yellow"}
+
+
+def show_json(data: Mapping[str, Any]) -> None:
+    """One JSON object on standard output."""
+    print(json.dumps(finite(data), allow_nan=False))
+
+
+def finite(value: Any) -> Any:
+    """The value with infinities as texts, since JSON has none.
+
+    Examples
+    --------
+    >>> finite({"gap": float("inf")})
+    {'gap': 'inf'}
+    """
+    if isinstance(value, Mapping):
+        return {key: finite(x) for key, x in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(x) for x in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def show_answer(sentence: str, rows: Sequence[tuple[str, str]], code: int = 0) -> None:
+    """A sentence with facts below it."""
+    if not sys.stdout.isatty():
+        width = max((len(name) for name, _ in rows), default=0)
+        print(sentence)
+        for name, value in rows:
+            print(f"  {name:<{width}}  {value}")
+        return
+    from rich.console import Console, Group
+    from rich.panel import Panel
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table.grid(padding=(0, 2))
+    for name, value in rows:
+        table.add_row(Text(name, style="dim"), Text(value))
+    style = STYLES.get(code, "green")
+    body = Group(Text(sentence, style=f"bold {style}"), Text(""), table)
+    Console().print(Panel(body, border_style=style, expand=False))
+
+
+def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header: bool = True) -> None:
+    """A table; aligned plain lines in a pipe."""
+    if not sys.stdout.isatty():
+        shown = [columns, *rows] if header else list(rows)
+        widths = [max(len(row[c]) for row in shown) for c in range(len(columns))] if shown else []
+        for row in shown:
+            print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+        return
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table()
+    for column in columns:
+        table.add_column(column)
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    Console().print(table)
+
+
+def short_vector(values: Sequence[str], limit: int = 100) -> str:
+    """A vector as a line: whole where it is short, else its non-zero entries, else its length.
+
+    Examples
+    --------
+    >>> short_vector(["1", "-2"]), short_vector(["0"] * 60 + ["3"])
+    ('(1, -2)', '3 e60')
+    """
+    whole = "(" + ", ".join(values) + ")"
+    if len(whole) <= limit:
+        return whole
+    terms = [f"{v} e{i}" for i, v in enumerate(values) if v != "0"]
+    sparse = " + ".join(terms)
+    return sparse if len(sparse) <= limit else f"a vector of length {len(values)} with {len(terms)} non-zero entries"
