@@ -110,7 +110,7 @@ def check_representation(pair: IntegralPair) -> None:
 
 def _is_dense(n: int, number: int) -> bool:
     """Whether dense matrices are faster."""
-    return n < 24 or (n <= _DENSE_SIZE and 40 * number > n**3)
+    return n <= 80 or (n <= _DENSE_SIZE and 40 * number > n**3)
 
 
 def _bound(pair: IntegralPair, constants: _Numbers, quotient: _Numbers, isotropy: _Numbers) -> int:

@@ -261,7 +261,7 @@ GOOD = {
     "tensor, twice": (TENSOR, TENSOR_BOTH),
     "borel": (BOREL, BOREL_NOT),
     "so(6)/so(5)": (orthogonal(6), sphere_certificate(6)),
-    "so(9)/so(8), dense and sparse": (orthogonal(9), sphere_certificate(9)),
+    "so(9)/so(8)": (orthogonal(9), sphere_certificate(9)),
 }
 OVER_ROOT2 = {
     "circle": (ROOT_CIRCLE, ROOT_CIRCLE_FULL),
