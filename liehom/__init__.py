@@ -14,51 +14,96 @@ The layers, in reading order; each imports only those above it in this list:
 `cli`              the command line
 """
 
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from liehom import errors as errors
-from liehom.algebra import Homomorphism as Homomorphism
-from liehom.algebra import LieAlgebra as LieAlgebra
-from liehom.algebra import Subalgebra as Subalgebra
-from liehom.algebra import abelian as abelian
-from liehom.algebra import direct_sum as direct_sum
-from liehom.algebra import euclidean as euclidean
-from liehom.algebra import gl as gl
-from liehom.algebra import heisenberg as heisenberg
-from liehom.algebra import semidirect_sum as semidirect_sum
-from liehom.algebra import simple as simple
-from liehom.algebra import sl as sl
-from liehom.algebra import so as so
-from liehom.algebra import sp as sp
-from liehom.algebra import su as su
-from liehom.algebra import u as u
-from liehom.catalog import pair as pair
-from liehom.fullness import Certificate as Certificate
-from liehom.fullness import Full as Full
-from liehom.fullness import NotFull as NotFull
-from liehom.fullness import NumericallyFull as NumericallyFull
-from liehom.fullness import NumericallyNotFull as NumericallyNotFull
-from liehom.fullness import decide_fullness as decide_fullness
-from liehom.fullness import decide_numerically as decide_numerically
-from liehom.fullness import verify_certificate as verify_certificate
-from liehom.homogeneous import failure_cone as failure_cone
-from liehom.homogeneous import orbit_types as orbit_types
-from liehom.homogeneous import range_condition as range_condition
-from liehom.homogeneous import relative_invariant as relative_invariant
-from liehom.io import dump as dump
-from liehom.io import load as load
-from liehom.io import load_problem as load_problem
-from liehom.representations import Pair as Pair
-from liehom.representations import Representation as Representation
-from liehom.representations import adjoint as adjoint
-from liehom.representations import coadjoint as coadjoint
-from liehom.representations import defining as defining
-from liehom.representations import sym_conjugation as sym_conjugation
-from liehom.representations import symbolic_isotropy as symbolic_isotropy
-from liehom.representations import trivial as trivial
-from liehom.scalars import QQ as QQ
-from liehom.scalars import RR as RR
-from liehom.scalars import FloatField as FloatField
-from liehom.scalars import NumberField as NumberField
-from liehom.scalars import Subspace as Subspace
-from liehom.scalars import number_field as number_field
+
+if TYPE_CHECKING:
+    from liehom.algebra import Homomorphism as Homomorphism
+    from liehom.algebra import LieAlgebra as LieAlgebra
+    from liehom.algebra import Subalgebra as Subalgebra
+    from liehom.algebra import abelian as abelian
+    from liehom.algebra import direct_sum as direct_sum
+    from liehom.algebra import euclidean as euclidean
+    from liehom.algebra import gl as gl
+    from liehom.algebra import heisenberg as heisenberg
+    from liehom.algebra import semidirect_sum as semidirect_sum
+    from liehom.algebra import simple as simple
+    from liehom.algebra import sl as sl
+    from liehom.algebra import so as so
+    from liehom.algebra import sp as sp
+    from liehom.algebra import su as su
+    from liehom.algebra import u as u
+    from liehom.catalog import pair as pair
+    from liehom.fullness import Certificate as Certificate
+    from liehom.fullness import Full as Full
+    from liehom.fullness import NotFull as NotFull
+    from liehom.fullness import NumericallyFull as NumericallyFull
+    from liehom.fullness import NumericallyNotFull as NumericallyNotFull
+    from liehom.fullness import decide_fullness as decide_fullness
+    from liehom.fullness import decide_numerically as decide_numerically
+    from liehom.fullness import failure_report as failure_report
+    from liehom.fullness import verify_certificate as verify_certificate
+    from liehom.homogeneous import failure_cone as failure_cone
+    from liehom.homogeneous import orbit_types as orbit_types
+    from liehom.homogeneous import range_condition as range_condition
+    from liehom.homogeneous import relative_invariant as relative_invariant
+    from liehom.io import dump as dump
+    from liehom.io import load as load
+    from liehom.io import load_problem as load_problem
+    from liehom.representations import Pair as Pair
+    from liehom.representations import Representation as Representation
+    from liehom.representations import adjoint as adjoint
+    from liehom.representations import coadjoint as coadjoint
+    from liehom.representations import defining as defining
+    from liehom.representations import sym_conjugation as sym_conjugation
+    from liehom.representations import symbolic_isotropy as symbolic_isotropy
+    from liehom.representations import trivial as trivial
+    from liehom.scalars import QQ as QQ
+    from liehom.scalars import RR as RR
+    from liehom.scalars import FloatField as FloatField
+    from liehom.scalars import NumberField as NumberField
+    from liehom.scalars import Subspace as Subspace
+    from liehom.scalars import number_field as number_field
 
 __version__ = "0.1.0"
+
+# Names are loaded on first use, so that `import liehom` costs no more than what is used of it; the lines above
+# say the same to type checkers, and a test holds the two together.
+_LAYERS = ("algebra", "catalog", "fullness", "homogeneous", "io", "representations", "scalars", "testing")
+_NAMES = {
+    "liehom.algebra": (
+        "Homomorphism LieAlgebra Subalgebra abelian direct_sum euclidean gl heisenberg "
+        "semidirect_sum simple sl so sp su u"
+    ),
+    "liehom.catalog": "pair",
+    "liehom.fullness": (
+        "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
+        "NumericallyNotFull verify_certificate"
+    ),
+    "liehom.homogeneous": "failure_cone orbit_types range_condition relative_invariant",
+    "liehom.io": "dump load load_problem",
+    "liehom.representations": (
+        "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"
+    ),
+    "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",
+}
+_HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        value = getattr(importlib.import_module(_HOME[name]), name)
+    elif name in _LAYERS:
+        value = importlib.import_module(f"liehom.{name}")
+    else:
+        raise AttributeError(f"module 'liehom' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOME, *_LAYERS})

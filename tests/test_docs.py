@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 MAPPED = ("paper-map.md", "notation.md")
 BUILTIN = {"ValueError"}
-NO_API_PAGE = {"__init__", "cli", "errors"}  # cli: docs/command-line.md; errors: docs/errors.md
+NO_API_PAGE = {"__init__", "__main__", "cli", "errors"}  # cli: docs/command-line.md; errors: docs/errors.md
 
 
 def read(*parts: str) -> str:

@@ -47,3 +47,17 @@ def test_version_is_the_one_of_the_package() -> None:
 
     metadata = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert liehom.__version__ == metadata["project"]["version"]
+
+
+def test_lazy_names_are_those_that_type_checkers_see() -> None:
+    import ast
+    from pathlib import Path
+
+    import liehom
+
+    tree = ast.parse(Path(liehom.__file__ or "").read_text(encoding="utf-8"))
+    guarded = next(node for node in tree.body if isinstance(node, ast.If))
+    seen = {a.asname: node.module for node in guarded.body if isinstance(node, ast.ImportFrom) for a in node.names}
+    assert seen == liehom._HOME
+    assert all(getattr(liehom, name).__name__ for name in seen if name not in ("QQ", "RR"))
+    assert set(seen) <= set(dir(liehom))

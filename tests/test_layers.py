@@ -31,6 +31,7 @@ BELOW: dict[str, tuple[str, ...]] = {
     "paper": ("plotting", "instances"),
     "testing": ("catalog", "fullness", "integrators", "io"),
     "cli": ("io", "atlas", "paper", "testing"),
+    "__main__": ("cli",),
     "": ("cli",),  # liehom/__init__.py, which everybody below must leave alone
 }
 

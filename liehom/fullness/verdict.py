@@ -195,6 +195,13 @@ class NumericallyFull(_Numerical):
         smallest divided by the tolerance of the field.
     eta : list of float
         Where it was found, in the basis of g.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> verdict = lh.decide_fullness(lh.Pair(lh.so(3).over(lh.RR), [[0.0, 0.0, 1.0]]))
+    >>> verdict.full, verdict.certificate is None
+    (True, True)
     """
 
     __slots__ = ()
@@ -216,6 +223,15 @@ class NumericallyNotFull(_Numerical):
     ----------
     smallest, gap, eta
         As in `NumericallyFull`; here gap is the tolerance divided by `smallest`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> verdict = lh.decide_fullness(lh.Pair(lh.abelian(2).over(lh.RR), []))
+    >>> verdict.full, bool(verdict)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.UndecidedError: a numerical verdict is not a proof and has no truth value; ...
     """
 
     __slots__ = ()

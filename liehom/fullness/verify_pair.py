@@ -164,8 +164,8 @@ def _checked_constants(
         places.append((i, j, k))
         constants.append(field.convert(c))
     indices = np.array(places, dtype=np.int64).reshape(-1, 3)
-    i, j, k = indices.T
-    if np.any((i < 0) | (i >= j) | (j >= n) | (k < 0) | (k >= n)) or len(set(places)) < len(places):
+    first, second, third = indices.T
+    if np.any((first < 0) | (first >= second) | (second >= n) | (third < 0) | (third >= n)) or len(set(places)) < len(places):
         raise CertificateError("pair", "a structure constant is out of range or given twice")
     return indices, constants
 

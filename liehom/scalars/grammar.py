@@ -187,10 +187,10 @@ def parse(text: str, names: Collection[str] = (), functions: Collection[str] = (
 
 def _chain(tree: Node) -> tuple[Node, list[tuple[str, Node]]]:
     """The first operand of a chain of + - * /, and its (operator, operand) pairs; chains may be very long."""
-    steps = []
+    steps: list[tuple[str, Node]] = []
     while isinstance(tree, Operation) and len(tree.operands) == 2 and tree.operator != "**":
-        tree, right = tree.operands[0], (tree.operator, tree.operands[1])
-        steps.append(right)
+        steps.append((tree.operator, tree.operands[1]))
+        tree = tree.operands[0]
     return tree, steps[::-1]
 
 
@@ -250,7 +250,8 @@ def evaluate(
             return functions[function](evaluate(argument, number, names, functions))
         case Operation("**", (base, exponent)):
             return _power(evaluate(base, number, names, functions), _integer_exponent(exponent))
-    return -evaluate(tree.operands[0], number, names, functions)
+        case Operation(_, operands):
+            return -evaluate(operands[0], number, names, functions)
 
 
 def _combined(operator: str, left: Any, right: Any) -> Any:
