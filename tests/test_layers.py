@@ -212,9 +212,7 @@ def code_lines(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
 
 def test_files_are_short() -> None:
     sizes = {
-        path: len(path.read_text(encoding="utf-8").splitlines())
-        for path in modules().values()
-        if not is_data(path)
+        path: len(path.read_text(encoding="utf-8").splitlines()) for path in modules().values() if not is_data(path)
     }
     long = {str(path.relative_to(ROOT)): size for path, size in sizes.items() if size > MAX_FILE_LINES}
     assert not long, f"more than {MAX_FILE_LINES} lines (one notion per file?): {long}"

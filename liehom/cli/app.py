@@ -5,6 +5,7 @@ Imports guard, inputs, show; the library inside the commands.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -34,9 +35,8 @@ def _run(action: Callable[[], int]) -> None:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        import liehom
-
-        typer.echo(f"liehom {liehom.__version__}")
+        package = sys.modules["liehom"]  # loaded before this module; layers do not import upward
+        typer.echo(f"liehom {package.__version__}")
         raise typer.Exit
 
 

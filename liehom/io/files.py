@@ -62,7 +62,23 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
 
 
 def load_problem(path: str | os.PathLike[str]) -> Problem:
-    """Read a representation file with its point, generator and options; the point may have floats."""
+    """Read a representation file with its point, generator and options; the point may have floats.
+
+    Raises
+    ------
+    FormatError, ParseError, ShapeError, DependentRowsError, NotClosedError
+        As `load`, and for a pair file.
+
+    Examples
+    --------
+    >>> import liehom as lh, tempfile, os
+    >>> file = os.path.join(tempfile.mkdtemp(), "rotation.json")
+    >>> rotation = {"matrices": [[[0, -1], [1, 0]]], "point": [0.6, 0.8], "generator": ["m0"], "dt": 0.1}
+    >>> lh.io.dump(rotation, file)
+    >>> problem = load_problem(file)
+    >>> problem.start, dict(problem.options)
+    ((0.6, 0.8), {'dt': 0.1})
+    """
     return _problem(read_object(path))
 
 
@@ -153,6 +169,22 @@ def dump(thing: Any, path: str | os.PathLike[str], *, point: Any = None) -> None
     ------
     FormatError
         If the thing has no format, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import liehom as lh, tempfile, os
+    >>> file = os.path.join(tempfile.mkdtemp(), "pair.json")
+    >>> dump(lh.Pair(lh.LieAlgebra({(0, 1): {1: 2}}), [[1, 0]]), file)
+    >>> print(Path(file).read_text(encoding="utf-8"))
+    {"format": "liehom-pair",
+     "version": 1,
+     "dimension": 2,
+     "structure_constants": [
+      [0, 1, 1, "2"]
+     ],
+     "subalgebra": [
+      ["1", "0"]
+     ]}
     """
     text = _laid_out(to_json(thing, point=point))
     try:

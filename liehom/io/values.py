@@ -17,7 +17,7 @@ from liehom.io.json_text import as_list, check_keys, fraction_for, kind_of, show
 from liehom.scalars import QQ, RR, Field, FloatField, NumberField, Scalar, common_field
 
 DIGITS = b"0123456789-,"
-FIELD_NAME = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]{0,40}|sqrt\([0-9]{1,40}\)", re.ASCII)
+FIELD_NAME = re.compile(r"(?!sqrt$)[A-Za-z][A-Za-z_0-9]{0,40}|sqrt\([0-9]{1,40}\)", re.ASCII)
 MAX_DEGREE = 64
 
 Where = Callable[[int], str]
