@@ -437,7 +437,7 @@ def test_only_known_things_are_written(tmp_path: Path) -> None:
 
 
 # -- large numbers ---------------------------------------------------------------------------------------
-@pytest.mark.parametrize("digits", [5_000, 100_000])
+@pytest.mark.parametrize("digits", [5_000, 1_000_000])
 def test_integers_of_many_digits_are_right(digits: int, tmp_path: Path) -> None:
     big = "7" * digits
     text = json.dumps(changed(SPHERE, subalgebra=[["0", "0", big]]))
@@ -446,12 +446,6 @@ def test_integers_of_many_digits_are_right(digits: int, tmp_path: Path) -> None:
         assert found.subalgebra.rows()[0][2] == QQ.convert(big)
         io.dump(found, tmp_path / "big.json")
         assert io.load(tmp_path / "big.json") == found
-
-
-@pytest.mark.slow
-def test_a_million_digits_are_slow_but_right() -> None:
-    big = "7" * 10**6
-    assert str(io.loads(json.dumps(changed(SPHERE, subalgebra=[["0", "0", big]]))).subalgebra.rows()[0][2]) == big
 
 
 @given(
