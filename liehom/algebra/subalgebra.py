@@ -37,6 +37,9 @@ class Subalgebra:
     >>> h = lh.so(3).subalgebra([[0, 0, 1]])
     >>> h.dimension, [0, 0, 5] in h, h.is_ideal()
     (1, True, False)
+    >>> print(h)
+    subalgebra of dimension 1 in so(3) over QQ
+      (0, 0, 1)
     """
 
     __slots__ = ("_quotient", "_subspace", "algebra", "basis")
@@ -138,6 +141,15 @@ class Subalgebra:
     def __repr__(self) -> str:
         around = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
         return f"<subalgebra of dimension {self.dimension} in {around} over {self.algebra.field.name}>"
+
+    def __str__(self) -> str:
+        around = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
+        head = f"subalgebra of dimension {self.dimension} in {around} over {self.algebra.field.name}"
+        shown = self.basis.select(rows=range(min(self.dimension, 8)))
+        lines = [f"  ({', '.join(row)})" for row in shown.to_strings()]
+        if self.dimension > 8:
+            lines.append(f"  ... and {self.dimension - 8} further rows")
+        return "\n".join([head, *lines])
 
 
 def _matrix(algebra: LieAlgebra, rows: Any) -> Any:

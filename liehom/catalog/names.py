@@ -130,8 +130,11 @@ def unknown(text: str, known: Iterable[str], what: str) -> CatalogError:
     --------
     >>> unknown("so(4)/so(9)", ["so(4)/so(3)", "g2/su(3)"], "pair")
     CatalogError("'so(4)/so(9)' is not the name of a pair in the catalogue; the nearest are so(4)/so(3)")
+    >>> unknown("G2/SU3", ["so(4)/so(3)", "g2/su(3)"], "pair")
+    CatalogError("'G2/SU3' is not the name of a pair in the catalogue; the nearest are g2/su(3)")
     """
-    near = get_close_matches(text, list(known), n=3, cutoff=0.5)
+    by_folded = {name.casefold(): name for name in known}
+    near = [by_folded[name] for name in get_close_matches(text.casefold(), by_folded, n=3, cutoff=0.5)]
     hint = f"; the nearest are {', '.join(near)}" if near else ""
     return CatalogError(f"{text!r} is not the name of {_article(what)} in the catalogue{hint}")
 

@@ -263,8 +263,7 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
         data |= {"equilibrium": found.equilibrium, "psi": tested, "message": found.message}
         show_json({**data, "generic": found.generic, "proved": exact, "pair": _facts(text, pair)})
         return code
-    state = {True: "holds", False: "fails", None: "is not decided"}[found.holds]
-    sentence = f"the range condition {state} {'for generic psi' if found.generic else 'at psi'}: {found.message}"
+    sentence = str(found)
     rows = [("pair", _described(text, pair)), ("rank", f"{found.rank} of dim g/h = {pair.dimension}")]
     rows.append(("psi" if row is not None else "sample psi", short_vector(tested)))
     if missing is not None:
@@ -278,7 +277,7 @@ def catalog(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="A pair to print, as a pair file.")] = None,
     json: JsonOption = False,
 ) -> None:
-    """List the names that the other commands understand, or print the pair of one as a file."""
+    """List names that the other commands understand, one of each kind (sizes are free), or print one as a file."""
     _run(lambda: _catalog(name, json))
 
 

@@ -34,12 +34,13 @@ class FailureReport:
     def __str__(self) -> str:
         if self.generic.holds is False:
             return "the range condition (6.3) holds for no psi"
-        head = "holds for generic psi" if self.generic.holds else "not proved to hold for generic psi"
+        if self.generic.holds is None:
+            head = "it is not decided whether the range condition (6.3) holds for generic psi"
+        else:
+            head = "the range condition (6.3) holds for generic psi"
         if not self.parts:
-            return f"the range condition (6.3) {head}; it fails on a cone that contains eta"
-        return f"the range condition (6.3) {head}; it fails on a cone containing " + "; ".join(
-            part.description for part in self.parts
-        )
+            return f"{head}; it fails on a cone that contains eta"
+        return f"{head}; it fails on a cone containing " + ", and ".join(part.description for part in self.parts)
 
 
 def failure_report(pair: Pair, certificate: Certificate | None = None) -> FailureReport:

@@ -48,13 +48,10 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
     value, x = least_singular_value(basis, starts=starts, seed=seed)
     eta = [float(v) for v in x @ pair.subalgebra.quotient().lift.to_numpy()]
     if value > tolerance:
-        reason = (
-            f"min sigma_d / sigma_1 >= {value:.3g} found in {starts + d} starts, tolerance {tolerance:.1g}; not proved"
-        )
+        reason = f"min sigma_d / sigma_1 >= {value:.3g} found in {starts + d} starts, tolerance {tolerance:.1g}"
         return NumericallyFull(pair, reason, value, value / tolerance, eta)
     reason = (
-        f"an eta with sigma_d / sigma_1 = {value:.3g} was found, tolerance {tolerance:.1g}; not proved, "
-        "and rounding alone can cause it"
+        f"an eta with sigma_d / sigma_1 = {value:.3g} was found, tolerance {tolerance:.1g}; rounding alone can cause it"
     )
     return NumericallyNotFull(pair, reason, value, tolerance / max(value, 1e-300), eta)
 

@@ -167,6 +167,10 @@ class _Numerical:
         """Always raises `UndecidedError`: there is nothing to verify."""
         raise UndecidedError("a numerical verdict has no certificate; give exact numbers to have a proof")
 
+    def __str__(self) -> str:
+        answer = "full" if self.full else "not full"  # type: ignore[attr-defined]
+        return f"{answer} (numerical, not proved): {self.reason}"
+
     def __bool__(self) -> bool:
         raise UndecidedError("a numerical verdict is not a proof and has no truth value; read its attribute `full`")
 
@@ -200,8 +204,8 @@ class NumericallyFull(_Numerical):
     --------
     >>> import liehom as lh
     >>> verdict = lh.decide_fullness(lh.Pair(lh.so(3).over(lh.RR), [[0.0, 0.0, 1.0]]))
-    >>> verdict.full, verdict.certificate is None
-    (True, True)
+    >>> print(verdict)
+    full (numerical, not proved): min sigma_d / sigma_1 >= 1 found in 62 starts, tolerance 3e-05
     """
 
     __slots__ = ()

@@ -2,7 +2,8 @@
 
 With x = psi mod h in V = g/h it reads rank [rho(z_1) x, ..., rho(z_k) x, x] = d = dim V.  For one psi it is a
 rank; for generic psi it holds as soon as it holds for one, and that it never holds is proved by the rank of
-this matrix over the field of rational functions of x.  Imports representations, scalars, errors.
+this matrix over the field of rational functions of x, or by an invariant definite form.
+Imports representations, scalars, errors.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from typing import Any, final
 
 from liehom.errors import ShapeError, UndecidedError
 from liehom.representations import Pair
+from liehom.representations.intertwiners import invariant_forms
+from liehom.representations.irreducibility import traceless
 from liehom.scalars import FloatMatrix, RankDecision
 from liehom.scalars.linear_forms import LinearForms
 
@@ -70,6 +73,10 @@ class RangeCondition:
             raise UndecidedError(f"the range condition is not decided: {self.message}; ask for .holds")
         return self.holds
 
+    def __str__(self) -> str:
+        state = {True: "holds", False: "fails", None: "is not decided"}[self.holds]
+        return f"the range condition {state} {'for generic psi' if self.generic else 'at psi'}: {self.message}"
+
     def __repr__(self) -> str:
         where = "generically" if self.generic else "at psi"
         state = {True: f"holds {where}", False: f"fails {where}", None: "undecided"}[self.holds]
@@ -100,16 +107,19 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
     Notes
     -----
     One psi at which the rank is d proves that it is d on a dense open cone. That it is less than d everywhere is
-    proved by dim(rho(h) + R) < d, or, for d <= 10, by the rank over the field of rational functions in x; beyond
-    that the answer is honest: `holds` is None. Where h acts on g/h as on the tangent spaces of so(p, q)/so(p', q')
-    with both signs, the condition holds generically without the pair being full.
+    proved by dim(rho(h) + R) < d; by a definite form on g/h that h preserves up to scale, for then one psi outside
+    h decides for all of them; or, for d <= 10, by the rank over the field of rational functions in x. Beyond that
+    the answer is honest: `holds` is None. Where h acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with
+    both signs, the condition holds generically without the pair being full.
 
     Examples
     --------
     >>> import liehom as lh
-    >>> minkowski = lh.Pair(lh.so(3), [[1, 0, 0]])
-    >>> range_condition(minkowski, [1, 0, 0]).message
+    >>> sphere = lh.Pair(lh.so(3), [[1, 0, 0]])
+    >>> range_condition(sphere, [1, 0, 0]).message
     'psi lies in h: an equilibrium'
+    >>> print(range_condition(sphere, [1, 1, 0]))
+    the range condition holds at psi: [h, psi] + R psi has rank 2 of 2 in g/h
     >>> range_condition(lh.Pair(lh.abelian(2), []))
     <range condition: fails generically, rank 1 of 2>
     """
@@ -124,6 +134,8 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
     if forms.shape[1] < pair.dimension:
         return _never(best, f"it never holds: rho(h) + R has dimension {forms.shape[1]} < {pair.dimension}")
     if pair.dimension > MAX_PROOF_DIMENSION:
+        if _keeps_a_definite_form(pair):
+            return _never(best, "it never holds: h keeps a definite form up to scale, so that one psi decides for all")
         return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi")
     at = forms.at((pair.algebra.row(best.psi) @ pair.subalgebra.quotient().projection).row(0))
     columns = at.echelon()[1]
@@ -196,11 +208,19 @@ def _best_sample(pair: Pair) -> RangeCondition:
         values = [[rng.randint(-3 - 4 * size, 3 + 4 * size) or 1 for _ in range(pair.dimension)]]
         found = _at(pair, pair.field.matrix(values) @ lift, generic=True)
         if found.holds:
-            return _decided(found, True, "it holds for generic psi: it holds for one")
+            return _decided(found, True, "one psi at which it holds proves it")
         best = found if best is None or found.rank > best.rank else best
     if best is None:
         raise UndecidedError("no sample was taken")
     return _decided(best, False, f"the numerical rank is at most {best.rank} of {best.dimension} at {SAMPLES} points")
+
+
+def _keeps_a_definite_form(pair: Pair) -> bool:
+    """Whether a basis element of the symmetric forms on g/h that h preserves up to scale is definite."""
+    d = pair.dimension
+    reduced = traceless(pair.isotropy_matrices(), d, pair.field)
+    found = invariant_forms(reduced, d, pair.field).symmetric
+    return any(d in form.signature()[:2] for form in found)
 
 
 def _never(best: RangeCondition, message: str) -> RangeCondition:

@@ -17,7 +17,7 @@ from liehom.scalars import NumberField
 
 
 @final
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class SymbolicIsotropy:
     """The isotropy at a generic point of a family.
 
@@ -48,6 +48,9 @@ class SymbolicIsotropy:
     basis: Any
     nonvanishing: Any
     matrix: Any
+
+    def __repr__(self) -> str:
+        return f"<isotropy of dimension {self.dimension} at {self.point}, where {self.nonvanishing} != 0>"
 
     def rank_conditions(self, limit: int = 2000) -> list[Any]:
         """The minors of size `orbit_dimension`, whose common zeros are exactly where the isotropy is larger.

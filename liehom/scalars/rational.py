@@ -58,8 +58,8 @@ def refused(value: Any, field: Field) -> FieldError:
     if isinstance(value, (float, np.floating)):
         shown = Fraction(float(value)).limit_denominator(1000) if np.isfinite(value) else "p/q"
         return FieldError(
-            f"{value!r} is a float, and {field.name} is exact: write a fraction such as '{shown}', "
-            "or ask for numerical arithmetic (float64)"
+            f"{float(value)!r} is a float, and {field.name} is exact: write a fraction such as '{shown}', "
+            "or work numerically, over float64: .over(liehom.RR)"
         )
     return FieldError(f"{value!r} of type {type(value).__name__} is not an element of {field.name}")
 
@@ -114,7 +114,7 @@ class RationalField(ExactField):
             raise FieldError(f"sqrt({value}) is not real")
         top, bottom = numerator.isqrt(), denominator.isqrt()
         if top * top != numerator or bottom * bottom != denominator:
-            raise FieldError(f"sqrt({value}) is not in QQ; give the field, such as number_field('sqrt({value})')")
+            raise FieldError(f"sqrt({value}) is not in QQ; give the field: .over(number_field('sqrt({value})'))")
         return flint.fmpq(top, bottom)
 
     def format(self, value: Scalar) -> str:
