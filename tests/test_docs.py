@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import doctest
 import importlib
 import inspect
 import io
 import json
 import re
+import shlex
+import subprocess
+import sys
 import textwrap
 from pathlib import Path
 from typing import Any
@@ -68,9 +72,7 @@ def test_test_in_the_paper_map_exists(path: str) -> None:
     assert f"def {function}" in read(file)
 
 
-@pytest.mark.parametrize(
-    "name", sorted(set(re.findall(r"`(\w+Error)`", read("docs", "errors.md"))) - BUILTIN)
-)
+@pytest.mark.parametrize("name", sorted(set(re.findall(r"`(\w+Error)`", read("docs", "errors.md"))) - BUILTIN))
 def test_error_in_the_table_exists(name: str) -> None:
     assert issubclass(resolve(f"liehom.errors.{name}"), resolve("liehom.errors.LiehomError"))
 
@@ -123,10 +125,85 @@ def run_block(block: str, namespace: dict[str, Any]) -> int:
     return compared
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md"])
+def pages_with(language: str) -> list[str]:
+    pages = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+    shown = [path for path in pages if "_build" not in path.parts and blocks(path.read_text("utf-8"), language)]
+    return [str(path.relative_to(ROOT)) for path in shown]
+
+
+@pytest.mark.parametrize("page", pages_with("python"))
 def test_python_on_the_page_runs_and_gives_what_it_says(page: str) -> None:
     namespace: dict[str, Any] = {}
-    assert sum(run_block(block, namespace) for block in blocks(read(page), "python")) >= 2
+    compared = sum(run_block(block, namespace) for block in blocks(read(page), "python"))
+    assert compared >= {"README.md": 2, "docs/getting-started.md": 2}.get(page, 0)
+
+
+@pytest.mark.parametrize("page", pages_with("pycon"))
+def test_session_on_the_page_prints_what_it_shows(page: str) -> None:
+    source = "\n\n".join(blocks(read(page), "pycon"))
+    session = doctest.DocTestParser().get_doctest(source, {}, page, page, 0)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
+    assert runner.run(session).failed == 0
+    assert session.examples
+
+
+@pytest.mark.parametrize("page", pages_with("console"))
+def test_commands_on_the_page_print_what_it_shows(page: str, tmp_path: Path) -> None:
+    (tmp_path / "sphere.json").write_text(blocks(read("docs", "formats.md"), "json")[0], encoding="utf-8")
+    for block in blocks(read(page), "console"):
+        for command, shown in re.findall(r"^\$ liehom (.*)\n((?:(?!\$ ).*\n)*)", block, flags=re.MULTILINE):
+            words = [sys.executable, "-m", "liehom", *shlex.split(command)]
+            done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+            assert done.returncode in (0, 1, 3), done.stderr
+            assert done.stdout + done.stderr == shown
+
+
+def test_shell_lines_on_the_pages_name_commands_that_exist() -> None:
+    from liehom.cli.app import app
+
+    known = {command.name or getattr(command.callback, "__name__", "") for command in app.registered_commands}
+    for page in pages_with("sh"):
+        for block in blocks(read(page), "sh"):
+            assert set(re.findall(r"(?:^|/)liehom (\w+)", block, flags=re.MULTILINE)) <= known
+
+
+def test_the_page_of_the_catalogue_lists_its_names() -> None:
+    import liehom as lh
+
+    listed = blocks(read("docs", "catalogue.md"), "text")[-1].split()
+    assert sorted(listed) == sorted(lh.catalog.pair_names())
+
+
+def examples_of_the_catalogue(heading: str) -> list[str]:
+    section = read("docs", "catalogue.md").split(f"## {heading}")[1].split("##")[0]
+    return re.findall(r"\| `([^`]+)` \|$", section, flags=re.MULTILINE)
+
+
+def test_the_examples_in_the_tables_of_the_catalogue_are_built() -> None:
+    import liehom as lh
+
+    linear, pairs = examples_of_the_catalogue("Linear Lie algebras"), examples_of_the_catalogue("Pairs")
+    assert len(linear) >= 16
+    assert len(pairs) >= 10
+    for name in linear:
+        assert lh.catalog.representation(name).name == name
+    for name in pairs:
+        assert lh.pair(name).name == name
+
+
+def test_every_public_name_of_a_layer_is_on_its_api_page() -> None:
+    """The pages are made by autodoc: a page with `imported-members` shows every name that the layer imports."""
+    for page in sorted((DOCS / "api").glob("*.md")):
+        layer = ROOT / "liehom" / page.stem / "__init__.py"
+        if not layer.is_file():
+            continue
+        text, tree = page.read_text(encoding="utf-8"), ast.parse(layer.read_text(encoding="utf-8"))
+        names = [alias.asname for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+        module = importlib.import_module(f"liehom.{page.stem}")
+        for name in filter(None, names):
+            made = isinstance(getattr(module, name), type) or inspect.isfunction(getattr(module, name))
+            by_autodoc = made and ":imported-members:" in text and name in getattr(module, "__all__", [name])
+            assert by_autodoc or f"{name}`" in text or f":: liehom.{page.stem}.{name}" in text, f"{page.name}: {name}"
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/formats.md"])
@@ -149,9 +226,7 @@ def test_json_on_the_page_is_read_and_is_full(page: str, tmp_path: Path) -> None
 def test_every_layer_has_an_api_page() -> None:
     there = {path.stem for path in (DOCS / "api").glob("*.md")}
     layers = {
-        path.stem
-        for path in (ROOT / "liehom").iterdir()
-        if path.suffix == ".py" or (path / "__init__.py").is_file()
+        path.stem for path in (ROOT / "liehom").iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()
     }
     assert layers - there - NO_API_PAGE == set()
 

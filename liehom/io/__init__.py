@@ -21,4 +21,15 @@ from liehom.io.json_text import parse_object as parse_object
 from liehom.io.json_text import read_object as read_object
 from liehom.io.representation_file import Problem as Problem
 
-__all__ = ["load", "load_pair", "load_problem", "loads", "from_json", "to_json", "dump", "Problem"]
+__all__ = [
+    "load",
+    "load_pair",
+    "load_problem",
+    "loads",
+    "from_json",
+    "to_json",
+    "dump",
+    "parse_object",
+    "read_object",
+    "Problem",
+]
