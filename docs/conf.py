@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -42,6 +43,8 @@ napoleon_use_rtype = False
 suppress_warnings = ["ref.python"]
 
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["liehom.css"]
 html_title = f"liehom {release}"
 
 
@@ -53,7 +56,12 @@ def mathml(visitor: Any, node: nodes.Element, *, display: bool) -> None:
     """Write a formula as MathML; one that cannot be translated is a warning, which the strict build refuses."""
     formula = node.astext().replace("\\dots", "\\ldots")
     try:
-        visitor.body.append(tex2mathml(formula, as_block=display))
+        markup = tex2mathml(formula, as_block=display)
+        # the set difference is missing in common fonts; "ad x" needs a space where "ad(x)" does not
+        markup = re.sub(
+            r"<mo>&ApplyFunction;</mo>(?!\s*<mo[^>]*>\()", '<mspace width="0.2em"/>', markup.replace("∖", "\\")
+        )
+        visitor.body.append(markup)
     except MathError as error:
         logging.getLogger(__name__).warning("formula %r: %s", formula, error, location=node)
     raise nodes.SkipNode

@@ -11,7 +11,7 @@ import random
 from collections.abc import Callable
 from typing import Any
 
-from liehom.errors import InternalError
+from liehom.errors import InputError, InternalError
 from liehom.fullness import proposals
 from liehom.fullness.certificate import Certificate
 from liehom.fullness.describe import full_reason
@@ -50,6 +50,11 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None
     NumericallyFull or NumericallyNotFull
         For pairs over float64, with the singular value and gap that they rest on.
 
+    Raises
+    ------
+    InputError
+        If `pair` is no pair.
+
     Notes
     -----
     (g, h) is full if every eta outside h satisfies h + [h, eta] + R eta = g (Lewis and Olver 2001,
@@ -63,6 +68,8 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None
     >>> decide_fullness(lh.pair("so(3,1)/so(2,1)")).full
     False
     """
+    if not isinstance(pair, Pair):
+        raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
     report = progress if progress is not None else _silent
     if not pair.field.exact:
         return decide_numerically(pair, seed=seed)

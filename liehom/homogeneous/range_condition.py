@@ -12,7 +12,7 @@ import random
 from dataclasses import dataclass
 from typing import Any, final
 
-from liehom.errors import ShapeError, UndecidedError
+from liehom.errors import InputError, ShapeError, UndecidedError
 from liehom.representations import Pair
 from liehom.representations.intertwiners import invariant_forms
 from liehom.representations.irreducibility import traceless
@@ -103,6 +103,8 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
         If psi does not have n coefficients.
     FieldError
         If a coefficient is not in the pair's field.
+    InputError
+        If `pair` is no pair.
 
     Notes
     -----
@@ -123,6 +125,8 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
     >>> range_condition(lh.Pair(lh.abelian(2), []))
     <range condition: fails generically, rank 1 of 2>
     """
+    if not isinstance(pair, Pair):
+        raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
     if psi is not None:
         return _at(pair, pair.algebra.row(psi), generic=False)
     if pair.dimension == 0:

@@ -29,6 +29,8 @@ class Pair:
     Raises
     ------
     NotASubalgebraError, DependentRowsError, ShapeError
+    InputError
+        If the first argument is no Lie algebra, or the subalgebra belongs to another one.
 
     Notes
     -----
@@ -46,6 +48,8 @@ class Pair:
     __slots__ = ("_isotropy", "algebra", "name", "subalgebra")
 
     def __init__(self, algebra: LieAlgebra, subalgebra: Any, *, name: str | None = None) -> None:
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(f"expected a LieAlgebra and a subalgebra of it, got {algebra!r}; names go to liehom.pair")
         self.algebra = algebra
         self.subalgebra = subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)
         if self.subalgebra.algebra is not algebra and self.subalgebra.algebra != algebra:
