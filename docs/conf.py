@@ -59,7 +59,7 @@ def mathml(visitor: Any, node: nodes.Element, *, display: bool) -> None:
         markup = tex2mathml(formula, as_block=display)
         # the set difference is missing in common fonts; "ad x" needs a space where "ad(x)" does not
         markup = re.sub(
-            r"<mo>&ApplyFunction;</mo>(?!\s*<mo[^>]*>\()", '<mspace width="0.2em"/>', markup.replace("∖", "\\")
+            r"<mo>&ApplyFunction;</mo>(?!\s*<mo[^>]*>\()", '<mspace width="0.2em"/>', markup.replace("\u29f5", "\\")
         )
         visitor.body.append(markup)
     except MathError as error:
