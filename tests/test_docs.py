@@ -139,12 +139,12 @@ def test_python_on_the_page_runs_and_gives_what_it_says(page: str) -> None:
 
 
 @pytest.mark.parametrize("page", pages_with("pycon"))
-def test_session_on_the_page_prints_what_it_shows(page: str) -> None:
+def test_examples_on_the_page_print_what_they_show(page: str) -> None:
     source = "\n\n".join(blocks(read(page), "pycon"))
-    session = doctest.DocTestParser().get_doctest(source, {}, page, page, 0)
+    examples = doctest.DocTestParser().get_doctest(source, {}, page, page, 0)
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
-    assert runner.run(session).failed == 0
-    assert session.examples
+    assert runner.run(examples).failed == 0
+    assert examples.examples
 
 
 @pytest.mark.parametrize("page", pages_with("console"))
