@@ -18,6 +18,7 @@ from liehom.fullness.describe import full_reason
 from liehom.fullness.dominance import Dominant, find_dominant
 from liehom.fullness.eigenwitness import eigenvector_witness
 from liehom.fullness.forms import decide_by_forms
+from liehom.fullness.frame import balanced_frame, plain_frame
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
 from liehom.fullness.numerical import decide_numerically
 from liehom.fullness.positive_form import full_by_positive_form
@@ -76,8 +77,9 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None
     if pair.dimension <= 1:
         reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
         return Full(pair, proposals.trivial(pair.field), reason[pair.dimension])
+    action = IsotropyAlgebra(pair)
     for attempt in range(3):
-        verdict = _decide(IsotropyAlgebra(pair, attempt), seed + attempt, report)
+        verdict = _decide(action, seed + attempt, report)
         if verdict is not None:
             return verdict
     raise InternalError("no certificate was found, though one exists; please report this pair")
@@ -146,13 +148,17 @@ def _reducible(action: IsotropyAlgebra, certificate: Certificate) -> NotFull:
 
 
 def _by_dominance(action: IsotropyAlgebra, seed: int, report: Report) -> NotFull | None:
-    tries = FIRST_TRIES
+    tries, frame = FIRST_TRIES, plain_frame(action)
     for round_number in range(ROUNDS):
-        report(f"spectral search, {tries} random elements")
-        dominant = find_dominant(action, tries, seed + round_number)
-        if dominant is not None:
-            return _with_exact_eta(action, dominant)
-        tries *= 2
+        if frame is not None:
+            report(f"spectral search, {tries} random elements")
+            dominant = find_dominant(action, frame, tries, seed + round_number)
+            if dominant is not None:
+                return _with_exact_eta(action, dominant)
+            tries *= 2
+        if round_number == 0:
+            report("coordinates in which floats see the spectrum")
+            frame = balanced_frame(action) or frame
     return None
 
 
@@ -168,6 +174,8 @@ def _with_exact_eta(action: IsotropyAlgebra, dominant: Dominant) -> NotFull:
 
 def _not_full(action: IsotropyAlgebra, certificate: Certificate, reason: str) -> NotFull:
     eta, field, rank = eta_of_witness(action, certificate)
+    if rank == action.size:
+        raise InternalError("the rank does not drop at the eta that was found; please report this pair")
     if rank is not None:
         reason = f"{reason}; the rank of [rho(h) eta, eta] is {rank} of {action.size}"
     return NotFull(action.pair, certificate, reason, eta=eta, eta_field=field, rank=rank)

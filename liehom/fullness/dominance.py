@@ -4,7 +4,7 @@ For a random X in L0 the spectral projector on its largest real part is projecte
 the top space of X is a highest restricted weight space V_lambda, the result is a multiple of the dual X_lambda
 of the weight, and then dim V_lambda + #{negative eigenvalues of ad X_lambda} < d exactly where L0 is not
 transitive.  Floats propose elements, cuts lie between balls, and counts are exact.
-Imports proposals, reducible, scalars.
+Imports proposals, frame, scalars.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ import numpy.typing as npt
 
 from liehom.fullness import proposals
 from liehom.fullness.certificate import Certificate
+from liehom.fullness.frame import Frame
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
-from liehom.representations.irreducibility import combination
 from liehom.scalars import Polynomial
-from liehom.scalars.modular import pivot_columns
+from liehom.scalars.modular import independent_columns
 from liehom.scalars.roots import complex_root_balls, count_or_none, simplest_between
 
 Array = npt.NDArray[np.float64]
@@ -38,19 +38,21 @@ class Dominant:
     certificate : Certificate
     element : list
         Coefficients of the element in the basis of L0.
-    top : Array
-        A real vector of its top eigenspace, in coordinates of V, rounded to float64.
+    top : Array or None
+        A real vector of its top eigenspace, in coordinates of V, rounded to float64; None where floats end.
     """
 
     certificate: Certificate
     element: list[Any]
-    top: Array
+    top: Array | None
 
 
-def find_dominant(action: IsotropyAlgebra, tries: int, seed: int = 0) -> Dominant | None:
-    """A dominance certificate, or None after the given number of random elements."""
-    search = _Search(action)
+def find_dominant(action: IsotropyAlgebra, frame: Frame, tries: int, seed: int = 0) -> Dominant | None:
+    """A dominance certificate found in a frame, or None after the given number of random elements."""
+    search = _Search(action, frame)
     for coefficients in search.candidates(tries, seed):
+        if search.margin(coefficients) is None:
+            continue
         for rounded in _roundings(coefficients):
             if search.margin(rounded) is None:
                 continue
@@ -74,24 +76,24 @@ def _roundings(coefficients: Array) -> Iterator[Array]:
 
 
 class _Search:
-    """Floating copies of L0 in a well-conditioned basis, and the exact counting of what they propose."""
+    """Floating copies of L0 in an orthonormal basis, and the exact counting of what they propose."""
 
-    def __init__(self, action: IsotropyAlgebra) -> None:
-        self.action = action
-        d = action.size
-        raw = np.array([a.to_numpy() for a in action.traceless])
+    def __init__(self, action: IsotropyAlgebra, frame: Frame) -> None:
+        self.action, self.frame = action, frame
+        d, raw = action.size, frame.matrices
         self.flat = raw.reshape(len(raw), d * d)
         # rows of `basis` are orthonormal: basis = change @ flat
         q, r = np.linalg.qr(self.flat.T)
         self.basis = q.T
         self.change = np.linalg.inv(r).T
         self.matrices = self.basis.reshape(-1, d, d)
+        self.side_by_side = self.matrices.transpose(1, 0, 2).reshape(d, -1)
         turned = self.matrices.transpose(0, 2, 1).reshape(len(raw), d * d)
         self.gram_inverse = np.linalg.pinv(self.basis @ turned.T)
         self._places: list[int] | None = None
 
     def candidates(self, tries: int, seed: int) -> Iterator[Array]:
-        """Coefficients in the basis of L0: the basis itself first, then projected projectors of random elements."""
+        """Coefficients in the frame's basis of L0: that basis first, then projected projectors of random elements."""
         yield from np.eye(len(self.flat))
         rng = np.random.default_rng(seed)
         for _ in range(tries):
@@ -114,7 +116,9 @@ class _Search:
         return np.asarray((self.gram_inverse @ overlaps) @ self.change)
 
     def _adjoint_real_parts(self, x: Array) -> Array:
-        images = (x @ self.matrices - self.matrices @ x).reshape(len(self.basis), -1)
+        k, d = len(self.basis), len(x)
+        left = (x @ self.side_by_side).reshape(d, k, d).transpose(1, 0, 2).reshape(k, d * d)
+        images = left - (self.matrices.reshape(k * d, d) @ x).reshape(k, d * d)
         return np.sort(np.linalg.eigvals(images @ self.basis.T).real)
 
     def margin(self, coefficients: Array) -> float | None:
@@ -125,12 +129,13 @@ class _Search:
             return None
         x = x / size
         weights = np.sort(np.linalg.eigvals(x).real)
-        roots = self._adjoint_real_parts(x)
+        gaps = np.flatnonzero(np.diff(weights) > 1e-5)
+        roots = self._adjoint_real_parts(x) if len(gaps) else weights
         best = None
-        for place in np.flatnonzero(np.diff(weights) > 1e-5):
+        for place in gaps:
             gap = weights[place + 1] - weights[place]
             above = len(weights) - place - 1
-            below = int((roots < -0.95 * gap).sum())
+            below = int((roots < -gap + 1e-5).sum())
             if above + below < len(weights) and (best is None or gap > best):
                 best = float(gap)
         return best
@@ -138,8 +143,7 @@ class _Search:
     def certified(self, coefficients: Array) -> Dominant | None:
         """The certificate with exact counts, its cuts chosen between balls; None if it does not work out."""
         action = self.action
-        numbers = [action.field.convert(int(c)) for c in coefficients]
-        x = combination(action.traceless, numbers)
+        numbers, x = self.frame.element(action, coefficients)
         weights = Polynomial(action.field, x.characteristic_coefficients())
         roots = Polynomial(action.field, self._adjoint(x).characteristic_coefficients())
         for cut, eps in _cuts(weights, roots):
@@ -149,8 +153,15 @@ class _Search:
             right = count_or_none(roots, -eps)
             if right >= 0 and above + roots.degree - right < action.size:
                 made = proposals.dominance(action, action.element(numbers), cut, eps)
-                return Dominant(made, numbers, _top_vector(x.to_numpy()))
+                return Dominant(made, numbers, self._top_vector(coefficients))
         return None
+
+    def _top_vector(self, coefficients: Array) -> Array | None:
+        values, vectors = np.linalg.eig(np.tensordot(coefficients, self.flat, 1).reshape(self.action.size, -1))
+        top = vectors[:, int(values.real.argmax())]
+        vector = self.frame.vectors @ (top.real if np.abs(top.real).max() > 1e-6 else top.imag)
+        size = np.abs(vector).max()
+        return np.asarray(vector / size) if 0 < size < np.inf else None
 
     def _adjoint(self, x: Any) -> Any:
         """ad x on L0 (rho(h) is L0 up to scalars, which only add the eigenvalue 0), rows of coordinates."""
@@ -158,48 +169,56 @@ class _Search:
         basis = self.action.traceless
         flat = field.stack_rows([a.reshape(1, square) for a in basis], square)
         if self._places is None:
-            self._places = pivot_columns(flat.modulo())
+            self._places = independent_columns(flat)
             self._inverse = flat.select(columns=self._places).inverse()
         images = field.stack_rows([(x @ a - a @ x).reshape(1, square) for a in basis], square)
         return images.select(columns=self._places) @ self._inverse
 
 
 def _cuts(weights: Polynomial, roots: Polynomial) -> Iterator[tuple[Any, Any]]:
-    """Pairs (cut, eps) with no real part of a weight in [cut - eps, cut], as balls show, widest gaps first."""
-    parts = sorted(_real_balls(weights), key=lambda b: b.mid())
-    levels = _real_balls(roots)
+    """Pairs (cut, eps) that dominate as balls around the roots show, those in the widest gaps of weights first.
+
+    No weight lies in [cut - eps, cut]; with fewer than d weights above and roots at most -eps together.
+    """
+    parts, levels = _real_parts(weights), _real_parts(roots)
+    for low, high in sorted(_gaps(parts), key=lambda gap: gap[0] - gap[1]):
+        above = sum(m for a, _, m in parts if a >= high)
+        # eps between two levels; the larger it is, the fewer roots are at most -eps
+        negated = [(-b, -a, m) for a, b, m in levels]
+        for floor, ceiling in reversed(_gaps([(0, 0, 0), *negated, (high - low, high - low, 0)])):
+            below = sum(m for a, _, m in negated if a >= ceiling)
+            if floor < 0 or ceiling > high - low:
+                continue
+            if above + below >= weights.degree:
+                break
+            for eps in _places(floor, ceiling):
+                for cut in _places(low + eps, high):
+                    yield cut, eps
+
+
+def _places(low: Any, high: Any) -> Iterator[Any]:
+    """Simple rationals well inside an interval; three, as a cut fails where roots are symmetric about it."""
+    eighth = (high - low) / 8
+    for start in (3, 1, 5):
+        yield simplest_between(low + eighth * start, low + eighth * (start + 2))
+
+
+def _real_parts(f: Polynomial) -> list[tuple[Any, Any, int]]:
+    """Rational bounds of the real parts of the roots, with multiplicities."""
+    found = []
+    for part, multiplicity in f.squarefree_parts():
+        for ball in complex_root_balls(part, 64):
+            found.append((ball.real.lower().fmpq(), ball.real.upper().fmpq(), multiplicity))
+    return found
+
+
+def _gaps(intervals: list[tuple[Any, Any, int]]) -> list[tuple[Any, Any]]:
+    """The open intervals between the given closed ones, from left to right."""
     gaps = []
-    reach = parts[0].upper().fmpq()
-    for ball in parts[1:]:
-        low = ball.lower().fmpq()
+    ordered = sorted(intervals, key=lambda interval: interval[0])
+    reach = ordered[0][1]
+    for low, high, _ in ordered[1:]:
         if low > reach:
             gaps.append((reach, low))
-        reach = max(reach, ball.upper().fmpq())
-    for low, high in sorted(gaps, key=lambda pair: pair[1] - pair[0], reverse=True):
-        width = high - low
-        # eps as large as the gap allows, or in a gap of the roots just below it
-        margin = width / 16
-        proposed = [width - 2 * margin]
-        below = [-r.upper().fmpq() for r in levels if 0 < -r.upper().fmpq() < width]
-        proposed += [e - margin for e in sorted(below, reverse=True) if e > 2 * margin]
-        for eps in proposed:
-            simple = simplest_between(eps - margin / 2, eps)
-            top = simplest_between(low + simple + margin / 4, high - margin / 4)
-            if top - simple > low:
-                yield top, simple
-
-
-def _real_balls(f: Polynomial) -> list[Any]:
-    balls = []
-    for part, _ in f.squarefree_parts():
-        balls += [r.real for r in complex_root_balls(part, 64)]
-    return balls
-
-
-def _top_vector(x: Array) -> Array:
-    values, vectors = np.linalg.eig(x)
-    place = int(values.real.argmax())
-    vector = vectors[:, place].real
-    if np.abs(vector).max() < 1e-6:
-        vector = vectors[:, place].imag
-    return np.asarray(vector / np.abs(vector).max())
+        reach = max(reach, high)
+    return gaps

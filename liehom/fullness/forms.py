@@ -59,7 +59,9 @@ def null_witness(action: IsotropyAlgebra, form: Any) -> Certificate:
         return proposals.rational_witness(action, small.T, small @ form)
     (u, p), (w, n) = positive[0], negative[0]
     square = -p / n
-    above = int(field.to_float(square)) + 2
+    above = 2
+    while field.sign(square - above * above) >= 0:
+        above *= 2
     return proposals.algebraic_witness(
         action, [-square, field.zero, field.one], (0, above), [u.T, w.T], [u @ form, w @ form]
     )

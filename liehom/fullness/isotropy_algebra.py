@@ -12,7 +12,7 @@ from typing import Any, final
 
 from liehom.representations import Pair
 from liehom.scalars import ExactField
-from liehom.scalars.modular import independent_rows, pivot_columns
+from liehom.scalars.modular import independent_columns, independent_rows, pivot_columns
 
 
 @final
@@ -35,7 +35,7 @@ class IsotropyAlgebra:
 
     __slots__ = ("field", "matrices", "members", "pair", "quotient", "size", "traceless")
 
-    def __init__(self, pair: Pair, attempt: int = 0) -> None:
+    def __init__(self, pair: Pair) -> None:
         if not isinstance(pair.field, ExactField):
             raise TypeError("the exact decision needs an exact field")
         self.pair = pair
@@ -46,7 +46,7 @@ class IsotropyAlgebra:
         reduced = [self._traceless(a) for a in self.matrices]
         square = self.size * self.size
         flat = self.field.stack_rows([a.reshape(1, square) for a in reduced], square)
-        self.members = independent_rows(flat, attempt) if reduced else []
+        self.members = independent_rows(flat) if reduced else []
         self.traceless = [reduced[i] for i in self.members]
 
     def _traceless(self, matrix: Any) -> Any:
@@ -91,7 +91,8 @@ class IsotropyAlgebra:
             found = pivot_columns(self.action_rows(x, indices).T.modulo())
             if len(found) == self.size and found[0] == 0:
                 return [indices[i - 1] for i in found[1:]]
-        return None
+        found = independent_columns(self.action_rows(x).T)
+        return [i - 1 for i in found[1:]] if len(found) == self.size else None
 
     def _batches(self) -> Iterator[list[int]]:
         """A first batch of 4 d matrices spread over h, then all."""

@@ -18,7 +18,7 @@ from liehom.fullness.spinor_form import vector_module_form
 from liehom.representations.intertwiners import commutant, invariant_forms
 from liehom.representations.irreducibility import anticommutator_gram, combination, trace_form, traceless
 from liehom.scalars.forms import orthogonal_basis
-from liehom.scalars.modular import pivot_columns
+from liehom.scalars.modular import independent_columns, independent_rows
 
 
 def full_by_positive_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Certificate | None:
@@ -42,8 +42,8 @@ def certify_form(action: IsotropyAlgebra, form: Any) -> Certificate | None:
     keeping = field.stack_rows(rows, d * d).left_null_space()
     x = field.unit(d, 0).T
     moved = field.stack_rows([(a @ x).T for a in action.traceless], d)
-    found = pivot_columns(field.stack_rows([x.T, keeping @ moved], d).T.modulo())
-    if len(found) < d or found[0] != 0:
+    found = independent_columns(field.stack_rows([x.T, keeping @ moved], d).T)
+    if len(found) < d:
         return None
     chosen = keeping.select(rows=[i - 1 for i in found[1:]])
     return proposals.full(action, form, chosen @ action.quotient.subspace.select(rows=action.members), x)
@@ -94,11 +94,9 @@ def _derived(action: IsotropyAlgebra) -> list[Any]:
     """A basis of [L0, L0]."""
     field, square = action.field, action.size**2
     basis = action.traceless
-    span = field.zeros(0, square)
-    for i, a in enumerate(basis):
-        rows = [(a @ b - b @ a).reshape(1, square) for b in basis[:i]]
-        span = field.stack_rows([span, *rows], square).row_space() if rows else span
-    return [span.select(rows=[i]).reshape(action.size, action.size) for i in range(span.nrows)]
+    rows = [(a @ b - b @ a).reshape(1, square) for i, a in enumerate(basis) for b in basis[:i]]
+    table = field.stack_rows(rows, square)
+    return table.select(rows=independent_rows(table)).split_rows(action.size, action.size)
 
 
 def quaternionic_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Any:

@@ -44,14 +44,17 @@ def eta_of_witness(
     return values, extension, extension.stack_rows(moved, action.size).rank()
 
 
-def numerical_eta(action: IsotropyAlgebra, x: npt.NDArray[np.float64]) -> list[float]:
-    """A vector of V, rounded, as an element of g."""
-    return [float(v) for v in x @ action.quotient.lift.to_numpy()]
+def numerical_eta(action: IsotropyAlgebra, x: npt.NDArray[np.float64] | None) -> list[float] | None:
+    """A vector of V, rounded, as an element of g; None where numbers are too large for floats."""
+    lift = action.quotient.lift.to_numpy()
+    return [float(v) for v in x @ lift] if x is not None and np.isfinite(lift).all() else None
 
 
-def numerical_eta_of_commutant(action: IsotropyAlgebra, certificate: Certificate) -> list[float]:
-    """A vector of the invariant subspace where the commuting matrix has its larger real parts, rounded."""
+def numerical_eta_of_commutant(action: IsotropyAlgebra, certificate: Certificate) -> list[float] | None:
+    """A vector of the invariant subspace where the commuting matrix has its larger real parts, rounded, or None."""
     matrix = certificate.matrix("matrix", action.size, action.size).to_numpy()
+    if not np.isfinite(matrix).all():
+        return None
     values, vectors = np.linalg.eig(matrix)
     vector = vectors[:, int(values.real.argmax())]
     real = vector.real if np.abs(vector.real).max() > 1e-6 else vector.imag

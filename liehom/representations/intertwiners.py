@@ -15,7 +15,7 @@ from typing import Any, final
 
 from liehom.errors import InternalError, ShapeError
 from liehom.scalars import Field, Subspace
-from liehom.scalars.modular import pivot_columns
+from liehom.scalars.modular import pivot_columns, primitive_residues
 
 BATCH = 8
 
@@ -133,10 +133,10 @@ def _spin(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], 
         start = over.matrix([[rng.randint(-3, 3) for _ in range(d)]]).T if seeds < 3 else None
         if start is None:  # a stubborn module: take unit vectors in turn
             start = over.unit(d, seeds % d).T
-        if not _extends(over, vectors, start, d):
+        if not _extends(vectors, start, d):
             seeds_left = seeds >= 3
             start = _any_outside(over, vectors, d) if seeds_left else start
-            if not _extends(over, vectors, start, d):
+            if not _extends(vectors, start, d):
                 continue
         frontier = [len(vectors)]
         vectors.append(start)
@@ -151,14 +151,17 @@ def _inverse(over: Field, vectors: list[Any], d: int) -> Any:
     return over.stack_rows([v.T for v in vectors], d).T.inverse()
 
 
-def _extends(over: Field, vectors: list[Any], candidate: Any, d: int) -> bool:
-    table = over.stack_rows([v.T for v in [*vectors, candidate]], d)
-    return len(pivot_columns(table.modulo())) == len(vectors) + 1
+def _residues(vectors: Sequence[Any], d: int) -> Any:
+    """The columns as rows modulo a prime; a common factor or denominator of one of them does no harm."""
+    return primitive_residues([v.T for v in vectors], d)
+
+
+def _extends(vectors: list[Any], candidate: Any, d: int) -> bool:
+    return int(_residues([*vectors, candidate], d).rank()) == len(vectors) + 1
 
 
 def _any_outside(over: Field, vectors: list[Any], d: int) -> Any:
-    table = over.stack_rows([v.T for v in vectors], d)
-    pivots = set(pivot_columns(table.modulo()))
+    pivots = set(pivot_columns(_residues(vectors, d)))
     return over.unit(d, next(j for j in range(d) if j not in pivots)).T
 
 
@@ -172,9 +175,8 @@ def _grow(
     for start in range(0, len(pairs), 2 * d):
         batch = pairs[start : start + 2 * d]
         images = [source[g] @ vectors[p] for g, p in batch]
-        table = over.stack_rows([v.T for v in [*vectors, *images]], d)
         old = len(vectors)
-        for x in pivot_columns(table.T.modulo()):
+        for x in pivot_columns(_residues([*vectors, *images], d).transpose()):
             if x >= old:
                 added.append(len(vectors))
                 vectors.append(images[x - old])

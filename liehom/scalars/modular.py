@@ -1,7 +1,8 @@
 """Linear algebra modulo a prime: lower bounds for ranks, at machine speed.
 
 A rank modulo a prime (a residue map of the field onto F_p) is at most the true rank, so reaching a bound
-modulo p proves that it is reached.  Imports exact_matrix.
+modulo p proves that it is reached.  Where it is not reached the prime may be to blame (numbers of the input
+may be multiples of it): then the exact rank decides.  Imports exact_matrix.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
     return rank
 
 
-def independent_rows(matrix: ExactMatrix, attempt: int = 0) -> list[int]:
-    """Indices of rows that are independent (modulo a prime, hence truly), greedily from the first on.
+def independent_rows(matrix: ExactMatrix) -> list[int]:
+    """Indices of rows that are a basis of the span of all, proved.
 
     Examples
     --------
@@ -50,7 +51,47 @@ def independent_rows(matrix: ExactMatrix, attempt: int = 0) -> list[int]:
     >>> independent_rows(QQ.matrix([[1, 2], [2, 4], [0, 1]]))
     [0, 2]
     """
-    return pivot_columns(matrix.T.modulo(attempt))
+    return independent_columns(matrix.T)
+
+
+def independent_columns(matrix: ExactMatrix) -> list[int]:
+    """Indices of columns that are a basis of the span of all, proved; the first column is among them if it can be.
+
+    Pivots modulo a prime are independent; that there are as many as the rank is proved by the shape or by the
+    exact rank.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> independent_columns(QQ.matrix([[0, 1, 2, 0], [0, 2, 4, 2**61 - 1]]))
+    [1, 3]
+    """
+    found = pivot_columns(matrix.modulo())
+    starts = not matrix.ncols or found[:1] == [0] or matrix.select(columns=[0]).is_zero()
+    if starts and (len(found) == min(matrix.shape) or len(found) == matrix.rank()):
+        return found
+    return matrix.echelon()[1]
+
+
+def primitive_residues(rows: Sequence[ExactMatrix], ncols: int) -> Any:
+    """Rows modulo a prime (``flint.nmod_mat``), each cleared of its denominator and common factor before.
+
+    Parameters
+    ----------
+    rows : sequence of ExactMatrix
+        Row matrices (1, ncols) over one field, at least one.
+    """
+    return rows[0].field.stack_rows([_primitive(row) for row in rows], ncols).modulo()
+
+
+def _primitive(row: ExactMatrix) -> ExactMatrix:
+    content = flint.fmpz(0)
+    for part in row.parts:
+        for x in part.entries():
+            content = content.gcd(x)
+            if content == 1:
+                return row.cleared()
+    return row if content == 0 else row.scale(flint.fmpq(row.den, content))
 
 
 def pivot_columns(image: Any) -> list[int]:

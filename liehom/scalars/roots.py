@@ -6,18 +6,21 @@ Imports polynomial, balls, errors.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import flint
 
-from liehom.errors import FieldError, InternalError
+from liehom.errors import FieldError
 from liehom.scalars.balls import working_precision
-from liehom.scalars.exact import NumberField
+from liehom.scalars.exact import MAX_PRECISION, NumberField
 from liehom.scalars.polynomial import Polynomial
 
 
 def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
-    """Balls (``flint.acb``) around the complex roots of a squarefree polynomial.
+    """Balls (``flint.acb``) around the complex roots of a squarefree polynomial, disjoint over a number field.
+
+    The precision (bits) is doubled where it is not enough to tell the roots apart.
 
     Examples
     --------
@@ -25,11 +28,15 @@ def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
     >>> len(complex_root_balls(Polynomial(QQ, [1, 0, 0, 1]), 64))
     3
     """
-    with working_precision(precision):
-        if isinstance(f.field, NumberField):
+    if not isinstance(f.field, NumberField):
+        with working_precision(precision):
+            pairs: Any = flint.fmpq_poly(list(f.coefficients)).complex_roots()
+            return [root for root, _ in pairs]
+    while precision <= MAX_PRECISION:
+        with working_precision(precision), suppress(ValueError):  # flint's: the roots are not isolated
             return list(flint.acb_poly([f.field.ball(c, precision) for c in f.coefficients]).roots())
-        pairs: Any = flint.fmpq_poly(list(f.coefficients)).complex_roots()
-        return [root for root, _ in pairs]
+        precision *= 2
+    raise FieldError(f"the roots of {f} could not be isolated with {MAX_PRECISION} bits")
 
 
 def simplest_between(low: Any, high: Any) -> Any:
@@ -91,13 +98,14 @@ def largest_real_root_interval(f: Polynomial) -> tuple[Any, Any]:
     (0, 2)
     """
     total = f.count_real_roots()
+    if not total:
+        raise FieldError(f"{f} has no real root")
     bound = 1
-    while f.count_real_roots(None, bound) < total or f(bound) == 0:
+    while f.count_real_roots(-bound, bound) < total or f(bound) == 0 or f(-bound) == 0:
         bound *= 2
+    # f is squarefree: it changes its sign where it has one root, and bisection tells two roots apart in the end
     low, high = flint.fmpq(-bound), flint.fmpq(bound)
-    while f(low) == 0:
-        low -= 1
-    while f.count_real_roots(low, high) != 1 or f.field.sign(f(low)) * f.field.sign(f(high)) >= 0:
+    while f.count_real_roots(low, high) != 1:
         middle = (low + high) / 2
         while f(middle) == 0:
             middle = (middle + high) / 2
@@ -105,8 +113,6 @@ def largest_real_root_interval(f: Polynomial) -> tuple[Any, Any]:
             low = middle
         else:
             high = middle
-        if high - low < flint.fmpq(1, 10**60):
-            raise InternalError("the largest real root could not be isolated")
     while low.q > 4 or high.q > 4:
         wider = (flint.fmpq(low.p // low.q), flint.fmpq(high.p // high.q) + 1)
         if f(wider[0]) == 0 or f(wider[1]) == 0 or f.count_real_roots(*wider) != 1:
