@@ -52,8 +52,12 @@ if TYPE_CHECKING:
     from liehom.homogeneous import range_condition as range_condition
     from liehom.homogeneous import relative_invariant as relative_invariant
     from liehom.io import dump as dump
+    from liehom.io import from_json as from_json
     from liehom.io import load as load
+    from liehom.io import load_pair as load_pair
     from liehom.io import load_problem as load_problem
+    from liehom.io import loads as loads
+    from liehom.io import to_json as to_json
     from liehom.representations import Pair as Pair
     from liehom.representations import Representation as Representation
     from liehom.representations import adjoint as adjoint
@@ -85,7 +89,7 @@ _NAMES = {
         "NumericallyNotFull verify_certificate"
     ),
     "liehom.homogeneous": "failure_cone orbit_types range_condition relative_invariant",
-    "liehom.io": "dump load load_problem",
+    "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"
     ),

@@ -61,6 +61,75 @@ def failure_in_floats(table: StructureConstants) -> tuple[int, int] | None:
     return _all_pairs(dense)
 
 
+def products_fit(table: StructureConstants) -> bool:
+    """Whether `failure_in_slices` is exact for this table: no sum of its products leaves int64."""
+    size = max(map(abs, table.parts[0]), default=0)
+    return len(table.parts) == 1 and 3 * table.dimension * size * size < 1 << 62
+
+
+def failure_in_slices(table: StructureConstants) -> tuple[int, int] | None:
+    """The same as `failure_in_floats` for large tables, one slice c[i, :, :] at a time, with sparse products.
+
+    The generators are sums of two basis elements, whose adjoints are nearly as sparse as the table.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> failure_in_slices(lh.so(4).table) is None
+    True
+    """
+    n = table.dimension
+    whole = _whole(table)
+    slices = [_folded(whole[[i]], n) for i in range(n)]
+    rng = random.Random(n)
+    elements: list[Any] = []
+    adjoints: list[Any] = []
+    while len(elements) <= n + 20:
+        x = [0] * n
+        for a in rng.sample(range(n), 2):
+            x[a] = 1
+        adjoint = sum(slices[a] for a in range(n) if x[a])  # row j: [x, e_j]
+        failing = _first_defect_in_slices(whole, slices, adjoint)
+        if failing is not None:
+            return failing
+        elements.append(table.field.matrix([x]))
+        adjoints.append(table.field.from_integers(adjoint.toarray().ravel().tolist(), n, n))  # type: ignore[attr-defined]
+        if len(elements) > 1 and invariant_hull_rank(table.field.stack_rows(elements, n), adjoints) == n:
+            return None
+    failures = (_first_defect_in_slices(whole, slices, block) for block in slices)
+    return next((failing for failing in failures if failing is not None), None)
+
+
+def _whole(table: StructureConstants) -> Any:
+    """The table as a sparse int64 matrix (n, n * n) with c[i, j, k] in row i, column j n + k."""
+    from scipy import sparse
+
+    n = table.dimension
+    rows = np.concatenate([table.i, table.j])
+    columns = np.concatenate([table.j * n + table.k, table.i * n + table.k])
+    first = np.array(table.parts[0], dtype=np.int64)
+    return sparse.coo_array((np.concatenate([first, -first]), (rows, columns)), shape=(n, n * n)).tocsr()
+
+
+def _folded(row: Any, n: int) -> Any:
+    """A sparse row of length n * n as a matrix (n, n)."""
+    from scipy import sparse
+
+    found = row.tocoo()
+    return sparse.coo_array((found.data, (found.col // n, found.col % n)), shape=(n, n)).tocsr()
+
+
+def _first_defect_in_slices(whole: Any, slices: list[Any], adjoint: Any) -> tuple[int, int] | None:
+    n = len(slices)
+    for i, block in enumerate(slices):
+        # rows j: [x, [e_i, e_j]] - [e_i, [x, e_j]] - [[x, e_i], e_j]
+        defect = block @ adjoint - adjoint @ block - _folded(adjoint[[i]] @ whole, n)
+        wrong = np.flatnonzero(defect.data)
+        if len(wrong):
+            return i, int(np.searchsorted(defect.indptr, wrong[0], side="right")) - 1
+    return None
+
+
 def _first_defect(dense: Any, adjoint: Any) -> tuple[int, int] | None:
     """(i, j) with [x, [e_i, e_j]] != [[x, e_i], e_j] + [e_i, [x, e_j]], or None."""
     n = len(dense)

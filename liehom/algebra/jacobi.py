@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from liehom.algebra.derivations import derivations_fit, failure_in_floats
+from liehom.algebra.derivations import derivations_fit, failure_in_floats, failure_in_slices, products_fit
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.errors import JacobiError
 from liehom.scalars import FloatField
@@ -21,6 +21,7 @@ from liehom.scalars.modular import invariant_hull_rank
 from liehom.scalars.sparse import SparseInteger
 
 SPARSE_TERMS = 30_000
+HELD_TERMS = 50_000_000
 
 
 def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
@@ -47,11 +48,13 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     over_rationals = len(table.parts) == 1
     if terms <= SPARSE_TERMS or (n > 160 and not over_rationals):
         triple = _failure_sparse_any_field(table)
-    elif over_rationals and terms * 400 < n**4 * 4 + n**3 * 300:  # costs in tenths of a nanosecond
+    elif over_rationals and terms < HELD_TERMS and terms * 400 < n**4 * 4 + n**3 * 300:  # in tenths of a nanosecond
         triple = _failure_sparse(table)
     elif over_rationals and derivations_fit(table):
         triple = _first_in(table, failure_in_floats(table))
-    elif n > 160:
+    elif over_rationals and products_fit(table):
+        triple = _first_in(table, failure_in_slices(table))
+    elif over_rationals and n > 160:
         triple = _failure_sparse(table)
     else:
         triple = _failure_by_generators(table)

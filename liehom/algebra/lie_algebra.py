@@ -280,9 +280,8 @@ class LieAlgebra:
         matrix = rows if hasattr(rows, "nrows") else self.field.matrix(rows, (n, n))
         if matrix.shape != (n, n):
             raise ShapeError(f"a change of basis has shape {(n, n)}, got {matrix.shape}")
-        blocks = self._constants.contract(matrix, matrix, matrix.inverse()) if n else []
         # An isomorphic copy of a Lie algebra: the axioms hold.
-        return LieAlgebra(table_from_blocks(self.field, n, blocks), name=name, check=False)
+        return LieAlgebra(self._constants.changed(matrix, matrix.inverse()), name=name, check=False)
 
     def over(self, field: Field) -> LieAlgebra:
         """The same structure constants read in another field that contains them.

@@ -185,6 +185,21 @@ class StructureConstants:
         row, column = found
         return column // out.ncols, row
 
+    def changed(self, rows: Any, inverse: Any) -> StructureConstants:
+        """The table in the basis given by the rows (n, n), whose inverse is given: an isomorphic algebra."""
+        n, zero = self.dimension, self.field.zero
+        if n and not self.is_dense() and self.field.degree == 1:
+            product = self._contract_sparse(rows, rows, inverse)  # (b, a n + c)
+            i, j, k = product.columns // n, product.rows, product.columns % n
+            upper = i < j
+            values = product.values[upper].tolist()
+            return StructureConstants.from_integers(self.field, n, i[upper], j[upper], k[upper], values, product.den)
+        entries = []
+        for a, block in enumerate(self.contract(rows, rows, inverse)):
+            found = enumerate(block.entries())
+            entries += [(a, place // n, place % n, v) for place, v in found if place >= (a + 1) * n and v != zero]
+        return StructureConstants(self.field, n, entries)
+
     def _contract_sparse(self, left: Any, right: Any, out: Any) -> SparseInteger:
         """Rows b, columns a * r + c."""
         n, p, r = self.dimension, left.nrows, out.ncols

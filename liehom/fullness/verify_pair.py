@@ -165,7 +165,8 @@ def _checked_constants(
         constants.append(field.convert(c))
     indices = np.array(places, dtype=np.int64).reshape(-1, 3)
     first, second, third = indices.T
-    if np.any((first < 0) | (first >= second) | (second >= n) | (third < 0) | (third >= n)) or len(set(places)) < len(places):
+    outside = (first < 0) | (first >= second) | (second >= n) | (third < 0) | (third >= n)
+    if np.any(outside) or len(set(places)) < len(places):
         raise CertificateError("pair", "a structure constant is out of range or given twice")
     return indices, constants
 

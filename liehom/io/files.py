@@ -54,6 +54,15 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
     ------
     FormatError
         As `load`, and for a representation file without a point.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> import liehom as lh
+    >>> path = os.path.join(tempfile.mkdtemp(), "sphere.json")
+    >>> lh.dump(lh.pair("so(3)/so(2)"), path)
+    >>> load_pair(path)
+    <pair of dimensions 3/1 over QQ>
     """
     found = load(path)
     if not isinstance(found, Pair):

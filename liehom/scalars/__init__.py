@@ -7,7 +7,7 @@ what a user writes), `polynomial` (root counts), `balls` (certain signs), `float
 
 from liehom.scalars.algebraic_number import AlgebraicNumber as AlgebraicNumber
 from liehom.scalars.exact import NumberField as NumberField
-from liehom.scalars.exact_matrix import ExactField as ExactField
+from liehom.scalars.exact_field import ExactField as ExactField
 from liehom.scalars.exact_matrix import ExactMatrix as ExactMatrix
 from liehom.scalars.field import Field as Field
 from liehom.scalars.field import Matrix as Matrix

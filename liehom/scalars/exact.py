@@ -17,7 +17,7 @@ from liehom.errors import FieldError
 from liehom.scalars import grammar
 from liehom.scalars.algebraic_number import AlgebraicNumber
 from liehom.scalars.balls import isolate_real_root, root_ball, working_precision
-from liehom.scalars.exact_matrix import ExactField
+from liehom.scalars.exact_field import ExactField
 from liehom.scalars.rational import QQ, prime, rational_from_text, rational_number, refused
 
 MAX_PRECISION = 1 << 22

@@ -14,7 +14,8 @@ from typing import Any, final
 import flint
 
 from liehom.errors import FieldError, ShapeError
-from liehom.scalars.exact_matrix import ExactField, ExactMatrix
+from liehom.scalars.exact_field import ExactField
+from liehom.scalars.exact_matrix import ExactMatrix
 
 
 @final

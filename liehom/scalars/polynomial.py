@@ -15,7 +15,7 @@ import flint
 
 from liehom.errors import FieldError, InternalError
 from liehom.scalars.exact import NumberField
-from liehom.scalars.exact_matrix import ExactField
+from liehom.scalars.exact_field import ExactField
 from liehom.scalars.field import Scalar
 from liehom.scalars.rational import QQ
 

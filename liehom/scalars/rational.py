@@ -19,7 +19,8 @@ from liehom.errors import FieldError
 from liehom.scalars import grammar
 from liehom.scalars.algebraic_number import AlgebraicNumber
 from liehom.scalars.balls import working_precision
-from liehom.scalars.exact_matrix import FIRST_PRIME, ExactField
+from liehom.scalars.exact_field import ExactField
+from liehom.scalars.exact_matrix import FIRST_PRIME
 from liehom.scalars.field import Field, Scalar
 
 _INTEGER = re.compile(r"[-+]?[0-9]+", re.ASCII)

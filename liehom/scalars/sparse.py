@@ -12,7 +12,8 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from liehom.scalars.exact_matrix import ExactField, ExactMatrix
+from liehom.scalars.exact_field import ExactField
+from liehom.scalars.exact_matrix import ExactMatrix
 
 LIMIT = 1 << 62
 IntArray = npt.NDArray[np.int64]
