@@ -176,6 +176,14 @@ class Certificate:
     def __reduce__(self) -> tuple[Any, ...]:
         return Certificate.from_json, (self.to_json(),)
 
+    def __str__(self) -> str:
+        lines = [f"certificate of kind {self.kind!r} over {self.field.name}"]
+        for name, value in self.to_json().items():
+            if name in self.fields:
+                text = str(value).replace("'", "")
+                lines.append(f"  {name}: {text if len(text) <= 100 else text[:97] + '...'}")
+        return "\n".join(lines)
+
     def __repr__(self) -> str:
         return f"<certificate of kind {self.kind!r} over {self.field.name}>"
 

@@ -94,7 +94,7 @@ def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | Non
     rng = random.Random(seed)
     x, certificate = _sample(action, rng)
     if certificate is not None:
-        return _not_full(action, certificate, "a sample point is a counterexample")
+        return _not_full(action, certificate, _few_directions(action))
     report("invariant forms")
     forms = invariant_forms(action.traceless, action.size, action.field)
     if forms.symmetric:
@@ -117,6 +117,13 @@ def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | Non
     return _by_dominance(action, seed, report)
 
 
+def _few_directions(action: IsotropyAlgebra) -> str:
+    size = action.dimension + 1
+    if size < action.size:
+        return f"rho(h) + R has dimension {size}, fewer than the {action.size} directions of g/h, at every eta"
+    return "h moves a sample point in too few directions"
+
+
 def _sample(action: IsotropyAlgebra, rng: random.Random) -> tuple[Any, Certificate | None]:
     """A point of rank d, or a rational witness: random points first, then the axes."""
     first = None
@@ -135,7 +142,9 @@ def _by_forms(action: IsotropyAlgebra, symmetric: tuple[Any, ...], x: Any) -> Ve
     if certificate.full:
         dimension = len(commutant(action.traceless, action.size, action.field))
         return Full(action.pair, certificate, full_reason(action, dimension, compact=True))
-    kind = "an indefinite or degenerate form" if len(symmetric) == 1 else f"{len(symmetric)} independent forms"
+    kind = f"{len(symmetric)} independent symmetric forms"
+    if len(symmetric) == 1:
+        kind = "a symmetric form with {} positive, {} negative and {} zero squares".format(*symmetric[0].signature())
     return _not_full(action, certificate, f"the isotropy keeps {kind} up to scale, and the rank drops on a null vector")
 
 

@@ -24,7 +24,8 @@ def trivial(action_field: Any) -> Certificate:
 
 
 def rational_witness(action: IsotropyAlgebra, x: Any, phi: Any) -> Certificate:
-    """NOT FULL: a column x of V over the input field and a row phi with phi(L x) = 0."""
+    """NOT FULL: a column x of V over the input field and a row phi with phi(L x) = 0; both made primitive."""
+    x, phi = x.primitive(), phi.primitive()
     return Certificate(
         "witness",
         {

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from math import lcm
+from math import gcd, lcm
 from typing import TYPE_CHECKING, Any, final
 
 import flint
@@ -116,6 +116,14 @@ class ExactMatrix(Matrix):
     def cleared(self) -> ExactMatrix:
         """The matrix times its common denominator."""
         return self if self.den == 1 else ExactMatrix(self._field, self.parts, 1)
+
+    def primitive(self) -> ExactMatrix:
+        """The positive multiple with integer coordinates that have no common factor; zero stays zero."""
+        common = gcd(*(int(x) for a in self.parts for x in a.entries()))
+        if common in (0, 1):
+            return self.cleared()
+        integers = (flint.fmpq_mat(a) / common for a in self.parts)
+        return ExactMatrix(self._field, tuple(a.numer_denom()[0] for a in integers), 1)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ExactMatrix):
