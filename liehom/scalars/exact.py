@@ -196,8 +196,13 @@ class NumberField(ExactField):
             return self._value_ball(value.polynomial, precision)
 
     def to_float(self, value: AlgebraicNumber) -> float:
-        with working_precision(128):
-            return float(self._value_ball(value.polynomial, 128))
+        precision = 128
+        while precision < MAX_PRECISION:
+            ball = self.ball(value, precision)
+            if ball.is_exact() or ball.rel_accuracy_bits() > 60:
+                break
+            precision *= 2
+        return float(ball)
 
     def coordinates(self, value: AlgebraicNumber) -> list[Any]:
         return value.coordinates
