@@ -1,6 +1,7 @@
-"""Whether ad x is a derivation, for integer tables small enough that float64 products are exact.
+"""Whether ad x is a derivation for the x of a generating set: exact products in float64 or sparse int64.
 
-Products of integers in float64 are exact as long as every sum stays below 2^53; the bound is checked before.
+Products of integers in float64 are exact as long as every sum stays below 2^53: the bound is checked before, or
+the numbers are reduced modulo primes below 2^22.
 Imports structure_constants, scalars.
 """
 
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from liehom.algebra.structure_constants import StructureConstants
-from liehom.scalars.modular import invariant_hull_rank
+from liehom.scalars.modular import invariant_hull_rank, small_residues
 
 EXACT = 1 << 53
 WEIGHT = 2
@@ -38,27 +39,64 @@ def failure_in_floats(table: StructureConstants) -> tuple[int, int] | None:
     >>> failure_in_floats(lh.so(4).table) is None
     True
     """
-    n = table.dimension
-    dense = np.zeros((n, n, n))
-    values = np.array(table.parts[0], dtype=np.float64)
-    dense[table.i, table.j, table.k] = values
-    dense[table.j, table.i, table.k] = -values
-    rng = random.Random(n)
-    elements: list[Any] = []
-    adjoints: list[Any] = []
-    while len(elements) <= n + 20:
-        x = [rng.randint(-WEIGHT, WEIGHT) for _ in range(n)]
-        adjoint = np.tensordot(np.array(x, dtype=np.float64), dense, 1)  # row j: [x, e_j]
-        failing = _first_defect(dense, adjoint)
+    dense = _dense(table, np.array(table.parts[0], dtype=np.float64))
+    for x in generators(table):
+        failing = _first_defect(dense, np.tensordot(x, dense, 1))
         if failing is not None:
             return failing
-        elements.append(table.field.matrix([x]))
-        integers = adjoint.astype(np.int64).ravel().tolist()
-        adjoints.append(table.field.from_integers(integers, n, n))  # type: ignore[attr-defined]
-        span = table.field.stack_rows(elements, n)
-        if invariant_hull_rank(span, adjoints) == n:
-            return None
-    return _all_pairs(dense)
+    return None
+
+
+def failure_modulo_primes(table: StructureConstants) -> tuple[int, int] | None:
+    """The same for numbers of any size and over number fields, modulo enough primes to be a proof.
+
+    An entry of the defect is an algebraic integer of bounded norm; a prime p with a residue map b -> r kills it
+    only if p divides its norm, so if all entries vanish at primes whose product exceeds the bound, they are 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> failure_modulo_primes(lh.so(4).over(lh.number_field("sqrt(2)")).table) is None
+    True
+    """
+    field, n = table.field, table.dimension
+    size = max((abs(v) for part in table.parts for v in part), default=0)
+    bound = 3 * n * n * WEIGHT * size * size
+    elements = generators(table)
+    for p, root in small_residues(field, bound):  # type: ignore[arg-type]
+        values = np.zeros(len(table))
+        power = 1
+        for part in table.parts:
+            values = (values + np.array([v % p for v in part], dtype=np.float64) * power) % p
+            power = power * root % p
+        dense = _dense(table, values) % p
+        for x in elements:
+            failing = _first_defect(dense, np.tensordot(x, dense, 1) % p, p)
+            if failing is not None:
+                return failing
+    return None
+
+
+def generators(table: StructureConstants) -> list[Any]:
+    """Integer vectors (floats with small integer values) that generate the algebra, by a rank modulo a prime."""
+    n, field = table.dimension, table.field
+    rng = random.Random(n)
+    elements: list[list[int]] = []
+    adjoints: list[Any] = []
+    while len(elements) <= n + 20:
+        elements.append([rng.randint(-WEIGHT, WEIGHT) for _ in range(n)])
+        rows = field.matrix(elements)
+        adjoints.append(table.adjoint(rows.select(rows=[len(elements) - 1])).T)
+        if invariant_hull_rank(rows, adjoints) == n:
+            return [np.array(x, dtype=np.float64) for x in elements]
+    return list(np.eye(n))
+
+
+def _dense(table: StructureConstants, values: Any) -> Any:
+    dense = np.zeros((table.dimension,) * 3)
+    dense[table.i, table.j, table.k] = values
+    dense[table.j, table.i, table.k] = -values
+    return dense
 
 
 def products_fit(table: StructureConstants) -> bool:
@@ -130,8 +168,8 @@ def _first_defect_in_slices(whole: Any, slices: list[Any], adjoint: Any) -> tupl
     return None
 
 
-def _first_defect(dense: Any, adjoint: Any) -> tuple[int, int] | None:
-    """(i, j) with [x, [e_i, e_j]] != [[x, e_i], e_j] + [e_i, [x, e_j]], or None."""
+def _first_defect(dense: Any, adjoint: Any, p: int = 0) -> tuple[int, int] | None:
+    """(i, j) with [x, [e_i, e_j]] != [[x, e_i], e_j] + [e_i, [x, e_j]], modulo p where it is given; or None."""
     n = len(dense)
     step = max(1, CHUNK // (n * n))
     flat = dense.reshape(n, n * n)
@@ -140,15 +178,8 @@ def _first_defect(dense: Any, adjoint: Any) -> tuple[int, int] | None:
         outer = dense[rows] @ adjoint
         first = (adjoint[rows] @ flat).reshape(-1, n, n)
         second = np.matmul(adjoint, dense[rows])  # sum_l adjoint[j, l] c[i, l, m]
-        wrong = np.argwhere(np.abs(outer - first - second).max(axis=2) > 0)
+        defect = (outer % p - first % p - second % p) % p if p else outer - first - second
+        wrong = np.argwhere(np.abs(defect).max(axis=2) > 0)
         if len(wrong):
             return int(wrong[0, 0]) + low, int(wrong[0, 1])
-    return None
-
-
-def _all_pairs(dense: Any) -> tuple[int, int] | None:
-    for element in dense:
-        failing = _first_defect(dense, element)
-        if failing is not None:
-            return failing
     return None

@@ -8,16 +8,21 @@ rank modulo a prime, which bounds the true rank from below.  Imports structure_c
 
 from __future__ import annotations
 
-import random
 from typing import Any
 
 import numpy as np
 
-from liehom.algebra.derivations import derivations_fit, failure_in_floats, failure_in_slices, products_fit
+from liehom.algebra.derivations import (
+    LARGEST,
+    derivations_fit,
+    failure_in_floats,
+    failure_in_slices,
+    failure_modulo_primes,
+    products_fit,
+)
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.errors import JacobiError
 from liehom.scalars import FloatField
-from liehom.scalars.modular import invariant_hull_rank
 from liehom.scalars.sparse import SparseInteger
 
 SPARSE_TERMS = 30_000
@@ -46,18 +51,18 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
         return
     n, terms = table.dimension, table.jacobi_terms()
     over_rationals = len(table.parts) == 1
-    if terms <= SPARSE_TERMS or (n > 160 and not over_rationals):
+    if terms <= SPARSE_TERMS:
         triple = _failure_sparse_any_field(table)
     elif over_rationals and terms < HELD_TERMS and terms * 400 < n**4 * 4 + n**3 * 300:  # in tenths of a nanosecond
         triple = _failure_sparse(table)
-    elif over_rationals and derivations_fit(table):
+    elif derivations_fit(table):
         triple = _first_in(table, failure_in_floats(table))
-    elif over_rationals and products_fit(table):
+    elif n <= LARGEST:
+        triple = _first_in(table, failure_modulo_primes(table))
+    elif products_fit(table):
         triple = _first_in(table, failure_in_slices(table))
-    elif over_rationals and n > 160:
-        triple = _failure_sparse(table)
     else:
-        triple = _failure_by_generators(table)
+        triple = _failure_sparse_any_field(table)
     if triple is not None:
         _fail(table, triple, _cyclic_sum(_brackets(table), table.field.zero, *triple), names)
 
@@ -148,36 +153,6 @@ def _uncancelled(i: Any, j: Any, k: Any, m: Any, values: Any, n: int) -> Triple 
     return place // (n * n), place // n % n, place % n
 
 
-def _failure_by_generators(table: StructureConstants) -> Triple | None:
-    n = table.dimension
-    dense = table.dense()
-    flat = dense.reshape(n, n * n)
-    elements: list[Any] = []
-    adjoints: list[Any] = []
-    rng = random.Random(n)
-    while not elements or not _generate(table, elements, adjoints):
-        x = table.field.matrix([[rng.randint(-2, 2) for _ in range(n)]])
-        adjoint = (x @ flat).reshape(n, n)  # row j: [x, e_j]
-        outer = (dense @ adjoint).reshape(n, n * n)  # (i, j m): [x, [e_i, e_j]]_m
-        inner = (adjoint @ flat).reshape(n * n, n)  # (i j, m): [[x, e_i], e_j]_m
-        swapped = inner.select(rows=[j * n + i for i in range(n) for j in range(n)])
-        defect = outer.reshape(n * n, n) - (inner - swapped)
-        if not defect.is_zero():
-            return _failing_triple(table, defect)
-        elements.append(x)
-        adjoints.append(adjoint)
-        if len(elements) > n + 20:
-            return _failure_sparse_any_field(table)
-    return None
-
-
-def _failing_triple(table: StructureConstants, defect: Any) -> Triple | None:
-    """A triple that fails, given that ad x is no derivation on the pairs (i, j) with a non-zero row of `defect`."""
-    n = table.dimension
-    flat = next(x for part in defect.parts for x, v in enumerate(part.entries()) if v)
-    return _first_in(table, divmod(flat // n, n))
-
-
 def _first_in(table: StructureConstants, pair: tuple[int, int] | None) -> Triple | None:
     """A failing triple with this pair in it, if ad x is no derivation there for some x; None for None."""
     if pair is None:
@@ -186,12 +161,6 @@ def _first_in(table: StructureConstants, pair: tuple[int, int] | None) -> Triple
     brackets, zero = _brackets(table), table.field.zero
     others = (k for k in range(n) if k not in (i, j) and _cyclic_sum(brackets, zero, i, j, k))
     return tuple(sorted((i, j, next(others))))  # type: ignore[return-value]  # x is a combination of basis elements, so one of them fails
-
-
-def _generate(table: StructureConstants, elements: list[Any], adjoints: list[Any]) -> bool:
-    """Whether the chosen elements generate: the brackets with them, applied to their span, reach everything."""
-    span = table.field.stack_rows(elements, table.dimension)
-    return invariant_hull_rank(span, adjoints) == table.dimension
 
 
 def _check_float(table: StructureConstants, names: tuple[str, ...]) -> None:

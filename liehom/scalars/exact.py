@@ -216,6 +216,9 @@ class NumberField(ExactField):
             self._powers[exponent] = [int(power[i]) for i in range(self.degree)]
         return self._powers[exponent]
 
+    def modulus_coefficients(self) -> list[int]:
+        return [int(c) for c in self._modulus.coeffs()]
+
     def residue(self, attempt: int = 0) -> tuple[int, int]:
         index = -1
         while len(self._residues) <= attempt:

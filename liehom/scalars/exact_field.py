@@ -45,6 +45,10 @@ class ExactField(Field):
         """The integer coordinates of a power (degree <= exponent <= 2 degree - 2) of the integral generator."""
 
     @abstractmethod
+    def modulus_coefficients(self) -> list[int]:
+        """The ascending integer coefficients of the monic minimal polynomial of the integral generator."""
+
+    @abstractmethod
     def residue(self, attempt: int = 0) -> tuple[int, int]:
         """A prime p and the image of the integral generator in F_p; other `attempt`, other prime."""
 

@@ -7,11 +7,12 @@ may be multiples of it): then the exact rank decides.  Imports exact_matrix.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import flint
 
+from liehom.scalars.exact_field import ExactField
 from liehom.scalars.exact_matrix import ExactMatrix
 
 
@@ -40,6 +41,54 @@ def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
         before = rank
         current, rank = _row_basis(_stacked([current, *[current * image for image in images]]))
     return rank
+
+
+def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
+    """Primes p < 2^22 with residue maps b -> r of the field, enough to recognise zero.
+
+    A sum of products of two elements of Z[b] that all of these maps kill is zero.
+
+    Parameters
+    ----------
+    field : ExactField
+    bound : int
+        The sum over all terms of |integer factors| times the product of the largest coordinates.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> [p for p, _ in small_residues(QQ, 10**10)]
+    [4194301, 4194287]
+    """
+    modulus = field.modulus_coefficients()
+    remaining = norm_bound(modulus, bound)
+    p = 1 << 22
+    while remaining:
+        p -= 1
+        while not flint.fmpz(p).is_prime():
+            p -= 1
+        image = flint.nmod_poly([c % p for c in modulus], p)
+        linear = [f for f, _ in image.factor()[1] if f.degree() == 1] if len(modulus) > 2 else []
+        if len(modulus) > 2 and not linear:
+            continue
+        root = (-int(linear[0][0]) * pow(int(linear[0][1]), -1, p)) % p if linear else 0
+        yield p, root
+        remaining //= p
+
+
+def norm_bound(modulus: Sequence[int], bound: int) -> int:
+    """A bound for twice the norm of sums of products of two elements, given the bound for coordinates of size 1.
+
+    Every conjugate of the generator is at most 1 + max |coefficient| (Cauchy), so a conjugate of an element with
+    coordinates of size s is at most s (1 + beta + ... + beta^(m-1)).
+    """
+    m = len(modulus) - 1
+    if m == 1:
+        return 2 * bound
+    beta = 1 + max(abs(c) for c in modulus)
+    spread = sum(beta**s for s in range(m))
+    norm: int = (bound * spread * spread) ** m
+    return 2 * norm
 
 
 def independent_rows(matrix: ExactMatrix) -> list[int]:

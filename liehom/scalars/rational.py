@@ -140,6 +140,9 @@ class RationalField(ExactField):
     def power_coordinates(self, exponent: int) -> list[int]:
         return [1]
 
+    def modulus_coefficients(self) -> list[int]:
+        return [0, 1]
+
     def residue(self, attempt: int = 0) -> tuple[int, int]:
         return prime(attempt), 0
 
