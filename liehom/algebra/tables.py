@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from liehom.algebra.structure_constants import StructureConstants
-from liehom.errors import ShapeError, StructureError
-from liehom.scalars import QQ, RR, AlgebraicNumber, Field, common_field
+from liehom.errors import FieldError, ParseError, ShapeError, StructureError
+from liehom.scalars import QQ, RR, AlgebraicNumber, Field, common_field, grammar, number_field
 
 
 def field_of_values(values: Iterable[Any]) -> Field:
@@ -23,15 +23,31 @@ def field_of_values(values: Iterable[Any]) -> Field:
     >>> field_of_values([1, "1/2"]), field_of_values(["sqrt(2)"]), field_of_values([0.5])
     (QQ, QQ(sqrt(2)), float64)
     """
-    texts = []
+    texts: list[str] = []
+    others: dict[str, Any] = {}
     for value in values:
         if isinstance(value, (float, np.floating)):
             return RR
         if isinstance(value, AlgebraicNumber):
             return value.field
-        if isinstance(value, str) or hasattr(value, "free_symbols"):
+        if hasattr(value, "free_symbols") and not _is_radical_text(str(value)):
+            # A sympy number beyond square roots: its own field; several of them need `field`.
+            others = {str(value): value, **others}
+        elif isinstance(value, str) or hasattr(value, "free_symbols"):
             texts.append(str(value))
-    return common_field(texts)
+    if not others:
+        return common_field(texts)
+    if len(others) > 1 or common_field(texts) != QQ:
+        raise FieldError(f"the values {', '.join(others)} need a common field: give it, made by liehom.number_field")
+    return number_field(next(iter(others.values())))
+
+
+def _is_radical_text(text: str) -> bool:
+    try:
+        grammar.parse(text)
+    except ParseError:
+        return False
+    return True
 
 
 def field_of_constants(constants: Any) -> Field:

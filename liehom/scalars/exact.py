@@ -8,6 +8,7 @@ products stay integral.  Imports algebraic_number, balls, exact_matrix, grammar,
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import Any, final
 
@@ -125,7 +126,7 @@ class NumberField(ExactField):
         if rational is not None:
             return self._embedded(rational)
         if getattr(value, "is_real", False) and hasattr(value, "free_symbols"):  # a sympy expression
-            return self._evaluate(str(value))
+            return self._from_sympy(value)
         raise refused(value, self)
 
     def _embedded(self, rational: Any) -> AlgebraicNumber:
@@ -137,19 +138,40 @@ class NumberField(ExactField):
         made = grammar.evaluate(tree, lambda n: self._embedded(flint.fmpq(n)), names, {"sqrt": self.sqrt})
         return self.convert(made)
 
+    def _from_sympy(self, expression: Any) -> AlgebraicNumber:
+        """A sympy number made of rationals, sums, products and rational powers."""
+        rational = rational_number(expression)
+        if rational is not None:
+            return self._embedded(rational)
+        parts = expression.args
+        if expression.is_Add:
+            return sum((self._from_sympy(x) for x in parts), self.zero)
+        if expression.is_Mul:
+            return functools.reduce(lambda a, b: a * b, (self._from_sympy(x) for x in parts))
+        if expression.is_Pow and expression.exp.is_Rational:
+            exponent = expression.exp
+            return self.root(self._from_sympy(expression.base), int(exponent.q)) ** int(exponent.p)
+        raise refused(expression, self)
+
     def sqrt(self, value: AlgebraicNumber) -> AlgebraicNumber:
         """The non-negative square root; `FieldError` if it is not in the field."""
+        return self.root(value, 2)
+
+    def root(self, value: AlgebraicNumber, k: int) -> AlgebraicNumber:
+        """The non-negative k-th root of a non-negative element; `FieldError` if it is not in the field."""
         from liehom.scalars.polynomial import Polynomial  # the only use; polynomial imports this module
 
+        what = f"sqrt({value})" if k == 2 else f"the root of order {k} of {value}"
         if self.sign(value) < 0:
-            raise FieldError(f"sqrt({value}) is not real")
-        if value == 0:
+            raise FieldError(f"{what} is not real" if k % 2 == 0 else f"{what}: write minus the root of {-value}")
+        if value == 0 or k == 1:
             return value
-        for factor, _ in Polynomial(self, [-value, self.zero, self.one]).factor():
+        for factor, _ in Polynomial(self, [-value, *[self.zero] * (k - 1), self.one]).factor():
             if factor.degree == 1:
                 root: AlgebraicNumber = -factor.coefficients[0] / factor.coefficients[1]
-                return root if self.sign(root) > 0 else -root
-        raise FieldError(f"sqrt({value}) is not in {self.name}")
+                if self.sign(root) > 0 or k % 2 == 0:
+                    return root if self.sign(root) > 0 else -root
+        raise FieldError(f"{what} is not in {self.name}")
 
     def format(self, value: AlgebraicNumber) -> str:
         terms = []

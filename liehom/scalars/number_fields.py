@@ -174,7 +174,7 @@ def _field_of_sympy(expression: Any, name: str) -> RationalField | NumberField:
         raise FieldError(f"{expression} is not a real number")
     try:
         polynomial = sympy.minimal_polynomial(expression, polys=True)
-    except (NotImplementedError, sympy.polys.polyerrors.PolynomialError) as error:
+    except (NotImplementedError, sympy.polys.polyerrors.BasePolynomialError) as error:
         raise FieldError(f"{expression} is not recognised as an algebraic number: {error}") from None
     coefficients = [flint.fmpq(int(c.p), int(c.q)) for c in reversed(polynomial.all_coeffs())]
     if len(coefficients) == 2:
