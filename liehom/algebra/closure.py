@@ -14,7 +14,7 @@ from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.sparse_commutators import entries_of, private_places, sparse_commutator_table
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.algebra.tables import field_of_values
-from liehom.errors import DependentRowsError, InputError, NotClosedError, ShapeError
+from liehom.errors import DependentRowsError, FieldError, InputError, NotClosedError, ShapeError
 from liehom.scalars import QQ, ExactField, Field
 
 
@@ -47,9 +47,15 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
     ------
     ShapeError
         If they are not square or of unequal shapes; the message gives the index.
+    FieldError
+        If matrices are over another field than the one asked for, or than the first.
     """
     given = list(matrices)
     if given and all(hasattr(a, "nrows") for a in given):
+        over = field if field is not None else given[0].field
+        for i, a in enumerate(given):
+            if a.field != over:
+                raise FieldError(f"matrix {i} is over {a.field.name}, not over {over.name}; use over()")
         made = given
     elif given and all(_is_integer_square(a) for a in given) and (field is None or isinstance(field, ExactField)):
         over = QQ if field is None else field

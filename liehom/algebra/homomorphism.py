@@ -49,7 +49,7 @@ class Homomorphism:
         shape = (target.dimension, source.dimension)
         self.source = source
         self.target = target
-        self.matrix = matrix if hasattr(matrix, "nrows") else source.field.matrix(matrix, shape)
+        self.matrix = source.field.read(matrix, shape)
         if self.matrix.shape != shape:
             raise ShapeError(f"the matrix of a homomorphism has shape {shape}, got {self.matrix.shape}")
         if check:

@@ -181,7 +181,7 @@ class LieAlgebra:
         [0, 0]
         [0, 2]
         """
-        return self._constants.adjoint(x if hasattr(x, "nrows") else self.row(x))
+        return self._constants.adjoint(self.field.read(x) if hasattr(x, "nrows") else self.row(x))
 
     def killing_form(self) -> Any:
         """The matrix (n, n) of the Killing form, tr(ad e_i ad e_j).
@@ -277,7 +277,7 @@ class LieAlgebra:
         array([0, 0, 2], dtype=object)
         """
         n = self.dimension
-        matrix = rows if hasattr(rows, "nrows") else self.field.matrix(rows, (n, n))
+        matrix = self.field.read(rows, (n, n))
         if matrix.shape != (n, n):
             raise ShapeError(f"a change of basis has shape {(n, n)}, got {matrix.shape}")
         # An isomorphic copy of a Lie algebra: the axioms hold.

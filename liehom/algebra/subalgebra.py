@@ -46,7 +46,7 @@ class Subalgebra:
 
     def __init__(self, algebra: LieAlgebra, rows: Any, *, check: bool = True) -> None:
         self.algebra = algebra
-        self.basis = rows if hasattr(rows, "nrows") else _matrix(algebra, rows)
+        self.basis = _matrix(algebra, rows)
         self._subspace: Subspace | None = None
         self._quotient: Quotient | None = None
         if self.basis.ncols != algebra.dimension:
@@ -153,6 +153,8 @@ class Subalgebra:
 
 
 def _matrix(algebra: LieAlgebra, rows: Any) -> Any:
+    if hasattr(rows, "nrows"):
+        return algebra.field.read(rows)
     table = [list(row) for row in rows]
     for i, row in enumerate(table):
         if len(row) != algebra.dimension:
@@ -170,7 +172,7 @@ def _dependent(basis: Any) -> list[int]:
 
 
 def _span(algebra: LieAlgebra, rows: Any) -> Any:
-    matrix = rows.basis if isinstance(rows, Subalgebra) else rows if hasattr(rows, "nrows") else _matrix(algebra, rows)
+    matrix = _matrix(algebra, rows.basis if isinstance(rows, Subalgebra) else rows)
     return matrix.row_space()
 
 

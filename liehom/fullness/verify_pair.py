@@ -108,8 +108,8 @@ def check_pair(pair: PairData) -> CheckedPair:
         raise CertificateError("exact", f"the pair is over {field.name}; only a pair over an exact field is proved")
     _check_field(field)
     n, basis = int(pair.algebra.dimension), pair.subalgebra.basis
-    if not isinstance(basis, ExactMatrix) or basis.ncols != n:
-        raise CertificateError("pair", f"the basis of h is {basis!r}, expected an exact matrix with {n} columns")
+    if not isinstance(basis, ExactMatrix) or basis.ncols != n or basis.field != field:
+        raise CertificateError("pair", f"the basis of h is {basis!r}, expected {n} columns over {field.name}")
     places, constants = _checked_constants(field, n, pair.algebra.structure_constants())
     free, pivots, quotient = _quotient(field, basis)
     integral, scale = _integral(field, places, constants, quotient, free, pivots)

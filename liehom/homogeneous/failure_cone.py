@@ -98,7 +98,7 @@ def _hypersurface(invariant: RelativeInvariant) -> FailureSet:
 
 def _matrix(pair: Pair, rows: Any) -> Any:
     d = pair.dimension
-    made = rows if hasattr(rows, "nrows") else pair.field.matrix(rows, (len(rows), d))
+    made = pair.field.read(rows) if hasattr(rows, "nrows") else pair.field.matrix(rows, (len(rows), d))
     if made.ncols != d:
         raise ShapeError(f"expected rows of length {d} (coordinates on g/h), got {made.ncols}")
     return made

@@ -104,7 +104,7 @@ class Pair:
     def change_of_basis(self, rows: Any) -> Pair:
         """The same pair in the basis of g given by rows (n, n)."""
         n = self.algebra.dimension
-        matrix = rows if hasattr(rows, "nrows") else self.field.matrix(rows, (n, n))
+        matrix = self.field.read(rows, (n, n))
         if matrix.shape != (n, n):
             raise ShapeError(f"a change of basis has shape {(n, n)}, got {matrix.shape}")
         algebra = self.algebra.change_of_basis(matrix)

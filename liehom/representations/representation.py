@@ -76,11 +76,6 @@ class Representation:
         made = tuple(square_matrices(matrices, algebra.field))
         if len(made) != algebra.dimension:
             raise ShapeError(f"{len(made)} matrices for an algebra of dimension {algebra.dimension}")
-        for i, a in enumerate(made):
-            if a.field != algebra.field:
-                raise FieldError(
-                    f"matrix {i} is over {a.field.name}, the algebra over {algebra.field.name}; use over()"
-                )
         if not made and size is None:
             raise ShapeError("a representation of the zero algebra needs its size")
         self.algebra = algebra

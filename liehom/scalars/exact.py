@@ -9,6 +9,7 @@ products stay integral.  Imports algebraic_number, balls, exact_matrix, grammar,
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Sequence
 from typing import Any, final
 
@@ -22,6 +23,7 @@ from liehom.scalars.exact_field import ExactField
 from liehom.scalars.rational import QQ, prime, rational_from_text, rational_number, refused
 
 MAX_PRECISION = 1 << 22
+_SYMBOL = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]*|sqrt\([0-9]+\)", re.ASCII)
 
 
 @final
@@ -31,7 +33,7 @@ class NumberField(ExactField):
     Parameters
     ----------
     symbol : str
-        How the generator is written: an identifier such as 'a', or 'sqrt(2)'.
+        How the generator is written: an identifier such as 'a', or 'sqrt(2)' for the positive root of t^2 - 2.
     minpoly : sequence
         Rational coefficients of an irreducible polynomial of degree at least 2, ascending.
     interval : pair
@@ -40,7 +42,8 @@ class NumberField(ExactField):
     Raises
     ------
     FieldError
-        If the polynomial is reducible or constant, or the interval does not isolate one root.
+        If the polynomial is reducible or constant, the interval does not isolate one root, or the symbol would
+        be read as another number than the generator.
 
     Examples
     --------
@@ -82,9 +85,19 @@ class NumberField(ExactField):
         self._modulus = flint.fmpz_poly([*monic, 1])
         ends = (QQ.convert(interval[0]), QQ.convert(interval[1]))
         self.interval, self.root_index = isolate_real_root(integral, ends)
+        self._check_symbol()
         self._powers: dict[int, list[int]] = {}
         self._balls: dict[int, Any] = {}
         self._residues: list[tuple[int, int]] = []
+
+    def _check_symbol(self) -> None:
+        """What `format` writes, `convert` must read as the same number."""
+        if not isinstance(self.symbol, str) or not _SYMBOL.fullmatch(self.symbol):
+            raise FieldError(f"the symbol of a generator is {self.symbol!r}; expected an identifier such as 'a'")
+        if not self.symbol.startswith("sqrt("):
+            return
+        if self.minpoly != (-int(self.symbol[5:-1]), 0, 1) or self.root_index != 1:
+            raise FieldError(f"the generator is not {self.symbol}, which is positive; give it another name")
 
     @property
     def name(self) -> str:

@@ -210,6 +210,15 @@ class Field(ABC):
     def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> Any:
         """The matrix with these rows; give `shape` where it may have no rows or no columns."""
 
+    def read(self, rows: Any, shape: tuple[int, int] | None = None) -> Any:
+        """Rows of numbers, or a matrix, as a matrix over this field.
+
+        A matrix over another field is read again entry by entry; `FieldError` if an entry is not in this field.
+        """
+        if not isinstance(rows, Matrix):
+            return self.matrix(rows, shape)
+        return rows if rows.field == self else self.matrix(rows.to_rows(), rows.shape)
+
     @abstractmethod
     def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> Any:
         """The matrix with these field elements, row after row."""

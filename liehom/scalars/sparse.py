@@ -74,7 +74,7 @@ class SparseInteger:
             return False
         sums = np.zeros(self.shape[0])
         np.add.at(sums, self.rows, np.abs(self.values.astype(np.float64)))
-        return bool(sums.max() * float(np.abs(other.values).max()) < LIMIT / 2)
+        return bool(sums.max() * float(np.abs(other.values.astype(np.float64)).max()) < LIMIT / 2)
 
     def _csr(self) -> Any:
         from scipy import sparse
