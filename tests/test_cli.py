@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -267,10 +268,16 @@ def test_interrupt_is_130(tmp_path: Path) -> None:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # a test run in the background inherits an ignored SIGINT, and so would the command
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
-    with pipe.open("w"):  # opens when the command has opened it for reading
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
+    try:
+        with pipe.open("w"):  # opens when the command has opened it for reading
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+        process.wait()
     assert process.returncode == 130
     assert out == ""
     assert "Traceback" not in err
