@@ -79,6 +79,9 @@ class LieAlgebra:
         check: bool = True,
     ) -> None:
         if isinstance(constants, StructureConstants):
+            if field not in (None, constants.field) or dimension not in (None, constants.dimension):
+                found = f"{constants.field.name}, of dimension {constants.dimension}"
+                raise InputError(f"the table is over {found}; another field is reached by over()")
             self._constants = constants
         else:
             over = field if field is not None else field_of_constants(constants)

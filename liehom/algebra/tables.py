@@ -53,7 +53,7 @@ def _is_radical_text(text: str) -> bool:
 def field_of_constants(constants: Any) -> Field:
     """The field that structure constants in any accepted form call for."""
     if isinstance(constants, Mapping):
-        return field_of_values(v for row in constants.values() for v in row.values())
+        return field_of_values(v for row in constants.values() if isinstance(row, Mapping) for v in row.values())
     if hasattr(constants, "tocoo"):
         return field_of_values(constants.data[:1])
     array = np.asarray(constants)
@@ -85,12 +85,20 @@ Given = dict[tuple[int, int, int], Any]
 
 
 def _from_mapping(constants: Any, field: Field, dimension: int | None) -> tuple[int, Given]:
-    largest = max((x for (i, j), row in constants.items() for x in (i, j, *row)), default=-1)
+    for pair, row in constants.items():
+        if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
+            raise StructureError(f"{pair!r}: {row!r} is no bracket; write {{(i, j): {{k: value}}}}")
+        if not all(isinstance(x, (int, np.integer)) for x in (*pair, *row)):
+            raise StructureError(f"the indices of {pair!r}: {dict(row)!r} are not all integers")
+    largest = max((int(x) for (i, j), row in constants.items() for x in (i, j, *row)), default=-1)
     n = largest + 1 if dimension is None else dimension
+    if not isinstance(n, (int, np.integer)) or n < 0:
+        raise ShapeError(f"the dimension is {n!r}, expected an integer that is not negative")
+    n = int(n)
     given: Given = {}
     for (i, j), row in constants.items():
         for k, value in row.items():
-            if not all(isinstance(x, (int, np.integer)) and 0 <= x < n for x in (i, j, k)):
+            if not all(0 <= x < n for x in (i, j, k)):
                 raise StructureError(f"index out of range in c[{i}, {j}, {k}]: indices run from 0 to {n - 1}")
             given[int(i), int(j), int(k)] = field.convert(value)
     for i, j in list(constants):
