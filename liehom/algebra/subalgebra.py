@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, final
 
 from liehom.algebra.lie_algebra import LieAlgebra, table_from_blocks
-from liehom.errors import DependentRowsError, NotAnIdealError, NotASubalgebraError, ShapeError
+from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError
 from liehom.scalars import Scalar, Subspace
 from liehom.scalars.quotient import Quotient, quotient
 
@@ -155,6 +155,8 @@ class Subalgebra:
 def _matrix(algebra: LieAlgebra, rows: Any) -> Any:
     if hasattr(rows, "nrows"):
         return algebra.field.read(rows)
+    if not hasattr(rows, "__iter__") or isinstance(rows, str):
+        raise InputError(f"a subalgebra is given by rows of coefficients, got {rows!r}")
     table = [list(row) for row in rows]
     for i, row in enumerate(table):
         if len(row) != algebra.dimension:

@@ -1,0 +1,82 @@
+"""What a decision costs in a warm process, reading and proofs of the axioms included; beside a floor in plain flint.
+
+In the ordinary run each benchmark is executed once, as a test. For figures:
+
+    python -m pytest tests/benchmarks -n 0 --benchmark-enable --benchmark-group-by=group
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import statistics
+import time
+from typing import Any
+
+import flint
+import pytest
+
+import liehom as lh
+from liehom.testing import random_unimodular
+
+SMALL = [name for name in lh.catalog.pair_names() if lh.pair(name).algebra.dimension <= 30]
+
+
+def text_of(name: str, scrambled: bool) -> str:
+    """The JSON text of a catalogue pair, in a random unimodular basis if asked."""
+    pair = lh.pair(name)
+    n = pair.algebra.dimension
+    if scrambled and n > 1:
+        pair = pair.change_of_basis(random_unimodular(n, random.Random(n), 4 * n))
+    return json.dumps(lh.to_json(pair))
+
+
+def decided(text: str) -> Any:
+    """Read the pair, prove its axioms, decide it."""
+    return lh.decide_fullness(lh.loads(text))
+
+
+@pytest.mark.parametrize("scrambled", [False, True], ids=["plain", "scrambled"])
+@pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
+def test_catalogue(benchmark: Any, scrambled: bool) -> None:
+    texts = [text_of(name, scrambled) for name in SMALL]
+    claims = [lh.catalog.CLAIMS[name].full for name in SMALL]
+
+    def median() -> tuple[float, list[bool]]:
+        seconds, verdicts = [], []
+        for text in texts:
+            start = time.perf_counter()
+            verdicts.append(decided(text).full)
+            seconds.append(time.perf_counter() - start)
+        return statistics.median(seconds), verdicts
+
+    seconds, verdicts = benchmark.pedantic(median, rounds=3)
+    benchmark.extra_info["median_milliseconds"] = 1000 * seconds
+    assert verdicts == claims
+
+
+@pytest.mark.parametrize(
+    ("name", "scrambled"),
+    [("g2/su(3)", False), ("f4/spin(9)", False), ("f4/spin(9)", True), ("e6(-26)/P", False), ("so(20)/so(19)", False)],
+)
+@pytest.mark.benchmark(group="one pair")
+def test_pair(benchmark: Any, name: str, scrambled: bool) -> None:
+    text = text_of(name, scrambled)
+    assert benchmark.pedantic(decided, args=(text,), rounds=3).full
+
+
+@pytest.mark.slow
+@pytest.mark.benchmark(group="one pair")
+def test_so40(benchmark: Any) -> None:
+    text = text_of("so(40)/so(39)", False)
+    assert benchmark.pedantic(decided, args=(text,), rounds=1).full
+
+
+@pytest.mark.benchmark(group="floor")
+def test_floor_of_one_product(benchmark: Any) -> None:
+    """One product (dim^2 x dim)(dim x dim) of the dense f4 table: what no dense method can do without."""
+    n = 52
+    rng = random.Random(0)
+    table = flint.fmpz_mat(n * n, n, [rng.randint(-(10**4), 10**4) for _ in range(n**3)])
+    square = flint.fmpz_mat(n, n, [rng.randint(-(10**4), 10**4) for _ in range(n * n)])
+    assert benchmark(lambda: table * square).nrows() == n * n
