@@ -22,7 +22,7 @@ from liehom.fullness.frame import Frame
 from liehom.fullness.isotropy_algebra import IsotropyAlgebra
 from liehom.scalars import Polynomial
 from liehom.scalars.modular import independent_columns
-from liehom.scalars.roots import complex_root_balls, count_or_none, simplest_between
+from liehom.scalars.roots import bounds, complex_root_balls, count_or_none, simplest_between
 
 Array = npt.NDArray[np.float64]
 ROUNDINGS = tuple(2**k for k in range(0, 40, 2))
@@ -208,7 +208,7 @@ def _real_parts(f: Polynomial) -> list[tuple[Any, Any, int]]:
     found = []
     for part, multiplicity in f.squarefree_parts():
         for ball in complex_root_balls(part, 64):
-            found.append((ball.real.lower().fmpq(), ball.real.upper().fmpq(), multiplicity))
+            found.append((*bounds(ball.real), multiplicity))
     return found
 
 

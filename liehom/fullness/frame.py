@@ -21,8 +21,9 @@ from liehom.scalars.fixed_point import balancing_rows, fixed_point, lattice_redu
 
 Array = npt.NDArray[np.float64]
 GENERATORS = 4
-BITS = (256, 1024, 4096)
-LARGE, ILL_CONDITIONED = 1e100, 1e5
+BITS = (256, 1024, 4096, 16384)
+ROUNDS = 5
+LARGE, ILL_CONDITIONED, WELL_CONDITIONED = 1e100, 1e5, 30
 
 
 @final
@@ -61,18 +62,35 @@ def plain_frame(action: IsotropyAlgebra) -> Frame | None:
 
 def balanced_frame(action: IsotropyAlgebra) -> Frame | None:
     """Coordinates that do not depend on the given ones up to rotation, and a reduced basis of L0; or None."""
-    rng = random.Random(5)
-    for bits in BITS:
-        sized = [fixed_point(a, bits)[0] for a in action.traceless]
+    return next((frame for frame in (_balanced(action, bits) for bits in BITS) if frame is not None), None)
+
+
+def _balanced(action: IsotropyAlgebra, bits: int) -> Frame | None:
+    """In rounds: the sizes of the generators, taken from the coordinates, are better in better coordinates."""
+    rng, d, k = random.Random(5), action.size, len(action.traceless)
+    basis, flat, members = QQ.identity(d), None, None
+    matrices = action.traceless
+    for _ in range(ROUNDS):
+        sized = [fixed_point(a, bits)[0] for a in matrices]
         chosen = [combination(sized, [rng.choice((-3, -2, -1, 1, 2, 3)) for _ in sized]) for _ in range(GENERATORS)]
         rows = balancing_rows(chosen, bits)
-        if rows is not None:
-            return _in_frame(action, rows, bits)
-    return None
+        if rows is None:
+            return None
+        integers, scale = fixed_point(rows @ basis, 2 * bits)
+        basis = integers.scale(scale)
+        flat, members = _in_frame(action, basis, bits)
+        matrices = flat.split_rows(d, d)
+        turned = rows.to_numpy()
+        if np.isfinite(turned).all() and np.linalg.cond(turned) < WELL_CONDITIONED:
+            break
+    if flat is None or members is None:
+        return None
+    vectors = basis.T.to_numpy()
+    return Frame(flat.to_numpy().reshape(k, d, d), action.field.matrix(members.to_rows(), (k, k)), vectors)
 
 
-def _in_frame(action: IsotropyAlgebra, basis: Any, bits: int) -> Frame:
-    """L0 in the basis of the rows, and a well-conditioned basis of it."""
+def _in_frame(action: IsotropyAlgebra, basis: Any, bits: int) -> tuple[Any, Any]:
+    """A well-conditioned basis of L0 as matrices in the basis of the rows, flat, and in terms of the given one."""
     d, k = action.size, len(action.traceless)
     left, left_scale = fixed_point(basis.T.inverse(), 2 * bits)
     right, right_scale = fixed_point(basis.T, 2 * bits)
@@ -88,5 +106,4 @@ def _in_frame(action: IsotropyAlgebra, basis: Any, bits: int) -> Frame:
     if np.linalg.cond(flat.to_numpy()) > ILL_CONDITIONED:
         change = lattice_reduction(flat, bits // 2)
         flat, members = change @ flat, change @ members
-    matrices = flat.to_numpy().reshape(k, d, d)
-    return Frame(matrices, action.field.matrix(members.to_rows(), (k, k)), basis.T.to_numpy())
+    return flat, members

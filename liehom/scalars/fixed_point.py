@@ -19,7 +19,7 @@ from liehom.scalars.exact import NumberField
 from liehom.scalars.exact_matrix import ExactMatrix
 from liehom.scalars.rational import QQ
 
-STEPS = (10, 20, 40, 80, 160, 320, 640)
+STEPS = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 
 
 def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, Any]:
@@ -102,7 +102,7 @@ def _trace(matrix: Any) -> Any:
 
 
 def _gram_schmidt(form: Any, bits: int) -> ExactMatrix | None:
-    """Orthogonal rows for a positive definite form, of length about 1; None if bits are short."""
+    """Orthogonal rows for a positive definite form, of length about 2^(bits/2); None if bits are short."""
     d = form.nrows()
     table = [[int(x) for x in row] for row in form.tolist()]
     lower = [[0] * d for _ in range(d)]  # form = L D L^T, L in units of 2^-bits
@@ -119,8 +119,9 @@ def _gram_schmidt(form: Any, bits: int) -> ExactMatrix | None:
         rows[i][i] = 1 << bits
         for j in range(i):
             rows[i][j] = -(sum(lower[i][k] * rows[k][j] for k in range(j, i)) >> bits)
+    lengths = [flint.fmpq(1 << (bits // 2), isqrt(s)) for s in squares]
     exact = [QQ.from_integers(row, 1, d, 1 << bits) for row in rows]
-    return QQ.stack_rows([r.scale(flint.fmpq(1, isqrt(s))) for r, s in zip(exact, squares, strict=True)], d)
+    return QQ.stack_rows([r.scale(length) for r, length in zip(exact, lengths, strict=True)], d)
 
 
 def lattice_reduction(rows: ExactMatrix, bits: int) -> ExactMatrix:

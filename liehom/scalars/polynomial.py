@@ -8,7 +8,7 @@ squarefree, factor the norm over QQ, take greatest common divisors.  Imports exa
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, final
 
 import flint
@@ -231,16 +231,29 @@ class Polynomial:
                 signs.append(sign)
         return sum(1 for a, b in itertools.pairwise(signs) if a != b)
 
+    def root_counter(self) -> Callable[[Any, Any], int]:
+        """The function `count_real_roots` with Sturm's chain computed once.
+
+        Examples
+        --------
+        >>> count = Polynomial(QQ, [-2, 0, 1]).root_counter()
+        >>> count(0, 1), count(0, None)
+        (0, 1)
+        """
+        chain = self._signed_remainders(self, self.derivative()) if self.degree > 0 else []
+
+        def count(low: Any, high: Any) -> int:
+            left = self._variations(chain, "-" if low is None else self.field.convert(low))
+            return left - self._variations(chain, "+" if high is None else self.field.convert(high))
+
+        return count
+
     def count_real_roots(self, low: Any = None, high: Any = None) -> int:
         """Number of distinct real roots in the interval (low, high] (unbounded where None); Sturm's theorem.
 
         The ends must not be roots of multiplicity above one.
         """
-        if self.degree < 1:
-            return 0
-        chain = self._signed_remainders(self, self.derivative())
-        left = self._variations(chain, "-" if low is None else self.field.convert(low))
-        return left - self._variations(chain, "+" if high is None else self.field.convert(high))
+        return self.root_counter()(low, high)
 
     def count_right_of(self, cut: Any) -> int:
         """Number of roots with real part above `cut`, with multiplicity.

@@ -68,13 +68,22 @@ def _above(value: Any) -> Any:
     return flint.fmpz(value.p // value.q) + 1
 
 
-def _bounds(ball: Any) -> tuple[Any, Any]:
-    return ball.lower().fmpq(), ball.upper().fmpq()
+def bounds(ball: Any) -> tuple[Any, Any]:
+    """The exact rational ends of a real ball (``flint.arb``), whatever the working precision.
+
+    Examples
+    --------
+    >>> low, high = bounds(flint.arb(1, 0.5))
+    >>> low <= flint.fmpq(1, 2) and flint.fmpq(3, 2) <= high
+    True
+    """
+    middle, radius = ball.mid().fmpq(), ball.rad().fmpq()
+    return middle - radius, middle + radius
 
 
 def cuts_between(balls: list[Any]) -> list[Any]:
     """Simple rationals strictly between consecutive disjoint real balls, those in the widest gaps first."""
-    intervals = sorted((_bounds(b) for b in balls), key=lambda pair: pair[0])
+    intervals = sorted((bounds(b) for b in balls), key=lambda pair: pair[0])
     gaps = []
     reach = intervals[0][1]
     for low, high in intervals[1:]:
@@ -97,25 +106,26 @@ def largest_real_root_interval(f: Polynomial) -> tuple[Any, Any]:
     >>> largest_real_root_interval(Polynomial(QQ, [-2, 0, 1]))
     (0, 2)
     """
-    total = f.count_real_roots()
+    count = f.root_counter()
+    total = count(None, None)
     if not total:
         raise FieldError(f"{f} has no real root")
     bound = 1
-    while f.count_real_roots(-bound, bound) < total or f(bound) == 0 or f(-bound) == 0:
+    while count(-bound, bound) < total or f(bound) == 0 or f(-bound) == 0:
         bound *= 2
     # f is squarefree: it changes its sign where it has one root, and bisection tells two roots apart in the end
     low, high = flint.fmpq(-bound), flint.fmpq(bound)
-    while f.count_real_roots(low, high) != 1:
+    while count(low, high) != 1:
         middle = (low + high) / 2
         while f(middle) == 0:
             middle = (middle + high) / 2
-        if f.count_real_roots(middle, high):
+        if count(middle, high):
             low = middle
         else:
             high = middle
     while low.q > 4 or high.q > 4:
         wider = (flint.fmpq(low.p // low.q), flint.fmpq(high.p // high.q) + 1)
-        if f(wider[0]) == 0 or f(wider[1]) == 0 or f.count_real_roots(*wider) != 1:
+        if f(wider[0]) == 0 or f(wider[1]) == 0 or count(*wider) != 1:
             break
         low, high = wider
     return low, high

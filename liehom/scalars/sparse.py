@@ -60,6 +60,8 @@ class SparseInteger:
     def __matmul__(self, other: SparseInteger) -> SparseInteger:
         shape = (self.shape[0], other.shape[1])
         den = self.den * other.den
+        if not len(self.values) or not len(other.values):
+            return SparseInteger([], [], [], shape, den)
         if self._product_fits(other):
             product = (self._csr() @ other._csr()).tocoo()
             keep = product.data != 0
@@ -68,8 +70,6 @@ class SparseInteger:
         return self._product_by_dictionaries(other, shape, den)
 
     def _product_fits(self, other: SparseInteger) -> bool:
-        if not len(self.values) or not len(other.values):
-            return True
         if self.values.dtype == object or other.values.dtype == object:
             return False
         sums = np.zeros(self.shape[0])
