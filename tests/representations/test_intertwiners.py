@@ -1,0 +1,110 @@
+"""Intertwining maps and invariant forms against the linear equations written out, and against tables."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import liehom as lh
+from liehom.errors import ShapeError
+from liehom.representations.intertwiners import commutant, intertwiners, invariant_forms, invariant_vectors
+from liehom.scalars import QQ, NumberField, rational
+
+ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
+MERSENNE = 2**61 - 1
+
+
+def kernel_dimension(source: list[Any], target: list[Any], e: int, d: int) -> int:
+    """dim {T : T A_i = B_i T} from one large system in all entries of T."""
+    rows = []
+    for a, b in zip(source, target, strict=True):
+        x, y = np.array(a.to_rows(), dtype=object), np.array(b.to_rows(), dtype=object)
+        rows += (np.kron(np.eye(e, dtype=int), x.T) - np.kron(y, np.eye(d, dtype=int))).tolist()
+    field = source[0].field
+    return e * d - int(field.matrix(rows, (len(rows), e * d)).rank())
+
+
+small = st.sampled_from([0, 0, 1, -1, 2])
+
+
+def square(n: int) -> st.SearchStrategy[Any]:
+    return st.lists(st.lists(small, min_size=n, max_size=n), min_size=n, max_size=n).map(lambda r: QQ.matrix(r, (n, n)))
+
+
+@given(data=st.data())
+def test_against_the_full_system(data: st.DataObject) -> None:
+    d, e, count = data.draw(st.integers(1, 4)), data.draw(st.integers(1, 3)), data.draw(st.integers(1, 3))
+    source = [data.draw(square(d)) for _ in range(count)]
+    target = [data.draw(square(e)) for _ in range(count)]
+    if data.draw(st.booleans()):
+        e, target = d, source
+    found = intertwiners(source, target, (e, d), QQ)
+    assert all(t @ a == b @ t for t in found for a, b in zip(source, target, strict=True))
+    flat = QQ.stack_rows([t.reshape(1, e * d) for t in found], e * d) if found else QQ.zeros(0, e * d)
+    assert flat.rank() == len(found) == kernel_dimension(source, target, e, d)
+
+
+@given(data=st.data())
+def test_forms_against_the_full_system(data: st.DataObject) -> None:
+    d = data.draw(st.integers(1, 4))
+    maps = [data.draw(square(d)) for _ in range(data.draw(st.integers(1, 2)))]
+    forms = invariant_forms(maps, d, QQ)
+    for p in (*forms.symmetric, *forms.skew):
+        assert all((a.T @ p + p @ a).is_zero() for a in maps)
+    assert all(p == p.T for p in forms.symmetric) and all(p == -p.T for p in forms.skew)
+    total = kernel_dimension(maps, [-a.T for a in maps], d, d)
+    assert len(forms.symmetric) + len(forms.skew) == total
+
+
+@pytest.mark.parametrize(
+    ("name", "commuting", "symmetric", "skew"),
+    [
+        ("so(5)", 1, 1, 0), ("sl(3)", 1, 0, 0), ("sp(4,R)", 1, 0, 1), ("su(3)", 2, 1, 1), ("sl(2,C)", 2, 0, 2),
+        ("sl(3,C)", 2, 0, 0), ("sp(2)", 4, 1, 3), ("sl(2,H)", 4, 0, 0), ("so(3,1)", 1, 1, 0), ("so(3,C)", 2, 2, 0),
+        ("su(2,1)", 2, 1, 1), ("g2", 1, 1, 0), ("spin(7)", 1, 1, 0), ("spin(9)", 1, 1, 0), ("spin(9,1)", 1, 0, 0),
+        ("copies(2,so(3))", 4, 3, 1), ("copies(2,sl(2))", 4, 1, 3), ("S2(sl(2))", 1, 1, 0), ("S3(sl(2))", 1, 0, 1),
+        ("blocks(so(2),so(3))", 3, 2, 1), ("so*(4)", 4, 3, 1), ("tensor(sl(2),sl(2))", 1, 1, 0),
+    ],
+)  # fmt: skip
+def test_table(name: str, commuting: int, symmetric: int, skew: int) -> None:
+    maps = list(lh.catalog.representation(name).matrices)
+    d = maps[0].nrows
+    assert len(commutant(maps, d, QQ)) == commuting
+    forms = invariant_forms(maps, d, QQ)
+    assert (len(forms.symmetric), len(forms.skew)) == (symmetric, skew)
+    over = [ROOT2.matrix(a.to_rows()) for a in maps]
+    assert len(commutant(over, d, ROOT2)) == commuting
+
+
+@pytest.mark.parametrize("prime", [2, 3, 5, MERSENNE])
+def test_unlucky_primes(prime: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Matrices that vanish or degenerate modulo the prime; vectors with it in the denominator."""
+    if prime != MERSENNE:
+        monkeypatch.setattr(rational.RationalField, "residue", lambda *_: (prime, 0))
+    rng = random.Random(prime)
+    for name, dimension in (("so(4)", 1), ("sl(2,C)", 2), ("copies(2,sl(2))", 4), ("sp(1)", 4)):
+        maps = list(lh.catalog.representation(name).matrices)
+        d = maps[0].nrows
+        change = QQ.matrix([[prime * rng.randint(-3, 3) + int(i == j) for j in range(d)] for i in range(d)])
+        for factor in (prime, f"1/{prime}", 1):
+            moved = [(change @ a @ change.inverse()).scale(factor) for a in maps]
+            assert len(commutant(moved, d, QQ)) == dimension
+        moved = [a.scale(prime) if i % 2 else a for i, a in enumerate(maps)]
+        assert len(commutant(moved, d, QQ)) == dimension
+
+
+def test_borders() -> None:
+    assert len(commutant([], 3, QQ)) == 9
+    forms = invariant_forms([], 2, QQ)
+    assert (len(forms.symmetric), len(forms.skew)) == (3, 1)
+    assert len(commutant([QQ.zeros(3, 3)], 3, QQ)) == 9
+    assert intertwiners([QQ.zeros(0, 0)], [QQ.identity(2)], (2, 0), QQ) == []
+    assert invariant_vectors([], 2, QQ).dimension == 2
+    assert invariant_vectors([QQ.identity(2)], 2, QQ).dimension == 0
+    with pytest.raises(ShapeError):
+        intertwiners([QQ.identity(2)], [], (2, 2), QQ)
