@@ -10,9 +10,10 @@ from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
+from liehom.fullness import decide
 from liehom.scalars import QQ, NumberField
 from tests.fullness.strategies import changes, linear_pairs, pairs, subalgebra_pairs
-from tests.fullness.support import affine, in_basis, over, proved
+from tests.fullness.support import affine, in_basis, over, proved, without_cheap_points
 
 QUICK, SLOW = 100, 1500
 FIELDS = [NumberField("a", [-d, 0, 1], (0, d)) for d in (2, 3, 5)] + [NumberField("a", [-2, 0, 0, 1], (1, 2))]
@@ -117,6 +118,18 @@ def scalars(_: Any, pair: lh.Pair) -> None:
 
 
 test_scalars, test_scalars_slow = both_sizes(scalars, pair=linear_pairs())
+
+
+def later_steps(_: Any, pair: lh.Pair) -> None:
+    """Where the cheap sample points do not decide, the later steps come to the same verdict."""
+    full = decided(pair)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(decide, "_sample", without_cheap_points)
+        certificate = proved(pair, full).certificate
+    event(f"then by {certificate.kind}, degree {len(certificate.fields.get('minpoly', '01')) - 1}")
+
+
+test_later_steps, test_later_steps_slow = both_sizes(later_steps, pair=pairs())
 
 
 def duality(_: Any, pair: lh.Pair) -> None:

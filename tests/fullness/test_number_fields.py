@@ -192,3 +192,17 @@ def test_field_of_large_height() -> None:
     field = NumberField("a", [-(10**60) - 7, 0, 1], (10**30, 10**30 + 1))
     proved(rotations(field, [1, 1, field.generator - 10**30]), True)
     proved(rotations(field, [1, 1, 10**30 - field.generator]), False)
+
+
+@fields
+@pytest.mark.parametrize("name", ["affine(so(2))", "affine(sl(2))", "sl(3)/P1", "affine(S3(gl(2)))", "affine(so(2,1))"])
+def test_multiples_of_what_the_residue_map_kills(name: str, field: Any) -> None:
+    """Modular linear algebra sends b to a root modulo a prime p: b - root and p both go to 0."""
+    prime, root = field.residue()
+    generator = field.from_coordinates([QQ.convert(int(i == 1)) for i in range(field.degree)])
+    pair = over(lh.pair(name), field)
+    n = pair.algebra.dimension
+    for factor in (generator - root, field.convert(prime)):
+        for chosen in ({0}, {n - 1}, set(range(0, n, 2))):
+            rows = [[(factor if i in chosen else 1) if i == j else 0 for j in range(n)] for i in range(n)]
+            proved(pair.change_of_basis(rows), CLAIMS[name].full)
