@@ -330,20 +330,6 @@ class LieAlgebra:
         return "\n".join([head, f"  basis {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}", *lines])
 
 
-def table_from_blocks(field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
-    """The bracket table with [e_i, e_j] = row j of block i; antisymmetry is the caller's knowledge."""
-    zero = field.zero
-    entries = []
-    for i, block in enumerate(blocks):
-        values = block.entries()
-        for place in range((i + 1) * n, n * n):
-            v = values[place]
-            if v != zero:
-                j, k = divmod(place, n)
-                entries.append((i, j, k, v))
-    return StructureConstants(field, n, entries)
-
-
 def _checked_names(basis: Sequence[str], n: int) -> tuple[str, ...]:
     names = tuple(str(b) for b in basis)
     if len(names) != n:

@@ -65,6 +65,15 @@ class StructureConstants:
         made._dense = made._sparse = None
         return made
 
+    @classmethod
+    def from_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
+        """The table with [e_i, e_j] = row j of block i; antisymmetry is the caller's knowledge."""
+        entries, zero = [], field.zero
+        for i, block in enumerate(blocks):
+            found = enumerate(block.entries())
+            entries += [(i, place // n, place % n, v) for place, v in found if place >= (i + 1) * n and v != zero]
+        return cls(field, n, entries)
+
     # -- entries -----------------------------------------------------------------------------------------
     def __len__(self) -> int:
         return len(self.i)
@@ -187,18 +196,14 @@ class StructureConstants:
 
     def changed(self, rows: Any, inverse: Any) -> StructureConstants:
         """The table in the basis given by the rows (n, n), whose inverse is given: an isomorphic algebra."""
-        n, zero = self.dimension, self.field.zero
+        n = self.dimension
         if n and not self.is_dense() and self.field.degree == 1:
             product = self._contract_sparse(rows, rows, inverse)  # (b, a n + c)
             i, j, k = product.columns // n, product.rows, product.columns % n
             upper = i < j
             values = product.values[upper].tolist()
             return StructureConstants.from_integers(self.field, n, i[upper], j[upper], k[upper], values, product.den)
-        entries = []
-        for a, block in enumerate(self.contract(rows, rows, inverse)):
-            found = enumerate(block.entries())
-            entries += [(a, place // n, place % n, v) for place, v in found if place >= (a + 1) * n and v != zero]
-        return StructureConstants(self.field, n, entries)
+        return StructureConstants.from_blocks(self.field, n, self.contract(rows, rows, inverse))
 
     def _contract_sparse(self, left: Any, right: Any, out: Any) -> SparseInteger:
         """Rows b, columns a * r + c."""

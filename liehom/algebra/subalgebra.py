@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import Any, final
 
-from liehom.algebra.lie_algebra import LieAlgebra, table_from_blocks
+from liehom.algebra.lie_algebra import LieAlgebra
+from liehom.algebra.structure_constants import StructureConstants
 from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError
 from liehom.scalars import Scalar, Subspace
 from liehom.scalars.quotient import Quotient, quotient
@@ -118,7 +119,7 @@ class Subalgebra:
         for block in self.algebra.table.contract(self.basis, self.basis, whole):
             blocks.append(self.basis.T.solve(block.T).T)
         # A closed subspace of a Lie algebra: the axioms hold.
-        return LieAlgebra(table_from_blocks(self.algebra.field, k, blocks), name=name, check=False)
+        return LieAlgebra(StructureConstants.from_blocks(self.algebra.field, k, blocks), name=name, check=False)
 
     def is_ideal(self) -> bool:
         """Whether [g, h] lies in h."""
@@ -132,7 +133,9 @@ class Subalgebra:
         data = self.quotient()
         blocks = self.algebra.table.contract(data.lift, data.lift, data.projection)
         # The bracket of g descends to the quotient by an ideal.
-        return LieAlgebra(table_from_blocks(self.algebra.field, self.codimension, blocks), name=name, check=False)
+        return LieAlgebra(
+            StructureConstants.from_blocks(self.algebra.field, self.codimension, blocks), name=name, check=False
+        )
 
     def conjugated(self, matrix: Any) -> Subalgebra:
         """The image under an automorphism of g, given by its matrix (n, n) on columns; closure is proved."""

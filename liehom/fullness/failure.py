@@ -73,8 +73,9 @@ def failure_report(pair: Pair, certificate: Certificate | None = None) -> Failur
     rows = nilpotent_ideal_rows(action.traceless, action.size, action.field)
     if rows.nrows:
         subspaces.append(rows.null_space())
-    if any(part.kind == "hypersurface" for part in failure_cone(pair)):
-        forms = []  # their null cones lie in the hypersurface, which says more
     second = certificate.fields.get("also", certificate) if certificate is not None else None
     parts = failure_cone(pair, forms=forms, subspaces=subspaces, certificate=second)
+    if any(part.kind == "hypersurface" for part in parts):
+        # the null cones lie in the hypersurface, which says more
+        parts = [part for part in parts if part.kind != "null cone"]
     return FailureReport(generic, tuple(parts))
