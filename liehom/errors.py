@@ -38,6 +38,10 @@ class FormatError(InputError):
     """A file or JSON object does not have the documented form; nothing of it has been used."""
 
 
+class SeriesError(InputError):
+    """A function cannot be expanded in a Taylor series: it branches on values or has no recurrence."""
+
+
 class SingularError(LiehomError, ArithmeticError):
     """A linear system has no solution, or a matrix that should be invertible is singular."""
 

@@ -37,7 +37,7 @@ BELOW: dict[str, tuple[str, ...]] = {
 
 # libraries behind one door: only modules that start with one of these names may import them
 DOORS: dict[str, tuple[str, ...]] = {
-    "flint": ("liehom.scalars",),
+    "flint": ("liehom.scalars", "liehom.series"),  # series: recognises its numbers
     # points with symbols in them: linear algebra over a field of rational functions, by DomainMatrix
     "sympy.polys": ("liehom.scalars", "liehom.representations.symbolic"),
     "networkx": ("liehom.algebra",),

@@ -1,0 +1,3 @@
+"""Truncated Taylor series and series in Lie algebras."""
+
+from liehom.series.jet import Jet as Jet

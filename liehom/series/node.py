@@ -1,0 +1,119 @@
+"""Node: a power series that computes its Taylor coefficients one after the other, on demand.
+
+A node knows its coefficients so far, the nodes they depend on, and a rule for the next one.  Coefficient k of a
+sum or product needs coefficients up to k of the operands; of an integral or a recurrence, up to k - 1 (its lag).
+So a series may depend on itself with a lag, which is how the solution of a differential equation is expanded:
+nothing is computed twice, and an expansion to order n costs O(n^2) products.  A coefficient that is None is a
+structural zero.  Imports arrays, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, final
+
+from liehom.errors import SeriesError
+
+Rule = Callable[[int], Any]
+
+
+@final
+class Node:
+    """A series with coefficients on demand; `Jet` is its public face.
+
+    Parameters
+    ----------
+    order : int
+        The last index that may be asked for.
+    value : array
+        The value at 0, also where coefficient 0 is a structural zero: it carries shape and dtype.
+    known : list
+        Coefficients from 0 on, None for a structural zero; at least the first.
+    operands : tuple of (Node, lag)
+    rule : callable, optional
+        k -> coefficient k, for k = len(known), .... Without one the coefficients are appended by the owner.
+
+    Examples
+    --------
+    >>> one = Node(3, 1.0, [1.0], (), lambda k: None)
+    >>> exponential = Node(3, 1.0, [1.0])
+    >>> exponential.depends((exponential, 1), rule=lambda k: exponential.known[k - 1] / k)
+    >>> exponential.coefficient(3)
+    0.16666666666666666
+    """
+
+    __slots__ = ("known", "operands", "order", "rule", "value")
+
+    def __init__(
+        self,
+        order: int,
+        value: Any,
+        known: list[Any],
+        operands: tuple[tuple[Node, int], ...] = (),
+        rule: Rule | None = None,
+    ) -> None:
+        self.order = order
+        self.value = value
+        self.known = known
+        self.operands = operands
+        self.rule = rule
+
+    def depends(self, *operands: tuple[Node, int], rule: Rule) -> None:
+        """Set operands and rule after construction, for a series that depends on itself."""
+        self.operands, self.rule = operands, rule
+
+    def coefficient(self, k: int) -> Any:
+        """Coefficient k, None if it is a structural zero; operands are advanced without recursion."""
+        if len(self.known) > k:
+            return self.known[k]
+        if k > self.order:
+            raise SeriesError(f"coefficient {k} of a series of order {self.order}")
+        stack: list[tuple[Node, int]] = [(self, k)]
+        while stack:
+            node, wanted = stack[-1]
+            have = len(node.known)
+            if have > wanted:
+                stack.pop()
+                continue
+            missing = [(o, have - lag) for o, lag in node.operands if len(o.known) <= have - lag]
+            if missing:
+                stack.extend(missing)
+            elif node.rule is None:
+                raise SeriesError(f"coefficient {have} of a growing series is asked for before it is given")
+            else:
+                node.known.append(node.rule(have))
+        return self.known[k]
+
+
+def rewind(root: Node, source: Node, k: int) -> None:
+    """Forget the coefficients from k on of all nodes under `root` that depend on `source` (not of `source`).
+
+    Called after coefficient k of a growing `source` was replaced.
+
+    Examples
+    --------
+    >>> x = Node(2, 1.0, [1.0, 1.0])
+    >>> y = Node(2, 2.0, [2.0], ((x, 0),), lambda k: 2 * x.known[k])
+    >>> y.coefficient(1)
+    2.0
+    >>> x.known[1] = 5.0
+    >>> rewind(y, x, 1)
+    >>> y.coefficient(1)
+    10.0
+    """
+    users: dict[int, list[Node]] = {}
+    seen, stack = {id(root)}, [root]
+    while stack:
+        node = stack.pop()
+        for below, _ in node.operands:
+            users.setdefault(id(below), []).append(node)
+            if id(below) not in seen:
+                seen.add(id(below))
+                stack.append(below)
+    done, stack = {id(source)}, [source]
+    while stack:
+        for node in users.get(id(stack.pop()), []):
+            if id(node) not in done:
+                done.add(id(node))
+                del node.known[k:]
+                stack.append(node)

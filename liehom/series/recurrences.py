@@ -1,0 +1,241 @@
+"""Recurrences for Taylor coefficients: linear and multilinear maps, quotients, powers, elementary functions.
+
+All are one formula each.  A multilinear map B has B(a, b)_k = sum_i B(a_i, b_(k-i)).  An elementary function F
+with F' = G has k F_k = sum_i i u_i G_(k-i), where G is again a series: exp' = exp, tan' = 1 + tan^2 and so on.
+Imports node, arrays, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from liehom.series.arrays import elementary, namespace, zeros
+from liehom.series.node import Node
+
+
+def constant(value: Any, order: int) -> Node:
+    """A series without t."""
+    return Node(order, value, [value], (), _nothing)
+
+
+def _nothing(k: int) -> None:
+    return None
+
+
+def linear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
+    """function(a, b, ...) jointly linear in the operands, such as a sum, a stack, a transpose, an index."""
+    order = min(o.order for o in operands)
+
+    def rule(k: int) -> Any:
+        if all(o.known[k] is None for o in operands):
+            return None
+        return function(*[zeros(o.value, _shape(o.value)) if o.known[k] is None else o.known[k] for o in operands])
+
+    value = function(*[o.value for o in operands])
+    first = None if all(o.known[0] is None for o in operands) else value
+    return Node(order, value, [first], tuple((o, 0) for o in operands), rule)
+
+
+def add(a: Node, b: Node, sign: int = 1) -> Node:
+    """a + b or a - b, with broadcasting."""
+    value = a.value + b.value if sign > 0 else a.value - b.value
+    shape = _shape(value)
+
+    def rule(k: int) -> Any:
+        x, y = a.known[k], b.known[k]
+        if y is None:
+            return None if x is None else _spread(x, shape)
+        if x is None:
+            return _spread(y if sign > 0 else -y, shape)
+        return x + y if sign > 0 else x - y
+
+    first = None if a.known[0] is None and b.known[0] is None else value
+    return Node(min(a.order, b.order), value, [first], ((a, 0), (b, 0)), rule)
+
+
+def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
+    """function(a, b, ...) linear in each operand: (...)_k = sum over i + j + ... = k of function(a_i, b_j, ...)."""
+    order = min(o.order for o in operands)
+
+    def rule(k: int) -> Any:
+        total = None
+        for parts in _parts([o.known for o in operands], k):
+            term = function(*parts)
+            total = term if total is None else total + term
+        return total
+
+    value = function(*[o.value for o in operands])
+    first = None if any(o.known[0] is None for o in operands) else value
+    return Node(order, value, [first], tuple((o, 0) for o in operands), rule)
+
+
+def _parts(known: list[list[Any]], k: int) -> Iterator[tuple[Any, ...]]:
+    """All tuples of non-zero coefficients whose indices add up to k."""
+    if len(known) == 1:
+        if known[0][k] is not None:
+            yield (known[0][k],)
+        return
+    if len(known) == 2:
+        a, b = known
+        for i in range(k + 1):
+            if a[i] is not None and b[k - i] is not None:
+                yield a[i], b[k - i]
+        return
+    for i in range(k + 1):
+        if known[0][i] is not None:
+            for rest in _parts(known[1:], k - i):
+                yield (known[0][i], *rest)
+
+
+def quotient(a: Node, b: Node) -> Node:
+    """a / b, with q_k = (a_k - sum_(i >= 1) b_i q_(k-i)) / b_0."""
+    return solution(a, b, np.multiply, lambda y, x: y / x)
+
+
+def solution(a: Node, b: Node, product: Callable[[Any, Any], Any], divide: Callable[[Any, Any], Any]) -> Node:
+    """q with product(b, q) = a, where divide(y, b_0) solves product(b_0, q) = y."""
+    value = divide(a.value, b.value)
+    shape = _shape(value)
+    node = Node(min(a.order, b.order), value, [None if a.known[0] is None else value])
+
+    def rule(k: int) -> Any:
+        total = a.known[k]
+        for i in range(1, k + 1):
+            if b.known[i] is not None and node.known[k - i] is not None:
+                term = product(b.known[i], node.known[k - i])
+                total = -term if total is None else total - term
+        return None if total is None else _spread(divide(total, b.value), shape)
+
+    node.depends((a, 0), (b, 0), (node, 1), rule=rule)
+    return node
+
+
+def chain(u: Node, value: Any, derivative: Callable[[Node], Node]) -> Node:
+    """F(u) with F(u_0) = value and F' = derivative(node of F(u))."""
+    node = Node(u.order, value, [value])
+    slope = derivative(node)
+    node.depends((u, 0), (slope, 1), rule=_chain_rule(u, slope))
+    return node
+
+
+def _chain_rule(u: Node, slope: Node, sign: int = 1) -> Callable[[int], Any]:
+    """k -> (sign / k) sum_i i u_i slope_(k-i)."""
+
+    def rule(k: int) -> Any:
+        total = None
+        for i in range(1, k + 1):
+            if u.known[i] is not None and slope.known[k - i] is not None:
+                term = u.known[i] * slope.known[k - i]
+                term = term if i == 1 else i * term
+                total = term if total is None else total + term
+        return None if total is None else total / (sign * k)
+
+    return rule
+
+
+def product(a: Node, b: Node) -> Node:
+    """The product of the entries."""
+    return multilinear(_times, [a, b])
+
+
+def _times(x: Any, y: Any) -> Any:
+    return x * y
+
+
+def integer_power(u: Node, n: int) -> Node:
+    """u ** n for n >= 0, by repeated squaring: zeros of u do no harm."""
+    if n == 0:
+        return constant(u.value**0, u.order)
+    result: Node | None = None
+    while True:
+        if n & 1:
+            result = u if result is None else product(result, u)
+        n >>= 1
+        if not n:
+            return result if result is not None else u
+        u = product(u, u)
+
+
+def real_power(u: Node, exponent: Any) -> Node:
+    """u ** (p / q) for u_0 != 0: q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i)."""
+    value = elementary("sqrt", u.value) if np.ndim(exponent) == 0 and exponent == 0.5 else u.value**exponent
+    node = Node(u.order, value, [value])
+    exact = np.ndim(exponent) == 0 and getattr(u.value, "dtype", None) == object
+    p, q = Fraction(exponent).as_integer_ratio() if exact else (exponent, 1)
+
+    def rule(k: int) -> Any:
+        total = None
+        for i in range(1, k + 1):
+            if u.known[i] is not None and node.known[k - i] is not None:
+                term = (p * i - q * (k - i)) * u.known[i] * node.known[k - i]
+                total = term if total is None else total + term
+        return None if total is None else total / (q * k * u.value)
+
+    node.depends((u, 0), (node, 1), rule=rule)
+    return node
+
+
+def _plus(node: Node, number: int) -> Node:
+    return add(node, constant(_one(node.value) * number, node.order))
+
+
+def _one(value: Any) -> Any:
+    return zeros(value, ()) + 1
+
+
+def _over_one(node: Node) -> Node:
+    return quotient(constant(_one(node.value), node.order), node)
+
+
+def _negative(node: Node) -> Node:
+    return linear(lambda x: -x, [node])
+
+
+def _square(node: Node) -> Node:
+    return product(node, node)
+
+
+def _pair(u: Node, first: str, second: str, sign: int) -> tuple[Node, Node]:
+    """sin and cos (sign -1), sinh and cosh (sign 1): first' = second, second' = sign first."""
+    values = elementary(first, u.value), elementary(second, u.value)
+    one, other = Node(u.order, values[0], [values[0]]), Node(u.order, values[1], [values[1]])
+    one.depends((u, 0), (other, 1), rule=_chain_rule(u, other))
+    other.depends((u, 0), (one, 1), rule=_chain_rule(u, one, sign))
+    return one, other
+
+
+# name of the numpy function -> its series; a new function is one line
+FUNCTIONS: dict[str, Callable[[Node], Node]] = {
+    "exp": lambda u: chain(u, elementary("exp", u.value), lambda f: f),
+    "expm1": lambda u: chain(u, elementary("expm1", u.value), lambda f: _plus(f, 1)),
+    "log": lambda u: chain(u, elementary("log", u.value), lambda _: _over_one(u)),
+    "log1p": lambda u: chain(u, elementary("log1p", u.value), lambda _: _over_one(_plus(u, 1))),
+    "sin": lambda u: _pair(u, "sin", "cos", -1)[0],
+    "cos": lambda u: _pair(u, "sin", "cos", -1)[1],
+    "tan": lambda u: chain(u, elementary("tan", u.value), lambda f: _plus(_square(f), 1)),
+    "sinh": lambda u: _pair(u, "sinh", "cosh", 1)[0],
+    "cosh": lambda u: _pair(u, "sinh", "cosh", 1)[1],
+    "tanh": lambda u: chain(u, elementary("tanh", u.value), lambda f: _plus(_negative(_square(f)), 1)),
+    "arctan": lambda u: chain(u, elementary("arctan", u.value), lambda _: _over_one(_plus(_square(u), 1))),
+    "arcsin": lambda u: chain(
+        u, elementary("arcsin", u.value), lambda _: real_power(_plus(_negative(_square(u)), 1), -0.5)
+    ),
+    "arcsinh": lambda u: chain(u, elementary("arcsinh", u.value), lambda _: real_power(_plus(_square(u), 1), -0.5)),
+    "arctanh": lambda u: chain(u, elementary("arctanh", u.value), lambda _: _over_one(_plus(_negative(_square(u)), 1))),
+    "sqrt": lambda u: real_power(u, 0.5),
+    "square": _square,
+    "reciprocal": _over_one,
+    "negative": _negative,
+}
+
+
+def _shape(value: Any) -> tuple[int, ...]:
+    return tuple(np.shape(value))
+
+
+def _spread(x: Any, shape: tuple[int, ...]) -> Any:
+    return x if _shape(x) == shape else namespace(x).broadcast_to(x, shape)
