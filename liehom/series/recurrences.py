@@ -58,36 +58,50 @@ def add(a: Node, b: Node, sign: int = 1) -> Node:
 
 
 def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
-    """function(a, b, ...) linear in each operand: (...)_k = sum over i + j + ... = k of function(a_i, b_j, ...)."""
+    """function(a, b, ...) linear in each operand: (...)_k = sum over i + j + ... = k of function(a_i, b_j, ...).
+
+    Where the other operands begin with structural zeros, fewer coefficients of an operand are needed: that lets
+    t f(y) be used to expand y.
+    """
     order = min(o.order for o in operands)
+    starts = [_leading_zeros(o) for o in operands]
+    lags = [sum(starts) - start for start in starts]
 
     def rule(k: int) -> Any:
         total = None
-        for parts in _parts([o.known for o in operands], k):
+        for parts in _parts([o.known for o in operands], starts, k):
             term = function(*parts)
             total = term if total is None else total + term
         return total
 
     value = function(*[o.value for o in operands])
     first = None if any(o.known[0] is None for o in operands) else value
-    return Node(order, value, [first], tuple((o, 0) for o in operands), rule)
+    return Node(order, value, [first], tuple(zip(operands, lags, strict=True)), rule)
 
 
-def _parts(known: list[list[Any]], k: int) -> Iterator[tuple[Any, ...]]:
+def _leading_zeros(node: Node) -> int:
+    """How many coefficients are known to be zero from the start."""
+    count = 0
+    while count < len(node.known) and node.known[count] is None:
+        count += 1
+    return count
+
+
+def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[Any, ...]]:
     """All tuples of non-zero coefficients whose indices add up to k."""
     if len(known) == 1:
-        if known[0][k] is not None:
+        if k >= starts[0] and known[0][k] is not None:
             yield (known[0][k],)
         return
     if len(known) == 2:
         a, b = known
-        for i in range(k + 1):
+        for i in range(starts[0], k - starts[1] + 1):
             if a[i] is not None and b[k - i] is not None:
                 yield a[i], b[k - i]
         return
-    for i in range(k + 1):
+    for i in range(starts[0], k - sum(starts[1:]) + 1):
         if known[0][i] is not None:
-            for rest in _parts(known[1:], k - i):
+            for rest in _parts(known[1:], starts[1:], k - i):
                 yield (known[0][i], *rest)
 
 
