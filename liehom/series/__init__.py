@@ -1,3 +1,16 @@
 """Truncated Taylor series and series in Lie algebras."""
 
+from liehom.series.bilinear import Bilinear as Bilinear
 from liehom.series.jet import Jet as Jet
+from liehom.series.lie_series import bch as bch
+from liehom.series.lie_series import bernoulli as bernoulli
+from liehom.series.lie_series import cayley_magnus as cayley_magnus
+from liehom.series.lie_series import cayley_series as cayley_series
+from liehom.series.lie_series import commutator as commutator
+from liehom.series.lie_series import dcayley_inverse as dcayley_inverse
+from liehom.series.lie_series import dexp as dexp
+from liehom.series.lie_series import dexp_inverse as dexp_inverse
+from liehom.series.lie_series import exp_series as exp_series
+from liehom.series.lie_series import log_series as log_series
+from liehom.series.lie_series import magnus as magnus
+from liehom.series.lie_series import without_constant as without_constant

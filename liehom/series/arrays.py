@@ -37,6 +37,31 @@ def is_jax(x: Any) -> bool:
     return module.startswith(("jax", "jaxlib"))
 
 
+def is_traced(x: Any) -> bool:
+    """Whether x stands for a value that is not known yet, inside ``jax.jit`` or ``jax.grad``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> is_traced(np.zeros(2))
+    False
+    """
+    return is_jax(x) and isinstance(x, sys.modules["jax"].core.Tracer)
+
+
+def is_exact(x: Any) -> bool:
+    """Whether x is an array of objects: exact scalars or symbols, not machine numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> is_exact(np.zeros(2)), is_exact(np.array([None]))
+    (False, True)
+    """
+    kind = getattr(x, "dtype", None)
+    return kind is not None and kind == np.dtype(object)
+
+
 def namespace(*arrays: Any) -> Any:
     """``jax.numpy`` if one of the arrays is a JAX array, else ``numpy``.
 

@@ -44,7 +44,7 @@ class Bilinear:
     array([0., 0., 1.])
     """
 
-    __slots__ = ("_dense", "_exact", "_i", "_j", "_k", "_starts", "_v", "shape")
+    __slots__ = ("_dense", "_exact", "_i", "_j", "_k", "_starts", "_v", "_values", "shape")
 
     def __init__(self, entries: Iterable[tuple[int, int, int, Any]], shape: tuple[int, int, int]) -> None:
         rows = sorted(entries, key=lambda entry: (entry[2], entry[0], entry[1]))
@@ -54,8 +54,10 @@ class Bilinear:
         self.shape = shape
         self._i, self._j, self._k = (np.array([row[a] for row in rows], dtype=int) for a in range(3))
         values = [row[3] for row in rows]
-        self._exact = any(not isinstance(v, int | float | np.floating) for v in values)
-        self._v = np.array(values, dtype=object if self._exact else np.float64)
+        self._exact = any(not isinstance(v, int | np.integer | float | np.floating) for v in values)
+        # what exact vectors are multiplied by: integers must not pass through a float
+        self._values = np.array([int(v) if isinstance(v, int | np.integer) else v for v in values], dtype=object)
+        self._v = self._values if self._exact else self._values.astype(np.float64)
         self._starts = np.flatnonzero(np.r_[True, self._k[1:] != self._k[:-1]]) if rows else np.zeros(0, dtype=int)
         size = shape[0] * shape[1] * shape[2]
         small = not self._exact and size <= DENSE_SIZE
@@ -104,7 +106,8 @@ class Bilinear:
         if self._dense is not None and x.dtype != object and y.dtype != object:
             matrix = xp.tensordot(x, xp.asarray(self._dense), axes=1)
             return (y[..., None, :] @ matrix)[..., 0, :]
-        products = x[..., self._i] * y[..., self._j] * self._v
+        exact = x.dtype == object or y.dtype == object
+        products = x[..., self._i] * y[..., self._j] * (self._values if exact else self._v)
         if is_jax(products):
             total = xp.zeros((*products.shape[:-1], self.shape[2]), dtype=products.dtype)
             return total.at[..., self._k].add(products)

@@ -60,31 +60,23 @@ def add(a: Node, b: Node, sign: int = 1) -> Node:
 def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
     """function(a, b, ...) linear in each operand: (...)_k = sum over i + j + ... = k of function(a_i, b_j, ...).
 
-    Where the other operands begin with structural zeros, fewer coefficients of an operand are needed: that lets
-    t f(y) be used to expand y.
+    Where another operand begins with a structural zero, coefficient k needs an operand only up to k - 1.
     """
     order = min(o.order for o in operands)
-    starts = [_leading_zeros(o) for o in operands]
-    lags = [sum(starts) - start for start in starts]
+    starts = [1 if o.known[0] is None else 0 for o in operands]
+    known = [o.known for o in operands]
 
     def rule(k: int) -> Any:
         total = None
-        for parts in _parts([o.known for o in operands], starts, k):
+        for parts in _parts(known, starts, k):
             term = function(*parts)
             total = term if total is None else total + term
         return total
 
     value = function(*[o.value for o in operands])
-    first = None if any(o.known[0] is None for o in operands) else value
-    return Node(order, value, [first], tuple(zip(operands, lags, strict=True)), rule)
-
-
-def _leading_zeros(node: Node) -> int:
-    """How many coefficients are known to be zero from the start."""
-    count = 0
-    while count < len(node.known) and node.known[count] is None:
-        count += 1
-    return count
+    first = None if any(starts) else value
+    lags = tuple((o, sum(starts) - start) for o, start in zip(operands, starts, strict=True))
+    return Node(order, value, [first], lags, rule)
 
 
 def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[Any, ...]]:
@@ -95,11 +87,11 @@ def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[
         return
     if len(known) == 2:
         a, b = known
-        for i in range(starts[0], k - starts[1] + 1):
+        for i in range(starts[0], k + 1 - starts[1]):
             if a[i] is not None and b[k - i] is not None:
                 yield a[i], b[k - i]
         return
-    for i in range(starts[0], k - sum(starts[1:]) + 1):
+    for i in range(starts[0], k + 1 - sum(starts[1:])):
         if known[0][i] is not None:
             for rest in _parts(known[1:], starts[1:], k - i):
                 yield (known[0][i], *rest)

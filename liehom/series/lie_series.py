@@ -1,0 +1,439 @@
+"""Series in Lie algebras: dexp and its inverse, Magnus, Baker-Campbell-Hausdorff, Cayley, to any order.
+
+    dexp_x y = sum_k ad_x^k y / (k + 1)!,      dexp_x^-1 y = sum_k B_k ad_x^k y / k!      (B_1 = -1/2)
+
+With [a, b] = a b - b a, exp(x(t)) solves Y' = a Y, Y(0) = 1, if and only if x' = dexp_x^-1 a, x(0) = 0; and cay(x(t)),
+cay(x) = (1 - x/2)^-1 (1 + x/2), if and only if x' = (1 - x/2) a (1 + x/2).  For z = log(exp x exp y)
+
+    z' = dexp_z^-1 (dexp_x x') + dexp_(-z)^-1 (dexp_(-y) y').
+
+All series are built coefficient by coefficient: a coefficient asks for no more of the operands than it needs.
+They run on floats, JAX arrays and exact scalars.  Imports jet, recurrences, node, arrays, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import factorial
+from typing import Any
+
+import flint
+import numpy as np
+
+from liehom.errors import SeriesError, ShapeError
+from liehom.series import recurrences
+from liehom.series.arrays import as_values, is_jax, is_traced, namespace, zeros
+from liehom.series.jet import Jet
+from liehom.series.node import Node
+
+Bracket = Callable[[Any, Any], Any]
+
+
+def commutator(a: Any, b: Any) -> Any:
+    """a b - b a for matrices (..., n, n); the bracket of a matrix Lie algebra.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> commutator(np.array([[0, 1], [0, 0]]), np.array([[0, 0], [1, 0]])).tolist()
+    [[1, 0], [0, -1]]
+    """
+    return a @ b - b @ a
+
+
+def bernoulli(n: int) -> list[Fraction]:
+    """The Bernoulli numbers B_0, ..., B_n, with B_1 = -1/2.
+
+    Examples
+    --------
+    >>> [str(b) for b in bernoulli(4)]
+    ['1', '-1/2', '1/6', '0', '-1/30']
+    """
+    numbers = [flint.fmpq.bernoulli(k) for k in range(n + 1)]
+    return [Fraction(int(b.p), int(b.q)) for b in numbers]
+
+
+# -- the derivative of the exponential -----------------------------------------------------------------------
+def dexp(bracket: Bracket, x: Any, y: Any, terms: int | None = None) -> Any:
+    """dexp_x y = sum_(k < terms) ad_x^k y / (k + 1)!, where (exp x(t))' = dexp_x(x') exp(x).
+
+    Parameters
+    ----------
+    bracket : callable
+        Bilinear, on arrays: a `Bilinear` on coefficient vectors (..., dim), or `commutator` on matrices.
+    x, y : array_like or Jet
+    terms : int, optional
+        None, for a Jet x with x(0) = 0, means all that the order needs.
+
+    Returns
+    -------
+    array or Jet
+
+    Raises
+    ------
+    SeriesError
+        If `terms` is missing and x is no series without a constant term.
+
+    Examples
+    --------
+    >>> x, y = [[0.0, 1.0], [0.0, 0.0]], [[0.0, 0.0], [6.0, 0.0]]
+    >>> dexp(commutator, x, y, 3).tolist()
+    [[3.0, -2.0], [6.0, -3.0]]
+    """
+    terms = _count(x, y, terms)
+    return _series_in_ad(bracket, x, y, [Fraction(1, factorial(k + 1)) for k in range(terms)])
+
+
+def dexp_inverse(bracket: Bracket, x: Any, y: Any, terms: int | None = None) -> Any:
+    """dexp_x^-1 y = sum_(k < terms) B_k ad_x^k y / k!; see `dexp` for the arguments.
+
+    Examples
+    --------
+    >>> x, y = [[0.0, 1.0], [0.0, 0.0]], [[3.0, -2.0], [6.0, -3.0]]
+    >>> dexp_inverse(commutator, x, y, 3).tolist()
+    [[0.0, 0.0], [6.0, 0.0]]
+    """
+    terms = _count(x, y, terms)
+    numbers = bernoulli(max(terms - 1, 0))
+    return _series_in_ad(bracket, x, y, [numbers[k] / factorial(k) for k in range(terms)])
+
+
+def _count(x: Any, y: Any, terms: int | None) -> int:
+    """How many terms: ad_x^k y begins at t^k if x does at t."""
+    if terms is not None:
+        if terms < 1:
+            raise SeriesError(f"a series in ad_x has at least one term, got terms={terms}")
+        return terms
+    if not isinstance(x, Jet) or x.node.known[0] is not None:
+        raise SeriesError(
+            "the number of terms is needed unless x is a series without a constant term (see without_constant)"
+        )
+    order = min(x.order, y.order) if isinstance(y, Jet) else x.order
+    return max(1, order if isinstance(y, Jet) and y.node.known[0] is None else order + 1)
+
+
+def _series_in_ad(bracket: Bracket, x: Any, y: Any, weights: list[Fraction]) -> Any:
+    """sum_k weights[k] ad_x^k y."""
+    while len(weights) > 1 and not weights[-1]:
+        weights = weights[:-1]
+    if isinstance(x, Jet) or isinstance(y, Jet):
+        order = min(v.order for v in (x, y) if isinstance(v, Jet))
+        above, term = (v.node if isinstance(v, Jet) else recurrences.constant(as_values(v), order) for v in (x, y))
+        powers = [term]
+        for _ in weights[1:]:
+            powers.append(recurrences.multilinear(bracket, [above, powers[-1]]))
+        return Jet.from_node(_weighted(powers, weights))
+    x, term = as_values(x), as_values(y)
+    total = _scaled(term, weights[0])
+    for weight in weights[1:]:
+        term = bracket(x, term)
+        if weight:
+            total = total + _scaled(term, weight)
+    return total
+
+
+def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Any = None) -> Node:
+    """sum_i weights[i] nodes[i], with coefficient 0 replaced by `first` if that is given."""
+    used = [(node, weight) for node, weight in zip(nodes, weights, strict=True) if weight]
+
+    def rule(k: int) -> Any:
+        total = None
+        for node, weight in used:
+            if node.known[k] is not None:
+                term = _scaled(node.known[k], weight)
+                total = term if total is None else total + term
+        return total
+
+    value = first
+    if value is None:
+        value = _scaled(used[0][0].value, used[0][1])
+        for node, weight in used[1:]:
+            value = value + _scaled(node.value, weight)
+        first = None if all(node.known[0] is None for node, _ in used) else value
+    return Node(min(node.order for node, _ in used), value, [first], tuple((node, 0) for node, _ in used), rule)
+
+
+def _scaled(x: Any, weight: Fraction) -> Any:
+    """weight x, exact or rounded once in the type of x."""
+    if weight == 1:
+        return x
+    top, bottom = weight.numerator, weight.denominator
+    if not is_jax(x):
+        if x.dtype == object:
+            product = x if top == 1 else x * top
+            return product if bottom == 1 else product / bottom
+        if x.dtype.char in "gG":
+            return x * (np.longdouble(top) / np.longdouble(bottom))
+    return x * float(weight)
+
+
+# -- the Cayley transform ------------------------------------------------------------------------------------
+def dcayley_inverse(x: Any, y: Any) -> Any:
+    """(1 - x/2) y (1 + x/2) for matrices or Jets of matrices, where (cay x)' = a cay(x) gives x' with y = a.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> dcayley_inverse(np.array([[0.0, 2.0], [0.0, 0.0]]), np.eye(2))
+    array([[1., 0.],
+           [0., 1.]])
+    """
+    half = y - (x @ y) / 2
+    return half + (half @ x) / 2
+
+
+def cayley_series(x: Jet) -> Jet:
+    """cay(x(t)) = (1 - x/2)^-1 (1 + x/2) for matrices x(t) (..., n, n) with x(0) = 0.
+
+    From y = 1 + x (1 + y)/2: y_k = x_k + (1/2) sum_(0 < i < k) x_i y_(k-i).
+
+    Raises
+    ------
+    SeriesError
+        If x(0) is not zero.
+
+    Examples
+    --------
+    >>> cayley_series(Jet([[[0.0]], [[1.0]], [[0.0]], [[0.0]]])).coefficients.ravel()
+    array([1.  , 1.  , 0.5 , 0.25])
+    """
+    node = _square_matrices(without_constant(x, check=True)).node
+    one = _identity(node.value)
+    made = Node(node.order, one, [one])
+
+    def rule(k: int) -> Any:
+        total = None
+        for i in range(1, k):
+            if node.known[i] is not None and made.known[k - i] is not None:
+                term = node.known[i] @ made.known[k - i]
+                total = term if total is None else total + term
+        if total is None:
+            return node.known[k]
+        return total / 2 if node.known[k] is None else node.known[k] + total / 2
+
+    made.depends((node, 0), (made, 1), rule=rule)
+    return Jet.from_node(made)
+
+
+def cayley_magnus(a: Jet) -> Jet:
+    """x(t) with x(0) = 0 such that cay(x(t)) solves Y' = a Y, Y(0) = 1: x' = (1 - x/2) a (1 + x/2).
+
+    Parameters
+    ----------
+    a : Jet of matrices (..., n, n)
+        In an algebra that is closed under y -> x y x, as those of the quadratic groups are. It may be growing:
+        coefficient k + 1 of the result needs a up to coefficient k.
+
+    Returns
+    -------
+    Jet
+        Of one order more than a, with coefficient 0 structurally zero.
+
+    Examples
+    --------
+    >>> cayley_magnus(Jet([[[2.0]], [[0.0]], [[0.0]]])).coefficients.ravel()  # 2 tanh t
+    array([ 0.        ,  2.        ,  0.        , -0.66666667])
+    """
+    return _integral(_square_matrices(a), lambda x: dcayley_inverse(x, a))
+
+
+# -- the exponential -----------------------------------------------------------------------------------------
+def exp_series(x: Jet) -> Jet:
+    """exp(x(t)) for matrices x(t) (..., n, n) with x(0) = 0.
+
+    Raises
+    ------
+    SeriesError
+        If x(0) is not zero.
+
+    Examples
+    --------
+    >>> exp_series(Jet([[[0.0]], [[1.0]], [[0.0]], [[0.0]]])).coefficients.ravel()
+    array([1.        , 1.        , 0.5       , 0.16666667])
+    """
+    node = _square_matrices(without_constant(x, check=True)).node
+    return _matrix_series(node, [Fraction(1, factorial(k)) for k in range(1, max(node.order, 1) + 1)], one=True)
+
+
+def log_series(y: Jet) -> Jet:
+    """log(y(t)) for matrices y(t) (..., n, n) with y(0) = 1; coefficient 0 of the result is structurally zero.
+
+    Raises
+    ------
+    SeriesError
+        If y(0) is not the identity.
+
+    Examples
+    --------
+    >>> log_series(Jet([[[1.0]], [[1.0]], [[0.0]], [[0.0]]])).coefficients.ravel()
+    array([ 0.        ,  1.        , -0.5       ,  0.33333333])
+    """
+    first = _square_matrices(y).value
+    if not is_traced(first) and bool(np.any(np.asarray(first != _identity(first)))):
+        raise SeriesError("log_series needs y(0) = 1: for another value factor it out first")
+    node = without_constant(y).node
+    return _matrix_series(node, [Fraction((-1) ** (k + 1), k) for k in range(1, max(node.order, 1) + 1)], one=False)
+
+
+def _matrix_series(node: Node, weights: list[Fraction], one: bool) -> Jet:
+    """sum_(k >= 1) weights[k-1] x^k, plus the identity if `one`."""
+    powers = [node]
+    for _ in weights[1:]:
+        powers.append(recurrences.multilinear(lambda a, b: a @ b, [node, powers[-1]]))
+    return Jet.from_node(_weighted(powers, weights, _identity(node.value) if one else None))
+
+
+def magnus(bracket: Bracket, a: Jet) -> Jet:
+    """x(t) with x(0) = 0 such that exp(x(t)) solves Y' = a Y, Y(0) = 1: x' = dexp_x^-1 a.
+
+    Parameters
+    ----------
+    bracket : callable
+        See `dexp`.
+    a : Jet
+        Values in the algebra. It may be growing: coefficient k + 1 of the result needs a up to coefficient k.
+
+    Returns
+    -------
+    Jet
+        Of one order more than a, with coefficient 0 structurally zero.
+
+    Notes
+    -----
+    In Taylor coefficients x_1 = a_0, x_2 = a_1 / 2, x_3 = a_2 / 3 + [a_1, a_0] / 12.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> a = Jet([[1.0, 0.0, 0.0], [0.0, 12.0, 0.0], [0.0, 0.0, 0.0]])
+    >>> magnus(np.cross, a).coefficient(3)
+    array([ 0.,  0., -1.])
+    """
+    return _integral(a, lambda x: dexp_inverse(bracket, x, a, a.order + 1))
+
+
+def _integral(a: Jet, slope: Callable[[Jet], Jet]) -> Jet:
+    """x with x(0) = 0 and x' = slope(x), shaped as a."""
+    made = Node(a.order + 1, zeros(a.value, a.shape), [None])
+    derivative = slope(Jet.from_node(made)).node
+
+    def rule(k: int) -> Any:
+        found = derivative.known[k - 1]
+        return None if found is None else found / k
+
+    made.depends((derivative, 1), rule=rule)
+    return Jet.from_node(made)
+
+
+def bch(bracket: Bracket, x: Any, y: Any, order: int | None = None) -> Jet:
+    """z = log(exp x exp y) as a series.
+
+    Parameters
+    ----------
+    bracket : callable
+        See `dexp`.
+    x, y : array_like or Jet
+        Elements of the algebra, which stand for t x and t y, so that coefficient k is the term of degree k of
+        the Baker-Campbell-Hausdorff series; or Jets x(t), y(t) with x(0) = y(0) = 0.
+    order : int, optional
+        The last degree; needed if x and y are elements, by default the order of the Jets.
+
+    Returns
+    -------
+    Jet
+        Coefficient 0 is structurally zero.
+
+    Raises
+    ------
+    SeriesError
+        If no order is known, or a Jet has a constant term.
+
+    Notes
+    -----
+    t z' = sum_(k even) B_k ad_z^k (p + q) / k! + [z, q - p] / 2 with p = dexp_x(t x') and q = dexp_(-y)(t y'):
+    every coefficient follows from the lower ones. For elements p = t x and q = t y.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> z = bch(np.cross, [12.0, 0.0, 0.0], [0.0, 1.0, 0.0], 3)
+    >>> z.coefficient(2)[2], z.coefficient(3)
+    (np.float64(6.0), array([ -1., -12.,   0.]))
+    """
+    orders = [v.order for v in (x, y) if isinstance(v, Jet)] + ([] if order is None else [order])
+    if not orders or min(orders) < 1:
+        raise SeriesError("the order of the Baker-Campbell-Hausdorff series is a number from 1 on")
+    degree = min(orders)
+    p, q = _velocity(bracket, x, degree, 1), _velocity(bracket, y, degree, -1)
+    both, difference = recurrences.add(p, q), recurrences.add(q, p, -1)
+    made = Node(degree, zeros(both.value, tuple(np.shape(both.value))), [None])
+    z = Jet.from_node(made)
+    even = [b / factorial(k) if k % 2 == 0 else Fraction(0) for k, b in enumerate(bernoulli(max(degree - 1, 0)))]
+    symmetric = _series_in_ad(bracket, z, Jet.from_node(both), even).node
+    slope = _weighted([symmetric, recurrences.multilinear(bracket, [made, difference])], [Fraction(1), Fraction(1, 2)])
+
+    def rule(k: int) -> Any:
+        found = slope.known[k]
+        return None if found is None else found / k
+
+    # slope_k holds z up to k - 1 only, because p and q begin at t
+    made.depends((slope, 0), rule=rule)
+    return z
+
+
+def _velocity(bracket: Bracket, x: Any, order: int, sign: int) -> Node:
+    """dexp_(sign x)(t x'); for an element that stands for t x it is t x."""
+    if not isinstance(x, Jet):
+        value = as_values(x)
+        return Node(order, zeros(value, value.shape), [None, value, *[None] * (order - 1)])
+    node = without_constant(x, check=True).node
+    moving = Node(node.order, node.value, [None], ((node, 0),), lambda k: _times(k, node.known[k]))
+    weights = [Fraction(sign**k, factorial(k + 1)) for k in range(order)]
+    made: Node = _series_in_ad(bracket, Jet.from_node(node), Jet.from_node(moving), weights).node
+    return made
+
+
+def _times(k: int, x: Any) -> Any:
+    return None if x is None else k * x
+
+
+# -- what the series need of their arguments -----------------------------------------------------------------
+def without_constant(x: Jet, *, check: bool = False) -> Jet:
+    """x(t) - x(0), as a series whose coefficient 0 is structurally zero.
+
+    Parameters
+    ----------
+    x : Jet
+    check : bool
+        Refuse an x(0) that is not zero. Traced values must then be structurally zero.
+
+    Raises
+    ------
+    SeriesError
+        If `check` is set and x(0) is not zero.
+
+    Examples
+    --------
+    >>> without_constant(Jet([3.0, 1.0])).coefficients
+    array([0., 1.])
+    """
+    node = x.node
+    if node.known[0] is None:
+        return x
+    if check and (is_traced(node.value) or bool(np.any(np.asarray(node.value != 0)))):
+        raise SeriesError("the series must vanish at t = 0; without_constant(x) drops its coefficient 0")
+    return Jet.from_node(Node(node.order, zeros(node.value, x.shape), [None], ((node, 0),), lambda k: node.known[k]))
+
+
+def _square_matrices(x: Jet) -> Jet:
+    if x.ndim < 2 or x.shape[-1] != x.shape[-2]:
+        raise ShapeError(f"the values must be square matrices (..., n, n), got shape {x.shape}")
+    return x
+
+
+def _identity(like: Any) -> Any:
+    """The identity matrix of the kind of `like`, broadcast to its shape."""
+    shape = tuple(like.shape)
+    eye = namespace(like).eye(shape[-1])
+    return zeros(like, shape) + eye.astype(int if like.dtype == object else like.dtype)
