@@ -1,0 +1,15 @@
+"""Methods of integration, from their coefficients up.
+
+In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutta method that proves its order),
+`collocation` (methods made from their nodes), `tableaux` (the classical ones by name).
+"""
+
+from liehom.integrators.collocation import collocation as collocation
+from liehom.integrators.collocation import gauss as gauss
+from liehom.integrators.order_conditions import Violation as Violation
+from liehom.integrators.rooted_trees import RootedTree as RootedTree
+from liehom.integrators.rooted_trees import elementary_weight as elementary_weight
+from liehom.integrators.rooted_trees import rooted_trees as rooted_trees
+from liehom.integrators.tableau import Tableau as Tableau
+from liehom.integrators.tableaux import tableau as tableau
+from liehom.integrators.tableaux import tableau_names as tableau_names
