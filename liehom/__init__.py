@@ -6,7 +6,10 @@ The layers, in reading order; each imports only those above it in this list:
 `scalars`          QQ, real number fields, float64, and linear algebra over them
 `algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
 `representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners
-`homogeneous`      the range condition at a point and generically, orbit types
+`series`           truncated Taylor series on which numpy code runs, series in Lie algebras
+`homogeneous`      actions with an exponential, generator fields; the range condition, orbit types
+`correctors`       expansions of flow and step; the order-n isotropy corrector and its clock
+`integrators`      steps, tableaux, `integrate`, measured orders
 `fullness`         is a pair full? the decision, its certificates, the independent checker
 `catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
 `io`               JSON files in and out
@@ -38,6 +41,12 @@ if TYPE_CHECKING:
     from liehom.algebra import su as su
     from liehom.algebra import u as u
     from liehom.catalog import pair as pair
+    from liehom.correctors import Corrected as Corrected
+    from liehom.correctors import OneExponential as OneExponential
+    from liehom.correctors import Step as Step
+    from liehom.correctors import correction as correction
+    from liehom.correctors import flow_series as flow_series
+    from liehom.correctors import step_series as step_series
     from liehom.fullness import Certificate as Certificate
     from liehom.fullness import Full as Full
     from liehom.fullness import NotFull as NotFull
@@ -47,10 +56,20 @@ if TYPE_CHECKING:
     from liehom.fullness import decide_numerically as decide_numerically
     from liehom.fullness import failure_report as failure_report
     from liehom.fullness import verify_certificate as verify_certificate
+    from liehom.homogeneous import Action as Action
+    from liehom.homogeneous import Cayley as Cayley
+    from liehom.homogeneous import Exponential as Exponential
+    from liehom.homogeneous import GeneratorField as GeneratorField
     from liehom.homogeneous import failure_cone as failure_cone
     from liehom.homogeneous import orbit_types as orbit_types
     from liehom.homogeneous import range_condition as range_condition
     from liehom.homogeneous import relative_invariant as relative_invariant
+    from liehom.integrators import BackwardEuler as BackwardEuler
+    from liehom.integrators import Euler as Euler
+    from liehom.integrators import Heun as Heun
+    from liehom.integrators import LieTaylor as LieTaylor
+    from liehom.integrators import Tableau as Tableau
+    from liehom.integrators import tableau as tableau
     from liehom.io import dump as dump
     from liehom.io import from_json as from_json
     from liehom.io import load as load
@@ -72,27 +91,45 @@ if TYPE_CHECKING:
     from liehom.scalars import NumberField as NumberField
     from liehom.scalars import Subspace as Subspace
     from liehom.scalars import number_field as number_field
+    from liehom.series import Jet as Jet
 
 __version__ = "0.1.0"
 
 # Names are loaded on first use, so that `import liehom` costs no more than what is used of it; the lines above
 # say the same to type checkers, and a test holds the two together.
-_LAYERS = ("algebra", "catalog", "fullness", "homogeneous", "io", "representations", "scalars", "testing")
+_LAYERS = (
+    "algebra",
+    "catalog",
+    "correctors",
+    "fullness",
+    "homogeneous",
+    "integrators",
+    "io",
+    "representations",
+    "scalars",
+    "series",
+    "testing",
+)
 _NAMES = {
     "liehom.algebra": (
         "Homomorphism LieAlgebra Subalgebra abelian direct_sum euclidean gl heisenberg "
         "semidirect_sum simple sl so sp su u"
     ),
     "liehom.catalog": "pair",
+    "liehom.correctors": "Corrected OneExponential Step correction flow_series step_series",
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
         "NumericallyNotFull verify_certificate"
     ),
-    "liehom.homogeneous": "failure_cone orbit_types range_condition relative_invariant",
+    "liehom.homogeneous": (
+        "Action Cayley Exponential GeneratorField failure_cone orbit_types range_condition relative_invariant"
+    ),
+    "liehom.integrators": "BackwardEuler Euler Heun LieTaylor Tableau tableau",
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"
     ),
+    "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}

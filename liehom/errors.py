@@ -38,6 +38,14 @@ class FormatError(InputError):
     """A file or JSON object does not have the documented form; nothing of it has been used."""
 
 
+class TangencyError(InputError):
+    """A vector field is not tangent to the orbits; `normal` is its normal component."""
+
+    def __init__(self, normal: object, message: str) -> None:
+        self.normal = normal
+        super().__init__(message)
+
+
 class SeriesError(InputError):
     """A function cannot be expanded in a Taylor series: it branches on values or has no recurrence."""
 
@@ -124,6 +132,10 @@ class CertificateError(LiehomError):
 
 class CertificateFormatError(CertificateError, FormatError):
     """A certificate does not have the documented form (unknown kind or key, value that does not parse)."""
+
+
+class ConvergenceError(LiehomError, ArithmeticError):
+    """An iteration did not converge: an implicit step, a clock, a point of an orbit."""
 
 
 class UndecidedError(LiehomError, TypeError):

@@ -10,6 +10,10 @@ from liehom.integrators.order_conditions import Violation as Violation
 from liehom.integrators.rooted_trees import RootedTree as RootedTree
 from liehom.integrators.rooted_trees import elementary_weight as elementary_weight
 from liehom.integrators.rooted_trees import rooted_trees as rooted_trees
+from liehom.integrators.steps import BackwardEuler as BackwardEuler
+from liehom.integrators.steps import Euler as Euler
+from liehom.integrators.steps import Heun as Heun
+from liehom.integrators.steps import LieTaylor as LieTaylor
 from liehom.integrators.tableau import Tableau as Tableau
 from liehom.integrators.tableaux import tableau as tableau
 from liehom.integrators.tableaux import tableau_names as tableau_names

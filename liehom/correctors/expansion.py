@@ -1,0 +1,235 @@
+"""Taylor coefficients of the flow and of a step at a point, and of the reparametrised flow.
+
+    F_t(m) = w_0 + w_1 t + ...,  (k + 1) w_(k+1) = sum_(i <= k) rho(psi_i) w_(k-i),  psi_i along the flow,
+    step(t) = z_0 + z_1 t + ...
+
+Plain Taylor coefficients, not derivatives.  Imports step, homogeneous, series.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.step import LocalStep, apply_factors, step_variable
+from liehom.errors import InputError
+from liehom.homogeneous import Action, GeneratorField
+from liehom.series.arrays import as_values, zeros
+from liehom.series.jet import Jet
+from liehom.series.node import Node
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """The Taylor expansion of the flow at a point.
+
+    Attributes
+    ----------
+    points : Jet
+        w(t), values of shape (..., N), order n.
+    generator : Jet
+        psi along the flow, values of shape (..., dim g), order n - 1 at least.
+    time_dependent : bool
+        Whether the field depends on time.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> flow_series(field, np.array([1.0, 0.0]), 2).points.coefficients.tolist()
+    [[1.0, 0.0], [0.0, 1.0], [-0.5, 0.0]]
+    """
+
+    points: Jet
+    generator: Jet
+    time_dependent: bool
+
+    def point(self, k: int) -> Any:
+        """w_k, shape (..., N)."""
+        return self.points.coefficient(k)
+
+    def psi(self, k: int) -> Any:
+        """psi_k, shape (..., dim g)."""
+        return self.generator.coefficient(k)
+
+
+def flow_series(field: GeneratorField, m: Any, order: int, t: Any = 0.0) -> Flow:
+    """The flow of m' = rho(psi(m, t)) m from (m, t) to a given order.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    m : array_like of shape (..., N)
+        Floats, or exact scalars of the representation's field in an object array.
+    order : int
+        At least 1.
+    t : float or array of shape (...,)
+        The time at which a time-dependent field is expanded.
+
+    Raises
+    ------
+    InputError
+        If the order is less than 1.
+    SeriesError
+        If psi cannot be expanded.
+
+    Notes
+    -----
+    Section 5 of the paper. psi is called once, on a series that grows as its own result does.
+
+    Examples
+    --------
+    Exact: the logistic-like field on the circle at a rational point
+
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> m = np.array([lh.QQ.convert("3/5"), lh.QQ.convert("4/5")])
+    >>> flow_series(field, m, 2).point(1).tolist()
+    [-12/25, 9/25]
+    """
+    if order < 1:
+        raise InputError(f"the order of an expansion is at least 1, got {order}")
+    start = as_values(m)
+    points = Jet.growing(start, order)
+    time: Any = t
+    if field.time_dependent:
+        first = as_values(t) + zeros(start, start.shape[:-1])
+        time = Jet.from_node(Node(order, first, [first, 0 * first + 1, *[None] * (order - 1)][: order + 1]))
+    generator = field.psi(points, time)
+    if not isinstance(generator, Jet):  # a constant psi
+        generator = Jet.constant(generator, order)
+    slope = field.infinitesimal(generator, points)
+    points.node.depends((slope.node, 1), rule=lambda k: _over(slope.node.known[k - 1], k))
+    return Flow(points, generator, field.time_dependent)
+
+
+def _over(coefficient: Any, k: int) -> Any:
+    return coefficient if k == 1 or coefficient is None else coefficient / k
+
+
+def step_series(action: Action, local: LocalStep, m: Any, order: int, zeta: Jet | None = None) -> Jet:
+    """The expansion of a step in h: a Jet with values (..., N).
+
+    Parameters
+    ----------
+    action : Action
+    local : LocalStep
+        ``step.at(action, psi, m, t)``.
+    m : array of shape (..., N)
+    order : int
+    zeta : Jet, optional
+        A correction: added to the generator of a step with one exponential, else an outermost factor.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> action, m = lh.Action(field.representation), np.array([1.0, 0.0])
+    >>> local = lh.Euler().at(action, lh.correctors.Generator(field, 1), m, 0.0)
+    >>> step_series(action, local, m, 2).coefficients.tolist()
+    [[1.0, 0.0], [0.0, 1.0], [-0.5, 0.0]]
+    """
+    factors = local.factors(step_variable(order, as_values(m)))
+    if zeta is not None:
+        factors = (factors[0] + zeta,) if len(factors) == 1 else (*factors, zeta)
+    made = apply_factors(action, factors, m)
+    return made if isinstance(made, Jet) else Jet.constant(made, order)
+
+
+@final
+class Clock:
+    """A reparametrisation tau(t) = t + c_2 t^2 + ... and the coefficients of F_tau(t).
+
+    Parameters
+    ----------
+    flow : Flow
+    order : int
+    shape : tuple of int
+        Leading axes: every trajectory has its own clock.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> flow = flow_series(lh.GeneratorField(lh.defining(lh.so(2)), [1]), np.array([1.0, 0.0]), 3)
+    >>> clock = Clock(flow, 3, ())
+    >>> clock.set(2, np.float64(0.5))
+    >>> clock.point(2).tolist()  # w_2 + w_1 / 2
+    [-0.5, 0.5]
+    """
+
+    def __init__(self, flow: Flow, order: int, shape: tuple[int, ...]) -> None:
+        self._flow = flow
+        self.order = order
+        one = zeros(flow.points.value, shape) + 1
+        self.coefficients: list[Any] = [None, one, *[None] * (order - 1)]
+        self._powers: dict[tuple[int, int], Any] = {}
+
+    def set(self, k: int, value: Any) -> None:
+        """Set c_k (add to it where it was set)."""
+        old = self.coefficients[k]
+        self.coefficients[k] = value if old is None else old + value
+        self._powers = {key: x for key, x in self._powers.items() if key[1] < k}
+
+    def point(self, k: int) -> Any:
+        """Coefficient k of F_tau(t), shape (..., N)."""
+        total = None
+        for i in range(1, k + 1):
+            power = self._power(i, k)
+            if power is not None:
+                term = power[..., None] * self._flow.point(i)
+                total = term if total is None else total + term
+        return self._flow.point(0) * 0 if total is None else total
+
+    def _power(self, i: int, k: int) -> Any:
+        """Coefficient k of tau^i."""
+        if i == 1:
+            return self.coefficients[k]
+        if i > k:
+            return None
+        if (i, k) not in self._powers:
+            total = None
+            for j in range(1, k - i + 2):
+                left, right = self.coefficients[j], self._power(i - 1, k - j)
+                if left is not None and right is not None:
+                    total = left * right if total is None else total + left * right
+            self._powers[i, k] = total
+        return self._powers[i, k]
+
+
+def leading_order(flow: Flow, order: int) -> Any:
+    """The least l with w_l != 0, shape (...,); 0 where all coefficients up to `order` vanish.
+
+    A coefficient counts as zero if it is below 64 units of round-off of the terms that make it; exact coefficients
+    are compared with 0.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
+    >>> int(leading_order(flow_series(field, np.array([1.0, 0.0]), 3), 3))
+    2
+    """
+    found: Any = np.zeros(flow.points.shape[:-1], dtype=int)
+    # where w_1 = 0 for an autonomous field, the point is an equilibrium and all w_k vanish
+    for k in range(1, order + 1 if flow.time_dependent else 2):
+        found = np.where((found == 0) & ~vanishing(flow, k), k, found)
+        if bool(np.all(found)):
+            break
+    return found
+
+
+def vanishing(flow: Flow, k: int) -> Any:
+    """Whether w_k is zero up to round-off, shape (...,)."""
+    w = flow.point(k)
+    if np.asarray(w).dtype == object:
+        return np.array([all(x == 0 for x in row) for row in w.reshape(-1, w.shape[-1])]).reshape(w.shape[:-1])
+    size = sum(np.abs(flow.psi(i)).max(axis=-1) * np.abs(flow.point(k - 1 - i)).max(axis=-1) for i in range(k))
+    return np.abs(w).max(axis=-1) <= 64 * np.finfo(w.dtype).eps * size / k

@@ -1,0 +1,148 @@
+"""Action: a representation with an exponential, the numerical face of a homogeneous space.
+
+What integrators and correctors need of a space: rho(x) m, Exp(x) m, the bracket, an inner product on g, and at a
+point the isotropy subalgebra in an orthonormal basis.  Imports exponential, inner_product, maps, series, errors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.errors import InputError
+from liehom.homogeneous.exponential import Exponential, exponential_of
+from liehom.homogeneous.inner_product import InnerProduct, inner_product
+from liehom.homogeneous.maps import action_map, bracket_map
+from liehom.representations import Representation
+from liehom.series.arrays import namespace
+
+
+@final
+class Action:
+    """A representation together with an exponential.
+
+    Parameters
+    ----------
+    representation : Representation
+    exponential : str, Exponential or callable
+        See `exponential_of`: "exp" (default), "cayley", "expm", "series", "rodrigues", an `Exponential`, or a
+        function (x, m) -> Exp(x) m.
+
+    Raises
+    ------
+    InputError
+        If the representation does not allow the exponential.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> action = lh.Action(lh.defining(lh.so(3)), "cayley")
+    >>> m = action.act(np.array([0.1, 0.2, 0.3]), np.array([0.0, 0.0, 1.0]))
+    >>> round(float(m @ m), 14)
+    1.0
+    """
+
+    __slots__ = ("_basis", "_size", "bracket", "exponential", "infinitesimal", "inner_product", "representation")
+
+    def __init__(self, representation: Representation, exponential: Any = "exp") -> None:
+        if not isinstance(representation, Representation):
+            raise InputError(f"expected a Representation, got {representation!r}")
+        self.representation = representation
+        self.exponential: Exponential = exponential_of(representation, exponential)
+        self.infinitesimal = action_map(representation)
+        self.bracket = bracket_map(representation)
+        self.inner_product: InnerProduct = inner_product(representation)
+        self._basis = self.inner_product.orthonormal_basis()
+        tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(-1, representation.size**2)
+        self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
+
+    @property
+    def dimension(self) -> int:
+        """The dimension of the algebra."""
+        return self.representation.algebra.dimension
+
+    @property
+    def size(self) -> float:
+        """The largest norm of rho(x) for x in an orthonormal basis of g."""
+        return self._size
+
+    def act(self, x: Any, m: Any) -> Any:
+        """Exp(x) m for x (..., dim) and m (..., N), arrays or Jets with x(0) = 0."""
+        return self.exponential(x, m)
+
+    def isotropy_frame(self, m: Any, orbit_dimension: Any) -> IsotropyFrame:
+        """The isotropy subalgebra at m in an orthonormal basis, of known dimension.
+
+        Parameters
+        ----------
+        m : array of shape (..., N)
+        orbit_dimension : int or array of shape (...,)
+            It is constant along an orbit, so that no tolerance decides here.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> lh.Action(lh.defining(lh.so(3))).isotropy_frame(np.array([0, 0, 1.0]), 2).basis.shape
+        (3, 1)
+        """
+        xp = namespace(m)
+        columns = self.infinitesimal.right(m) @ self._basis
+        rough = columns.astype(np.float64) if columns.dtype == np.longdouble else columns
+        left, sizes, right = xp.linalg.svd(rough, full_matrices=True)
+        rank = np.asarray(orbit_dimension)
+        lowest = int(rank.min())
+        kernel = xp.swapaxes(right[..., lowest:, :], -1, -2)
+        if columns.dtype == np.longdouble:
+            kernel = _refined(columns, left, sizes, right, kernel, lowest)
+        if rank.ndim and int(rank.max()) != lowest:
+            kernel = kernel * (np.arange(lowest, self.dimension) >= rank[..., None])[..., None, :]
+        highest = int(rank.max())
+        inverse = xp.where(np.arange(highest) < rank[..., None], 1 / _positive(sizes[..., :highest], xp), 0.0)
+        lift = self._basis @ (xp.swapaxes(right[..., :highest, :], -1, -2) * inverse[..., None, :])
+        tangent = left[..., :, :highest]
+        if highest != lowest:
+            tangent = tangent * (np.arange(highest) < rank[..., None])[..., None, :]
+        return IsotropyFrame(self._basis @ kernel, tangent, lift, rank)
+
+    def __repr__(self) -> str:
+        return f"<action by {self.exponential.name} of {self.representation!r}>"
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class IsotropyFrame:
+    """The isotropy subalgebra and the tangent space at a point, in orthonormal bases.
+
+    Attributes
+    ----------
+    basis : array of shape (..., dim, s)
+        Columns span g_m, orthonormal in the inner product of the action (zero columns fill up where the orbits of an
+        ensemble have different dimensions).
+    tangent : array of shape (..., N, d)
+        Columns span T_m M, orthonormal (zero columns fill up).
+    lift : array of shape (..., dim, d)
+        Column j is the generator of least norm with rho(x) m = tangent[:, j].
+    orbit_dimension : array of shape (...,)
+    """
+
+    basis: Any
+    tangent: Any
+    lift: Any
+    orbit_dimension: Any
+
+
+def _positive(sizes: Any, xp: Any) -> Any:
+    return xp.where(sizes > 0, sizes, 1.0)
+
+
+def _refined(columns: Any, left: Any, sizes: Any, right: Any, kernel: Any, rank: int) -> Any:
+    """The kernel to the precision of extended floats, by two Newton steps with the pseudo-inverse in float64."""
+    inverse = np.swapaxes(right[..., :rank, :], -1, -2) / sizes[..., None, :rank]
+    inverse = inverse @ np.swapaxes(left[..., :, :rank], -1, -2)
+    for _ in range(2):
+        kernel = kernel - inverse @ (columns @ kernel)
+    return kernel
