@@ -69,6 +69,8 @@ if TYPE_CHECKING:
     from liehom.integrators import Heun as Heun
     from liehom.integrators import LieTaylor as LieTaylor
     from liehom.integrators import Tableau as Tableau
+    from liehom.integrators import Solution as Solution
+    from liehom.integrators import integrate as integrate
     from liehom.integrators import tableau as tableau
     from liehom.io import dump as dump
     from liehom.io import from_json as from_json
@@ -124,7 +126,7 @@ _NAMES = {
     "liehom.homogeneous": (
         "Action Cayley Exponential GeneratorField failure_cone orbit_types range_condition relative_invariant"
     ),
-    "liehom.integrators": "BackwardEuler Euler Heun LieTaylor Tableau tableau",
+    "liehom.integrators": "BackwardEuler Euler Heun LieTaylor Solution Tableau integrate tableau",
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"

@@ -46,7 +46,7 @@ DOORS: dict[str, tuple[str, ...]] = {
     "numba": ("liehom.integrators",),
     "dask": ("liehom.integrators",),
     "typer": ("liehom.cli",),
-    "rich": ("liehom.cli",),
+    "rich": ("liehom.cli", "liehom.integrators.progress"),
 }
 
 # what the independent checker of certificates may import of liehom

@@ -6,10 +6,14 @@ In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutt
 
 from liehom.integrators.collocation import collocation as collocation
 from liehom.integrators.collocation import gauss as gauss
+from liehom.integrators.dense import DenseSolution as DenseSolution
+from liehom.integrators.integrate import integrate as integrate
 from liehom.integrators.order_conditions import Violation as Violation
 from liehom.integrators.rooted_trees import RootedTree as RootedTree
 from liehom.integrators.rooted_trees import elementary_weight as elementary_weight
 from liehom.integrators.rooted_trees import rooted_trees as rooted_trees
+from liehom.integrators.solution import Report as Report
+from liehom.integrators.solution import Solution as Solution
 from liehom.integrators.steps import BackwardEuler as BackwardEuler
 from liehom.integrators.steps import Euler as Euler
 from liehom.integrators.steps import Heun as Heun

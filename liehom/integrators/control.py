@@ -1,0 +1,102 @@
+"""Step sizes from the Taylor coefficients of the error, or from an embedded pair.
+
+For a step with defects d_k = |[t^k](F - step)| the step size is the largest h with d_k h^k within the tolerance,
+before the step is taken; for an embedded pair the step is taken, judged, and repeated where it was too large.
+Imports correctors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.expansion import flow_series, step_series
+from liehom.correctors.step import Generator, LocalStep
+from liehom.homogeneous import Action
+
+SAFETY = 0.9
+LARGEST_GROWTH = 5.0
+SMALLEST_SHRINK = 0.2
+ERROR_TERMS = 2
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """The error allowed in a step: its root mean square is at most atol + rtol |m| (also a root mean square).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Tolerance(1e-3, 1e-6).norm(np.array([3.0, 4.0]))
+    0.00500...
+    """
+
+    rtol: float
+    atol: float
+
+    def norm(self, m: Any) -> Any:
+        """The 2-norm of the error that is allowed at m, shape (...,)."""
+        return self.atol * np.sqrt(m.shape[-1]) + self.rtol * np.linalg.norm(np.asarray(m, dtype=float), axis=-1)
+
+
+def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, largest: Any) -> Any:
+    """The largest step size whose error is within the tolerance, by its Taylor coefficients; shape (...,).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0)))
+    0.009000000000000001
+    """
+    h = np.asarray(largest, dtype=float)
+    for k, size in defects:
+        size = np.asarray(size, dtype=float)
+        some = size > 0
+        with np.errstate(over="ignore"):
+            found = np.where(some, SAFETY * (allowed / np.where(some, size, 1.0)) ** (1 / k), np.inf)
+        h = np.minimum(h, found)
+    return h
+
+
+def defects_of(
+    action: Action, psi: Generator, local: LocalStep, m: Any, t: Any, order: int
+) -> tuple[tuple[int, Any], ...]:
+    """|[t^k] (F - step)| for the orders above the order of a step.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), ["m0", "0", "0"])
+    >>> action, psi = lh.Action(field.representation), Generator(field, 2)
+    >>> m = np.array([0.6, 0.0, 0.8])
+    >>> found = defects_of(action, psi, lh.Euler().at(action, psi, m, 0.0), m, 0.0, 1)
+    >>> [k for k, _ in found]
+    [2, 3]
+    """
+    if local.defects is not None:
+        return local.defects
+    total = order + ERROR_TERMS
+    flow = flow_series(psi.field, m, total, t)
+    made = step_series(action, local, m, total)
+    return tuple(
+        (k, np.linalg.norm(np.asarray(flow.point(k) - made.coefficient(k), dtype=float), axis=-1))
+        for k in range(order + 1, total + 1)
+    )
+
+
+def next_size(h: Any, ratio: Any, order: int) -> Any:
+    """The next step size from error / tolerance of an embedded pair whose error is of the given order.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(next_size(np.array(0.1), np.array(0.0), 5)), float(next_size(np.array(0.1), np.array(1e9), 5).round(4))
+    (0.5, 0.02)
+    """
+    safe = np.where(ratio > 0, ratio, 1.0)
+    factor = np.where(ratio > 0, SAFETY * safe ** (-1 / order), LARGEST_GROWTH)
+    return h * np.clip(factor, SMALLEST_SHRINK, LARGEST_GROWTH)

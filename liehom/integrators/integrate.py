@@ -1,0 +1,195 @@
+"""integrate: trajectories of a generator field, in the manner of scipy's solve_ivp.
+
+The door checks what comes in; the work is in `run.py`.  Imports run, steps, correctors, homogeneous, errors.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from liehom.correctors.step import Generator, Step
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous import Action, GeneratorField
+from liehom.homogeneous.field import check_point
+from liehom.integrators.run import Options, Run
+from liehom.integrators.solution import Solution
+from liehom.integrators.steps import LieTaylor
+
+CLOCKS = ("corrected", "nominal")
+
+
+def integrate(
+    field: GeneratorField,
+    t_span: Any,
+    y0: Any,
+    *,
+    step: Step | None = None,
+    dt: Any = None,
+    rtol: float = 1e-6,
+    atol: float = 1e-9,
+    t_eval: Any = None,
+    dense_output: bool = False,
+    events: Any = None,
+    exponential: Any = "exp",
+    clock: str = "corrected",
+    max_step: float = np.inf,
+    first_step: float | None = None,
+    max_steps: int = 10_000_000,
+    progress: bool | Callable[[float], Any] = False,
+    checkpoint: str | os.PathLike[str] | None = None,
+    checkpoint_every: float = 30.0,
+) -> Solution:
+    """Integrate m' = rho(psi(m, t)) m, staying on the orbit of the start.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    t_span : (float, float)
+        Start and end; the end may lie before the start.
+    y0 : array_like of shape (N,) or (..., N)
+        The starting point, or those of an ensemble, which is integrated at once (psi is always called on all of
+        it). numpy.longdouble is kept.
+    step : Step, optional
+        The method (default ``LieTaylor(6)``): ``Corrected(Euler(), order=4)``, ``RKMK("rk45")``, ....
+    dt : float or array of shape (...,), optional
+        A fixed step size. Without it the step size is adapted to `rtol` and `atol`, for every trajectory apart.
+    rtol, atol : float
+        The error of a step is at most atol + rtol |m|, root mean squares over the coordinates.
+    t_eval : array_like of shape (k,), optional
+        Times at which to store the solution, in the order of integration; by default every step.
+    dense_output : bool
+        Whether to return the solution as a function of time, in `sol`.
+    events : callable or list of callables, optional
+        Functions g(t, y) whose zeros are looked for, with the attributes `terminal` and `direction` of solve_ivp.
+    exponential : str, Exponential or callable
+        "exp", "cayley", ...: see `liehom.homogeneous.exponential_of`.
+    clock : "corrected" or "nominal"
+        Whether time advances by tau(h), so that a corrected step is right as a trajectory, or by h, as in the
+        paper, where only the orbit is right to the order of the correction.
+    max_step, first_step : float, optional
+        Bounds for adapted step sizes.
+    max_steps : int
+        After so many steps the run ends with status -1.
+    progress : bool or callable
+        A progress bar on standard error, or a function of the fraction done.
+    checkpoint : path, optional
+        A file (.npz) in which the state is kept every `checkpoint_every` seconds and on interruption; a run that
+        finds it continues from it, bit for bit, and deletes it when it is done.
+    checkpoint_every : float
+        Seconds between two checkpoints.
+
+    Returns
+    -------
+    Solution
+        With `t`, `y`, `sol`, `t_events`, `status`, ... as solve_ivp has them, and `report`.
+
+    Raises
+    ------
+    ShapeError, InputError
+        If the start, psi at the start, or an option is not right; TangencyError if a field X is not tangent.
+
+    Notes
+    -----
+    The last step is shortened (tau(h) = remaining time, by Newton), so that t[-1] == t_span[1]. Where trajectories
+    take different numbers of steps, t and y are filled with NaN unless `t_eval` is given. Leading axes: t is handed
+    to psi with the shape of the ensemble.
+
+    Examples
+    --------
+    The free rigid body on the sphere, Euler's step corrected to order 4:
+
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    >>> sol = lh.integrate(field, (0, 10), [0.6, 0.0, 0.8], step=lh.Corrected(lh.Euler(), order=4), dt=0.1)
+    >>> sol.y.shape[0], bool(abs(np.linalg.norm(sol.y[:, -1]) - 1) < 1e-13), sol.report.order
+    (3, True, 4)
+    """
+    if not isinstance(field, GeneratorField):
+        raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
+    step = LieTaylor(6) if step is None else step
+    if not isinstance(step, Step):
+        raise InputError(f"step is {step!r}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
+    start = _start(y0)
+    orbit_dimension = check_point(field.representation, start)
+    span = _span(t_span, start.dtype)
+    action = Action(field.representation, exponential)
+    field.check(start, np.broadcast_to(span[0], start.shape[:-1]))
+    if clock not in CLOCKS:
+        raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
+    options = Options(
+        dt=None if dt is None else _step_size(dt, start),
+        rtol=_positive("rtol", rtol, zero=True),
+        atol=_positive("atol", atol, zero=True),
+        t_eval=None if t_eval is None else _times(t_eval, span),
+        dense_output=bool(dense_output),
+        events=events,
+        nominal=clock == "nominal",
+        max_step=_positive("max_step", max_step),
+        first_step=None if first_step is None else _positive("first_step", first_step),
+        max_steps=int(_positive("max_steps", max_steps)),
+        checkpoint_every=_positive("checkpoint_every", checkpoint_every, zero=True),
+    )
+    if options.dt is None and options.rtol == 0 and options.atol == 0:
+        raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
+    run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
+    return run.execute(progress, checkpoint)
+
+
+def _start(y0: Any) -> Any:
+    array = np.asarray(y0)
+    if array.dtype.kind == "O":
+        try:
+            array = array.astype(np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"the start is not a point of floats: {error}") from None
+    if array.dtype.kind not in "iuf":
+        raise InputError(f"the start has the type {array.dtype}, expected real numbers")
+    return array.astype(array.dtype if array.dtype in (np.float64, np.longdouble) else np.float64)
+
+
+def _span(t_span: Any, dtype: Any) -> tuple[Any, Any]:
+    try:
+        first, last = (dtype.type(t) for t in t_span)
+    except (TypeError, ValueError):
+        raise InputError(f"t_span is {t_span!r}, expected two numbers (start, end)") from None
+    if not (np.isfinite(first) and np.isfinite(last)):
+        raise InputError(f"t_span is {t_span!r}: start and end must be finite")
+    return first, last
+
+
+def _step_size(dt: Any, start: Any) -> Any:
+    sizes = np.asarray(dt, dtype=start.dtype)
+    if not bool(np.all(np.isfinite(sizes) & (sizes > 0))):
+        raise InputError(f"dt is {dt!r}, expected a positive step size (the direction is that of t_span)")
+    try:
+        return np.broadcast_to(sizes, start.shape[:-1])
+    except ValueError:
+        raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
+
+
+def _positive(name: str, value: Any, *, zero: bool = False) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = np.nan
+    if not (number > 0 or (zero and number == 0)):
+        raise InputError(f"{name} is {value!r}, expected a positive number")
+    return number
+
+
+def _times(t_eval: Any, span: tuple[Any, Any]) -> Any:
+    times = np.asarray(t_eval, dtype=span[0].dtype)
+    if times.ndim != 1:
+        raise ShapeError(f"t_eval has shape {times.shape}, expected a list of times")
+    low, high = min(span), max(span)
+    if times.size and not bool(np.all((times >= low) & (times <= high))):
+        raise InputError(f"t_eval must lie within t_span, {low} to {high}")
+    steps = np.diff(times) * (1 if span[1] >= span[0] else -1)
+    if bool(np.any(steps <= 0)):
+        raise InputError("t_eval must be sorted in the direction of integration, without repetitions")
+    return times
