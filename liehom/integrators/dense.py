@@ -69,7 +69,7 @@ class DenseSolution:
         for k, time in enumerate(flat):
             for i in np.unique(index[k]):
                 here = index[k] == i
-                out[..., k] = np.where(here[..., None], self._at(int(i), time), out[..., k])
+                out[..., k] = np.where(here[..., None], self._at(int(i), time, here), out[..., k])
         return out[..., 0] if queries.ndim == 0 else out
 
     def _segments(self, flat: Any) -> Any:
@@ -85,13 +85,13 @@ class DenseSolution:
             found[k] = np.clip(passed.sum(axis=0) - 1, 0, last)
         return found
 
-    def _at(self, i: int, time: Any) -> Any:
+    def _at(self, i: int, time: Any, here: Any) -> Any:
         point, start = self._points[i], self._times[i]
         clean = np.where(np.isfinite(start), start, 0.0)
         finite = np.where(np.isfinite(point), point, self._points[0])
         if self._prepared is None or self._prepared[0] != i:
             self._prepared = (i, self._step.at(self._action, self._psi, finite, clean[..., None]))
         local = self._prepared[1]
-        elapsed = np.where(self._sizes[i] != 0, time - clean, 0.0)
-        s = elapsed if self._nominal else size_for(local, elapsed, self._sizes[i])
+        elapsed = np.where(here & (self._sizes[i] != 0), time - clean, 0.0)
+        s = elapsed if self._nominal else size_for(local, elapsed, np.where(here, self._sizes[i], 0))
         return apply_factors(self._action, local.factors(s[..., None]), finite)

@@ -145,13 +145,15 @@ class Found:
     def __init__(self, count: int, shape: tuple[int, ...]) -> None:
         self._count, self._shape = count, shape
         self.occurrences = np.zeros((count, *shape), dtype=int)
-        self._rows: list[tuple[int, int, Any, Any]] = []
+        self.rows: list[tuple[int, int, Any, Any]] = []
 
     def add(self, i: int, here: Any, t: Any, y: Any) -> None:
         """Event i at times t where `here`."""
-        self.occurrences[i] += here
+        more = np.zeros_like(self.occurrences)
+        more[i] = here
+        self.occurrences = self.occurrences + more
         times, points = np.reshape(t, -1), np.reshape(y, (-1, np.shape(y)[-1]))
-        self._rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
+        self.rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
 
     def lists(self) -> tuple[list[Any], list[Any]]:
         """t_events, y_events as a `Solution` has them."""
@@ -160,7 +162,7 @@ class Found:
         for i in range(self._count):
             t_row, y_row = np.empty(size, dtype=object), np.empty(size, dtype=object)
             for b in range(size):
-                mine = [(t, y) for j, c, t, y in self._rows if j == i and c == b]
+                mine = [(t, y) for j, c, t, y in self.rows if j == i and c == b]
                 t_row[b] = np.array([t for t, _ in mine])
                 y_row[b] = np.array([y for _, y in mine])
             times.append(t_row[0] if self._shape == () else t_row.reshape(self._shape))
@@ -171,14 +173,14 @@ class Found:
         """The state, for a checkpoint."""
         return {
             "occurrences": self.occurrences,
-            "index": np.array([row[:2] for row in self._rows], dtype=int).reshape(-1, 2),
-            "t": np.array([row[2] for row in self._rows]),
-            "y": np.array([row[3] for row in self._rows]),
+            "index": np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2),
+            "t": np.array([row[2] for row in self.rows]),
+            "y": np.array([row[3] for row in self.rows]),
         }
 
     def restore(self, arrays: dict[str, Any]) -> None:
         """Take a state back."""
         self.occurrences = arrays["occurrences"]
-        self._rows = [
+        self.rows = [
             (int(i), int(b), t, y) for (i, b), t, y in zip(arrays["index"], arrays["t"], arrays["y"], strict=True)
         ]

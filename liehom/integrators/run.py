@@ -27,6 +27,7 @@ from liehom.integrators.records import Account, Found, Samples
 from liehom.integrators.solution import Solution
 
 GROWTH = 8.0
+_REPLACED = ("t", "m", "active", "h", "taken", "calls", "halted", "failure", "before")
 MESSAGES = {
     0: "The solver successfully reached the end of the integration interval.",
     1: "A termination event occurred.",
@@ -115,11 +116,13 @@ class Run:
         """Run to the end, with progress and checkpoints."""
         if path is not None and os.path.exists(path):
             self._restore(files.load(path, self.fingerprint))
+        mark = self._mark()
         begin, last = np.min(self.direction * self.t, initial=np.inf), wall.monotonic()
         length = float(self.direction * self.end - begin) or 1.0
         with Progress(show) as progress:
             try:
                 while bool(np.any(self.active)):
+                    mark = self._mark()
                     self.advance()
                     progress.update(min(1.0, float(np.min(self.direction * self.t) - begin) / length))
                     if path is not None and wall.monotonic() - last >= self.options.checkpoint_every:
@@ -127,6 +130,7 @@ class Run:
                         last = wall.monotonic()
             except KeyboardInterrupt:
                 if path is not None:
+                    self._back_to(mark)
                     files.save(path, self.fingerprint, self._state())
                 raise
             progress.update(1.0)
@@ -284,6 +288,22 @@ class Run:
         if bool(np.any(where)):
             self.failure = message
             self.active = self.active & ~where
+
+    def _mark(self) -> tuple[Any, ...]:
+        """The state between two steps, cheaply: arrays are replaced, never written into."""
+        kept = {name: getattr(self, name) for name in _REPLACED}
+        done = None if self.samples is None else self.samples.done
+        return kept, len(self.times), self.account.arrays(), self.found.occurrences, len(self.found.rows), done
+
+    def _back_to(self, mark: tuple[Any, ...]) -> None:
+        """Undo what an interrupted step has done."""
+        kept, length, account, self.found.occurrences, rows, done = mark
+        for name, value in kept.items():
+            setattr(self, name, value)
+        del self.times[length:], self.points[length:], self.sizes[max(length - 1, 0) :], self.found.rows[rows:]
+        self.account.restore(account)
+        if self.samples is not None:
+            self.samples.done = done
 
     def _state(self) -> dict[str, Any]:
         """All that `_restore` needs, as arrays."""
