@@ -1,7 +1,8 @@
 """Methods of integration, from their coefficients up.
 
 In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutta method that proves its order),
-`collocation` (methods made from their nodes), `tableaux` (the classical ones by name).
+`collocation` (methods made from their nodes), `tableaux` (the classical ones by name); `steps`, `rkmk`, `products`
+(steps of Lie group methods).
 """
 
 from liehom.integrators.collocation import collocation as collocation
@@ -9,6 +10,12 @@ from liehom.integrators.collocation import gauss as gauss
 from liehom.integrators.dense import DenseSolution as DenseSolution
 from liehom.integrators.integrate import integrate as integrate
 from liehom.integrators.order_conditions import Violation as Violation
+from liehom.integrators.products import CommutatorFree4 as CommutatorFree4
+from liehom.integrators.products import CrouchGrossman3 as CrouchGrossman3
+from liehom.integrators.products import ProductStep as ProductStep
+from liehom.integrators.products import Scheme as Scheme
+from liehom.integrators.rkmk import RKMK as RKMK
+from liehom.integrators.rkmk import EmbeddedStep as EmbeddedStep
 from liehom.integrators.rooted_trees import RootedTree as RootedTree
 from liehom.integrators.rooted_trees import elementary_weight as elementary_weight
 from liehom.integrators.rooted_trees import rooted_trees as rooted_trees
