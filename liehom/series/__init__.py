@@ -1,5 +1,7 @@
 """Truncated Taylor series and series in Lie algebras."""
 
+from liehom.series.assembly import as_jet as as_jet
+from liehom.series.assembly import on_series as on_series
 from liehom.series.bilinear import Bilinear as Bilinear
 from liehom.series.jet import Jet as Jet
 from liehom.series.lie_series import bch as bch

@@ -14,14 +14,16 @@ from typing import Any
 import flint
 import numpy as np
 
-from liehom.errors import FieldError, SeriesError
+from liehom.errors import FieldError, SeriesError, SingularError
 
 # the values at 0 that stay in every field; at other arguments these functions leave QQ
 _AT_ZERO = {
     "exp": 1, "cos": 1, "cosh": 1, "sin": 0, "tan": 0, "sinh": 0, "tanh": 0, "arctan": 0, "arcsin": 0,
-    "arctanh": 0, "arcsinh": 0, "expm1": 0, "log1p": 0,
+    "arctanh": 0, "arcsinh": 0, "expm1": 0, "log1p": 0, "cbrt": 0,
 }  # fmt: skip
-_SYMPY = {"arctan": "atan", "arcsin": "asin", "arccos": "acos", "arctanh": "atanh", "arcsinh": "asinh"}
+_SYMPY = {
+    "arctan": "atan", "arcsin": "asin", "arccos": "acos", "arctanh": "atanh", "arcsinh": "asinh", "arccosh": "acosh",
+}  # fmt: skip
 
 
 def is_jax(x: Any) -> bool:
@@ -77,6 +79,11 @@ def namespace(*arrays: Any) -> Any:
 def as_values(x: Any) -> Any:
     """x as an array whose arithmetic is a field's: integers become floats, exact integers become fractions.
 
+    Raises
+    ------
+    SeriesError
+        If an entry is no number, or floats stand beside exact rational numbers.
+
     Examples
     --------
     >>> from fractions import Fraction
@@ -84,22 +91,86 @@ def as_values(x: Any) -> Any:
     (dtype('float64'), Fraction(3, 1))
     """
     if is_jax(x):
-        return x
+        return x if x.dtype.kind not in "iub" else x.astype(float)
     array = np.asarray(x)
-    if array.dtype.kind in "iub":
-        return array.astype(np.float64)
     if array.dtype.kind in "fc":
         return array
+    if array.dtype.kind in "iub":
+        return array.astype(np.float64)
     if array.dtype.kind != "O":
         raise SeriesError(f"the entries of a series are numbers, got an array of type {array.dtype}")
     kinds = [x for x in array.flat if not isinstance(x, int | np.integer | flint.fmpz)]
-    zero = 0 * kinds[0] if kinds else Fraction(0)
+    return _alike(array, 0 * kinds[0] if kinds and _is_number(kinds[0]) else Fraction(0))
+
+
+def _alike(array: Any, zero: Any) -> Any:
+    """An array of objects in which integers and rational numbers are of the kind of `zero`."""
     out = np.empty(array.shape, dtype=object)
+    rational = isinstance(zero, Fraction | flint.fmpq)
     for index, value in np.ndenumerate(array):
-        if isinstance(value, bool | np.bool_):
-            raise SeriesError(f"{value!r} is not a number")
-        out[index] = zero + int(value) if isinstance(value, int | np.integer | flint.fmpz) else value
+        if isinstance(value, int | np.integer | flint.fmpz) and not isinstance(value, bool):
+            out[index] = zero + int(value)
+        elif isinstance(value, Fraction | flint.fmpq):
+            top, bottom = (value.p, value.q) if isinstance(value, flint.fmpq) else value.as_integer_ratio()
+            out[index] = (zero + int(top)) / int(bottom)
+        elif rational and isinstance(value, float | complex | np.inexact):
+            raise SeriesError(
+                f"the float {value!r} stands next to exact numbers: write a fraction, or floats throughout"
+            )
+        elif _is_number(value):
+            out[index] = value
+        else:
+            raise SeriesError(f"the entries of a series are numbers, got {value!r}")
     return out
+
+
+def _is_number(value: Any) -> bool:
+    return hasattr(value, "__mul__") and not isinstance(
+        value, str | bytes | bool | np.bool_ | list | tuple | np.ndarray
+    )
+
+
+def beside(like: Any, value: Any) -> Any:
+    """A constant as an array that can stand in one formula with arrays like `like`; the caller's array is copied.
+
+    A number takes the type of `like`, as in numpy; next to exact scalars it must be exact.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> beside(np.ones(2, dtype=np.float32), 0.5).dtype
+    dtype('float32')
+    """
+    if is_jax(value):
+        return as_values(value)
+    dtype = getattr(like, "dtype", np.dtype(object))
+    if dtype.kind == "O":
+        array = np.asarray(value)
+        if array.dtype.kind in "fc" and isinstance(zeros(like, ())[()], Fraction | flint.fmpq):
+            raise SeriesError(
+                f"the float {value!r} stands next to exact numbers: write a fraction, or floats throughout"
+            )
+        return _alike(array, zeros(like, ())[()]) if array.dtype.kind in "iuO" else as_values(array)
+    if isinstance(value, Fraction | flint.fmpq):
+        top, bottom = (value.p, value.q) if isinstance(value, flint.fmpq) else value.as_integer_ratio()
+        one = np.ones((), dtype=dtype)
+        return one * int(top) / int(bottom)
+    if isinstance(value, int | float | complex) and not isinstance(value, np.generic):
+        return np.asarray(value, dtype=np.result_type(dtype, 1.0 if isinstance(value, int) else value))
+    return owned(as_values(value))
+
+
+def owned(x: Any) -> Any:
+    """x, copied if it is an array that its owner may change; None stays.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> mine = np.zeros(2)
+    >>> owned(mine) is mine
+    False
+    """
+    return x.copy() if isinstance(x, np.ndarray) else x
 
 
 def zeros(like: Any, shape: tuple[int, ...]) -> Any:
@@ -152,11 +223,11 @@ def _elementary_scalar(name: str, x: Any) -> Any:
     if kind.startswith("sympy"):
         import sympy
 
-        return getattr(sympy, _SYMPY.get(name, name))(x)
+        return _symbolic(sympy, name, x)
     if kind.startswith("mpmath"):
-        import mpmath
+        import mpmath  # type: ignore[import-untyped]
 
-        return getattr(mpmath, _SYMPY.get(name, name))(x)
+        return _symbolic(mpmath, name, x)
     if x == 0 and name in _AT_ZERO:
         return x + _AT_ZERO[name]
     if x == 1 and name in ("log", "sqrt"):
@@ -170,11 +241,97 @@ def _elementary_scalar(name: str, x: Any) -> Any:
     raise FieldError(f"{name}({x}) is not known to be in the field of the exact numbers; use floats or sympy symbols")
 
 
+def _symbolic(library: Any, name: str, x: Any) -> Any:
+    """The function of sympy or mpmath with the numpy name."""
+    if name in ("expm1", "log1p"):
+        return library.exp(x) - 1 if name == "expm1" else library.log(x + 1)
+    if name == "exp2":
+        return (0 * x + 2) ** x
+    if name in ("log2", "log10"):
+        return library.log(x) / library.log(0 * x + int(name[3:]))
+    return getattr(library, _SYMPY.get(name, name))(x)
+
+
+def power(x: Any, exponent: Fraction) -> Any:
+    """x ** exponent for arrays of exact scalars: roots of squares, and of whatever sympy and mpmath can do.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> power(np.array([Fraction(4, 9)]), Fraction(3, 2))
+    array([Fraction(8, 27)], dtype=object)
+    """
+    array = np.asarray(x, dtype=object)
+    out = np.empty(array.shape, dtype=object)
+    for index, value in np.ndenumerate(array):
+        out[index] = _power_scalar(value, exponent)
+    return out if array.ndim else out[()]
+
+
+def _power_scalar(x: Any, exponent: Fraction) -> Any:
+    kind = type(x).__module__
+    if kind.startswith("sympy"):
+        import sympy
+
+        return x ** sympy.Rational(exponent.numerator, exponent.denominator)
+    if kind.startswith("mpmath"):
+        return x ** (x**0 * exponent.numerator / exponent.denominator)
+    if x == 1:
+        return x
+    if exponent.denominator == 2:
+        return _elementary_scalar("sqrt", x) ** exponent.numerator
+    raise FieldError(f"({x}) ** ({exponent}) is not known to be in the field of the exact numbers; use floats")
+
+
+def solve(a: Any, b: Any) -> Any:
+    """The solution of a x = b for matrices a (..., n, n), b (..., n, k): also of long doubles and exact scalars.
+
+    Raises
+    ------
+    SingularError
+        If an exact matrix is singular.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> solve(np.array([[Fraction(2)]]), np.array([[Fraction(1)]]))
+    array([[Fraction(1, 2)]], dtype=object)
+    """
+    if is_jax(a) or is_jax(b):
+        return namespace(a, b).linalg.solve(a, b)
+    dtype = np.result_type(a, b)
+    if dtype.char not in "gGO":
+        return np.linalg.solve(a, b)
+    leading = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
+    left = np.broadcast_to(a, (*leading, *a.shape[-2:])).astype(dtype)
+    right = np.broadcast_to(b, (*leading, *b.shape[-2:])).astype(dtype)
+    for index in np.ndindex(*leading):
+        _eliminate(left[index], right[index])
+    return right
+
+
+def _eliminate(a: Any, b: Any) -> None:
+    """Gauss-Jordan elimination in place: b becomes the solution."""
+    n = a.shape[0]
+    for i in range(n):
+        column = a[i:, i]
+        pivot = int(np.argmax(column != 0)) if a.dtype == object else int(np.argmax(np.abs(column)))
+        if a[i + pivot, i] == 0:
+            raise SingularError(f"a matrix of size {n} that has to be inverted is singular")
+        a[[i, i + pivot]], b[[i, i + pivot]] = a[[i + pivot, i]], b[[i + pivot, i]]
+        b[i] = b[i] / a[i, i]
+        a[i] = a[i] / a[i, i]
+        for j in range(n):
+            if j != i:
+                b[j] = b[j] - a[j, i] * b[i]
+                a[j] = a[j] - a[j, i] * a[i]
+
+
 def _rational_root(x: Any) -> Any:
-    """The square root of an exact rational square, else None."""
-    if isinstance(x, Fraction):
-        x = flint.fmpq(x.numerator, x.denominator)
-    if not isinstance(x, flint.fmpq) or x < 0:
+    """The square root of an exact rational square, of the kind of x, else None."""
+    kind = type(x)
+    if not isinstance(x, flint.fmpq | Fraction) or x < 0:
         return None
-    top, bottom = flint.fmpz(x.p).isqrt(), flint.fmpz(x.q).isqrt()
-    return flint.fmpq(top, bottom) if flint.fmpq(top * top, bottom * bottom) == x else None
+    top, bottom = (x.p, x.q) if isinstance(x, flint.fmpq) else x.as_integer_ratio()
+    roots = flint.fmpz(int(top)).isqrt(), flint.fmpz(int(bottom)).isqrt()
+    return kind(int(roots[0]), int(roots[1])) if roots[0] ** 2 == top and roots[1] ** 2 == bottom else None

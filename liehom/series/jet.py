@@ -4,7 +4,7 @@ A Jet of order n stands for y(t) = y_0 + y_1 t + ... + y_n t^n + O(t^(n+1)) with
 has the shape of its values, and numpy functions of it are Jets.  Coefficients are Taylor coefficients (no
 factorials) and are computed on demand, so that a solution of a differential equation can be expanded in itself
 (`growing`).  The values are numpy arrays of any dtype, JAX arrays, or exact scalars in object arrays.
-Imports node, recurrences, jet_functions, arrays, errors.
+Imports node, recurrences, jet_views, arrays, errors.
 """
 
 from __future__ import annotations
@@ -13,15 +13,17 @@ from collections.abc import Iterator
 from typing import Any, final
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from liehom.errors import SeriesError, ShapeError
-from liehom.series import recurrences
-from liehom.series.arrays import as_values, is_jax, namespace, zeros
+from liehom.series import jet_views, recurrences
+from liehom.series.arrays import as_values, namespace, owned, zeros
+from liehom.series.jet_views import Step, View
 from liehom.series.node import Node, rewind
 
 
 @final
-class Jet:
+class Jet(NDArrayOperatorsMixin):
     """A truncated Taylor series whose coefficients are arrays.
 
     Parameters
@@ -39,7 +41,9 @@ class Jet:
     Notes
     -----
     Numpy's arithmetic, elementary functions, indexing, and functions such as ``np.einsum``, ``np.stack``,
-    ``np.cross``, ``np.linalg.norm`` work on Jets (``__array_ufunc__``, ``__array_function__``).
+    ``np.cross``, ``np.linalg.norm`` work on Jets (``__array_ufunc__``, ``__array_function__``); over JAX arrays they
+    call their twins of ``jax.numpy``. Entries of results may be assigned, as those of arrays, which does not
+    change what was computed from them before; given Jets and their parts are read-only.
 
     Examples
     --------
@@ -52,16 +56,17 @@ class Jet:
     array([1., 0.])
     """
 
-    __slots__ = ("_node", "_writable")
+    __slots__ = ("_node", "_view", "_writable")
 
     def __init__(self, coefficients: Any) -> None:
-        values = as_values(coefficients)
+        values = owned(as_values(coefficients))
         if values.ndim == 0:
             raise ShapeError("a Jet needs Taylor coefficients along a first axis, got a single number")
         if values.shape[0] == 0:
             raise ShapeError("a Jet has at least its coefficient 0, got an empty first axis")
         known = [values[k] for k in range(values.shape[0])]
         self._node = Node(len(known) - 1, known[0], known)
+        self._view: View | None = None
         self._writable = False
 
     # -- constructors ------------------------------------------------------------------------------------
@@ -78,6 +83,7 @@ class Jet:
         """
         made = cls.__new__(cls)
         made._node = node
+        made._view = None
         made._writable = writable
         return made
 
@@ -90,10 +96,11 @@ class Jet:
         >>> Jet.variable([1.0, 2.0], 2, [0.0, 1.0]).coefficients.tolist()
         [[1.0, 2.0], [0.0, 1.0], [0.0, 0.0]]
         """
-        first = as_values(value)
-        slope = zeros(first, first.shape) + 1 if direction is None else as_values(direction)
-        known = [first, slope, *[None] * (order - 1)][: order + 1]
-        return cls.from_node(Node(order, first, known))
+        first = owned(as_values(value))
+        slope = zeros(first, first.shape) + 1 if direction is None else owned(as_values(direction))
+        if slope.shape != first.shape:
+            raise ShapeError(f"a value of shape {first.shape} with a direction of shape {slope.shape}")
+        return cls.from_node(Node(order, first, [first, slope, *[None] * (order - 1)][: _checked(order) + 1]))
 
     @classmethod
     def constant(cls, value: Any, order: int) -> Jet:
@@ -104,7 +111,7 @@ class Jet:
         >>> Jet.constant(3.0, 2).coefficients
         array([3., 0., 0.])
         """
-        return cls.from_node(recurrences.constant(as_values(value), order))
+        return cls.from_node(recurrences.constant(owned(as_values(value)), _checked(order)))
 
     @classmethod
     def growing(cls, value: Any, order: int, *, zero: bool = False) -> Jet:
@@ -130,8 +137,10 @@ class Jet:
         >>> y.coefficients
         array([1., 1., 1., 1.])
         """
-        first = as_values(value)
-        return cls.from_node(Node(order, first, [None if zero else first]))
+        first = owned(as_values(value))
+        if zero:
+            return cls.from_node(Node(_checked(order), zeros(first, first.shape), [None]))
+        return cls.from_node(Node(_checked(order), first, [first]))
 
     def extend(self, coefficient: Any) -> None:
         """Give the next coefficient of a growing series; None is zero.
@@ -144,10 +153,20 @@ class Jet:
         node = self._node
         if node.rule is not None or len(node.known) > node.order:
             raise SeriesError("only a growing series that is not complete can be extended")
-        node.known.append(coefficient)
+        node.known.append(self._given(coefficient))
+
+    def _given(self, coefficient: Any) -> Any:
+        if coefficient is not None and np.shape(coefficient) != self.shape:
+            raise ShapeError(f"a coefficient of shape {np.shape(coefficient)} for a series of values {self.shape}")
+        return owned(coefficient)
 
     def replace(self, k: int, coefficient: Any, *results: Jet) -> None:
         """Replace coefficient k >= 1 of a growing series, and let `results` forget what depended on it.
+
+        Raises
+        ------
+        SeriesError
+            If coefficient k has not been given.
 
         Examples
         --------
@@ -158,7 +177,9 @@ class Jet:
         >>> float(y.coefficient(1))
         6.0
         """
-        self._node.known[k] = coefficient
+        if self._node.rule is not None or not 1 <= k < len(self._node.known):
+            raise SeriesError(f"coefficient {k} cannot be replaced: it has not been given by extend")
+        self._node.known[k] = self._given(coefficient)
         for result in results:
             rewind(result.node, self._node, k)
 
@@ -166,17 +187,20 @@ class Jet:
     @property
     def node(self) -> Node:
         """The node that computes the coefficients."""
+        if self._view is not None and self._view.owner.node is not self._view.seen:
+            self._node = jet_views.followed(self._view)[-1]
+            self._view = self._view._replace(seen=self._view.owner.node)
         return self._node
 
     @property
     def order(self) -> int:
         """The last index of the coefficients."""
-        return self._node.order
+        return self.node.order
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of the values."""
-        return tuple(np.shape(self._node.value))
+        return tuple(np.shape(self.node.value))
 
     @property
     def ndim(self) -> int:
@@ -191,30 +215,42 @@ class Jet:
     @property
     def dtype(self) -> Any:
         """The dtype of the values."""
-        return getattr(self._node.value, "dtype", np.dtype(type(self._node.value)))
+        return getattr(self.node.value, "dtype", np.dtype(type(self.node.value)))
 
     @property
     def value(self) -> Any:
         """The value at t = 0."""
-        return self._node.value
+        return _read_only(self.node.value)
 
     @property
     def coefficients(self) -> Any:
         """All Taylor coefficients, shape (order + 1, ...)."""
-        xp = namespace(self._node.value)
+        if self.dtype == object and not self.shape:
+            return np.array([self.coefficient(k)[()] for k in range(self.order + 1)], dtype=object)
+        xp = namespace(self.node.value)
         return xp.stack([self.coefficient(k) for k in range(self.order + 1)])
 
     @property
     def T(self) -> Jet:
         """The transpose of the values."""
-        return self.transpose()
+        return self.part(lambda x: x.T)
+
+    @property
+    def real(self) -> Jet:
+        """The real part, for real t."""
+        return self.part(lambda x: x.real)
+
+    @property
+    def imag(self) -> Jet:
+        """The imaginary part, for real t."""
+        return self.part(lambda x: x.imag)
 
     def coefficient(self, k: int) -> Any:
         """Taylor coefficient k, an array of the shape of the values (a structural zero as an array of zeros)."""
-        found = self._node.coefficient(k)
+        found = self.node.coefficient(k)
         if found is None:
-            return zeros(self._node.value, self.shape)
-        return np.asarray(found, dtype=object) if self.dtype == object and not hasattr(found, "shape") else found
+            return zeros(self.node.value, self.shape)
+        return _read_only(np.asarray(found) if not hasattr(found, "shape") else found)
 
     def __call__(self, t: Any) -> Any:
         """The polynomial at t, by Horner's rule; t broadcasts against the values."""
@@ -225,7 +261,7 @@ class Jet:
 
     # -- arithmetic --------------------------------------------------------------------------------------
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        from liehom.series.jet_functions import apply_ufunc
+        from liehom.series.jet_ufuncs import apply_ufunc
 
         return apply_ufunc(ufunc, method, inputs, options)
 
@@ -234,79 +270,26 @@ class Jet:
 
         return apply_function(function, args, options)
 
-    def __add__(self, other: Any) -> Any:
-        return np.add(self, other)
-
-    def __radd__(self, other: Any) -> Any:
-        return np.add(other, self)
-
-    def __sub__(self, other: Any) -> Any:
-        return np.subtract(self, other)
-
-    def __rsub__(self, other: Any) -> Any:
-        return np.subtract(other, self)
-
-    def __mul__(self, other: Any) -> Any:
-        return np.multiply(self, other)
-
-    def __rmul__(self, other: Any) -> Any:
-        return np.multiply(other, self)
-
-    def __truediv__(self, other: Any) -> Any:
-        return np.true_divide(self, other)
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return np.true_divide(other, self)
-
-    def __pow__(self, other: Any) -> Any:
-        return np.power(self, other)
-
-    def __rpow__(self, other: Any) -> Any:
-        return np.power(other, self)
-
-    def __matmul__(self, other: Any) -> Any:
-        return np.matmul(self, other)
-
-    def __rmatmul__(self, other: Any) -> Any:
-        return np.matmul(other, self)
-
-    def __neg__(self) -> Any:
-        return np.negative(self)
-
-    def __pos__(self) -> Jet:
-        return self
-
     # -- what branches on values -------------------------------------------------------------------------
     def __bool__(self) -> bool:
         raise _branch("the truth value of a series")
 
     def __float__(self) -> float:
-        raise _branch("float() of a series (or its assignment to an entry of an array: use np.stack or np.zeros_like)")
+        raise _branch(
+            "float() of a series (or its assignment to an entry of a float array: use np.stack, np.zeros_like)"
+        )
 
-    __int__ = __index__ = __complex__ = __float__  # type: ignore[assignment]
-
-    def __abs__(self) -> Any:
-        return np.absolute(self)
-
-    def __lt__(self, other: Any) -> Any:
-        return np.less(self, other)
-
-    def __le__(self, other: Any) -> Any:
-        return np.less_equal(self, other)
-
-    def __gt__(self, other: Any) -> Any:
-        return np.greater(self, other)
-
-    def __ge__(self, other: Any) -> Any:
-        return np.greater_equal(self, other)
-
-    def __eq__(self, other: object) -> Any:
-        return np.equal(self, other)
-
-    def __ne__(self, other: object) -> Any:
-        return np.not_equal(self, other)
-
+    __int__ = __index__ = __complex__ = __trunc__ = __floor__ = __ceil__ = __float__
     __hash__ = object.__hash__
+
+    def _sympy_(self) -> Any:
+        """Tells sympy that this is no expression, so that ``symbol * jet`` comes here."""
+        from sympy import SympifyError
+
+        raise SympifyError(self)
+
+    def __round__(self, digits: int | None = None) -> Any:
+        raise _branch("rounding a series")
 
     # -- as a container ----------------------------------------------------------------------------------
     def __len__(self) -> int:
@@ -317,71 +300,98 @@ class Jet:
     def __iter__(self) -> Iterator[Any]:
         return iter([self[i] for i in range(len(self))])
 
+    def __contains__(self, value: object) -> bool:
+        raise _branch("membership in a series")
+
     def __getitem__(self, key: Any) -> Jet:
-        return Jet.from_node(recurrences.linear(lambda x: x[key], [self._node]))
+        if isinstance(key, Jet):
+            raise _branch("an index that is a series")
+        key = jet_views.frozen(key)
+        kind = jet_views.kind_of_index(key, self.ndim)
+        if kind == "view":
+            return self.part(lambda x: x[key], key=key, writable=True)
+        return Jet.from_node(recurrences.linear(lambda x: x[key], [self.node]), writable=kind == "copy")
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        if not self._writable:
+        from liehom.series.assembly import nodes
+
+        key = jet_views.frozen(key)
+        if not self.shares():
             raise SeriesError(
-                "this series is read-only, as a part of another one is: write into np.zeros_like(...) or use np.stack"
+                "this series is given, or a part of one: write into a copy (m.copy(), np.zeros_like(m)) or use np.stack"
             )
-        order = min(self.order, value.order) if isinstance(value, Jet) else self.order
-        node = value.node if isinstance(value, Jet) else recurrences.constant(as_values(value), order)
-        self._node = recurrences.linear(lambda whole, part: _replaced(whole, key, part), [self._node, node])
+        whole, part = nodes(self, value)
+        if self._view is None:
+            self._node = jet_views.replaced(whole, key, part)
+        else:
+            self._view.owner._node = jet_views.written(self._view, key, part)
+
+    def shares(self) -> bool:
+        """Whether entries of this Jet, or of the one that it is a view of, may be assigned."""
+        return self._writable or self._view is not None
+
+    def part(self, function: Any, *, key: Any = None, writable: bool = False) -> Jet:
+        """A linear function of the values that shares entries with this Jet, such as a slice or a transpose.
+
+        Parameters
+        ----------
+        function : callable
+            From arrays to arrays.
+        key : index, optional
+            Such that function(x) is x[key].
+        writable : bool
+            Whether `key` is given, so that writing into the view writes here.
+
+        Examples
+        --------
+        >>> m = Jet([[1.0, 2.0]]).copy()
+        >>> part = m.part(lambda x: x[::-1])
+        >>> m[0] = 5.0
+        >>> part.value
+        array([2., 5.])
+        """
+        made = Jet.from_node(recurrences.linear(function, [self.node]))
+        step = Step(function, key, writable)
+        if self._writable:
+            made._view = View(self, (step,), self._node)
+        elif self._view is not None:
+            made._view = self._view._replace(steps=(*self._view.steps, step))
+        return made
 
     # -- methods that arrays have ------------------------------------------------------------------------
-    def transpose(self, *axes: Any) -> Any:
-        """As numpy's method; so are the following ones."""
-        return np.transpose(self, axes[0] if len(axes) == 1 else axes or None)
-
-    def reshape(self, *shape: Any) -> Any:
-        """See `transpose`."""
-        return np.reshape(self, shape[0] if len(shape) == 1 else shape)
-
-    def sum(self, axis: Any = None, keepdims: bool = False) -> Any:
-        """See `transpose`."""
-        return np.sum(self, axis=axis, keepdims=keepdims)
-
-    def mean(self, axis: Any = None, keepdims: bool = False) -> Any:
-        """See `transpose`."""
-        return np.mean(self, axis=axis, keepdims=keepdims)
-
-    def dot(self, other: Any) -> Any:
-        """See `transpose`."""
-        return np.dot(self, other)
-
-    def trace(self, offset: int = 0, axis1: int = 0, axis2: int = 1) -> Any:
-        """See `transpose`."""
-        return np.trace(self, offset, axis1, axis2)
-
-    def ravel(self) -> Any:
-        """See `transpose`."""
-        return np.reshape(self, (-1,))
-
-    def swapaxes(self, a: int, b: int) -> Any:
-        """See `transpose`."""
-        return np.swapaxes(self, a, b)
-
-    def copy(self) -> Jet:
+    def copy(self, order: str = "C") -> Jet:
         """A copy whose entries may be assigned."""
-        return Jet.from_node(self._node, writable=True)
+        return Jet.from_node(self.node, writable=True)
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: Any) -> Jet:
+        return self.copy()
+
+    def __reduce__(self) -> Any:
+        return Jet, (self.coefficients,)
 
     def __getattr__(self, name: str) -> Any:
-        # numpy calls x.sin() for the entries of arrays of objects, such as np.array([m[0], m[1]])
-        if name in recurrences.FUNCTIONS:
-            return lambda: getattr(np, name)(self)
-        raise AttributeError(f"a series has no attribute {name!r}")
+        # the other methods of arrays; numpy itself calls x.sin() for the entries of arrays of objects
+        from liehom.series.jet_functions import method
+
+        return method(self, name)
 
     def __repr__(self) -> str:
         return f"<series of order {self.order} with values of shape {self.shape}>"
 
 
-def _replaced(whole: Any, key: Any, part: Any) -> Any:
-    if is_jax(whole) or is_jax(part):
-        return namespace(whole, part).asarray(whole).at[key].set(part)
-    out = np.array(whole, dtype=np.result_type(whole, part))
-    out[key] = part
-    return out
+def _read_only(x: Any) -> Any:
+    """An array of coefficients as it is handed out: writing into it would change the series."""
+    if isinstance(x, np.ndarray):
+        x.flags.writeable = False
+    return x
+
+
+def _checked(order: int) -> int:
+    if not isinstance(order, int | np.integer) or isinstance(order, bool) or order < 0:
+        raise SeriesError(f"the order of a series is a whole number from 0 on, got {order!r}")
+    return int(order)
 
 
 def _branch(what: str) -> SeriesError:

@@ -1,227 +1,264 @@
-"""What numpy functions do with Jets: one table of ufuncs, one of functions.
+"""What numpy's functions of arrays, and the methods of arrays, do with Jets.
 
-Entries are linear (in all arguments jointly), multilinear, or built from the recurrences.  Anything else is
-refused by name.  Imports jet, recurrences, arrays, errors.
+A function is linear in its first argument, bilinear, linear in a list of arrays, a function that returns a list of
+parts, or special.  Options that would add something, such as ``initial=``, are refused, as is every function that
+is not in a table.  Imports jet, jet_ufuncs, assembly, recurrences, arrays, errors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
+from functools import partial
 from typing import Any
 
-import flint
 import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
-from liehom.series.arrays import as_values, is_jax, namespace, zeros
+from liehom.series.arrays import namespace, solve, zeros
+from liehom.series.assembly import as_jet, holds_jets, nodes
 from liehom.series.jet import Jet
-from liehom.series.node import Node
+from liehom.series.jet_ufuncs import bilinear, fresh, refused, twin
+from liehom.series.jet_views import frozen
 
-LINEAR = (
-    "reshape transpose swapaxes moveaxis expand_dims squeeze broadcast_to roll flip cumsum diff take tile repeat ravel "
-    "diagonal trace sum mean tril triu rot90 fliplr flipud real imag diag atleast_1d atleast_2d ediff1d average "
-    "permute_dims matrix_transpose"
-).split()
-BILINEAR = "dot tensordot cross inner outer vdot kron convolve vecdot matvec vecmat".split()
-JOINED = "stack concatenate concat hstack vstack dstack column_stack block".split()
-
-
-def apply_ufunc(ufunc: Any, method: str, inputs: tuple[Any, ...], options: dict[str, Any]) -> Any:
-    """What a numpy ufunc returns for Jets among its inputs."""
-    name = ufunc.__name__
-    if options.get("out") is not None:
-        raise SeriesError(f"np.{name} cannot write a series into an array: use x = x + y in place of x += y")
-    if method == "reduce" and name == "add":
-        return _linear(np.sum, inputs, {"axis": options.get("axis", 0), "keepdims": options.get("keepdims", False)})
-    if method != "__call__" or any(value is not None for key, value in options.items() if key != "axes"):
-        raise SeriesError(f"np.{name}.{method} with options {sorted(options)} has no Taylor recurrence here")
-    if name in recurrences.FUNCTIONS:
-        return _jet(recurrences.FUNCTIONS[name](inputs[0].node))
-    if name == "positive":
-        return inputs[0]
-    if name in ("add", "subtract"):
-        left, right = nodes(*inputs)
-        return _jet(recurrences.add(left, right, 1 if name == "add" else -1))
-    if name in ("matmul", "vecdot", "matvec", "vecmat"):
-        return _multilinear(ufunc, inputs, {})
-    if name in OPERATORS:
-        return _jet(OPERATORS[name](*inputs))
-    raise refused(f"np.{name}")
-
-
-def nodes(*values: Any) -> list[Node]:
-    """The nodes of Jets and constants, at the lowest order among the Jets."""
-    order = min(x.order for x in values if isinstance(x, Jet))
-    jets = [x for x in values if isinstance(x, Jet)]
-    return [x.node if isinstance(x, Jet) else recurrences.constant(beside(jets, x), order) for x in values]
+# name -> how many positional arguments are understood, the array included
+LINEAR: dict[str, int] = {
+    "roll": 3, "cumsum": 2, "diff": 3, "take": 3, "take_along_axis": 3, "delete": 3, "tile": 2, "repeat": 3, "sum": 2,
+    "mean": 2, "average": 2, "trace": 4, "tril": 2, "triu": 2, "ediff1d": 1, "trapezoid": 4, "cumulative_sum": 1,
+}  # fmt: skip
+# linear, and a view of the array
+VIEWS: dict[str, int] = {
+    "reshape": 2, "transpose": 2, "swapaxes": 3, "moveaxis": 3, "rollaxis": 3, "expand_dims": 2, "squeeze": 2,
+    "broadcast_to": 2, "flip": 2, "ravel": 1, "diagonal": 4, "rot90": 3, "fliplr": 1, "flipud": 1, "real": 1, "imag": 1,
+    "diag": 2, "atleast_1d": 1, "atleast_2d": 1, "atleast_3d": 1, "permute_dims": 2, "matrix_transpose": 1,
+}  # fmt: skip
+OPTIONS = {
+    "axis", "axes", "keepdims", "shape", "newshape", "order", "offset", "axis1", "axis2", "k", "n", "shift", "source",
+    "destination", "indices", "reps", "repeats", "weights", "where", "subok", "obj", "start", "condition", "x", "dx",
+    "mode", "copy", "indices_or_sections", "edge_order",
+}  # fmt: skip
+BILINEAR = ["dot", "tensordot", "cross", "inner", "outer", "vdot", "kron", "convolve", "correlate", "vecdot", "matmul"]
+JOINED = ["stack", "concatenate", "concat", "hstack", "vstack", "dstack", "column_stack"]
+PARTED = ["split", "array_split", "hsplit", "vsplit", "dsplit", "unstack"]
+# methods of arrays that are numpy functions of the same name
+METHODS = [
+    "conj", "conjugate", "cumsum", "diagonal", "dot", "mean", "prod", "ravel", "repeat", "reshape", "squeeze", "sum",
+    "swapaxes", "take", "trace", "transpose",
+]  # fmt: skip
+REFUSED_METHODS = [
+    "all", "any", "argmax", "argmin", "argpartition", "argsort", "choose", "clip", "compress", "cumprod", "item", "max",
+    "min", "nonzero", "partition", "ptp", "put", "resize", "round", "searchsorted", "sort", "std", "var", "fill",
+    "tobytes", "tofile", "view", "byteswap",
+]  # fmt: skip
 
 
-def beside(jets: list[Jet], value: Any) -> Any:
-    """A constant as an array that can stand in one formula with the Jets: next to exact ones it must be exact."""
-    exact = next((j.value for j in jets if j.dtype == object), None)
-    if exact is None or is_jax(value):
-        return as_values(value)
-    array = np.asarray(value)
-    if array.dtype.kind in "iub":
-        array = array.astype(object)
-    zero = zeros(exact, ())[()]
-    if isinstance(zero, Fraction | flint.fmpq) and any(isinstance(x, float | np.floating) for x in array.flat):
-        raise SeriesError(
-            f"the float {value!r} stands next to exact numbers: write a fraction, or use floats throughout"
-        )
-    return as_values(array + zero) if all(isinstance(x, int) for x in array.flat) else as_values(array)
+def apply_function(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Any:
+    """What a numpy function returns for Jets among its arguments.
+
+    Raises
+    ------
+    SeriesError
+        If it has no Taylor recurrence, or an option has none.
+
+    Examples
+    --------
+    >>> apply_function(np.sum, (Jet([[1.0, 2.0]]),), {"axis": 0}).value
+    np.float64(3.0)
+    """
+    name = function.__name__
+    home = np.linalg if "linalg" in (function.__module__ or "") else np
+    full = f"linalg.{name}" if home is np.linalg else name
+    if getattr(home, name, None) is not function:
+        raise refused(f"{function.__module__}.{name}")
+    if full in SPECIAL:
+        return SPECIAL[full](*args, **options)
+    if name in JOINED:
+        return _joined(function, args, options)
+    if name in BILINEAR:
+        return _bilinear(function, args, options)
+    if home is np and (name in LINEAR or name in VIEWS):
+        return _linear(function, args, options)
+    if name in PARTED:
+        return _parted(function, args, options)
+    raise refused(f"np.{full}")
 
 
-def refused(name: str) -> SeriesError:
-    """The error for a function without a recurrence."""
-    return SeriesError(
-        f"{name} has no Taylor recurrence here (it branches on values, or is not known): write the generator with "
-        "arithmetic, sqrt exp log sin cos tan sinh cosh tanh arctan and linear algebra, or as sympy expressions"
+def method(jet: Jet, name: str) -> Any:
+    """The method of arrays with this name, for a Jet."""
+    if name in recurrences.FUNCTIONS or name in ("arctan2", "hypot", "logaddexp"):
+        return partial(getattr(np, name), jet)
+    if name in METHODS:
+        return partial(_method, jet, name)
+    if name in EXTRA_METHODS:
+        return partial(EXTRA_METHODS[name], jet)
+    if name in REFUSED_METHODS:
+        return partial(_refuse, f"the method {name}")
+    raise AttributeError(f"a series has no attribute {name!r}")
+
+
+def _method(jet: Jet, name: str, *args: Any, **options: Any) -> Any:
+    if name in ("reshape", "transpose") and len(args) > 1:
+        args = (args,)
+    elif name == "transpose" and args == (None,):
+        args = ()
+    return getattr(np, name)(jet, *args, **options)
+
+
+def _refuse(name: str, *args: Any, **options: Any) -> Any:
+    raise refused(name)
+
+
+def _astype(jet: Jet, dtype: Any, **options: Any) -> Jet:
+    if np.dtype(dtype).kind not in "fcO":
+        raise refused(f"astype({dtype!r})")
+    if np.dtype(dtype).kind == "f" and jet.dtype.kind == "c":
+        raise SeriesError("astype(float) would drop the imaginary part: take .real")
+    return fresh(
+        recurrences.linear(lambda x: np.asarray(x).astype(dtype) if np.isscalar(x) else x.astype(dtype), [jet.node])
     )
 
 
-def _jet(node: Node) -> Jet:
-    return Jet.from_node(node)
+def _listed(jet: Jet) -> Any:
+    return [_listed(entry) for entry in jet] if jet.ndim else jet
 
 
-def _multiply(x: Any, y: Any) -> Node:
-    return recurrences.product(*nodes(x, y))
-
-
-def _divide(x: Any, y: Any) -> Node:
-    if not isinstance(y, Jet):
-        divisor = beside([x], y)
-        return recurrences.linear(lambda a: a / divisor, [x.node])
-    return recurrences.quotient(*nodes(x, y))
-
-
-def _power(x: Any, y: Any) -> Node:
-    if isinstance(y, Jet):
-        base = x if isinstance(x, Jet) else Jet.constant(x, y.order)
-        return _exponential_of(_multiply(np.log(base), y))
-    if np.ndim(y) != 0:
-        raise SeriesError("a power of a series needs one number as its exponent, not an array of them")
-    whole = int(y) if float(y) == int(y) else None
-    if whole is None:
-        return recurrences.real_power(x.node, y)
-    powered = recurrences.integer_power(x.node, abs(whole))
-    return powered if whole >= 0 else recurrences.FUNCTIONS["reciprocal"](powered)
-
-
-def _exponential_of(node: Node) -> Node:
-    return recurrences.FUNCTIONS["exp"](node)
-
-
-def _arctan2(y: Any, x: Any) -> Node:
-    """The angle of (x, y): its derivative is (x y' - y x') / (x^2 + y^2)."""
-    above, right = (v if isinstance(v, Jet) else Jet.constant(v, min(_orders(x, y))) for v in (y, x))
-    value = namespace(above.value).arctan2(above.value, right.value)
-    # the angle relative to its value at 0 is small, so arctan gives the right branch
-    turned = right * np.cos(value) + above * np.sin(value)
-    across = above * np.cos(value) - right * np.sin(value)
-    return recurrences.add(np.arctan(across / turned).node, recurrences.constant(value, above.order))
-
-
-def _orders(*values: Any) -> list[int]:
-    return [v.order for v in values if isinstance(v, Jet)]
-
-
-OPERATORS: dict[str, Callable[..., Node]] = {
-    "multiply": _multiply,
-    "divide": _divide,
-    "true_divide": _divide,
-    "power": _power,
-    "float_power": _power,
-    "arctan2": _arctan2,
-    "hypot": lambda x, y: recurrences.real_power((x * x + y * y).node, 0.5),
-    "conjugate": lambda x: recurrences.linear(np.conjugate, [x.node]),
-}
-
-
-# -- __array_function__ ----------------------------------------------------------------------------------
-def apply_function(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Any:
-    """What a numpy function returns for Jets among its arguments."""
-    name = function.__name__
-    module = "linalg." if "linalg" in (function.__module__ or "") else ""
-    if module + name in SPECIAL:
-        return SPECIAL[module + name](*args, **options)
-    if name in LINEAR and not module:
-        return _linear(function, args, options)
-    if name in BILINEAR:
-        return _multilinear(function, args, options)
-    if name in JOINED:
-        return _joined(function, args, options)
-    raise refused(f"np.{module}{name}")
-
-
-def _twin(function: Any, *values: Any) -> Any:
-    """The same function of jax.numpy where a value is a JAX array."""
-    if not any(is_jax(v) for v in values):
-        return function
-    xp = namespace(*values)
-    home = xp.linalg if "linalg" in (getattr(function, "__module__", "") or "") else xp
-    return getattr(home, function.__name__)
-
-
+# -- the kinds of functions --------------------------------------------------------------------------------
 def _linear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Jet:
     """A function that is linear in its first argument."""
+    name = function.__name__
+    if not args:
+        found = [key for key, value in options.items() if holds_jets(value)]
+        options = dict(options)
+        args = tuple(options.pop(key) for key in found[:1])
     first, rest = args[0], args[1:]
-    if any(isinstance(x, Jet) for x in (*rest, *options.values())):
-        raise refused(f"np.{function.__name__} with a series as an option")
-    return _jet(recurrences.linear(lambda x: _twin(function, x)(x, *rest, **options), [first.node]))
+    limit = LINEAR[name] if name in LINEAR else VIEWS[name]
+    if not isinstance(first, Jet):
+        if not holds_jets(first):
+            raise refused(f"np.{name} with a series as an option")
+        first = as_jet(first)
+    if any(holds_jets(x) for x in (*rest, *options.values())):
+        raise refused(f"np.{name} with a series as an option")
+    odd = [key for key, value in options.items() if key not in OPTIONS and value is not None]
+    if odd or len(args) > limit:
+        raise refused(f"np.{name} with {', '.join(odd) or 'so many arguments'}")
+    rest, options = frozen(tuple(rest)), {key: frozen(value) for key, value in options.items() if value is not None}
+
+    def applied(x: Any) -> Any:
+        return twin(function, x)(x, *rest, **options)
+
+    if name in VIEWS:
+        return first.part(applied)
+    return fresh(recurrences.linear(applied, [first.node]))
 
 
-def _multilinear(function: Any, args: tuple[Any, ...], options: dict[str, Any], count: int = 2) -> Jet:
-    """A function that is linear in each of its first `count` arguments."""
-    factors, rest = args[:count], args[count:]
-    places = [i for i, x in enumerate(factors) if isinstance(x, Jet)]
-
-    def at(*values: Any) -> Any:
-        filled = list(factors)
-        for i, value in zip(places, values, strict=True):
-            filled[i] = value
-        return _twin(function, *filled)(*filled, *rest, **options)
-
-    return _jet(recurrences.multilinear(at, [factors[i].node for i in places]))
-
-
-def _einsum(*args: Any, **options: Any) -> Jet:
-    if not isinstance(args[0], str):
-        raise SeriesError("np.einsum of a series needs the form with a string of subscripts")
-    subscripts, factors = args[0], args[1:]
-
-    def contract(*values: Any) -> Any:
-        return _twin(np.einsum, *values)(subscripts, *values, **options)
-
-    return _multilinear(contract, factors, {}, len(factors))
+def _bilinear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Jet:
+    """A function that is linear in each of its first two arguments; the constant one may come as an option."""
+    names = {"dot": ("a", "b"), "cross": ("a", "b"), "tensordot": ("a", "b"), "inner": ("a", "b"), "outer": ("a", "b")}
+    options = dict(options)
+    for key in names.get(function.__name__, ())[len(args) :]:
+        if key in options:
+            args = (*args, options.pop(key))
+    if len(args) < 2 or options.get("out") is not None:
+        raise refused(f"np.{function.__name__} with these arguments")
+    rest = {key: frozen(value) for key, value in options.items() if value is not None}
+    if len(args) > 2:
+        third = {"tensordot": "axes", "convolve": "mode", "correlate": "mode", "cross": "axisa"}.get(function.__name__)
+        if third is None or len(args) > 3:
+            raise refused(f"np.{function.__name__} with so many arguments")
+        rest[third] = frozen(args[2])
+    return bilinear(function, args[0], args[1], **rest)
 
 
 def _joined(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Jet:
     """A function of a sequence of arrays that is linear in all of them together."""
-    members, rest = list(args[0]), args[1:]
-    return _jet(
-        recurrences.linear(lambda *parts: _twin(function, *parts)(list(parts), *rest, **options), nodes(*members))
-    )
+    options = {key: value for key, value in options.items() if value is not None}
+    members = options.pop("arrays", None) or options.pop("tup", None) or args[0]
+    if "out" in options or "dtype" in options or len(args) > 2:
+        raise refused(f"np.{function.__name__} with out= or dtype=")
+
+    def joined(*parts: Any) -> Any:
+        return twin(function, *parts)(list(parts), *args[1:], **options)
+
+    return fresh(recurrences.linear(joined, nodes(*members)))
+
+
+def _parted(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> list[Jet]:
+    """A function that cuts an array into a list of parts."""
+    first, rest = args[0], frozen(args[1:])
+    if not isinstance(first, Jet) or holds_jets(rest):
+        raise refused(f"np.{function.__name__} with a series as an option")
+
+    def part(i: int, x: Any) -> Any:
+        return twin(function, x)(x, *rest, **options)[i]
+
+    count = len(twin(function, first.value)(first.value, *rest, **options))
+    return [first.part(partial(part, i)) for i in range(count)]
+
+
+# -- special functions ---------------------------------------------------------------------------------------
+def _einsum(*args: Any, **options: Any) -> Jet:
+    subscripts, factors = args[0], args[1:]
+    if not isinstance(subscripts, str):
+        raise SeriesError("np.einsum of a series needs the form with a string of subscripts")
+    if options.get("out") is not None:
+        raise refused("np.einsum with out=")
+    made = nodes(*factors)
+    # constants are no factors of the convolution
+    places = [i for i, factor in enumerate(factors) if holds_jets(factor)]
+    constants = [node.value for node in made]
+
+    def contract(*values: Any) -> Any:
+        filled = list(constants)
+        for i, value in zip(places, values, strict=True):
+            filled[i] = value
+        return twin(np.einsum, *filled)(subscripts, *filled, **options)
+
+    return fresh(recurrences.multilinear(contract, [made[i] for i in places]))
+
+
+def _block(arrays: Any) -> Any:
+    """Nested lists of arrays: rebuilt from the list of all of them."""
+    members: list[Any] = []
+
+    def places(x: Any) -> Any:
+        if isinstance(x, list):
+            return [places(entry) for entry in x]
+        members.append(x)
+        return len(members) - 1
+
+    def filled(x: Any, parts: Any) -> Any:
+        return [filled(entry, parts) for entry in x] if isinstance(x, list) else parts[x]
+
+    shape = places(arrays)
+    return fresh(recurrences.linear(lambda *parts: twin(np.block, *parts)(filled(shape, parts)), nodes(*members)))
+
+
+def _append(arr: Any, values: Any, axis: int | None = None) -> Any:
+    if axis is None:
+        return np.concatenate([np.ravel(part) for part in (arr, values)])
+    return np.concatenate([arr, values], axis=axis)
 
 
 def _norm(x: Any, ord: Any = None, axis: Any = None, keepdims: bool = False) -> Jet:
-    if ord not in (None, 2, "fro") or (ord == 2 and (x.ndim if axis is None else np.size(axis)) != 1):
+    axes = x.ndim if axis is None else np.size(axis)
+    known = ord is None or (ord == 2 and axes == 1) or (ord == "fro" and axes == 2)
+    if not known:
         raise refused(f"np.linalg.norm with ord={ord!r}")
-    return np.sqrt(np.sum(x * x, axis=axis, keepdims=keepdims))  # type: ignore[no-any-return]
+    square = x * np.conjugate(x) if x.dtype.kind == "c" else x * x
+    total = np.sum(square, axis=axis, keepdims=keepdims)
+    return np.sqrt(total.real if x.dtype.kind == "c" else total)  # type: ignore[no-any-return]
 
 
 def _solve(a: Any, b: Any) -> Jet:
     """The solution of a x = b; b is a vector if it has one axis, as in numpy."""
-    order = min(_orders(a, b))
-    vector = np.ndim(b) == 1
-    right = b if isinstance(b, Jet) else Jet.constant(b, order)
+    left, right = (Jet.from_node(node) for node in nodes(a, b))
+    vector = right.ndim == 1
     columns = right[..., None] if vector else right
-    if not isinstance(a, Jet):
-        made = _linear(lambda x: _twin(np.linalg.solve, x)(a, x), (columns,), {})
-    else:
-        made = _jet(recurrences.solution(columns.node, a.node, _matmul, lambda y, x: _twin(np.linalg.solve, x)(x, y)))
+
+    def divide(y: Any, x: Any) -> Any:
+        return solve(x, y)
+
+    made = fresh(recurrences.solution(columns.node, left.node, _matmul, divide))
     return made[..., 0] if vector else made
 
 
@@ -229,57 +266,131 @@ def _matmul(x: Any, y: Any) -> Any:
     return x @ y
 
 
+def _identity(a: Jet) -> Any:
+    eye = np.eye(a.shape[-1], dtype=int)
+    return zeros(a.value, a.shape) + (eye.astype(object) if a.dtype == object else eye.astype(a.dtype))
+
+
 def _inverse(a: Any) -> Jet:
-    return _solve(a, namespace(a.value).broadcast_to(np.eye(a.shape[-1], dtype=a.dtype), a.shape))
+    return _solve(a, Jet.constant(_identity(a), a.order))
 
 
-def _blank(fill: float) -> Callable[..., Jet]:
-    def make(a: Any, dtype: Any = None, *, shape: Any = None, **options: Any) -> Jet:
-        value = zeros(a.value, a.shape if shape is None else tuple(np.atleast_1d(shape))) + fill
-        return Jet.from_node(recurrences.constant(value, a.order), writable=True)
+def _matrix_power(a: Any, n: int) -> Any:
+    if n < 0:
+        return _matrix_power(_inverse(a), -n)
+    made = Jet.constant(_identity(a), a.order)
+    for bit in bin(n)[2:]:
+        made = made @ made
+        made = made @ a if bit == "1" else made
+    return made
+
+
+def _determinant(a: Any) -> Any:
+    """By the recursion of the characteristic polynomial, which divides by integers only."""
+    n, one = a.shape[-1], _identity(a)
+    power, coefficient = Jet.constant(zeros(a.value, a.shape), a.order), zeros(a.value, a.shape[:-2]) + 1
+    for k in range(1, n + 1):
+        power = a @ power + coefficient[..., None, None] * one
+        coefficient = -np.trace(a @ power, axis1=-2, axis2=-1) / k
+    return coefficient if n % 2 == 0 else -coefficient
+
+
+def _prod(a: Any, axis: Any = None, dtype: Any = None, out: Any = None, keepdims: Any = False) -> Any:
+    """The product of entries, in halves."""
+    if dtype is not None or out is not None or isinstance(axis, tuple):
+        raise refused("np.prod with these options")
+    first = np.moveaxis(a.reshape(-1) if axis is None else a, 0 if axis is None else axis, 0)
+    while len(first) > 1:
+        half = len(first) // 2
+        pairs = first[:half] * first[half : 2 * half]
+        first = pairs if len(first) % 2 == 0 else np.concatenate([pairs, first[2 * half :]])
+    made = first[0] if len(first) else Jet.constant(zeros(a.value, first.shape[1:]) + 1, a.order)
+    if keepdims:
+        return made.reshape((1,) * a.ndim) if axis is None else np.expand_dims(made, axis)
+    return made
+
+
+def _polyval(p: Any, x: Any) -> Any:
+    total: Any = 0 * x
+    for coefficient in p:
+        total = total * x + coefficient
+    return total
+
+
+def _blank(fill: int) -> Callable[..., Jet]:
+    def make(a: Any, dtype: Any = None, order: str = "K", subok: bool = True, shape: Any = None, **options: Any) -> Jet:
+        size = a.shape if shape is None else tuple(int(n) for n in np.atleast_1d(shape))
+        value = zeros(a.value, size) if dtype is None else np.zeros(size, dtype=dtype)
+        if value.dtype.kind not in "fcO":
+            raise SeriesError(f"an array of type {value.dtype} cannot hold a series")
+        return Jet.from_node(recurrences.constant(value + fill if fill else value, a.order), writable=True)
 
     return make
 
 
 def _full_like(a: Any, fill_value: Any, dtype: Any = None, **options: Any) -> Jet:
-    made = _blank(0)(a)
+    made = _blank(0)(a if isinstance(a, Jet) else Jet.constant(a, fill_value.order), dtype, **options)
     made[...] = fill_value
     return made
 
 
 def _where(condition: Any, x: Any = None, y: Any = None) -> Jet:
-    if isinstance(condition, Jet):
+    if holds_jets(condition):
         raise refused("np.where with a condition on a series")
-    return _jet(recurrences.linear(lambda a, b: namespace(a, b).where(condition, a, b), nodes(x, y)))
+    mask = frozen(condition)
+    return fresh(recurrences.linear(lambda a, b: namespace(mask, a, b).where(mask, a, b), nodes(x, y)))
 
 
+def _dot_all(arrays: Any) -> Any:
+    total, *others = arrays
+    for a in others:
+        total = np.dot(total, a)
+    return total
+
+
+def _size(a: Any, axis: int | None = None) -> int:
+    return a.size if axis is None else a.shape[axis]  # type: ignore[no-any-return]
+
+
+def _broadcast_arrays(*args: Any, subok: bool = False) -> tuple[Any, ...]:
+    shape = np.broadcast_shapes(*[np.shape(a) for a in args])
+    return tuple(np.broadcast_to(a, shape) for a in args)
+
+
+EXTRA_METHODS: dict[str, Callable[..., Any]] = {
+    "astype": _astype,
+    "flatten": lambda jet: jet.reshape(-1).copy(),
+    "tolist": _listed,
+}
 SPECIAL: dict[str, Callable[..., Any]] = {
     "einsum": _einsum,
+    "block": _block,
+    "append": _append,
+    "prod": _prod,
+    "polyval": _polyval,
+    "where": _where,
+    "broadcast_arrays": _broadcast_arrays,
     "linalg.norm": _norm,
+    "linalg.vector_norm": lambda x, axis=None, keepdims=False: _norm(
+        x if axis is not None else x.reshape(-1), None, axis, keepdims
+    ),
     "linalg.solve": _solve,
     "linalg.inv": _inverse,
-    "linalg.cross": lambda x, y, **options: _multilinear(np.cross, (x, y), options),
-    "linalg.trace": lambda x, **options: _linear(np.trace, (x,), {"axis1": -2, "axis2": -1}),
-    "linalg.outer": lambda x, y: _multilinear(np.outer, (x, y), {}),
-    "linalg.matmul": lambda x, y: np.matmul(x, y),
-    "linalg.multi_dot": lambda arrays: _dot_all(list(arrays)),
+    "linalg.det": _determinant,
+    "linalg.matrix_power": _matrix_power,
+    "linalg.trace": lambda x, offset=0: np.trace(x, offset, -2, -1),
+    "linalg.diagonal": lambda x, offset=0: np.diagonal(x, offset, -2, -1),
+    "linalg.matrix_transpose": lambda x: np.swapaxes(x, -1, -2),
+    "linalg.multi_dot": _dot_all,
     "zeros_like": _blank(0),
     "empty_like": _blank(0),
     "ones_like": _blank(1),
     "full_like": _full_like,
-    "where": _where,
-    "copy": lambda a, **options: a.copy(),
+    "copy": lambda a, order="K", subok=False: a.copy(),
     "shape": lambda a: a.shape,
     "ndim": lambda a: a.ndim,
-    "size": lambda a: a.size,
-    "iscomplexobj": lambda a: bool(np.iscomplexobj(a.value)),
-    "isrealobj": lambda a: bool(np.isrealobj(a.value)),
-    "result_type": lambda *args: np.result_type(*[a.value if isinstance(a, Jet) else a for a in args]),
+    "size": _size,
+    "iscomplexobj": lambda x: x.dtype.kind == "c",
+    "isrealobj": lambda x: x.dtype.kind != "c",
+    "result_type": lambda *args: np.result_type(*[a.dtype if isinstance(a, Jet) else a for a in args]),
 }
-
-
-def _dot_all(arrays: list[Any]) -> Any:
-    total = arrays[0]
-    for a in arrays[1:]:
-        total = np.dot(total, a)
-    return total

@@ -9,6 +9,7 @@ structural zero.  Imports arrays, errors.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from typing import Any, final
 
@@ -64,10 +65,12 @@ class Node:
 
     def coefficient(self, k: int) -> Any:
         """Coefficient k, None if it is a structural zero; operands are advanced without recursion."""
-        if len(self.known) > k:
+        if 0 <= k < len(self.known):
             return self.known[k]
+        if k < 0:
+            raise SeriesError(f"the coefficients of a series begin with 0, got {k}")
         if k > self.order:
-            raise SeriesError(f"coefficient {k} of a series of order {self.order}")
+            raise SeriesError(f"coefficient {k} of a series of order {self.order} is not known")
         stack: list[tuple[Node, int]] = [(self, k)]
         while stack:
             node, wanted = stack[-1]
@@ -86,9 +89,10 @@ class Node:
 
 
 def rewind(root: Node, source: Node, k: int) -> None:
-    """Forget the coefficients from k on of all nodes under `root` that depend on `source` (not of `source`).
+    """Forget the coefficients of the nodes under `root` that depend on coefficient k of `source`.
 
-    Called after coefficient k of a growing `source` was replaced.
+    Called after coefficient k >= 1 of a growing `source` was replaced. A node that needs `source` with lag l
+    forgets its coefficients from k + l on, and what depends on it follows.
 
     Examples
     --------
@@ -101,19 +105,21 @@ def rewind(root: Node, source: Node, k: int) -> None:
     >>> y.coefficient(1)
     10.0
     """
-    users: dict[int, list[Node]] = {}
+    users: dict[int, list[tuple[Node, int]]] = {}
     seen, stack = {id(root)}, [root]
     while stack:
         node = stack.pop()
-        for below, _ in node.operands:
-            users.setdefault(id(below), []).append(node)
+        for below, lag in node.operands:
+            users.setdefault(id(below), []).append((node, lag))
             if id(below) not in seen:
                 seen.add(id(below))
                 stack.append(below)
-    done, stack = {id(source)}, [source]
-    while stack:
-        for node in users.get(id(stack.pop()), []):
-            if id(node) not in done:
-                done.add(id(node))
-                del node.known[k:]
-                stack.append(node)
+    first, pending = {id(source): k}, deque([source])
+    while pending:
+        below = pending.popleft()
+        for node, lag in users.get(id(below), []):
+            start = first[id(below)] + lag
+            if node is not source and start < first.get(id(node), len(node.known)):
+                first[id(node)] = start
+                del node.known[start:]
+                pending.append(node)

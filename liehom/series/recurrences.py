@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from liehom.series.arrays import elementary, namespace, zeros
+from liehom.errors import SeriesError
+from liehom.series.arrays import beside, elementary, namespace, power, zeros
 from liehom.series.node import Node
 
 
@@ -99,7 +100,7 @@ def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[
 
 def quotient(a: Node, b: Node) -> Node:
     """a / b, with q_k = (a_k - sum_(i >= 1) b_i q_(k-i)) / b_0."""
-    return solution(a, b, np.multiply, lambda y, x: y / x)
+    return solution(a, b, _times, lambda y, x: y / x)
 
 
 def solution(a: Node, b: Node, product: Callable[[Any, Any], Any], divide: Callable[[Any, Any], Any]) -> Node:
@@ -166,12 +167,30 @@ def integer_power(u: Node, n: int) -> Node:
         u = product(u, u)
 
 
-def real_power(u: Node, exponent: Any) -> Node:
-    """u ** (p / q) for u_0 != 0: q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i)."""
-    value = elementary("sqrt", u.value) if np.ndim(exponent) == 0 and exponent == 0.5 else u.value**exponent
+def real_power(u: Node, exponent: Any, value: Any = None) -> Node:
+    """u ** (p / q) for u_0 != 0: q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i).
+
+    Parameters
+    ----------
+    u : Node
+    exponent : Fraction or number
+        One number; a Fraction where the values are exact.
+    value : array, optional
+        u_0 ** exponent, where it has been computed better.
+    """
+    p, q = exponent, 1
+    if isinstance(exponent, Fraction):
+        if getattr(u.value, "dtype", np.dtype(object)).kind == "O":
+            p, q = exponent.as_integer_ratio()
+            if value is None:
+                value = power(u.value, exponent)
+            if any(x == 0 for x in np.asarray(u.value).flat):
+                raise SeriesError(f"the power {exponent} of a series is no series where its value is 0")
+        else:
+            p = beside(u.value, exponent)[()]
+    if value is None:
+        value = u.value**p
     node = Node(u.order, value, [value])
-    exact = np.ndim(exponent) == 0 and getattr(u.value, "dtype", None) == object
-    p, q = Fraction(exponent).as_integer_ratio() if exact else (exponent, 1)
 
     def rule(k: int) -> Any:
         total = None
@@ -183,6 +202,22 @@ def real_power(u: Node, exponent: Any) -> Node:
 
     node.depends((u, 0), (node, 1), rule=rule)
     return node
+
+
+def _root(u: Node, exponent: Fraction, name: str) -> Node:
+    """A root, with its value by the numpy function of this name."""
+    return real_power(u, exponent, elementary(name, u.value))
+
+
+def _inverse_root(u: Node) -> Node:
+    """u ** (-1/2)."""
+    return _over_one(_root(u, Fraction(1, 2), "sqrt"))
+
+
+def _multiple(u: Node, name: str, argument: int, divide: bool = False) -> Node:
+    """u times name(argument), such as log 2, or divided by it."""
+    number = elementary(name, _one(u.value) * argument)
+    return linear((lambda x: x / number) if divide else (lambda x: x * number), [u])
 
 
 def _plus(node: Node, number: int) -> Node:
@@ -228,11 +263,23 @@ FUNCTIONS: dict[str, Callable[[Node], Node]] = {
     "tanh": lambda u: chain(u, elementary("tanh", u.value), lambda f: _plus(_negative(_square(f)), 1)),
     "arctan": lambda u: chain(u, elementary("arctan", u.value), lambda _: _over_one(_plus(_square(u), 1))),
     "arcsin": lambda u: chain(
-        u, elementary("arcsin", u.value), lambda _: real_power(_plus(_negative(_square(u)), 1), -0.5)
+        u, elementary("arcsin", u.value), lambda _: _inverse_root(_plus(_negative(_square(u)), 1))
     ),
-    "arcsinh": lambda u: chain(u, elementary("arcsinh", u.value), lambda _: real_power(_plus(_square(u), 1), -0.5)),
+    "arccos": lambda u: chain(
+        u, elementary("arccos", u.value), lambda _: _negative(_inverse_root(_plus(_negative(_square(u)), 1)))
+    ),
+    "arcsinh": lambda u: chain(u, elementary("arcsinh", u.value), lambda _: _inverse_root(_plus(_square(u), 1))),
+    "arccosh": lambda u: chain(
+        u, elementary("arccosh", u.value), lambda _: product(_inverse_root(_plus(u, -1)), _inverse_root(_plus(u, 1)))
+    ),
     "arctanh": lambda u: chain(u, elementary("arctanh", u.value), lambda _: _over_one(_plus(_negative(_square(u)), 1))),
-    "sqrt": lambda u: real_power(u, 0.5),
+    "exp2": lambda u: chain(u, elementary("exp2", u.value), lambda f: _multiple(f, "log", 2)),
+    "log2": lambda u: chain(u, elementary("log2", u.value), lambda _: _multiple(_over_one(u), "log", 2, divide=True)),
+    "log10": lambda u: chain(
+        u, elementary("log10", u.value), lambda _: _multiple(_over_one(u), "log", 10, divide=True)
+    ),
+    "sqrt": lambda u: _root(u, Fraction(1, 2), "sqrt"),
+    "cbrt": lambda u: _root(u, Fraction(1, 3), "cbrt"),
     "square": _square,
     "reciprocal": _over_one,
     "negative": _negative,

@@ -1,0 +1,149 @@
+"""One Jet from what users return: nested lists and arrays of objects that hold Jets and numbers.
+
+numpy makes ``np.array([m[0] * m[1], 0.0])`` an array of objects; `as_jet` makes it one Jet again.
+Imports jet, recurrences, arrays, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from liehom.errors import SeriesError, ShapeError
+from liehom.series import recurrences
+from liehom.series.arrays import beside, is_jax, namespace
+from liehom.series.jet import Jet
+from liehom.series.node import Node
+
+
+def holds_jets(x: Any) -> bool:
+    """Whether x is a Jet, or a nested list or array of objects with a Jet in it.
+
+    Examples
+    --------
+    >>> holds_jets([[1.0], [Jet([0.0, 1.0])]]), holds_jets([1.0])
+    (True, False)
+    """
+    if isinstance(x, Jet):
+        return True
+    if isinstance(x, np.ndarray):
+        return x.dtype == object and any(isinstance(entry, Jet) for entry in x.flat)
+    return isinstance(x, list | tuple) and any(holds_jets(entry) for entry in x)
+
+
+def as_jet(x: Any, order: int | None = None) -> Jet:
+    """x as one Jet.
+
+    Parameters
+    ----------
+    x : Jet, array_like, or nested list or array of objects that holds Jets and numbers
+        The entries of a list have one shape, except that numbers stand for constant arrays of that shape.
+    order : int, optional
+        The order of the result where no Jet is in x.
+
+    Returns
+    -------
+    Jet
+        With the entries along the first axes; of the lowest order among the Jets.
+
+    Raises
+    ------
+    ShapeError
+        If the entries of a list do not have one shape.
+    SeriesError
+        If there is no Jet and no order, or an entry is no number.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> m = Jet([[1.0, 2.0], [3.0, 4.0]])
+    >>> as_jet(np.array([m[0] * m[1], 5.0])).coefficients
+    array([[ 2.,  5.],
+           [10.,  0.]])
+    """
+    if isinstance(x, Jet):
+        return x
+    if not holds_jets(x):
+        if order is None:
+            raise SeriesError("an array without a Jet in it needs an order to become a Jet")
+        return Jet.constant(_plain(x), order)
+    shape, entries = _flattened(x)
+    first = next(entry for entry in entries if isinstance(entry, Jet))
+    inner = np.broadcast_shapes(*[entry.shape for entry in entries if isinstance(entry, Jet)])
+    for entry in entries:
+        if np.shape(entry) not in ((), inner):
+            raise ShapeError(f"entries of shapes {inner} and {np.shape(entry)} do not make one array; see np.stack")
+
+    def stacked(*parts: Any) -> Any:
+        xp = namespace(*parts)
+        full = [part if np.shape(part) == inner else xp.broadcast_to(part, inner) for part in parts]
+        if xp is np and not inner:
+            return _array(full, shape)
+        return xp.stack(full).reshape((*shape, *inner))
+
+    return Jet.from_node(recurrences.linear(stacked, nodes(*entries, like=first)), writable=True)
+
+
+def _array(parts: list[Any], shape: tuple[int, ...]) -> Any:
+    """Numbers as an array of this shape, which numpy must not look into."""
+    dtype = np.result_type(*[getattr(part, "dtype", np.dtype(object)) for part in parts])
+    out = np.empty(len(parts), dtype=dtype)
+    for i, part in enumerate(parts):
+        out[i] = part[()] if isinstance(part, np.ndarray) else part
+    return out.reshape(shape)
+
+
+def _plain(x: Any) -> Any:
+    """An array; numpy must not look into the values of JAX arrays in a list."""
+    if isinstance(x, list | tuple) and any(is_jax(entry) for entry in x):
+        return namespace(*x).stack([namespace(*x).asarray(entry) for entry in x])
+    return x
+
+
+def _flattened(x: Any) -> tuple[tuple[int, ...], list[Any]]:
+    """The outer shape and the entries in order."""
+    if isinstance(x, np.ndarray):
+        return x.shape, list(x.flat)
+    parts = [_flattened(entry) if isinstance(entry, list | tuple) else ((), [entry]) for entry in x]
+    if len({shape for shape, _ in parts}) != 1:
+        raise ShapeError("lists of several lengths do not make one array")
+    if all(isinstance(entry, np.ndarray) and entry.dtype == object for entry in x):
+        parts = [_flattened(entry) for entry in x]
+    return (len(parts), *parts[0][0]), [entry for _, entries in parts for entry in entries]
+
+
+def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
+    """The nodes of Jets and constants, at the lowest order among the Jets."""
+    made = [as_jet(x) if not isinstance(x, Jet) and holds_jets(x) else x for x in values]
+    jets = [x for x in made if isinstance(x, Jet)]
+    order = min(x.order for x in jets)
+    kind = next((x.value for x in jets if x.dtype == object), (jets[0] if like is None else like).value)
+    return [x.node if isinstance(x, Jet) else recurrences.constant(beside(kind, x), order) for x in made]
+
+
+def on_series(function: Callable[..., Any], *arguments: Any) -> Any:
+    """function(*arguments), with numpy's own complaint about a Jet in a float array replaced by the reason.
+
+    Writing a Jet into an entry of a float array ends in numpy's "setting an array element with a sequence".
+
+    Raises
+    ------
+    SeriesError
+        Where that happens, and wherever a Jet refuses something.
+
+    Examples
+    --------
+    >>> on_series(lambda m: 2 * m, Jet([1.0, 1.0])).coefficients
+    array([2., 2.])
+    """
+    try:
+        return function(*arguments)
+    except (ValueError, TypeError) as error:
+        reason: BaseException | None = error
+        while reason is not None and not isinstance(reason, SeriesError):
+            reason = reason.__cause__
+        if reason is None or reason is error:
+            raise
+        raise SeriesError(str(reason)) from error

@@ -1,0 +1,99 @@
+"""Writing into Jets: entries are replaced by new series, so that what was computed before stays as it was.
+
+A Jet that numpy would hand out as a new array may be written into.  Its slices and transposes see what is written
+into it later, and slices pass on what is written into them, as views of numpy arrays do.
+Imports recurrences, node, arrays, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from liehom.errors import SeriesError
+from liehom.series import recurrences
+from liehom.series.arrays import is_jax, namespace
+from liehom.series.node import Node
+
+
+class Step(NamedTuple):
+    """How a view is made of the array: a linear function, and its index if it is one."""
+
+    function: Callable[[Any], Any]
+    key: Any
+    writable: bool
+
+
+class View(NamedTuple):
+    """Where a Jet is a view: the Jet that owns the entries, the way to it, and the owner's node at that time."""
+
+    owner: Any
+    steps: tuple[Step, ...]
+    seen: Node
+
+
+def frozen(x: Any) -> Any:
+    """An index or option, copied so that the caller may change it later.
+
+    Examples
+    --------
+    >>> mask = [True, False]
+    >>> frozen((mask, 0))
+    ([True, False], 0)
+    """
+    if isinstance(x, np.ndarray):
+        return x.copy()
+    if isinstance(x, list):
+        return [frozen(entry) for entry in x]
+    return tuple(frozen(entry) for entry in x) if type(x) is tuple else x
+
+
+def kind_of_index(key: Any, ndim: int) -> str:
+    """What numpy's indexing of an array with `ndim` axes gives: a "number", a "view" or a "copy".
+
+    Examples
+    --------
+    >>> kind_of_index((0, slice(None)), 2), kind_of_index(0, 1), kind_of_index(0, 2), kind_of_index([0, 1], 1)
+    ('view', 'number', 'view', 'copy')
+    """
+    parts = key if isinstance(key, tuple) else (key,)
+    whole = [part for part in parts if isinstance(part, int | np.integer) and not isinstance(part, bool)]
+    slices = [part for part in parts if part is Ellipsis or part is None or isinstance(part, slice)]
+    if len(whole) + len(slices) < len(parts):
+        return "copy"
+    return "number" if not slices and len(whole) == ndim else "view"
+
+
+def followed(view: View) -> list[Node]:
+    """The nodes of the owner, of the first view, ..., of the view itself, as they are now."""
+    nodes = [view.owner.node]
+    for step in view.steps:
+        nodes.append(recurrences.linear(step.function, [nodes[-1]]))
+    return nodes
+
+
+def written(view: View, key: Any, value: Node) -> Node:
+    """The owner's new node after value was written into a view at `key`."""
+    nodes = followed(view)
+    new = replaced(nodes[-1], key, value)
+    for step, below in zip(reversed(view.steps), reversed(nodes[:-1]), strict=True):
+        if not step.writable:
+            raise SeriesError("this series is a transposed or reshaped view of another one: write into that one")
+        new = replaced(below, step.key, new)
+    return new
+
+
+def replaced(whole: Node, key: Any, part: Node) -> Node:
+    """The series with the entries at `key` replaced."""
+    return recurrences.linear(lambda x, y: _replaced(x, key, y), [whole, part])
+
+
+def _replaced(whole: Any, key: Any, part: Any) -> Any:
+    if is_jax(whole) or is_jax(part):
+        xp = namespace(whole, part)
+        return xp.asarray(whole, dtype=xp.result_type(whole, part)).at[key].set(part)
+    out = np.array(whole, dtype=np.result_type(whole, part))
+    out[key] = part
+    return out
