@@ -83,6 +83,36 @@ def files() -> dict[str, Any]:
             t_span=[0, 10],
             dt=0.1,
         ),
+        **problems(),
+    }
+
+
+def problems() -> dict[str, Any]:
+    """Files for `liehom integrate` and `liehom order`, besides the rigid body."""
+    rotations, conjugation = families.so(3), families.congruence(families.so(3))
+    flow = {"generator": ["1 + m1", "m0 - m2/2", "m4 + m5/3"], "t_span": [0, 2], "base": "euler", "order": 4}
+    return {
+        # symmetric matrices with eigenvalues 1, 1, 2: the isotropy is full; with 1, 2, 3 there is none
+        "sym3_flow": representation(conjugation, [1, 0, 0, 1, 0, 2], **flow, dt=0.05),
+        "sym3_generic": representation(conjugation, [1, 0, 0, 2, 0, 3], **flow, dt=0.05),
+        # m' = m x H - a m x (m x H), H along the last axis, a = 1/5: a damped spin, by its vector field
+        "vector_field": representation(
+            rotations,
+            ["3/5", "0", "-4/5"],
+            vector_field=["m1 - m0*m2/5", "-m0 - m1*m2/5", "(m0**2 + m1**2)/5"],
+            t_span=[0, 20],
+            rtol=1e-8,
+        ),
+        "driven_spin": representation(
+            rotations,
+            ["0", "0", "1"],
+            generator=["1", "cos(2*t)/2", "sin(2*t)/2"],
+            t_span=[0, 6],
+            t_eval=[0, 1, 2, 3, 4, 5, 6],
+            base="heun",
+            order=4,
+            dt=0.05,
+        ),
     }
 
 

@@ -1,6 +1,6 @@
 """The commands of ``liehom``: each gathers its input, calls one function of the library, and prints.
 
-Imports guard, inputs, show; the library inside the commands.
+Imports guard, numerical; inputs, show and the library inside the commands.
 """
 
 from __future__ import annotations
@@ -11,14 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from liehom.cli import numerical
 from liehom.cli.guard import NO, NUMERICAL, YES, guarded
 
 if TYPE_CHECKING:
     from liehom.representations import Pair
 
+HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces."
+
 app = typer.Typer(
     name="liehom",
-    help="Lie algebras, isotropy and fullness: exact answers with proofs.",
+    help=HELP,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -40,13 +43,13 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
+@app.callback(help=HELP)
 def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    """Lie algebras, isotropy and fullness: exact answers with proofs."""
+    pass
 
 
 @app.command()
@@ -144,7 +147,7 @@ def verify(
 
 
 def _verify(text: str, file: str, as_json: bool) -> int:
-    from liehom.cli.inputs import pair_argument
+    from liehom.cli.inputs import file_argument, pair_argument
     from liehom.cli.show import show_answer, show_json
     from liehom.errors import CertificateError, CertificateFormatError
     from liehom.fullness.certificate import Certificate
@@ -152,7 +155,7 @@ def _verify(text: str, file: str, as_json: bool) -> int:
     from liehom.io import read_object
 
     pair = pair_argument(text)
-    certificate = Certificate.from_json(read_object(file))
+    certificate = Certificate.from_json(read_object(file_argument(file)))
     failure = None
     try:
         verify_certificate(pair, certificate)
@@ -185,13 +188,13 @@ def isotropy(
 
 
 def _isotropy(file: str, point: str | None, as_json: bool) -> int:
-    from liehom.cli.inputs import point_in
+    from liehom.cli.inputs import file_argument, point_in
     from liehom.cli.show import short_vector, show_answer, show_json
     from liehom.errors import FormatError
     from liehom.io import load_problem
     from liehom.scalars import RR
 
-    problem = load_problem(file)
+    problem = load_problem(file_argument(file))
     rho, at = problem.representation, list(problem.point or ())
     if point is not None:
         rho, at = point_in(rho, point)
@@ -272,6 +275,10 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     return code
 
 
+app.command()(numerical.integrate)
+app.command()(numerical.order)
+
+
 @app.command()
 def catalog(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="A pair to print, as a pair file.")] = None,
@@ -299,7 +306,7 @@ def _catalog(name: str | None, as_json: bool) -> int:
 
 @app.command()
 def demo(json: JsonOption = False) -> None:
-    """A tour: fullness of several pairs with their certificates verified, isotropy, the range condition."""
+    """A tour: fullness of several pairs with their certificates verified, isotropy, integration, a picture."""
 
     def action() -> int:
         from liehom.cli.demo import run_demo

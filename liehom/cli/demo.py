@@ -8,8 +8,8 @@ from typing import Any
 
 import liehom.io
 from liehom.cli.guard import YES
+from liehom.cli.inputs import examples_folder
 from liehom.cli.show import show_json, show_table
-from liehom.errors import FormatError
 from liehom.fullness.decide import decide_fullness
 from liehom.homogeneous.range_condition import range_condition
 from liehom.representations import Pair
@@ -24,21 +24,6 @@ PAIRS: tuple[tuple[str, str], ...] = (
     ("ellipsoid_sqrt2", "the ellipsoid x^2 + y^2 + sqrt(2) z^2 = 1"),
     ("so4_so3_float", "the sphere S^3 in floating point"),
 )
-
-
-def examples_folder() -> Path:
-    """Where the example files are: in the installed package, else beside it in a checkout.
-
-    Raises
-    ------
-    FormatError
-        If they are in neither place.
-    """
-    package = Path(__file__).resolve().parent.parent
-    for folder in (package / "examples", package.parent / "examples"):
-        if (folder / "so4_so3.json").is_file():
-            return folder
-    raise FormatError(f"the example files are neither in {package / 'examples'} nor beside the package")
 
 
 def run_demo(as_json: bool) -> int:

@@ -34,8 +34,8 @@ def guarded(action: Callable[[], int]) -> int:
         return _said(f"internal error: {error}", INTERNAL)
     except LiehomError as error:
         return _said(f"error: {error}", BAD_INPUT)
-    except KeyboardInterrupt:
-        return _said("interrupted", INTERRUPTED)
+    except KeyboardInterrupt as interrupt:
+        return _said(f"interrupted{interrupt}", INTERRUPTED)
     except BrokenPipeError:
         return close_output()
     except Exception as error:  # noqa: BLE001  the top of the program: whatever is left is a bug

@@ -1,8 +1,10 @@
-"""From the words of a command to pairs, points and rows. Imports io, catalog."""
+"""From the words of a command to files, pairs, points, rows and numbers. Imports io, catalog."""
 
 from __future__ import annotations
 
 import os
+import re
+from pathlib import Path
 from typing import Any
 
 from liehom.errors import FormatError
@@ -11,6 +13,39 @@ from liehom.io.json_text import parse_object
 from liehom.io.values import vector
 from liehom.representations import Pair, Representation
 from liehom.scalars import RR, common_field
+
+EXAMPLES = "examples/"
+_DECIMAL = re.compile(r"\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*", re.ASCII)
+
+
+def examples_folder() -> Path:
+    """Where the example files are: in the installed package, else beside it in a checkout.
+
+    Raises
+    ------
+    FormatError
+        If they are in neither place.
+    """
+    package = Path(__file__).resolve().parent.parent
+    for folder in (package / "examples", package.parent / "examples"):
+        if (folder / "so4_so3.json").is_file():
+            return folder
+    raise FormatError(f"the example files are neither in {package / 'examples'} nor beside the package")
+
+
+def file_argument(text: str) -> str:
+    """The file that an argument names: 'examples/NAME' is found from everywhere, unless there is such a file here.
+
+    Examples
+    --------
+    >>> os.path.basename(file_argument("examples/sym3.json")), file_argument("mine.json")
+    ('sym3.json', 'mine.json')
+    """
+    name = text.removeprefix(EXAMPLES)
+    if text.startswith(EXAMPLES) and name == os.path.basename(name) and "\0" not in text and not os.path.exists(text):
+        found = examples_folder() / name
+        return str(found) if found.is_file() else text
+    return text
 
 
 def is_file(text: str) -> bool:
@@ -26,7 +61,7 @@ def pair_argument(text: str) -> Pair:
     FormatError, CatalogError
     """
     if is_file(text):
-        return load_pair(text)
+        return load_pair(file_argument(text))
     from liehom.catalog import pair
 
     return pair(text)
@@ -47,6 +82,18 @@ def row_values(text: str, what: str) -> list[Any]:
             raise FormatError(f"{what} is {text!r}, expected a row such as '1,0,-2/3'")
         return values
     return [part.strip() for part in stripped.split(",")] if stripped else []
+
+
+def number_value(text: str) -> Any:
+    """The JSON value of a number on the command line: a decimal is a float, everything else a text of the grammar.
+
+    Examples
+    --------
+    >>> number_value("0.1"), number_value("1/10"), number_value("3")
+    (0.1, '1/10', '3')
+    """
+    stripped = text.strip()
+    return float(stripped) if _DECIMAL.fullmatch(stripped) and not stripped.isdigit() else stripped
 
 
 def row_in(field: Any, text: str, what: str) -> list[Any]:

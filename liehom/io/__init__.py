@@ -1,9 +1,11 @@
-"""JSON in and out: pairs, representations and certificates as files, read strictly.
+"""Files: pairs, representations and certificates in JSON, read strictly; solutions as arrays.
 
 json_text            a text to a JSON object: no duplicate keys, no NaN, unknown keys named
 values               lists of JSON values to numbers of a field, quickly
 pair_file            {"dimension", "structure_constants", "subalgebra", ...} to a Pair
+problem              `Problem`: the field, the start and the options of an integration
 representation_file  {"matrices", "point", "generator", ...} to a Representation and a Problem
+solution_file        a solution as an .npz archive: t, y and the report
 files                `load`, `load_pair`, `load_problem`, `loads`, `from_json`, `to_json`, `dump`
 
 Whatever is refused raises `FormatError` or a more specific child of `InputError` that names the key or the
@@ -19,7 +21,8 @@ from liehom.io.files import loads as loads
 from liehom.io.files import to_json as to_json
 from liehom.io.json_text import parse_object as parse_object
 from liehom.io.json_text import read_object as read_object
-from liehom.io.representation_file import Problem as Problem
+from liehom.io.problem import Problem as Problem
+from liehom.io.solution_file import save_solution as save_solution
 
 __all__ = [
     "load",
@@ -32,4 +35,5 @@ __all__ = [
     "parse_object",
     "read_object",
     "Problem",
+    "save_solution",
 ]

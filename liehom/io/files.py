@@ -1,6 +1,6 @@
 """The verbs: load, load_pair, load_problem, loads, from_json, to_json, dump.
 
-Imports json_text, pair_file, representation_file, fullness.certificate.
+Imports json_text, pair_file, problem, representation_file.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Literal, overload
 from liehom.errors import FormatError
 from liehom.io import pair_file, representation_file
 from liehom.io.json_text import kind_of, parse_object, read_object, shown
-from liehom.io.representation_file import Problem
+from liehom.io.problem import Problem
 from liehom.representations.pair import Pair
 from liehom.representations.representation import Representation
 

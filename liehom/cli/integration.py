@@ -1,0 +1,186 @@
+"""``liehom integrate``: a trajectory of the problem of a file, as a table, an .npz file and a picture.
+
+Imports guard, problem, show, io; numpy and the integrators inside.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, final
+
+from liehom.cli.guard import NO, YES
+from liehom.cli.problem import Words, check_picture, problem_of
+from liehom.cli.show import show_json, show_table
+from liehom.errors import FormatError
+from liehom.io import save_solution
+from liehom.io.solution_file import check_target, summary_json
+
+if TYPE_CHECKING:
+    from liehom.integrators import Solution
+    from liehom.representations import Representation
+
+ROWS = 11
+COLUMNS = 4
+ROUND_OFF = 1e-13
+FORMS_UP_TO = 30
+"""Invariant forms are looked for in representations of at most this dimension."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Output:
+    """Where the results go, and whether files may be replaced."""
+
+    out: str | None = None
+    plot: str | None = None
+    checkpoint: str | None = None
+    force: bool = False
+    as_json: bool = False
+    progress: bool | None = None
+
+    def checked(self, file: str) -> Output:
+        """With the default name of the .npz file; refuses what could not be written after the work."""
+        out = f"{Path(file).stem}.npz" if self.out is None else self.out
+        check_target(out, force=self.force)
+        check_picture(self.plot)
+        if self.checkpoint is not None:
+            check_target(self.checkpoint, force=True)
+        targets = [os.path.abspath(path) for path in (out, self.plot, self.checkpoint) if path is not None]
+        if len(set(targets)) < len(targets) or os.path.abspath(file) in targets:
+            raise FormatError("the problem, --out, --plot and --checkpoint must be different files")
+        return Output(out, self.plot, self.checkpoint, self.force, self.as_json, self.progress)
+
+
+def run_integrate(file: str, words: Words, wanted: Output) -> int:
+    """Integrate, write the files, print the table and the report."""
+    import numpy as np
+
+    output = wanted.checked(file)
+    problem = problem_of(file, words)
+    show_progress = sys.stderr.isatty() if output.progress is None else output.progress
+    try:
+        with np.errstate(all="ignore"):  # what is not finite ends the run with a message
+            solution = problem.integrate(progress=show_progress, checkpoint=output.checkpoint)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_where_it_went_on(output.checkpoint)) from None
+    save_solution(solution, str(output.out), force=output.force)
+    if output.plot is not None:
+        _draw(solution, output.plot)
+    drift = invariant_drift(problem.representation, solution.y)
+    if output.as_json:
+        _print_json(file, solution, drift, output)
+    else:
+        _print_table(solution, drift, output)
+    return YES if solution.success else NO
+
+
+def _where_it_went_on(checkpoint: str | None) -> str:
+    if checkpoint is None or not os.path.exists(checkpoint):
+        return ""
+    return f"; the state is in {checkpoint}: the same command continues from it"
+
+
+def _draw(solution: Solution, path: str) -> None:
+    from liehom.plotting import plot_trajectory
+
+    plot_trajectory(solution, path)
+
+
+def invariant_drift(representation: Representation, y: Any) -> Any | None:
+    """How far the invariant quadratic forms have moved from their values at the start, relative to |F| |m|^2.
+
+    Parameters
+    ----------
+    representation : Representation
+    y : array of shape (N, n)
+
+    Returns
+    -------
+    array of shape (n,) or None
+        The largest over all forms; None if no form is known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> invariant_drift(lh.defining(lh.so(2)), np.array([[1.0, 0.0], [0.0, 2.0]])).tolist()
+    [0.0, 0.75]
+    """
+    import numpy as np
+
+    forms = _forms(representation)
+    if not forms or y.shape[-1] == 0:
+        return None
+    sizes = np.maximum((y * y).sum(axis=0), (y[:, 0] @ y[:, 0]) or 1.0)
+    worst = np.zeros(y.shape[-1])
+    for form in forms:
+        values = np.einsum("in,ij,jn->n", y, form, y)
+        worst = np.maximum(worst, np.abs(values - values[0]) / (np.linalg.norm(form, 2) * sizes))
+    return worst
+
+
+def _forms(representation: Representation) -> list[Any]:
+    """Symmetric matrices F with rho(x)^T F + F rho(x) = 0, as float arrays."""
+    import numpy as np
+
+    if representation.field.exact:
+        if representation.size > FORMS_UP_TO:
+            return []
+        return [np.asarray(form.to_numpy(), dtype=float) for form in representation.invariant_forms().symmetric]
+    matrices = [a.to_numpy() for a in representation.matrices]
+    scale = max((float(np.abs(a).max(initial=0.0)) for a in matrices), default=0.0)
+    skew = all(np.abs(a + a.T).max(initial=0.0) <= 1e-12 * scale for a in matrices)
+    return [np.eye(representation.size)] if skew else []
+
+
+# -- printing --------------------------------------------------------------------------------------------
+def _shown_rows(count: int) -> list[int]:
+    """Which points the table shows: the first, the last, and evenly chosen ones between them."""
+    if count <= ROWS:
+        return list(range(count))
+    return [round(i * (count - 1) / (ROWS - 1)) for i in range(ROWS)]
+
+
+def _print_table(solution: Solution, drift: Any, output: Output) -> None:
+    n = min(solution.y.shape[0], COLUMNS)
+    more = [] if n == solution.y.shape[0] else ["..."]
+    columns = ["t", *(f"m{i}" for i in range(n)), *more, *([] if drift is None else ["drift of invariants"])]
+    rows = []
+    for k in _shown_rows(solution.y.shape[-1]):
+        row = [f"{solution.t[k]:.6g}", *(f"{_zero_unsigned(x): .8f}" for x in solution.y[:n, k]), *more]
+        rows.append(row if drift is None else [*row, _shown_drift(drift[k])])
+    show_table(columns, rows)
+    steps = f"{solution.n_steps} step" + ("" if solution.n_steps == 1 else "s")
+    print(f"\n{steps}, {solution.nfev} evaluations of psi; {solution.message}")
+    print(solution.report)
+    print(f"t, y and report: {output.out}")
+    if output.plot is not None:
+        print(f"picture: {output.plot}")
+
+
+def _shown_drift(x: float) -> str:
+    return f"{x:.1e}" if x > ROUND_OFF else f"< {ROUND_OFF:.0e}"
+
+
+def _zero_unsigned(x: float) -> float:
+    """The coordinate, without the sign of a zero that eight digits show."""
+    return 0.0 if abs(x) < 5e-9 else x
+
+
+def _print_json(file: str, solution: Solution, drift: Any, output: Output) -> None:
+    """The whole arrays are in the .npz file; the object has the rows of the table."""
+    rows = _shown_rows(solution.y.shape[-1])
+    show_json(
+        {
+            "file": file,
+            "out": output.out,
+            "plot": output.plot,
+            "t": [float(solution.t[k]) for k in rows],
+            "y": [[float(x) for x in solution.y[:, k]] for k in rows],
+            "drift": None if drift is None else [float(drift[k]) for k in rows],
+            **summary_json(solution),
+        }
+    )

@@ -1,0 +1,147 @@
+"""A solution as a file: an .npz archive with the arrays t, y and a JSON text of the report; never a pickle.
+
+It is written under a temporary name and moved, so that nobody ever finds half of it.  Imports json_text, integrators.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import json
+import math
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from liehom.errors import FormatError
+
+if TYPE_CHECKING:
+    from liehom.integrators import Report, Solution
+
+FORMAT = "liehom-solution"
+
+
+def report_json(report: Report) -> dict[str, Any]:
+    """The JSON object of a report; what is not finite is null.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> report = lh.integrators.integrate(field, (0, 1), [1.0, 0.0]).report
+    >>> report_json(report)["order"], report_json(report)["singular_value"]
+    (6, None)
+    """
+    made = {entry.name: _plain(getattr(report, entry.name)) for entry in dataclasses.fields(report)}
+    return {**made, "range_condition": report.range_condition}
+
+
+def summary_json(solution: Solution) -> dict[str, Any]:
+    """What became of a run, as a JSON object: status, message, counts and the report.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> summary_json(lh.integrators.integrate(field, (0, 1), [1.0, 0.0], dt=0.25))["n_steps"]
+    4
+    """
+    return {
+        "success": bool(solution.success),
+        "status": int(solution.status),
+        "message": str(solution.message),
+        "n_steps": _plain(solution.n_steps),
+        "nfev": int(solution.nfev),
+        "report": report_json(solution.report),
+    }
+
+
+def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write t, y and the report of a solution to an .npz file.
+
+    Parameters
+    ----------
+    solution : Solution
+    path : path_like
+        Taken as it is; no suffix is added.
+    force : bool
+        Whether a file that is there may be replaced.
+
+    Raises
+    ------
+    FormatError
+        If the file is there already and `force` is not given, or it cannot be written.
+
+    Examples
+    --------
+    >>> import json, os, tempfile
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> path = os.path.join(tempfile.mkdtemp(), "rotation.npz")
+    >>> save_solution(lh.integrators.integrate(field, (0, 1), [1.0, 0.0], dt=0.25), path)
+    >>> with np.load(path) as file:
+    ...     print(sorted(file.files), file["y"].shape, json.loads(str(file["report"]))["n_steps"])
+    ['report', 't', 'y'] (2, 5) 4
+    """
+    import numpy as np
+
+    target = Path(path)
+    check_target(target, force=force)
+    text = json.dumps({"format": FORMAT, "version": 1, **summary_json(solution)}, allow_nan=False)
+    arrays = {"t": np.asarray(solution.t), "y": np.asarray(solution.y), "report": np.array(text)}
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with open(temporary, "wb") as file:
+            np.savez(file, **arrays)
+            file.flush()
+            os.fsync(file.fileno())
+        check_target(target, force=force)
+        os.replace(temporary, target)
+    except OSError as error:
+        raise FormatError(f"{str(path)!r} cannot be written: {error.strerror or error}") from None
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+
+
+def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Whether a file can be written there, asked before the work.
+
+    Raises
+    ------
+    FormatError
+        If the folder does not exist or is not writable, or the file is there and `force` is not given.
+
+    Examples
+    --------
+    >>> check_target("no/such/folder/out.npz")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: 'no/such/folder/out.npz' cannot be written: the folder 'no/such/folder' does not exist
+    """
+    text = os.fspath(path)
+    if not text or "\0" in text:
+        raise FormatError(f"{text!r} is not the name of a file")
+    target = Path(text)
+    folder = target.parent
+    if not folder.is_dir():
+        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} does not exist")
+    if target.is_dir():
+        raise FormatError(f"{text!r} cannot be written: it is a folder")
+    if not os.access(folder, os.W_OK):
+        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} is not writable")
+    if target.exists() and not force:
+        raise FormatError(f"{text!r} is there already and is not overwritten: give another name, or force it")
+
+
+def _plain(value: Any) -> Any:
+    """numpy scalars and arrays, tuples and floats that are not finite, as JSON has them."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): _plain(x) for key, x in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(x) for x in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
