@@ -125,9 +125,9 @@ def _alike(array: Any, zero: Any) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    return hasattr(value, "__mul__") and not isinstance(
-        value, str | bytes | bool | np.bool_ | list | tuple | np.ndarray
-    )
+    if isinstance(value, str | bytes | bool | np.bool_ | list | tuple) or bool(getattr(value, "ndim", False)):
+        return False
+    return hasattr(value, "__mul__")
 
 
 def beside(like: Any, value: Any) -> Any:

@@ -71,7 +71,7 @@ def as_jet(x: Any, order: int | None = None) -> Jet:
         return Jet.constant(_plain(x), order)
     shape, entries = _flattened(x)
     first = next(entry for entry in entries if isinstance(entry, Jet))
-    inner = np.broadcast_shapes(*[entry.shape for entry in entries if isinstance(entry, Jet)])
+    inner = max((np.shape(entry) for entry in entries), key=len)
     for entry in entries:
         if np.shape(entry) not in ((), inner):
             raise ShapeError(f"entries of shapes {inner} and {np.shape(entry)} do not make one array; see np.stack")

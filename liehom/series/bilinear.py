@@ -8,14 +8,16 @@ Imports jet, recurrences, arrays, errors.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from fractions import Fraction
 from typing import Any, final
 
+import flint
 import numpy as np
 
 from liehom.errors import ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import is_jax, namespace
+from liehom.series.arrays import as_values, beside, is_jax, namespace, owned, zeros
 from liehom.series.jet import Jet
 
 DENSE_SIZE = 4096
@@ -44,7 +46,7 @@ class Bilinear:
     array([0., 0., 1.])
     """
 
-    __slots__ = ("_dense", "_exact", "_i", "_j", "_k", "_starts", "_v", "_values", "shape")
+    __slots__ = ("__weakref__", "_cache", "_dense", "_i", "_j", "_k", "_starts", "_values", "shape")
 
     def __init__(self, entries: Iterable[tuple[int, int, int, Any]], shape: tuple[int, int, int]) -> None:
         rows = sorted(entries, key=lambda entry: (entry[2], entry[0], entry[1]))
@@ -53,34 +55,46 @@ class Bilinear:
                 raise ShapeError(f"entry ({i}, {j}, {k}) of a bilinear map of shape {shape}")
         self.shape = shape
         self._i, self._j, self._k = (np.array([row[a] for row in rows], dtype=int) for a in range(3))
-        values = [row[3] for row in rows]
-        self._exact = any(not isinstance(v, int | np.integer | float | np.floating) for v in values)
-        # what exact vectors are multiplied by: integers must not pass through a float
-        self._values = np.array([int(v) if isinstance(v, int | np.integer) else v for v in values], dtype=object)
-        self._v = self._values if self._exact else self._values.astype(np.float64)
+        self._values = np.empty(len(rows), dtype=object)
+        for index, row in enumerate(rows):
+            self._values[index] = int(row[3]) if isinstance(row[3], np.integer) else row[3]
         self._starts = np.flatnonzero(np.r_[True, self._k[1:] != self._k[:-1]]) if rows else np.zeros(0, dtype=int)
         size = shape[0] * shape[1] * shape[2]
-        small = not self._exact and size <= DENSE_SIZE
-        self._dense = self.tensor() if small or (not self._exact and len(rows) > DENSE_SHARE * size) else None
+        self._dense = size <= DENSE_SIZE or len(rows) > DENSE_SHARE * size
+        self._cache: dict[Any, Any] = {}
 
     def tensor(self) -> Any:
-        """The coefficients as an array of shape (a, b, c)."""
-        out = np.zeros(self.shape, dtype=self._v.dtype)
-        for i, j, k, v in zip(self._i, self._j, self._k, self._v, strict=True):
-            out[i, j, k] += v
-        return out
+        """The coefficients as an array of shape (a, b, c): floats, or objects if one of them is no float or integer.
+
+        Examples
+        --------
+        >>> Bilinear([(0, 1, 0, 2)], (1, 2, 1)).tensor().tolist()
+        [[[0.0], [2.0]]]
+        """
+        plain = all(isinstance(v, int | float | np.floating) for v in self._values)
+        return self._filled(self._values.astype(np.float64) if plain else self._values)
 
     def __call__(self, x: Any, y: Any) -> Any:
-        """B(x, y) for x (..., a) and y (..., b): shape (..., c); Jets give a Jet."""
-        if isinstance(x, Jet) or isinstance(y, Jet):
-            if not isinstance(x, Jet):
-                x = np.asarray(x) if not is_jax(x) else x
-                return Jet.from_node(recurrences.linear(lambda b: self._apply(x, b), [y.node]))
-            if not isinstance(y, Jet):
-                y = np.asarray(y) if not is_jax(y) else y
-                return Jet.from_node(recurrences.linear(lambda a: self._apply(a, y), [x.node]))
-            return Jet.from_node(recurrences.multilinear(self._apply, [x.node, y.node]))
-        return self._apply(x if is_jax(x) else np.asarray(x), y if is_jax(y) else np.asarray(y))
+        """B(x, y) for x (..., a) and y (..., b): shape (..., c); Jets give a Jet.
+
+        Raises
+        ------
+        ShapeError
+            If the last axis of an argument does not have the right length.
+        """
+        x, y = (v if isinstance(v, Jet) else _values_of(v) for v in (x, y))
+        for v, length in zip((x, y), self.shape, strict=False):
+            if not v.shape or v.shape[-1] != length:
+                raise ShapeError(f"an argument of shape {v.shape}, expected (..., {length}) for a map of {self.shape}")
+        if not isinstance(x, Jet) and not isinstance(y, Jet):
+            return self._apply(x, y)
+        if not isinstance(x, Jet):
+            x = owned(x)
+            return Jet.from_node(recurrences.linear(lambda b: self._apply(x, b), [y.node]))
+        if not isinstance(y, Jet):
+            y = owned(y)
+            return Jet.from_node(recurrences.linear(lambda a: self._apply(a, y), [x.node]))
+        return Jet.from_node(recurrences.multilinear(self._apply, [x.node, y.node]))
 
     def left(self, x: Any) -> Any:
         """The matrix of y -> B(x, y), shape (..., c, b).
@@ -90,39 +104,72 @@ class Bilinear:
         >>> Bilinear([(0, 1, 2, 1.0)], (2, 2, 3)).left([2.0, 0.0])[2].tolist()
         [0.0, 2.0]
         """
-        return np.einsum("...i,ijk->...kj", x, self._tensor_for(x))
+        return self._contracted("...i,ijk->...kj", x)
 
     def right(self, y: Any) -> Any:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
-        return np.einsum("...j,ijk->...ki", y, self._tensor_for(y))
+        return self._contracted("...j,ijk->...ki", y)
+
+    def _contracted(self, subscripts: str, x: Any) -> Any:
+        x = x if isinstance(x, Jet) else _values_of(x)
+        xp = np if isinstance(x, Jet) else namespace(x)
+        return xp.einsum(subscripts, x, self._tensor_for(x))
 
     def _tensor_for(self, x: Any) -> Any:
-        tensor = self.tensor() if self._dense is None else self._dense
         value = x.value if isinstance(x, Jet) else x
-        return namespace(value).asarray(tensor) if is_jax(value) else tensor
+        return self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
+
+    def _filled(self, values: Any) -> Any:
+        out = np.zeros(self.shape, dtype=values.dtype)
+        np.add.at(out, (self._i, self._j, self._k), values)
+        return out
 
     def _apply(self, x: Any, y: Any) -> Any:
-        xp = namespace(x, y)
-        if self._dense is not None and x.dtype != object and y.dtype != object:
-            matrix = xp.tensordot(x, xp.asarray(self._dense), axes=1)
-            return (y[..., None, :] @ matrix)[..., 0, :]
-        exact = x.dtype == object or y.dtype == object
-        products = x[..., self._i] * y[..., self._j] * (self._values if exact else self._v)
+        a, b, c = self.shape
+        kind = x if x.dtype == y.dtype else np.broadcast_to(np.zeros((), np.result_type(x.dtype, y.dtype)), (1,))
+        if kind.dtype == object:
+            kind = x if x.dtype == object else y
+        elif self._dense:
+            matrix = self._cached("matrix", kind, lambda: self._filled(self._coefficients(kind)).reshape(a * b, c))
+            if matrix.dtype != object:
+                pairs = x[..., :, None] * y[..., None, :]
+                xp = namespace(pairs)
+                return pairs.reshape(*pairs.shape[:-2], a * b) @ (matrix if xp is np else xp.asarray(matrix))
+        products = x[..., self._i] * y[..., self._j] * self._cached("values", kind, lambda: self._coefficients(kind))
+        return self._collected(products, kind)
+
+    def _collected(self, products: Any, kind: Any) -> Any:
+        """The sums of the products that belong to one component."""
+        shape = (*products.shape[:-1], self.shape[2])
         if is_jax(products):
-            total = xp.zeros((*products.shape[:-1], self.shape[2]), dtype=products.dtype)
-            return total.at[..., self._k].add(products)
-        out = np.zeros((*products.shape[:-1], self.shape[2]), dtype=products.dtype)
-        if products.dtype == object:
-            out[...] = 0 * _representative(x, y)
+            return zeros(products, shape).at[..., self._k].add(products)
+        out = zeros(products if products.size else kind, shape)
         if len(self._starts):
             out[..., self._k[self._starts]] = np.add.reduceat(products, self._starts, axis=-1)
         return out
 
+    def _coefficients(self, like: Any) -> Any:
+        """The coefficients in the kind of numbers of an array."""
+        if like.dtype == object:
+            return beside(like, self._values)
+        dtype = np.zeros((), like.dtype).real.dtype
+        try:
+            return np.array([beside(np.zeros((), dtype), v)[()] for v in self._values], dtype=dtype)
+        except TypeError:  # symbols
+            return self._values
 
-def _representative(*arrays: Any) -> Any:
-    """Some exact entry, to make a zero of its kind."""
-    for a in arrays:
-        for x in a.flat:
-            if not isinstance(x, int | float):
-                return x
-    return 0
+    def _cached(self, name: str, like: Any, make: Callable[[], Any]) -> Any:
+        """What depends on the kind of numbers alone."""
+        if like.dtype != object:
+            key = (name, np.dtype(like.dtype))
+        else:
+            key = (name, type(like.flat[0]) if like.size else None)
+            if key[1] is None or not issubclass(key[1], Fraction | flint.fmpq):
+                return make()
+        if key not in self._cache:
+            self._cache[key] = make()
+        return self._cache[key]
+
+
+def _values_of(x: Any) -> Any:
+    return x if type(x) is np.ndarray and x.dtype.kind in "fcO" else as_values(x)

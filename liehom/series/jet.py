@@ -306,7 +306,7 @@ class Jet(NDArrayOperatorsMixin):
     def __getitem__(self, key: Any) -> Jet:
         if isinstance(key, Jet):
             raise _branch("an index that is a series")
-        key = jet_views.frozen(key)
+        key = jet_views.checked_index(key, self.node.value)
         kind = jet_views.kind_of_index(key, self.ndim)
         if kind == "view":
             return self.part(lambda x: x[key], key=key, writable=True)
@@ -315,7 +315,7 @@ class Jet(NDArrayOperatorsMixin):
     def __setitem__(self, key: Any, value: Any) -> None:
         from liehom.series.assembly import nodes
 
-        key = jet_views.frozen(key)
+        key = jet_views.checked_index(key, self.node.value)
         if not self.shares():
             raise SeriesError(
                 "this series is given, or a part of one: write into a copy (m.copy(), np.zeros_like(m)) or use np.stack"

@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
-from liehom.series.arrays import namespace, solve, zeros
+from liehom.series.arrays import is_jax, namespace, solve, zeros
 from liehom.series.assembly import as_jet, holds_jets, nodes
 from liehom.series.jet import Jet
 from liehom.series.jet_ufuncs import bilinear, fresh, refused, twin
@@ -199,7 +199,7 @@ def _parted(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> li
 def _einsum(*args: Any, **options: Any) -> Jet:
     subscripts, factors = args[0], args[1:]
     if not isinstance(subscripts, str):
-        raise SeriesError("np.einsum of a series needs the form with a string of subscripts")
+        raise refused("np.einsum without a string of subscripts")
     if options.get("out") is not None:
         raise refused("np.einsum with out=")
     made = nodes(*factors)
@@ -337,7 +337,7 @@ def _full_like(a: Any, fill_value: Any, dtype: Any = None, **options: Any) -> Je
 def _where(condition: Any, x: Any = None, y: Any = None) -> Jet:
     if holds_jets(condition):
         raise refused("np.where with a condition on a series")
-    mask = frozen(condition)
+    mask = condition if is_jax(condition) else np.array(condition)
     return fresh(recurrences.linear(lambda a, b: namespace(mask, a, b).where(mask, a, b), nodes(x, y)))
 
 

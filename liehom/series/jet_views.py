@@ -50,6 +50,35 @@ def frozen(x: Any) -> Any:
     return tuple(frozen(entry) for entry in x) if type(x) is tuple else x
 
 
+def checked_index(key: Any, x: Any) -> Any:
+    """An index of the array x, copied; lists become arrays, and JAX, which clips, gets no index out of range.
+
+    Raises
+    ------
+    IndexError
+        As from numpy.
+
+    Examples
+    --------
+    >>> checked_index((0, [1]), np.zeros((2, 2)))
+    (0, array([1]))
+    """
+    if isinstance(key, tuple):
+        key = tuple(_copied_index(part) for part in key)
+    else:
+        key = _copied_index(key)
+    parts = key if isinstance(key, tuple) else (key,)
+    if is_jax(x) and not any(is_jax(part) for part in parts):
+        np.broadcast_to(np.zeros(()), x.shape)[key]
+    return key
+
+
+def _copied_index(part: Any) -> Any:
+    if isinstance(part, list):
+        return np.array(part, dtype=None if part else int)
+    return part.copy() if isinstance(part, np.ndarray) else part
+
+
 def kind_of_index(key: Any, ndim: int) -> str:
     """What numpy's indexing of an array with `ndim` axes gives: a "number", a "view" or a "copy".
 
