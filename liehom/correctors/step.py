@@ -91,6 +91,10 @@ class Step(ABC):
         """
         return LocalStep(lambda h: self.factors(action, psi, m, t, h))
 
+    def __repr__(self) -> str:
+        # no address: reports and the fingerprints of checkpoints contain it
+        return f"{type(self).__name__}()"
+
 
 class OneExponential(Step, ABC):
     """A step with one exponential: `generator` in place of `factors`.
