@@ -13,7 +13,7 @@ import numpy as np
 
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import beside, is_jax, namespace
+from liehom.series.arrays import beside, is_exact, is_jax, namespace
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 
@@ -28,6 +28,8 @@ def holds_jets(x: Any) -> bool:
     """
     if isinstance(x, Jet):
         return True
+    if isinstance(x, float | int):
+        return False
     if isinstance(x, np.ndarray):
         return x.dtype == object and any(isinstance(entry, Jet) for entry in x.flat)
     return isinstance(x, list | tuple) and any(holds_jets(entry) for entry in x)
@@ -115,12 +117,21 @@ def _flattened(x: Any) -> tuple[tuple[int, ...], list[Any]]:
 
 
 def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
-    """The nodes of Jets and constants, at the lowest order among the Jets."""
-    made = [as_jet(x) if not isinstance(x, Jet) and holds_jets(x) else x for x in values]
-    jets = [x for x in made if isinstance(x, Jet)]
-    order = min(x.order for x in jets)
-    kind = next((x.value for x in jets if x.dtype == object), (jets[0] if like is None else like).value)
-    return [x.node if isinstance(x, Jet) else recurrences.constant(beside(kind, x), order) for x in made]
+    """The nodes of Jets and constants, at the lowest order among the Jets; a constant becomes of the kind of `like`.
+
+    Examples
+    --------
+    >>> [node.value.tolist() for node in nodes(Jet([1.0, 2.0]), 3)]
+    [1.0, 3.0]
+    """
+    made = [x if type(x) is Jet or not holds_jets(x) else as_jet(x) for x in values]
+    found = [x.node for x in made if type(x) is Jet]
+    if len(found) == len(made):
+        return found
+    order = min(node.order for node in found)
+    kind = found[0].value if like is None else like.node.value
+    kind = next((node.value for node in found if is_exact(np.asarray(node.value))), kind) if not is_jax(kind) else kind
+    return [x.node if type(x) is Jet else recurrences.constant(beside(kind, x), order) for x in made]
 
 
 def on_series(function: Callable[..., Any], *arguments: Any) -> Any:

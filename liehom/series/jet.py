@@ -215,7 +215,8 @@ class Jet(NDArrayOperatorsMixin):
     @property
     def dtype(self) -> Any:
         """The dtype of the values."""
-        return getattr(self.node.value, "dtype", np.dtype(type(self.node.value)))
+        value = self.node.value
+        return value.dtype if hasattr(value, "dtype") else np.dtype(type(value))
 
     @property
     def value(self) -> Any:

@@ -63,6 +63,8 @@ def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
 
     Where another operand begins with a structural zero, coefficient k needs an operand only up to k - 1.
     """
+    if len(operands) == 2:
+        return _bilinear(function, *operands)
     order = min(o.order for o in operands)
     starts = [1 if o.known[0] is None else 0 for o in operands]
     known = [o.known for o in operands]
@@ -80,17 +82,30 @@ def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
     return Node(order, value, [first], lags, rule)
 
 
+def _bilinear(function: Callable[[Any, Any], Any], a: Node, b: Node) -> Node:
+    """The case of two operands, in which most of the work is done."""
+    first, second = a.known, b.known
+    start, end = (1 if first[0] is None else 0), (0 if second[0] is None else 1)
+
+    def rule(k: int) -> Any:
+        total = None
+        for i in range(start, k + end):
+            x, y = first[i], second[k - i]
+            if x is not None and y is not None:
+                term = function(x, y)
+                total = term if total is None else total + term
+        return total
+
+    value = function(a.value, b.value)
+    known = [None if start or not end else value]
+    return Node(min(a.order, b.order), value, known, ((a, 1 - end), (b, start)), rule)
+
+
 def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[Any, ...]]:
     """All tuples of non-zero coefficients whose indices add up to k."""
     if len(known) == 1:
         if k >= starts[0] and known[0][k] is not None:
             yield (known[0][k],)
-        return
-    if len(known) == 2:
-        a, b = known
-        for i in range(starts[0], k + 1 - starts[1]):
-            if a[i] is not None and b[k - i] is not None:
-                yield a[i], b[k - i]
         return
     for i in range(starts[0], k + 1 - sum(starts[1:])):
         if known[0][i] is not None:
