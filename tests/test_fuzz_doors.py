@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
@@ -124,6 +125,7 @@ def test_attacks_are_parse_errors_at_every_door(text: str, tmp_path: Path) -> No
         lambda: io.from_json({**FILES["so4_so3"], "subalgebra": [[text] * 6]}),
         lambda: io.from_json({**FILES["sym3"], "point": [text] * 6}),
         lambda: io.from_json({**FILES["rigid_body"], "generator": [text] * 3}),
+        lambda: io.from_json({**FILES["vector_field"], "vector_field": [text] * 3}),
         lambda: io.from_json({**FILES["rigid_body"], "dt": text}),
         lambda: lh.LieAlgebra({(0, 1): {0: text}}),
         lambda: lh.Representation.from_matrices([[[text]]]),
@@ -203,7 +205,7 @@ JSON = st.recursive(
     max_leaves=12,
 )
 KEYS = ["format", "version", "dimension", "structure_constants", "subalgebra", "matrices", "point", "field", "basis"]
-KEYS += ["arithmetic", "generator", "t_span", "t_eval", "dt", "rtol", "order", "base"]
+KEYS += ["arithmetic", "generator", "t_span", "t_eval", "dt", "rtol", "order", "base", "vector_field", "clock"]
 
 
 @given(st.one_of(JSON, st.dictionaries(st.sampled_from(KEYS), JSON)))
@@ -307,3 +309,58 @@ def test_any_text_as_a_pair_point_or_row(text: str) -> None:
     for words in (["fullness", "--", text], ["range", sphere, f"--psi={text}"], ["isotropy", sym3, f"--point={text}"]):
         result = CliRunner().invoke(app, words)
         assert result.exit_code in (0, 1, 2, 3), (words, result.exit_code, result.stderr)
+
+
+# -- integration: the fields, the options, the files that are written -----------------------------------
+PROBLEMS = {name: data for name, data in FILES.items() if {"generator", "vector_field"} & data.keys()}
+TERMS = st.recursive(
+    st.sampled_from(["m0", "m1", "m2", "t", "0", "1", "2", "7", "1/3"]),
+    lambda inner: st.one_of(
+        st.tuples(inner, st.sampled_from("+-*/"), inner).map(lambda x: f"({x[0]}{x[1]}{x[2]})"),
+        st.tuples(inner, st.integers(-40, 40)).map(lambda x: f"({x[0]})**{x[1]}"),
+        st.tuples(st.sampled_from(["sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh"]), inner).map(
+            lambda x: f"{x[0]}({x[1]})"
+        ),
+    ),
+    max_leaves=5,
+)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@given(st.lists(TERMS, min_size=3, max_size=3), st.sampled_from(["lietaylor", "euler", "rk4", "backward euler"]))
+@settings(max_examples=60)
+def test_any_generator_is_integrated_or_refused(texts: list[str], base: str) -> None:
+    data = {**FILES["rigid_body"], "generator": texts, "base": base, "order": 3, "t_span": [0, 1], "dt": 0.2}
+    problem = tried(lambda: io.loads(json.dumps(data), problem=True))
+    solution = None if problem is None else tried(lambda: problem.integrate(max_steps=5))
+    if solution is not None:
+        assert np.isfinite(solution.y).all()
+        assert np.allclose(np.linalg.norm(solution.y, axis=0), 1, atol=1e-12)
+
+
+@given(mutated(PROBLEMS))
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_mutated_problems_on_the_command_line(tmp_path: Path, case: tuple[str, Any]) -> None:
+    file, out = tmp_path / "mutant.json", tmp_path / "out.npz"
+    file.write_text(json.dumps(case[1]), encoding="utf-8")
+    out.unlink(missing_ok=True)
+    with nothing_is_executed(tmp_path):
+        result = CliRunner().invoke(app, ["integrate", str(file), "--out", str(out), "--max-steps", "3"])
+    assert result.exit_code in (0, 1, 2), (result.exit_code, result.stderr, case[1])
+    if result.exit_code == 2:
+        assert result.stdout == ""
+        assert result.stderr.startswith("liehom: error: ")
+    else:
+        assert result.stderr == ""
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {"mutant.json"} | (set() if result.exit_code == 2 else {"out.npz"})
+
+
+@given(st.text(max_size=20), st.sampled_from(["dt", "rtol", "atol", "base", "exponential", "clock", "order"]))
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_text_as_an_option(tmp_path: Path, text: str, option: str) -> None:
+    words = ["integrate", str(EXAMPLES / "rigid_body.json"), f"--{option}={text}", "--out", str(tmp_path / "out.npz")]
+    result = CliRunner().invoke(app, [*words, "--force", "--max-steps", "3"])
+    assert result.exit_code in (0, 1, 2), (words, result.exit_code, result.stderr)
+    if result.exit_code == 2:
+        assert result.stdout == ""

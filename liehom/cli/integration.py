@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.cli.guard import NO, YES
 from liehom.cli.problem import Words, check_picture, problem_of
 from liehom.cli.show import show_json, show_table
-from liehom.errors import FormatError
+from liehom.errors import FormatError, InputError
 from liehom.io import save_solution
 from liehom.io.solution_file import check_target, summary_json
 
@@ -40,6 +40,7 @@ class Output:
     force: bool = False
     as_json: bool = False
     progress: bool | None = None
+    max_steps: int | None = None
 
     def checked(self, file: str) -> Output:
         """With the default name of the .npz file; refuses what could not be written after the work."""
@@ -51,7 +52,9 @@ class Output:
         targets = [os.path.abspath(path) for path in (out, self.plot, self.checkpoint) if path is not None]
         if len(set(targets)) < len(targets) or os.path.abspath(file) in targets:
             raise FormatError("the problem, --out, --plot and --checkpoint must be different files")
-        return Output(out, self.plot, self.checkpoint, self.force, self.as_json, self.progress)
+        if self.max_steps is not None and self.max_steps < 1:
+            raise InputError(f"--max-steps is {self.max_steps}, expected a number from 1")
+        return replace(self, out=out)
 
 
 def run_integrate(file: str, words: Words, wanted: Output) -> int:
@@ -60,10 +63,11 @@ def run_integrate(file: str, words: Words, wanted: Output) -> int:
 
     output = wanted.checked(file)
     problem = problem_of(file, words)
-    show_progress = sys.stderr.isatty() if output.progress is None else output.progress
+    options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
+    options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
     try:
         with np.errstate(all="ignore"):  # what is not finite ends the run with a message
-            solution = problem.integrate(progress=show_progress, checkpoint=output.checkpoint)
+            solution = problem.integrate(checkpoint=output.checkpoint, **options)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(_where_it_went_on(output.checkpoint)) from None
     save_solution(solution, str(output.out), force=output.force)

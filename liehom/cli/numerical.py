@@ -45,6 +45,7 @@ def integrate(
     checkpoint: Annotated[
         str | None, typer.Option(metavar="PATH", help="Keep the state in this file; an interrupted run continues.")
     ] = None,
+    max_steps: Annotated[int | None, typer.Option(metavar="N", help="Stop after so many steps.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it is there.")] = False,
     json: JsonOption = False,
 ) -> None:
@@ -55,7 +56,7 @@ def integrate(
         from liehom.cli.problem import Words
 
         words = Words(t_span, dt, base, order, rtol, atol, exponential, clock)
-        return run_integrate(file, words, Output(out, plot, checkpoint, force, json, progress))
+        return run_integrate(file, words, Output(out, plot, checkpoint, force, json, progress, max_steps))
 
     _run(action)
 
