@@ -1,4 +1,9 @@
-"""Truncated Taylor series and series in Lie algebras."""
+"""Truncated Taylor series and series in Lie algebras.
+
+In reading order: `node` (coefficients on demand), `recurrences`, `jet` (with `jet_ufuncs`, `jet_functions`,
+`jet_views`: what numpy does with it), `assembly` (one Jet from lists), `bilinear`, `lie_series`; `arrays` knows the
+kinds of numbers.
+"""
 
 from liehom.series.assembly import as_jet as as_jet
 from liehom.series.assembly import on_series as on_series
