@@ -9,6 +9,9 @@ from liehom.correctors.expansion import leading_order as leading_order
 from liehom.correctors.expansion import step_series as step_series
 from liehom.correctors.order import Correction as Correction
 from liehom.correctors.order import correction as correction
+from liehom.correctors.order_condition import OrderCondition as OrderCondition
+from liehom.correctors.order_condition import chi as chi
+from liehom.correctors.order_condition import order_condition as order_condition
 from liehom.correctors.range_solver import RangeSolver as RangeSolver
 from liehom.correctors.step import Generator as Generator
 from liehom.correctors.step import LocalStep as LocalStep

@@ -16,9 +16,11 @@ import numpy as np
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.series.arrays import as_values, zeros
+from liehom.series.arrays import as_values, beside, is_exact, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
+
+NOISE = 64
 
 
 @final
@@ -32,8 +34,7 @@ class Flow:
         w(t), values of shape (..., N), order n.
     generator : Jet
         psi along the flow, values of shape (..., dim g), order n - 1 at least.
-    time_dependent : bool
-        Whether the field depends on time.
+    field : GeneratorField
 
     Examples
     --------
@@ -46,7 +47,12 @@ class Flow:
 
     points: Jet
     generator: Jet
-    time_dependent: bool
+    field: GeneratorField
+
+    @property
+    def time_dependent(self) -> bool:
+        """Whether the field depends on time."""
+        return self.field.time_dependent
 
     def point(self, k: int) -> Any:
         """w_k, shape (..., N)."""
@@ -68,7 +74,7 @@ def flow_series(field: GeneratorField, m: Any, order: int, t: Any = 0.0) -> Flow
     order : int
         At least 1.
     t : float or array of shape (...,)
-        The time at which a time-dependent field is expanded.
+        The time at which a time-dependent field is expanded; next to an exact point an exact number.
 
     Raises
     ------
@@ -98,14 +104,14 @@ def flow_series(field: GeneratorField, m: Any, order: int, t: Any = 0.0) -> Flow
     points = Jet.growing(start, order)
     time: Any = t
     if field.time_dependent:
-        first = as_values(t) + zeros(start, start.shape[:-1])
+        first = beside(start, t) + zeros(start, start.shape[:-1])
         time = Jet.from_node(Node(order, first, [first, 0 * first + 1, *[None] * (order - 1)][: order + 1]))
     generator = field.psi(points, time)
     if not isinstance(generator, Jet):  # a constant psi
         generator = Jet.constant(generator, order)
     slope = field.infinitesimal(generator, points)
     points.node.depends((slope.node, 1), rule=lambda k: _over(slope.node.known[k - 1], k))
-    return Flow(points, generator, field.time_dependent)
+    return Flow(points, generator, field)
 
 
 def _over(coefficient: Any, k: int) -> Any:
@@ -172,33 +178,33 @@ class Clock:
         self._powers: dict[tuple[int, int], Any] = {}
 
     def set(self, k: int, value: Any) -> None:
-        """Set c_k (add to it where it was set)."""
+        """Set c_k, k >= 2 (add to it where it was set)."""
         old = self.coefficients[k]
         self.coefficients[k] = value if old is None else old + value
-        self._powers = {key: x for key, x in self._powers.items() if key[1] < k}
+        self._powers = {key: x for key, x in self._powers.items() if key[1] - key[0] < k - 1}
 
     def point(self, k: int) -> Any:
         """Coefficient k of F_tau(t), shape (..., N)."""
-        total = None
-        for i in range(1, k + 1):
+        if k == 0:
+            return self._flow.point(0)
+        total = self._flow.point(k)  # tau^k = t^k + ...
+        for i in range(1, k):
             power = self._power(i, k)
             if power is not None:
-                term = power[..., None] * self._flow.point(i)
-                total = term if total is None else total + term
-        return self._flow.point(0) * 0 if total is None else total
+                total = total + power[..., None] * self._flow.point(i)
+        return total
 
     def _power(self, i: int, k: int) -> Any:
-        """Coefficient k of tau^i."""
-        if i == 1:
-            return self.coefficients[k]
-        if i > k:
-            return None
+        """Coefficient k of tau^i, k >= i >= 1; None if it is a structural zero."""
+        if i == 1 or i == k:
+            return self.coefficients[1 if i == k else k]
         if (i, k) not in self._powers:
             total = None
             for j in range(1, k - i + 2):
                 left, right = self.coefficients[j], self._power(i - 1, k - j)
                 if left is not None and right is not None:
-                    total = left * right if total is None else total + left * right
+                    term = right if j == 1 else left if i - 1 == k - j else left * right
+                    total = term if total is None else total + term
             self._powers[i, k] = total
         return self._powers[i, k]
 
@@ -227,9 +233,35 @@ def leading_order(flow: Flow, order: int) -> Any:
 
 
 def vanishing(flow: Flow, k: int) -> Any:
-    """Whether w_k is zero up to round-off, shape (...,)."""
+    """Whether w_k is zero up to round-off, shape (...,); k >= 1.
+
+    Round-off of the terms that make w_k, and for an autonomous field also of psi itself: psi cannot be better than
+    the unit of round-off times |m| times its derivative along the flow, which is |psi_1| / |w_1|.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m[..., ::-1] * [1, -1, 1])  # in g_m
+    >>> bool(vanishing(flow_series(field, np.array([0.6, 0.0, 0.8]), 2), 1))
+    True
+    """
     w = flow.point(k)
-    if np.asarray(w).dtype == object:
+    if is_exact(w):
         return np.array([all(x == 0 for x in row) for row in w.reshape(-1, w.shape[-1])]).reshape(w.shape[:-1])
-    size = sum(np.abs(flow.psi(i)).max(axis=-1) * np.abs(flow.point(k - 1 - i)).max(axis=-1) for i in range(k))
-    return np.abs(w).max(axis=-1) <= 64 * np.finfo(w.dtype).eps * size / k
+    xp = namespace(w)
+    size = xp.max(xp.abs(w), axis=-1)
+    terms: Any = 0.0
+    for i in range(k):
+        terms = terms + _moved(xp, flow, flow.psi(i), flow.point(k - 1 - i))
+    if k == 1 and not flow.time_dependent and flow.generator.order >= 1:
+        m = flow.point(0)
+        floor = xp.maximum(size, np.finfo(w.dtype).tiny * (1 + xp.max(xp.abs(m), axis=-1)))
+        terms = terms + _moved(xp, flow, flow.psi(1), m) * (xp.max(xp.abs(m), axis=-1) / floor)
+    return size <= NOISE * np.finfo(w.dtype).eps * terms / k
+
+
+def _moved(xp: Any, flow: Flow, x: Any, m: Any) -> Any:
+    """The largest coordinate of |rho(x)| |m|: what the coordinates of rho(x) m are rounded by."""
+    columns = flow.field.infinitesimal(x[..., None, :], xp.eye(m.shape[-1], dtype=m.dtype))
+    return xp.max((xp.abs(m)[..., None, :] @ xp.abs(columns))[..., 0, :], axis=-1)

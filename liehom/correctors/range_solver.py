@@ -4,7 +4,10 @@
 
 Scaled by |w_l|, so that it is well posed next to equilibria; in least squares where it has no solution; of several
 solutions that of least |c| and then of least |zeta|, or that of least |zeta|^2 + weight^2 c^2.
-Imports homogeneous, series.
+
+In an orthonormal basis of the tangent space the unknowns are split: with M = e rho(g_m) u, u = w_l / |w_l|, and
+p = u - M M^+ u the part of u that isotropy does not reach, c is determined by r if p is not 0 and free if it is;
+then zeta = M^+ (r + l c u).  Imports homogeneous, series.
 """
 
 from __future__ import annotations
@@ -17,7 +20,8 @@ from liehom.homogeneous import Action, IsotropyFrame
 from liehom.series.arrays import namespace
 
 RANK_RTOL = 1e-8
-REFINEMENTS = 2
+REACHED_RTOL = 1e-7
+REFINEMENTS = 3
 
 
 @final
@@ -30,20 +34,18 @@ class RangeSolver:
     frame : IsotropyFrame
         At m.
     velocity : array of shape (..., N)
-        w_l; it must not vanish where `solve` is used.
+        w_l; where it vanishes, `solve` gives zeta = 0 and c = 0.
     leading : int
         l.
     factor : float
         e.
     weight : float, optional
-        Relative weight of c; None is infinite: least |c| first.
+        Relative weight of c where it is free; None is infinite: least |c| first.
 
-    Attributes
-    ----------
-    singular_value : array of shape (...,)
-        The d-th singular value of [e rho(g_m) w, w] / |w|: the range condition (6.2) holds where it is not 0.
-    rank : array of shape (...,)
-        The rank of this matrix; the range condition asks for d.
+    Notes
+    -----
+    Section 6 of the paper, (6.1) and (6.2), with the factor e in front of zeta and l in front of c. Singular values
+    of M below 1e-8 of the largest possible count as 0.
 
     Examples
     --------
@@ -54,6 +56,8 @@ class RangeSolver:
     >>> zeta, c, residual = solver.solve(np.array([0.25, 0.5, 0.0]))
     >>> float(c), np.abs(zeta).round(12).tolist(), bool(abs(residual).max() < 1e-12)
     (-0.25, [1.0, 0.0, 0.0], True)
+    >>> int(solver.rank), round(float(solver.singular_value), 12)  # of [rho(g_m) u / 2, u]
+    (2, 0.353553390593)
     """
 
     def __init__(
@@ -67,56 +71,81 @@ class RangeSolver:
     ) -> None:
         xp = self._xp = namespace(velocity)
         self._frame, self._leading, self._weight = frame, leading, weight
-        size = xp.sqrt(xp.sum(velocity * velocity, axis=-1, keepdims=True))
-        self._size = xp.where(size > 0, size, 1.0)
-        unit = velocity / self._size
-        down = xp.swapaxes(frame.tangent, -1, -2)
+        self._size, unit = _normalized(xp, velocity)
+        self._down = xp.swapaxes(frame.tangent, -1, -2)
         moved = action.infinitesimal(xp.swapaxes(frame.basis, -1, -2), unit[..., None, :])
-        self._moves = factor * (down @ xp.swapaxes(moved, -1, -2))
-        self._unit = (down @ unit[..., None])[..., 0]
-        self._down = down
-        scale = factor * RANK_RTOL * action.size
-        self._prepare(xp, _single(self._moves), _single(self._unit), scale)
-
-    def _prepare(self, xp: Any, moves: Any, unit: Any, scale: float) -> None:
-        full = xp.concatenate([moves, unit[..., None]], axis=-1)
-        values = xp.linalg.svd(full, compute_uv=False)
-        self.rank = (values > scale).sum(axis=-1)
-        self.singular_value = _entry(xp, values, self._frame.orbit_dimension)
-        if self._weight is not None:
-            full = xp.concatenate([moves, -self._leading * unit[..., None] / self._weight], axis=-1)
-            self._inverse = _pseudo_inverse(xp, full, scale)
-            return
-        left, values, right = xp.linalg.svd(moves, full_matrices=False)
-        kept = values > scale
-        left = left * kept[..., None, :]
-        inverse = xp.where(kept, 1 / xp.where(kept, values, 1.0), 0.0)
-        self._inverse = xp.swapaxes(right, -1, -2) @ (inverse[..., :, None] * xp.swapaxes(left, -1, -2))
-        rest = unit - (left @ (xp.swapaxes(left, -1, -2) @ unit[..., None]))[..., 0]
+        self._moves = factor * (self._down @ xp.swapaxes(moved, -1, -2))
+        self._unit = _apply(self._down, unit)
+        self._cutoff = factor * RANK_RTOL * action.size
+        self._inverse, self._square_inverse = _pseudo_inverse(xp, self._moves, self._cutoff)
+        self._reaching = self._generator(self._unit)  # M^+ u
+        rest = self._unit - _apply(self._moves, self._reaching)
         square = xp.sum(rest * rest, axis=-1, keepdims=True)
-        seen = square > RANK_RTOL
-        self._rest = xp.where(seen, rest / xp.where(seen, square, 1.0), 0.0)
+        self._determined = square > REACHED_RTOL**2
+        self._rest = xp.where(self._determined, rest / xp.where(self._determined, square, 1.0), 0.0)
+        self._values: Any = None
+
+    @property
+    def singular_value(self) -> Any:
+        """The d-th singular value of [e rho(g_m) u, u], shape (...,): (6.2) holds where it is not 0."""
+        return _entry(self._xp, self._singular_values(), self._frame.orbit_dimension)
+
+    @property
+    def rank(self) -> Any:
+        """The rank of this matrix, shape (...,); the range condition asks for d."""
+        return (self._singular_values() > self._cutoff).sum(axis=-1)
+
+    @property
+    def matrix(self) -> Any:
+        """[e rho(g_m) u, u] in orthonormal bases, shape (..., d, s + 1)."""
+        return self._xp.concatenate([self._moves, self._unit[..., None]], axis=-1)
+
+    def _singular_values(self) -> Any:
+        if self._values is None:
+            self._values = self._xp.linalg.svd(_single(self.matrix), compute_uv=False)
+        return self._values
 
     def solve(self, right: Any) -> tuple[Any, Any, Any]:
         """zeta (..., dim g), c (...,) and the residual r - (e rho(zeta) w - l c w), tangential, shape (..., N)."""
-        target = (self._down @ (right / self._size)[..., None])[..., 0]
-        zeta, c, residual = self._once(target)
-        for _ in range(REFINEMENTS if target.dtype == np.longdouble else 0):
-            more, extra, residual = self._once(residual)
-            zeta, c = zeta + more, c + extra
-        lifted = (self._frame.tangent @ (residual * self._size)[..., None])[..., 0]
-        return (self._frame.basis @ zeta[..., None])[..., 0], c, lifted
+        target = _apply(self._down, right / self._size)
+        c = self._clock(target)
+        moved = target + self._leading * c[..., None] * self._unit
+        zeta = self._generator(moved)
+        residual = moved - _apply(self._moves, zeta)
+        return _apply(self._frame.basis, zeta), c, _apply(self._frame.tangent, residual * self._size)
 
-    def _once(self, target: Any) -> tuple[Any, Any, Any]:
+    def _clock(self, target: Any) -> Any:
+        c = -self._xp.sum(self._rest * target, axis=-1) / self._leading
         if self._weight is None:
-            c = -self._xp.sum(self._rest * target, axis=-1) / self._leading
-            moved = target + self._leading * c[..., None] * self._unit
-            zeta = (self._inverse @ moved[..., None])[..., 0]
-        else:
-            both = (self._inverse @ target[..., None])[..., 0]
-            zeta, c = both[..., :-1], both[..., -1] / self._weight
-            moved = target + self._leading * c[..., None] * self._unit
-        return zeta, c, moved - (self._moves @ zeta[..., None])[..., 0]
+            return c
+        # zeta = a + l c b with a = M^+ r, b = M^+ u: the least |a + l c b|^2 + weight^2 c^2
+        xp, l = self._xp, self._leading
+        a, b = self._generator(target) / self._weight, self._reaching / self._weight
+        free = -l * xp.sum(a * b, axis=-1) / (1 + l**2 * xp.sum(b * b, axis=-1))
+        return xp.where(self._determined[..., 0], c, free)
+
+    def _generator(self, target: Any) -> Any:
+        """M^+ r, in the basis of the frame."""
+        found = _apply(self._inverse, target)
+        if target.dtype == np.longdouble:
+            back = np.swapaxes(self._moves, -1, -2)
+            for _ in range(REFINEMENTS):
+                found = found + _apply(back, _apply(self._square_inverse, target - _apply(self._moves, found)))
+        return found
+
+
+def _apply(matrix: Any, vector: Any) -> Any:
+    return (matrix @ vector[..., None])[..., 0]
+
+
+def _normalized(xp: Any, vector: Any) -> tuple[Any, Any]:
+    """|v| (1 where v = 0), shape (..., 1), and v / |v|; without underflow of squares."""
+    largest = xp.max(xp.abs(vector), axis=-1, keepdims=True)
+    largest = xp.where(largest > 0, largest, 1.0)
+    unit = vector / largest
+    size = xp.sqrt(xp.sum(unit * unit, axis=-1, keepdims=True))
+    size = xp.where(size > 0, size, 1.0)
+    return size * largest, unit / size
 
 
 def _entry(xp: Any, values: Any, d: Any) -> Any:
@@ -131,8 +160,20 @@ def _single(x: Any) -> Any:
     return x.astype(np.float64) if x.dtype == np.longdouble else x
 
 
-def _pseudo_inverse(xp: Any, a: Any, cutoff: float) -> Any:
-    left, values, right = xp.linalg.svd(a, full_matrices=False)
+def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float) -> tuple[Any, Any]:
+    """M^+ (..., s, d), and for extended floats (M M^T)^+, with which M^+ is refined."""
+    turned = xp.swapaxes(matrix, -1, -2)
+    if matrix.shape[-1] == 0:
+        return turned, None
+    if matrix.shape[-1] == 1 and matrix.dtype != np.longdouble:  # a column, as on every two-dimensional orbit
+        square = xp.sum(matrix * matrix, axis=-2, keepdims=True)
+        kept = square > cutoff * cutoff
+        return xp.where(kept, turned / xp.where(kept, square, 1.0), 0.0), None
+    left, values, right = xp.linalg.svd(_single(matrix), full_matrices=False)
     kept = values > cutoff
-    inverse = xp.where(kept, 1 / xp.where(kept, values, 1.0), 0.0)
-    return xp.swapaxes(right, -1, -2) @ (inverse[..., :, None] * xp.swapaxes(left, -1, -2))
+    inverse = xp.where(kept, 1 / xp.where(kept, values, 1.0), 0.0)[..., None, :]
+    back = xp.swapaxes(left * kept[..., None, :], -1, -2)
+    if matrix.dtype != np.longdouble:
+        return (xp.swapaxes(right, -1, -2) * inverse) @ back, None
+    square_inverse = (left * inverse**2) @ back
+    return turned @ square_inverse, square_inverse
