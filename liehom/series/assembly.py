@@ -135,7 +135,7 @@ def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
 
 
 def on_series(function: Callable[..., Any], *arguments: Any) -> Any:
-    """function(*arguments), with numpy's own complaint about a Jet in a float array replaced by the reason.
+    """``function(*arguments)``, with numpy's own complaint about a Jet in a float array replaced by the reason.
 
     Writing a Jet into an entry of a float array ends in numpy's "setting an array element with a sequence".
 
