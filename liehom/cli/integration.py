@@ -158,7 +158,7 @@ def _print_table(solution: Solution, drift: Any, output: Output) -> None:
         rows.append(row if drift is None else [*row, _shown_drift(drift[k])])
     show_table(columns, rows)
     steps = f"{solution.n_steps} step" + ("" if solution.n_steps == 1 else "s")
-    print(f"\n{steps}, {solution.nfev} evaluations of psi; {solution.message}")
+    print(f"\n{steps}. {solution.message}")
     print(solution.report)
     print(f"t, y and report: {output.out}")
     if output.plot is not None:

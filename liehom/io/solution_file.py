@@ -33,7 +33,7 @@ def report_json(report: Report) -> dict[str, Any]:
     >>> report_json(report)["order"], report_json(report)["singular_value"]
     (6, None)
     """
-    made = {entry.name: _plain(getattr(report, entry.name)) for entry in dataclasses.fields(report)}
+    made = {entry.name: plain(getattr(report, entry.name)) for entry in dataclasses.fields(report)}
     return {**made, "range_condition": report.range_condition}
 
 
@@ -51,7 +51,7 @@ def summary_json(solution: Solution) -> dict[str, Any]:
         "success": bool(solution.success),
         "status": int(solution.status),
         "message": str(solution.message),
-        "n_steps": _plain(solution.n_steps),
+        "n_steps": plain(solution.n_steps),
         "nfev": int(solution.nfev),
         "report": report_json(solution.report),
     }
@@ -136,12 +136,18 @@ def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
         raise FormatError(f"{text!r} is there already and is not overwritten: give another name, or force it")
 
 
-def _plain(value: Any) -> Any:
-    """numpy scalars and arrays, tuples and floats that are not finite, as JSON has them."""
+def plain(value: Any) -> Any:
+    """The value as JSON has it: numpy scalars and arrays as numbers and lists, what is not finite as null.
+
+    Examples
+    --------
+    >>> plain((1, float("inf"), {"x": "a"}))
+    [1, None, {'x': 'a'}]
+    """
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, Mapping):
-        return {str(key): _plain(x) for key, x in value.items()}
+        return {str(key): plain(x) for key, x in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(x) for x in value]
+        return [plain(x) for x in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,76 @@
+"""``liehom order``: the order of convergence, measured on the problem of a file. Imports inputs, problem, show, io."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+from liehom.cli.guard import YES
+from liehom.cli.inputs import number_value
+from liehom.cli.problem import Words, check_picture, problem_of
+from liehom.cli.show import show_json
+from liehom.errors import FormatError
+from liehom.io.solution_file import plain
+from liehom.io.values import vector
+from liehom.scalars import RR
+
+if TYPE_CHECKING:
+    from liehom.io import Problem
+
+SIZES = "0.1,0.05,0.025,0.0125"
+
+
+def run_order(file: str, words: Words, sizes: str | None, plot: str | None, as_json: bool) -> int:
+    """Measure, draw, print the table."""
+    import numpy as np
+
+    check_picture(plot)
+    dts = step_sizes(SIZES if sizes is None else sizes)
+    problem = problem_of(file, words)
+    with np.errstate(all="ignore"):
+        table = measured(problem, dts)
+    if plot is not None:
+        from liehom.plotting import plot_convergence
+
+        plot_convergence(table, plot)
+    if as_json:
+        show_json({"file": file, "plot": plot, **table_json(table)})
+        return YES
+    print(table)
+    if plot is not None:
+        print(f"picture: {plot}")
+    return YES
+
+
+def step_sizes(text: str) -> list[float]:
+    """Step sizes on the command line: '0.1,0.05' or '1/10, 1/20'.
+
+    Raises
+    ------
+    FormatError
+        If there are fewer than two, or they are not positive and different.
+
+    Examples
+    --------
+    >>> step_sizes("0.1, 1/20")
+    [0.1, 0.05]
+    """
+    dts = vector([number_value(part) for part in text.split(",")], "dt", floats=True).numbers(RR)
+    if len(dts) < 2 or any(not h > 0 for h in dts) or len(set(dts)) < len(dts):
+        raise FormatError(f"--dt is {text[:60]!r}, expected two or more different positive step sizes: 0.1,0.05,0.025")
+    return sorted(dts, reverse=True)
+
+
+def measured(problem: Problem, dts: list[float]) -> Any:
+    """The table of `observed_order` for a problem."""
+    from liehom.integrators import observed_order
+
+    options = {key: problem.options[key] for key in ("exponential", "clock") if key in problem.options}
+    t_span = problem.options["t_span"]
+    start = problem.checked_start(t_span[0])
+    return observed_order(problem.field(), start, problem.step(), dts, t_span=t_span, **options)
+
+
+def table_json(table: Any) -> dict[str, Any]:
+    """The fields of a table of orders as JSON."""
+    return {entry.name: plain(getattr(table, entry.name)) for entry in dataclasses.fields(table)}
