@@ -158,7 +158,7 @@ def correction(
     """
     point = as_values(m)
     if is_exact(point):
-        raise InputError("corrections are computed in floats: give the point in floats, or use liehom.order_condition")
+        raise InputError("corrections are computed in floats: give the point in floats, or use liehom.correctors.order_condition")
     dimension = check_point(field.representation, point)
     action = Action(field.representation, exponential)
     local = step.at(action, Generator(field, dimension), point, np.asarray(t)[..., None])
