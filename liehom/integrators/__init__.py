@@ -8,7 +8,7 @@ In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutt
 from liehom.integrators.collocation import collocation as collocation
 from liehom.integrators.collocation import gauss as gauss
 from liehom.integrators.dense import DenseSolution as DenseSolution
-from liehom.integrators.integrate import integrate as integrate
+from liehom.integrators.integration import integrate as integrate
 from liehom.integrators.order_conditions import Violation as Violation
 from liehom.integrators.products import CommutatorFree4 as CommutatorFree4
 from liehom.integrators.products import CrouchGrossman3 as CrouchGrossman3

@@ -1,4 +1,8 @@
-"""To hit a time: the step size s with tau(s) = a given time, by Newton. Imports correctors, errors."""
+"""The clock of a step: whether it runs, and the step size s with tau(s) = a given time, by Newton.
+
+A clock runs over a step if it advances everywhere at between 1/5 and 5 times the nominal rate.
+Imports correctors.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +12,55 @@ import numpy as np
 
 from liehom.correctors.step import LocalStep
 
-ITERATIONS = 50
+ITERATIONS = 60
 SLOWEST = 0.2
 FASTEST = 5.0
+PARTS = 4
+HALVINGS = 40
+SLACK = 1e-9
+"""A step that ends this close to the end of the integration, in units of the step, ends there."""
+
+
+def has_clock(local: LocalStep) -> bool:
+    """Whether the step has a clock of its own.
+
+    Examples
+    --------
+    >>> has_clock(LocalStep(lambda h: ()))
+    False
+    """
+    return type(local).time is not LocalStep.time
+
+
+def pace(local: LocalStep, h: Any) -> tuple[Any, Any]:
+    """Whether the clock runs over [0, h], bool (...,), and tau(h), for h of shape (...,).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> runs, passed = pace(LocalStep(lambda h: ()), np.array(0.1))
+    >>> bool(runs), float(passed)
+    (True, 0.1)
+    """
+    if not has_clock(local):
+        return np.ones(np.shape(h), dtype=bool), h
+    parts = np.arange(PARTS + 1).reshape(-1, *[1] * np.ndim(h)) / PARTS * h
+    times = local.time(parts)
+    advance = (times[1:] - times[:-1]) * np.sign(h)
+    part = np.abs(h) / PARTS
+    runs = ((advance > SLOWEST * part) & (advance < FASTEST * part)).all(axis=0)
+    return runs | (np.asarray(h) == 0), times[-1]
 
 
 def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
-    """s (...,) with local.time(s) = time, starting from a guess of the same sign; 0 where time is 0.
+    """s (...,) with local.time(s) = time, of the sign of time; 0 where time is 0, NaN where none is found.
+
+    Parameters
+    ----------
+    local : LocalStep
+    time : array of shape (...,)
+    guess : array of shape (...,)
+        The size of a step over which the clock runs; s is looked for within it, or beyond it where time is.
 
     Examples
     --------
@@ -24,49 +70,64 @@ def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
     """
     if not has_clock(local):
         return time + 0 * guess
-    low, high = 0 * guess, np.where(time == 0, 0, guess)
-    reached = np.abs(local.time(high))
-    inside = reached >= np.abs(time)  # else the step is continued beyond its end
-    s = np.where(
-        inside & (reached > 0), high * np.abs(time) / np.where(reached > 0, reached, 1.0), np.where(time == 0, 0, time)
-    )
-    eps = np.finfo(np.result_type(s, float)).eps
+    reached = local.time(guess)
+    share = np.divide(time, reached, out=np.ones_like(time), where=reached != 0)
+    within = (share >= 0) & (share <= 1)
+    s = np.where(within, share * guess, time)
+    low, high = 0 * s, np.where(within, guess, np.sign(time) * np.inf)
+    eps = np.finfo(s.dtype).eps
     for _ in range(ITERATIONS):
-        missing = time - local.time(s)
+        before, now, beyond = local.time(np.stack([s - 1e-4 * s, s, s + 1e-4 * s]))
+        missing = time - now
         short = missing * np.sign(time) > 0
         low, high = np.where(short, s, low), np.where(short, high, s)
-        delta = 1e-4 * s
-        span = np.where(s == 0, 1.0, 2 * delta)
-        slope = (local.time(s + delta) - local.time(s - delta)) / span
+        slope = (beyond - before) / np.where(s == 0, 1.0, 2e-4 * s)
         new = s + missing / np.clip(slope, SLOWEST, FASTEST)
-        outside = inside & ((new - low) * (new - high) > 0)
-        new = np.where(outside, (low + high) / 2, new)
-        done = np.abs(new - s) <= 2 * eps * np.abs(s)
-        s = new
-        if bool(np.all(done)):
+        outside = (new - low) * (new - high) > 0
+        new = np.where(outside, np.where(np.isfinite(high), (low + high) / 2, 2 * s), new)
+        done = (np.abs(new - s) <= 2 * eps * np.abs(s)) | (missing == 0)
+        s = np.where(missing == 0, s, new)
+        if bool(done.all()):
             break
-    return np.where(time == 0, 0 * s, s)
+    solved = np.abs(local.time(s) - time) <= 64 * eps * np.abs(time)
+    return np.where(solved, s, np.nan)
 
 
-def has_clock(local: LocalStep) -> bool:
-    """Whether the step has a clock of its own."""
-    return type(local).time is not LocalStep.time
+def fitted(local: LocalStep, h: Any, left: Any, *, halve: bool) -> tuple[Any, Any, Any, Any]:
+    """A step of size h, or the one that ends exactly after the time `left`, if that is shorter.
 
+    Parameters
+    ----------
+    local : LocalStep
+    h : array of shape (...,)
+        Signed; 0 where no step is made.
+    left : array of shape (...,)
+        The time to the end, of the same sign.
+    halve : bool
+        Whether h may be halved until the clock runs.
 
-def runs(local: LocalStep, h: Any) -> Any:
-    """Whether the clock is usable over the step: it advances at between 1/5 and 5 times the nominal rate.
+    Returns
+    -------
+    h, passed, last, runs : arrays of shape (...,)
+        The size, the time that passes, whether that is `left`, and whether the clock runs over the step.
 
     Examples
     --------
     >>> import numpy as np
-    >>> bool(runs(LocalStep(lambda h: ()), np.array(0.1)))
-    True
+    >>> [float(x) for x in fitted(LocalStep(lambda h: ()), np.array(0.5), np.array(0.25), halve=False)]
+    [0.25, 0.25, 1.0, 1.0]
     """
-    if not has_clock(local):
-        return np.ones(np.shape(h), dtype=bool)
-    good = np.ones(np.shape(h), dtype=bool)
-    safe = np.where(h == 0, 1.0, h)
-    for part in (0.5, 1.0):
-        rate = local.time(part * h) / (part * safe)
-        good &= (h == 0) | ((rate > SLOWEST) & (rate < FASTEST))
-    return good
+    runs, passed = pace(local, h)
+    for _ in range(HALVINGS if halve else 0):
+        if bool(runs.all()):
+            break
+        h = np.where(runs, h, h / 2)
+        runs, passed = pace(local, h)
+    over = (h != 0) & (np.sign(h) * (left - passed) <= SLACK * np.abs(h))
+    # where the clock does not run over the whole step it may still run up to the end
+    last = np.where(runs, over, np.abs(left) <= FASTEST * np.abs(h))
+    if not bool(last.any()):
+        return h, passed, last, runs
+    s = size_for(local, np.where(last, left, 0), np.where(runs, h, left))
+    last = last & pace(local, s)[0] & (np.abs(s) <= np.abs(h) * (1 + SLACK * 2 * FASTEST))
+    return np.where(last, s, h), np.where(last, left, passed), last, last | (runs & ~over)

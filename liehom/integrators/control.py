@@ -1,8 +1,8 @@
 """Step sizes from the Taylor coefficients of the error, or from an embedded pair.
 
-For a step with defects d_k = |[t^k](F - step)| the step size is the largest h with d_k h^k within the tolerance,
-before the step is taken; for an embedded pair the step is taken, judged, and repeated where it was too large.
-Imports correctors.
+For a step with defects d_k = |[t^k](F - step)| the step size is the largest h with d_k h^k within the tolerance and
+below a share of the way |X| h that is made (so that the series is used where it converges, next to equilibria too);
+for an embedded pair the step is taken, judged, and repeated where it was too large.  Imports correctors.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ SAFETY = 0.9
 LARGEST_GROWTH = 5.0
 SMALLEST_SHRINK = 0.2
 ERROR_TERMS = 2
+SHARE = 0.1
+FINEST = 10.0
 
 
 @final
@@ -27,10 +29,12 @@ ERROR_TERMS = 2
 class Tolerance:
     """The error allowed in a step: its root mean square is at most atol + rtol |m| (also a root mean square).
 
+    It is never less than 10 units of round-off of m.
+
     Examples
     --------
     >>> import numpy as np
-    >>> Tolerance(1e-3, 1e-6).norm(np.array([3.0, 4.0]))
+    >>> float(Tolerance(1e-3, 1e-6).norm(np.array([3.0, 4.0])))
     0.00500...
     """
 
@@ -39,25 +43,48 @@ class Tolerance:
 
     def norm(self, m: Any) -> Any:
         """The 2-norm of the error that is allowed at m, shape (...,)."""
-        return self.atol * np.sqrt(m.shape[-1]) + self.rtol * np.linalg.norm(np.asarray(m, dtype=float), axis=-1)
+        relative = max(self.rtol, FINEST * float(np.finfo(m.dtype).eps))
+        return self.atol * m.shape[-1] ** 0.5 + relative * length(m)
 
 
-def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, largest: Any) -> Any:
-    """The largest step size whose error is within the tolerance, by its Taylor coefficients; shape (...,).
+def length(x: Any) -> Any:
+    """The 2-norm over the last axis, in float64.
 
     Examples
     --------
     >>> import numpy as np
-    >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0)))
+    >>> float(length(np.array([3.0, 4.0])))
+    5.0
+    """
+    x = np.asarray(x, dtype=np.float64)
+    return np.sqrt((x * x).sum(axis=-1))
+
+
+def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, speed: Any, largest: Any) -> Any:
+    """The largest step size whose error is within the tolerance, by its Taylor coefficients; shape (...,).
+
+    Parameters
+    ----------
+    defects : tuple of (int, array of shape (...,))
+    allowed, speed, largest : array of shape (...,)
+        The error allowed; |X|, 0 where it is not to matter; a bound.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0), np.array(1.0)))
     0.009000000000000001
     """
-    h = np.asarray(largest, dtype=float)
+    h = np.asarray(largest, dtype=np.float64)
     for k, size in defects:
-        size = np.asarray(size, dtype=float)
+        size = np.asarray(size, dtype=np.float64)
         some = size > 0
-        with np.errstate(over="ignore"):
-            found = np.where(some, SAFETY * (allowed / np.where(some, size, 1.0)) ** (1 / k), np.inf)
-        h = np.minimum(h, found)
+        safe = np.where(some, size, 1.0)
+        found = (allowed / safe) ** (1 / k)
+        if k > 2:  # not for k = 2: next to a time at which X vanishes steps would shrink with X
+            series = (SHARE * speed / safe) ** (1 / (k - 1))
+            found = np.where(speed > 0, np.minimum(found, series), found)
+        h = np.minimum(h, np.where(some, SAFETY * found, np.where(np.isnan(size), np.nan, np.inf)))
     return h
 
 
@@ -82,10 +109,7 @@ def defects_of(
     total = order + ERROR_TERMS
     flow = flow_series(psi.field, m, total, t)
     made = step_series(action, local, m, total)
-    return tuple(
-        (k, np.linalg.norm(np.asarray(flow.point(k) - made.coefficient(k), dtype=float), axis=-1))
-        for k in range(order + 1, total + 1)
-    )
+    return tuple((k, length(flow.point(k) - made.coefficient(k))) for k in range(order + 1, total + 1))
 
 
 def next_size(h: Any, ratio: Any, order: int) -> Any:

@@ -1,7 +1,7 @@
 """DenseSolution: the solution as a function of time, on the manifold and to the order of the step.
 
 Within a step it is s -> Exp(xi(m, s)) m at time tau(s); the step is prepared again where it is asked for, so
-that only points and step sizes are kept.  Imports clock, correctors.
+that only points and step sizes are kept.  Imports clock, correctors, errors.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.errors import ShapeError
 from liehom.homogeneous import Action
 from liehom.integrators.clock import size_for
 
@@ -24,9 +25,10 @@ class DenseSolution:
     action, psi, step
         What was integrated.
     times : array (n + 1, ...)
+        Every trajectory from its start on without gaps, filled up with NaN.
     points : array (n + 1, ..., N)
     sizes : array (n, ...)
-        Step sizes in the step's own parameter, 0 where a trajectory stood still.
+        Step sizes in the step's own parameter, filled up with 0.
     nominal : bool
         Whether time is the parameter of the step rather than its clock.
 
@@ -45,7 +47,15 @@ class DenseSolution:
     ) -> None:
         self._action, self._psi, self._step = action, psi, step
         self._times, self._points, self._sizes, self._nominal = times, points, sizes, nominal
-        self._prepared: tuple[int, LocalStep] | None = None
+        self._shape = points.shape[1:-1]
+        count = np.isfinite(times).sum(axis=0)  # points of each trajectory
+        self._last_point = np.reshape(count - 1, -1)
+        last = np.take_along_axis(times, (count - 1)[None], axis=0)[0]
+        self._direction = np.where(last >= times[0], 1, -1)
+        # times in the direction of integration, trajectory by trajectory, for searches
+        rows = (self._direction * times).reshape(len(times), -1).T
+        self._rows = [np.ascontiguousarray(row[:k]) for row, k in zip(rows, count.reshape(-1), strict=True)]
+        self._prepared: tuple[Any, LocalStep] | None = None
 
     @property
     def t_min(self) -> Any:
@@ -63,35 +73,39 @@ class DenseSolution:
         Outside the interval of integration the first or last step is continued, as solve_ivp's dense output does.
         """
         queries = np.asarray(t, dtype=self._times.dtype)
+        if queries.ndim > 1:
+            raise ShapeError(f"t has shape {queries.shape}, expected a number or a list of times")
         flat = queries.reshape(-1)
         out = np.full((*self._points.shape[1:], flat.size), np.nan, dtype=self._points.dtype)
-        index = self._segments(flat)
-        for k, time in enumerate(flat):
-            for i in np.unique(index[k]):
-                here = index[k] == i
-                out[..., k] = np.where(here[..., None], self._at(int(i), time, here), out[..., k])
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            for k in np.argsort(flat, kind="stable"):
+                if np.isfinite(flat[k]):
+                    out[..., k] = self._at(flat[k])
         return out[..., 0] if queries.ndim == 0 else out
 
-    def _segments(self, flat: Any) -> Any:
-        """For each query (k, ...) the index of the step whose interval contains it."""
-        moved = self._sizes != 0
-        last = moved.shape[0] - 1 - np.argmax(moved[::-1], axis=0)
-        direction = np.sign(np.nansum(self._times[1:] - self._times[:-1], axis=0))
-        starts = self._times[:-1]
-        found = np.empty((flat.size, *starts.shape[1:]), dtype=int)
-        for k, time in enumerate(flat):
-            with np.errstate(invalid="ignore"):
-                passed = (direction * (time - starts) >= 0) & moved
-            found[k] = np.clip(passed.sum(axis=0) - 1, 0, last)
-        return found
+    def _at(self, time: Any) -> Any:
+        """The points at one time, every trajectory in the step that contains it."""
+        if not len(self._sizes):
+            return self._points[0]
+        aim = (self._direction * time).reshape(-1)
+        found = [np.searchsorted(row, x, side="right") - 1 for row, x in zip(self._rows, aim, strict=True)]
+        index = np.clip(np.array(found, dtype=int), 0, np.maximum(self._last_point - 1, 0)).reshape(self._shape)
+        start, point = _rows(self._times, index), _rows(self._points, index[..., None])
+        local = self._prepare(index, start, point)
+        size = _rows(self._sizes, index)
+        elapsed = np.where(size != 0, time - start, 0)
+        ends = _rows(self._times, index + 1) == time
+        s = elapsed if self._nominal else size_for(local, elapsed, size)
+        made = apply_factors(self._action, local.factors(np.where(ends, size, s)[..., None]), point)
+        return np.where(ends[..., None], _rows(self._points, (index + 1)[..., None]), made)
 
-    def _at(self, i: int, time: Any, here: Any) -> Any:
-        point, start = self._points[i], self._times[i]
-        clean = np.where(np.isfinite(start), start, 0.0)
-        finite = np.where(np.isfinite(point), point, self._points[0])
-        if self._prepared is None or self._prepared[0] != i:
-            self._prepared = (i, self._step.at(self._action, self._psi, finite, clean[..., None]))
-        local = self._prepared[1]
-        elapsed = np.where(here & (self._sizes[i] != 0), time - clean, 0.0)
-        s = elapsed if self._nominal else size_for(local, elapsed, np.where(here, self._sizes[i], 0))
-        return apply_factors(self._action, local.factors(s[..., None]), finite)
+    def _prepare(self, index: Any, start: Any, point: Any) -> LocalStep:
+        """The steps of numbers `index`; those of the last call are kept, as times come in order."""
+        if self._prepared is None or not np.array_equal(self._prepared[0], index):
+            self._prepared = (index, self._step.at(self._action, self._psi, point, start[..., None]))
+        return self._prepared[1]
+
+
+def _rows(array: Any, index: Any) -> Any:
+    """array[index[...], ...]: for each trajectory its own row."""
+    return np.take_along_axis(array, index[None], axis=0)[0]

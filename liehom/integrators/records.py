@@ -1,6 +1,6 @@
 """What a run keeps: points at every step or at requested times, events, and the corrector's account.
 
-Imports events, clock, solution, correctors.
+Each has its state as named arrays, for checkpoints.  Imports solution, correctors.
 """
 
 from __future__ import annotations
@@ -16,7 +16,68 @@ from liehom.correctors.step import Step
 from liehom.homogeneous import Action
 from liehom.integrators.solution import Report
 
-At = Callable[[Any], tuple[Any, Any]]
+NO_RANK = int(np.iinfo(np.int64).max)
+
+
+@final
+class Path:
+    """The points after every step, of one trajectory or an ensemble of which not all move in every step.
+
+    Parameters
+    ----------
+    t : array of shape (...,)
+    m : array of shape (..., N)
+
+    Examples
+    --------
+    >>> path = Path(np.zeros(2), np.zeros((2, 3)))
+    >>> path.add(np.array([0.0, 0.5]), np.ones((2, 3)), np.array([0.0, 0.5]), np.array([False, True]))
+    >>> times, points, sizes = path.compact()
+    >>> times.tolist(), points.shape, sizes.tolist()
+    ([[0.0, 0.0], [nan, 0.5]], (2, 2, 3), [[0.0, 0.5]])
+    """
+
+    def __init__(self, t: Any, m: Any) -> None:
+        self.times, self.points, self.sizes = [t], [m], [np.zeros_like(t)]
+        self.moved = [np.ones(t.shape, dtype=bool)]
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def add(self, t: Any, m: Any, h: Any, moved: Any) -> None:
+        """A step of sizes h to (t, m), where trajectories moved."""
+        self.times.append(t)
+        self.points.append(m)
+        self.sizes.append(h)
+        self.moved.append(moved)
+
+    def cut(self, length: int) -> None:
+        """Forget what was added after the first `length` entries."""
+        del self.times[length:], self.points[length:], self.sizes[length:], self.moved[length:]
+
+    def compact(self) -> tuple[Any, Any, Any]:
+        """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...), each trajectory from its start without gaps.
+
+        Filled up with NaN (sizes with 0) to the largest number of steps.
+        """
+        times, points, sizes = np.stack(self.times), np.stack(self.points), np.stack(self.sizes)
+        moved = np.stack(self.moved)
+        if not bool(moved.all()):
+            order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=1))]
+            moved = np.take_along_axis(moved, order, axis=0)
+            times = np.where(moved, np.take_along_axis(times, order, axis=0), np.nan)
+            sizes = np.where(moved, np.take_along_axis(sizes, order, axis=0), 0)
+            points = np.where(moved[..., None], np.take_along_axis(points, order[..., None], axis=0), np.nan)
+        return times, points, sizes[1:]
+
+    def arrays(self) -> dict[str, Any]:
+        """The state, for a checkpoint."""
+        return {name: np.stack(getattr(self, name)) for name in ("times", "points", "sizes", "moved")}
+
+    def restore(self, arrays: dict[str, Any]) -> None:
+        """Take a state back."""
+        for name in ("times", "points", "sizes", "moved"):
+            setattr(self, name, list(arrays[name]))
 
 
 @final
@@ -39,7 +100,7 @@ class Account:
             "reached": np.full(shape, step.order),
             "residual": np.zeros(shape),
             "singular": np.full(shape, np.inf),
-            "rank": np.full(shape, np.iinfo(np.int64).max),
+            "rank": np.full(shape, NO_RANK),
             "failed": np.zeros(shape, dtype=int),
             "equilibria": np.zeros(shape, dtype=int),
         }
@@ -47,23 +108,36 @@ class Account:
 
     def add(self, found: Correction, t: Any, m: Any, active: Any) -> None:
         """Take in the correction of one step where trajectories are active."""
-        seen = self._seen
+        seen = dict(self._seen)  # the arrays are replaced, never written into: older states stay whole
         moving = active & (found.leading > 0)
-        seen["equilibria"] = seen["equilibria"] + (active & ~moving)
-        seen["reached"] = np.where(active, np.minimum(seen["reached"], found.reached), seen["reached"])
-        seen["residual"] = np.where(active, np.maximum(seen["residual"], found.residual), seen["residual"])
-        seen["failed"] = seen["failed"] + (active & (found.reached < self._wanted))
-        seen["rank"] = np.where(moving, np.minimum(seen["rank"], found.rank), seen["rank"])
-        lowest = np.where(moving, found.singular_value, np.inf)
-        if bool(np.any(lowest < np.min(seen["singular"], initial=np.inf))):
+        if not bool(moving.all()):
+            seen["equilibria"] = seen["equilibria"] + (active & ~moving)
+        short = active & (found.reached < self._wanted)
+        if bool(short.any()):
+            seen["reached"] = np.where(short, np.minimum(seen["reached"], found.reached), seen["reached"])
+            seen["failed"] = seen["failed"] + short
+        worse = active & (found.residual > seen["residual"])
+        if bool(worse.any()):
+            seen["residual"] = np.where(worse, found.residual, seen["residual"])
+        less = moving & (found.rank < seen["rank"])
+        if bool(less.any()):
+            seen["rank"] = np.where(less, found.rank, seen["rank"])
+        lower = moving & (found.singular_value < seen["singular"])
+        if bool(lower.any()):
+            self._note_where(np.where(lower, found.singular_value, np.inf), t, m)
+            seen["singular"] = np.where(lower, found.singular_value, seen["singular"])
+        self._seen = seen
+
+    def _note_where(self, lowest: Any, t: Any, m: Any) -> None:
+        """Where the smallest singular value of all trajectories was met."""
+        if float(lowest.min()) < float(self._seen["singular"].min()):
             index = np.unravel_index(int(np.argmin(lowest)), np.shape(lowest))
-            self._where = (float(np.asarray(t)[index]), tuple(float(x) for x in np.asarray(m)[index]))
-        seen["singular"] = np.minimum(seen["singular"], lowest)
+            self._where = (float(t[index]), tuple(float(x) for x in m[index]))
 
     def report(self, action: Action, clock: str, orbit_dimension: Any) -> Report:
         """The account as a report."""
         seen = self._seen
-        rank = int(np.min(seen["rank"], initial=np.iinfo(np.int64).max))
+        rank = int(np.min(seen["rank"], initial=NO_RANK))
         return Report(
             step=repr(self._step),
             exponential=action.exponential.name,
@@ -74,7 +148,7 @@ class Account:
             worst_residual=float(np.max(seen["residual"], initial=0.0)),
             singular_value=float(np.min(seen["singular"], initial=np.inf)),
             singular_at=self._where,
-            rank=0 if rank == np.iinfo(np.int64).max else rank,
+            rank=0 if rank == NO_RANK else rank,
             orbit_dimension=int(np.max(orbit_dimension, initial=0)),
             failed_steps=int(seen["failed"].sum()),
             equilibria=int(seen["equilibria"].sum()),
@@ -97,10 +171,20 @@ class Account:
 class Samples:
     """The points at requested times, filled in as steps pass them.
 
+    Parameters
+    ----------
+    times : array of shape (k,)
+        In the direction of integration.
+    shape : tuple of int
+        (..., N)
+    dtype : dtype
+    direction : float
+        1 or -1.
+
     Examples
     --------
     >>> samples = Samples(np.array([0.5]), (2,), float, 1.0)
-    >>> samples.fill(lambda t, here: np.array([t, -t]), np.array(0.0), np.array(1.0), np.array(True))
+    >>> samples.fill(lambda t, here: np.array([t, -t]), np.array(1.0), np.array(True))
     >>> samples.points[..., 0].tolist()
     [0.5, -0.5]
     """
@@ -110,6 +194,7 @@ class Samples:
         self.points = np.full((*shape, len(times)), np.nan, dtype=dtype)
         self.done = np.zeros(shape[:-1], dtype=int)
         self._direction = direction
+        self._ascending = direction * times
 
     def start(self, t: Any, m: Any) -> None:
         """The requested times that are the starting time."""
@@ -117,54 +202,66 @@ class Samples:
             self.points[..., 0] = m
             self.done = self.done + 1
 
-    def fill(self, at: Callable[[Any, Any], Any], before: Any, after: Any, active: Any) -> None:
-        """Take the times in (before, after] from at(time, here)."""
-        if not len(self.times):
+    def fill(self, at: Callable[[Any, Any], Any], after: Any, moves: Any) -> None:
+        """Take the times up to `after` from at(time, here), where trajectories move."""
+        upto = np.searchsorted(self._ascending, self._direction * after, side="right")
+        new = moves & (upto > self.done)
+        if not bool(np.any(new)):
             return
-        upto = np.searchsorted(self._direction * self.times, self._direction * after, side="right")
-        upto = np.where(active, upto, self.done)
-        for k in range(int(self.done.min(initial=len(self.times))), int(upto.max(initial=0))):
-            here = (self.done <= k) & (k < upto)
+        first, last = np.min(self.done, where=new, initial=len(self.times)), np.max(upto, where=new, initial=0)
+        for k in range(int(first), int(last)):
+            here = new & (self.done <= k) & (k < upto)
             if bool(np.any(here)):
                 self.points[..., k] = np.where(here[..., None], at(self.times[k], here), self.points[..., k])
-        self.done = np.maximum(self.done, upto)
+        self.done = np.where(new, upto, self.done)
+
+    def arrays(self) -> dict[str, Any]:
+        """The state, for a checkpoint."""
+        return {"points": self.points, "done": self.done}
+
+    def restore(self, arrays: dict[str, Any]) -> None:
+        """Take a state back."""
+        self.points, self.done = arrays["points"], arrays["done"]
 
 
 @final
 class Found:
-    """The events that occurred: (event, trajectory, time, point) in the order of time.
+    """The events that occurred: (event, trajectory, time, point), for each trajectory in the order of time.
 
     Examples
     --------
-    >>> found = Found(1, ())
+    >>> found = Found(1, (), 2)
     >>> found.add(0, np.array(True), np.array(0.5), np.array([1.0, 0.0]))
     >>> found.lists()[0][0]
     array([0.5])
     """
 
-    def __init__(self, count: int, shape: tuple[int, ...]) -> None:
-        self._count, self._shape = count, shape
+    def __init__(self, count: int, shape: tuple[int, ...], size: int) -> None:
+        self._count, self._shape, self._size = count, shape, size
         self.occurrences = np.zeros((count, *shape), dtype=int)
         self.rows: list[tuple[int, int, Any, Any]] = []
 
-    def add(self, i: int, here: Any, t: Any, y: Any) -> None:
-        """Event i at times t where `here`."""
-        more = np.zeros_like(self.occurrences)
-        more[i] = here
-        self.occurrences = self.occurrences + more
-        times, points = np.reshape(t, -1), np.reshape(y, (-1, np.shape(y)[-1]))
+    def add(self, i: int, here: Any, t: Any, y: Any, *, counted: bool = True) -> None:
+        """Event i at times t where `here`; `counted` towards the number that ends the integration."""
+        if counted:
+            more = np.zeros_like(self.occurrences)
+            more[i] = here
+            self.occurrences = self.occurrences + more
+        times, points = np.reshape(t, -1), np.reshape(y, (-1, self._size))
         self.rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
 
     def lists(self) -> tuple[list[Any], list[Any]]:
         """t_events, y_events as a `Solution` has them."""
         size = int(np.prod(self._shape, dtype=int))
+        groups: list[list[list[tuple[Any, Any]]]] = [[[] for _ in range(size)] for _ in range(self._count)]
+        for i, b, t, y in self.rows:
+            groups[i][b].append((t, y))
         times, points = [], []
-        for i in range(self._count):
+        for group in groups:
             t_row, y_row = np.empty(size, dtype=object), np.empty(size, dtype=object)
-            for b in range(size):
-                mine = [(t, y) for j, c, t, y in self.rows if j == i and c == b]
+            for b, mine in enumerate(group):
                 t_row[b] = np.array([t for t, _ in mine])
-                y_row[b] = np.array([y for _, y in mine])
+                y_row[b] = np.array([y for _, y in mine]).reshape(-1, self._size)
             times.append(t_row[0] if self._shape == () else t_row.reshape(self._shape))
             points.append(y_row[0] if self._shape == () else y_row.reshape(self._shape))
         return times, points
@@ -181,6 +278,5 @@ class Found:
     def restore(self, arrays: dict[str, Any]) -> None:
         """Take a state back."""
         self.occurrences = arrays["occurrences"]
-        self.rows = [
-            (int(i), int(b), t, y) for (i, b), t, y in zip(arrays["index"], arrays["t"], arrays["y"], strict=True)
-        ]
+        rows = zip(arrays["index"], arrays["t"], arrays["y"], strict=True)
+        self.rows = [(int(i), int(b), t, y) for (i, b), t, y in rows]

@@ -1,55 +1,63 @@
 """Run: the loop of `integrate` over the steps of one trajectory or an ensemble.
 
-All trajectories are stepped together, each with its own time, clock and step size; one that has ended takes
-steps of size 0.  Imports checkpoint, clock, control, dense, events, progress, records, solution, correctors.
+All trajectories are stepped together, each with its own time, clock and step size.  One that has ended takes steps of
+size 0 from its start, where psi is known to be finite.
+Imports checkpoint, clock, control, dense, events, options, progress, records, solution, correctors, errors.
 """
 
 from __future__ import annotations
 
-import os
+import re
 import time as wall
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path as File
 from typing import Any, final
 
 import numpy as np
 
 from liehom.correctors.corrected import CorrectedStep
+from liehom.correctors.expansion import flow_series
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators import checkpoint as files
-from liehom.integrators.clock import has_clock, runs, size_for
-from liehom.integrators.control import ERROR_TERMS, Tolerance, defects_of, next_size, size_from_defects
+from liehom.integrators.clock import SLACK, fitted, has_clock, size_for
+from liehom.integrators.control import ERROR_TERMS, Tolerance, defects_of, length, next_size, size_from_defects
 from liehom.integrators.dense import DenseSolution
 from liehom.integrators.events import Events
+from liehom.integrators.options import (
+    CLOCK,
+    END,
+    EVENT,
+    IMPLICIT,
+    LINEAR,
+    MESSAGES,
+    NOT_FINITE,
+    PSI,
+    TOO_MANY,
+    TOO_SMALL,
+    Options,
+)
 from liehom.integrators.progress import Progress
-from liehom.integrators.records import Account, Found, Samples
+from liehom.integrators.records import Account, Found, Path, Samples
 from liehom.integrators.solution import Solution
 
 GROWTH = 8.0
-_REPLACED = ("t", "m", "active", "h", "taken", "calls", "halted", "failure", "before")
-MESSAGES = {
-    0: "The solver successfully reached the end of the integration interval.",
-    1: "A termination event occurred.",
-}
+FIRST = 0.01
 
 
 @final
 @dataclass(frozen=True, slots=True)
-class Options:
-    """The options of a run, checked."""
+class Move:
+    """A step that is made: parameter h, time and point after it, where it is made and where it is the last."""
 
-    dt: Any
-    rtol: float
-    atol: float
-    t_eval: Any
-    dense_output: bool
-    events: Any
-    nominal: bool
-    max_step: float
-    first_step: float | None
-    max_steps: int
-    checkpoint_every: float
+    local: LocalStep
+    h: Any
+    after: Any
+    made: Any
+    moves: Any
+    last: Any
 
 
 @final
@@ -71,26 +79,30 @@ class Run:
     ) -> None:
         self.action, self.step, self.options = action, step, options
         self.calls = 0
+        self.field = psi.field
         self.psi = Generator(self._counted(psi.field), psi.orbit_dimension)
-        self.end, self.direction = span[1], start.dtype.type(1 if span[1] >= span[0] else -1)
-        self.m = start
-        self.shape = start.shape[:-1]
-        self.t = np.full(self.shape, span[0], dtype=start.dtype)
+        self.span, self.start, self.shape, self.dtype = span, start, start.shape[:-1], start.dtype
+        self.end, self.direction = span[1], self.dtype.type(1 if span[1] >= span[0] else -1)
+        self.t, self.m = np.full(self.shape, span[0], dtype=self.dtype), start
         self.active = np.full(self.shape, bool(span[0] != span[1]))
-        self.h = np.full(self.shape, options.first_step or np.inf, dtype=start.dtype)
+        self.code = np.zeros(self.shape, dtype=int)
+        self.ended_at = self.t
+        self.h = np.full(self.shape, options.first_step or np.inf, dtype=self.dtype)
         self.taken = np.zeros(self.shape, dtype=int)
-        self.halted, self.failure = False, ""
+        self.tried: Any = self.h
+        self.tolerance = Tolerance(options.rtol, options.atol)
+        self.tiny = 8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))
+        self.total = None if options.dt is None else self._number_of_steps(options.dt)
         self.account = Account(step, self.shape)
         self.events = None if options.events is None else Events(options.events)
-        self.found = Found(self.events.count if self.events else 0, self.shape)
+        self.found = Found(self.events.count if self.events else 0, self.shape, start.shape[-1])
         self.before = self.events.values(self.t, self.m) if self.events else []
         self.samples: Samples | None = None
         if options.t_eval is not None:
-            self.samples = Samples(options.t_eval, start.shape, start.dtype, float(self.direction))
+            self.samples = Samples(options.t_eval, start.shape, self.dtype, float(self.direction))
             self.samples.start(span[0], start)
-        self.times, self.points, self.sizes = [self.t], [self.m], []
+        self.path = Path(self.t, self.m)
         self.keeps = options.t_eval is None or options.dense_output
-        self.fingerprint = self._fingerprint(psi.field, span)
 
     def _counted(self, field: GeneratorField) -> GeneratorField:
         def psi(m: Any, t: Any = 0.0) -> Any:
@@ -99,245 +111,303 @@ class Run:
 
         return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
 
-    def _fingerprint(self, field: GeneratorField, span: tuple[Any, Any]) -> str:
-        o = self.options
-        matrices = [a.to_numpy() for a in field.representation.matrices]
-        away = self.action.act(np.full((*self.shape, self.action.dimension), 0.1, dtype=self.m.dtype), self.m)
-        values = [field.psi(self.m, self.t), field.psi(away, self.t + 0.1)]
-        texts = (
-            f"{self.step!r} {self.action.exponential.name} {o.nominal} {o.rtol} {o.atol} {o.max_step} {o.first_step}"
-        )
-        texts += f" {o.dense_output} {o.t_eval is None} {0 if self.events is None else self.events.count}"
-        numbers = [np.array(span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
-        return files.digest(texts, self.m, *numbers, *matrices, *values)
+    def _number_of_steps(self, dt: Any) -> Any:
+        """How many steps of size dt reach the end; a rest below 1e-9 dt, or below round-off, is no step."""
+        rest = SLACK + self.tiny / dt
+        return np.maximum(np.ceil(abs(self.end - self.span[0]) / dt - rest), 1)
 
     # -- the loop ----------------------------------------------------------------------------------------
-    def execute(self, show: bool | Callable[[float], Any], path: str | os.PathLike[str] | None) -> Solution:
+    def execute(self, show: bool | Callable[[float], Any], path: File | None) -> Solution:
         """Run to the end, with progress and checkpoints."""
-        if path is not None and os.path.exists(path):
-            self._restore(files.load(path, self.fingerprint))
-        mark = self._mark()
-        begin, last = np.min(self.direction * self.t, initial=np.inf), wall.monotonic()
-        length = float(self.direction * self.end - begin) or 1.0
-        with Progress(show) as progress:
-            try:
-                while bool(np.any(self.active)):
-                    mark = self._mark()
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"), Progress(show) as progress:
+            if path is None:
+                while self.active.any():
                     self.advance()
-                    progress.update(min(1.0, float(np.min(self.direction * self.t) - begin) / length))
-                    if path is not None and wall.monotonic() - last >= self.options.checkpoint_every:
-                        files.save(path, self.fingerprint, self._state())
-                        last = wall.monotonic()
-            except KeyboardInterrupt:
-                if path is not None:
-                    self._back_to(mark)
-                    files.save(path, self.fingerprint, self._state())
-                raise
-            progress.update(1.0)
-        if path is not None and os.path.exists(path):
-            os.remove(path)
-        return self._solution()
+                    progress.update(self._fraction)
+            else:
+                self._execute_with_checkpoints(progress, path)
+            progress.update(lambda: 1.0, last=True)
+            solution = self._solution()
+        if path is not None and solution.success:
+            files.remove(path)
+        return solution
+
+    def _execute_with_checkpoints(self, progress: Progress, path: File) -> None:
+        fingerprint = self._fingerprint()
+        if path.exists():
+            self._restore(files.load(path, fingerprint))
+        mark, due = self._mark(), wall.monotonic() + self.options.checkpoint_every
+        try:
+            while self.active.any():
+                mark = self._mark()
+                self.advance()
+                progress.update(self._fraction)
+                if wall.monotonic() >= due:
+                    begin = wall.monotonic()
+                    files.save(path, fingerprint, self._state())
+                    # a long history takes long to write: at most a tenth of the time goes into it
+                    cost = wall.monotonic() - begin
+                    due = begin + cost + max(self.options.checkpoint_every, 10 * cost)
+        except BaseException:
+            self._back_to(mark)
+            files.save(path, fingerprint, self._state())
+            raise
+
+    def _fraction(self) -> float:
+        passed = np.min(np.abs(self.t - self.span[0]), where=self.active, initial=np.inf)
+        whole = float(abs(self.end - self.span[0])) or 1.0
+        return float(min(passed / whole, 1.0))
 
     def advance(self) -> None:
         """One step of all active trajectories."""
+        try:
+            move = self._proposed()
+        except (np.linalg.LinAlgError, ConvergenceError) as error:
+            self._diagnose(error)
+            return
+        if not move.moves.any():
+            return
+        if isinstance(move.local, CorrectedStep):
+            self.account.add(move.local.correction, self.t, self.m, move.moves)
+        halted = np.zeros(self.shape, dtype=bool)
+        if self.events is not None:
+            move, halted = self._watched(self.events, move)
+        if self.samples is not None:
+            self.samples.fill(lambda time, here: self._point(move, time, here), move.after, move.moves)
+        self._commit(move, halted)
+
+    def _proposed(self) -> Move:
+        """A step of the right size, where it is accepted."""
         adaptive = self.options.dt is None
         local = self.step.at(
             self.action, self.psi, self.m, self.t[..., None], error_terms=ERROR_TERMS if adaptive else 0
         )
         estimate = getattr(local, "estimate", None) if adaptive else None
-        wanted = self._wanted(local, estimate)
-        h, after, last = self._clipped(local, wanted)
-        factors = local.factors(h[..., None])
-        made = apply_factors(self.action, factors, self.m)
+        size = self._size(local, estimate is not None) if adaptive else self.options.dt
+        h, after, last = self._fitted(local, size)
+        self.tried = h
+        made = apply_factors(self.action, local.factors(h[..., None]), self.m)
+        moves = self.active
         if estimate is not None:
-            accepted = self._judged(estimate(h[..., None]), h, local.estimate_order)  # type: ignore[attr-defined]
-        else:
-            accepted = np.ones(self.shape, dtype=bool)
+            moves = moves & self._judged(estimate(h[..., None]), h, local.estimate_order)  # type: ignore[attr-defined]
+        elif adaptive:
+            self.h = GROWTH * np.abs(h)
         good = np.isfinite(made).all(axis=-1)
-        self._fail(self.active & accepted & ~good, "The solution is not finite after a step; take smaller steps.")
-        moves = self.active & accepted
-        after = np.where(moves, after, self.t)
-        made = np.where(moves[..., None], made, self.m)
-        h = np.where(moves, h, 0)
-        if isinstance(local, CorrectedStep):
-            self.account.add(local.correction, self.t, self.m, moves)
-        stopped = self._look_for_events(local, h, after, made, moves)
-        if stopped is not None:
-            after, made, h, halted = stopped
-            last = last | halted
-        self._sample(local, after, h, moves)
-        self._commit(after, made, h, moves, last)
-        if adaptive and estimate is None:
-            self.h = np.where(moves, np.abs(h), self.h)
+        if not good.all():
+            self._fail_by_psi(moves & ~good, NOT_FINITE)
+            moves = moves & good
+        if not moves.all():
+            h, after = np.where(moves, h, 0), np.where(moves, after, self.t)
+            made = np.where(moves[..., None], made, self.m)
+        return Move(local, h, after, made.astype(self.dtype, copy=False), moves, last)
 
-    def _wanted(self, local: LocalStep, estimate: Any) -> Any:
-        """The step size before the end of the interval is looked at, positive, (...,)."""
-        o = self.options
-        if o.dt is not None:
-            if has_clock(local) and not o.nominal:
-                bad = self.active & ~runs(local, self.direction * o.dt)
-                self._fail(bad, "The clock of the corrected step does not run at this step size; take a smaller dt.")
-            return o.dt
+    # -- step sizes --------------------------------------------------------------------------------------
+    def _size(self, local: LocalStep, embedded: bool) -> Any:
+        """The step size that the tolerance asks for, positive, (...,)."""
         left = np.abs(self.end - self.t)
-        largest = np.minimum(o.max_step, left)
-        if estimate is not None:
-            first = np.minimum(largest, 0.01 * self._time_scale())
-            h = np.minimum(np.where(np.isfinite(self.h), self.h, first), largest)
+        bound = np.minimum(self.options.max_step, 2 * left)  # not left: the clock may be slow
+        if embedded:
+            if np.isinf(self.h).any():
+                self.h = np.where(np.isinf(self.h), np.minimum(bound, FIRST * self._time_scale()), self.h)
+            h = np.minimum(self.h, bound)
         else:
-            allowed = Tolerance(o.rtol, o.atol).norm(self.m)
-            found = defects_of(self.action, self.psi, local, self.m, self.t, self.step.order)
-            grown = GROWTH * self.h  # infinite before the first step
-            h = size_from_defects(found, allowed, np.minimum(largest, grown)).astype(self.m.dtype)
-            h = h if o.nominal else _until_the_clock_runs(local, h, self.direction)
-        tiny = 8 * np.finfo(self.m.dtype).eps * np.maximum(np.abs(self.t), np.abs(self.end))
-        small = self.active & ~(h >= np.minimum(tiny, left))
-        self._fail(small, "The step size that the tolerance asks for is below round-off.")
+            velocity = self.psi.field.vector(self.m, self.t)
+            defects = defects_of(self.action, self.psi, local, self.m, self.t, self.step.order)
+            bound = np.minimum(bound, self.h)
+            h = size_from_defects(defects, self.tolerance.norm(self.m), length(velocity), bound)
+            h = h.astype(self.dtype)
+        small = self.active & ~(h >= np.minimum(self.tiny, left))
+        if small.any():
+            self._fail_by_psi(small, TOO_SMALL)
+            h = np.where(self.active, h, 0)
         return h
 
     def _time_scale(self) -> Any:
-        speed = np.linalg.norm(np.asarray(self.psi.field.vector(self.m, self.t), dtype=float), axis=-1)
-        size = np.linalg.norm(np.asarray(self.m, dtype=float), axis=-1)
-        return np.where(speed > 0, size / np.where(speed > 0, speed, 1.0), np.inf)
+        """|m| / |X|."""
+        speed = length(self.psi.field.vector(self.m, self.t))
+        return np.where(speed > 0, length(self.m) / np.where(speed > 0, speed, 1.0), np.inf)
 
-    def _clipped(self, local: LocalStep, wanted: Any) -> tuple[Any, Any, Any]:
+    def _fitted(self, local: LocalStep, size: Any) -> tuple[Any, Any, Any]:
         """Signed step sizes that end at the end, the times after them, and which steps are the last."""
-        h = np.where(self.active, self.direction * wanted, 0).astype(self.m.dtype)
+        h = self.direction * np.where(self.active, size, 0).astype(self.dtype)
         left = self.end - self.t
-        passed = h if self.options.nominal else local.time(h)
-        last = self.active & (self.direction * (left - passed) <= 1e-9 * np.abs(h))
-        if bool(np.any(last)):
-            aim = np.where(last, left, 0)
-            shorter = aim if self.options.nominal else size_for(local, aim, np.where(last, h, 0))
-            h = np.where(last, shorter, h)
-        after = np.where(last, self.end, self.t + passed)
+        if not self.options.nominal and has_clock(local):
+            h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
+            last = last & self.active
+            if not runs.all():
+                self._fail(self.active & ~runs, CLOCK)
+                h, last = np.where(self.active, h, 0), last & self.active
+            return h, np.where(last, self.end, self.t + np.where(self.active, passed, 0)), last
+        if self.total is None:
+            last = self.active & (self.direction * (left - h) <= SLACK * np.abs(h))
+            after = self.t + h
+        else:  # by counting, so that round-off does not add up
+            count = self.taken + 1
+            last = self.active & (count >= self.total)
+            after = self.span[0] + count * (self.direction * self.options.dt)
+        if last.any():
+            h, after = np.where(last, left, h), np.where(last, self.end, after)
         return h, after, last
 
     def _judged(self, error: Any, h: Any, order: int) -> Any:
         """Where an embedded pair accepts the step; adapts the next step size."""
-        allowed = Tolerance(self.options.rtol, self.options.atol).norm(self.m)
-        size = np.linalg.norm(np.asarray(error, dtype=float), axis=-1)
-        ratio = np.where(np.isfinite(size), size / allowed, 1e10)
-        self.h = np.where(self.active, next_size(np.abs(h), ratio, order), self.h)
+        ratio = length(error) / self.tolerance.norm(self.m)
+        ratio = np.where(np.isfinite(ratio), ratio, 1e10)
+        self.h = next_size(np.abs(h), ratio, order)
         return ratio <= 1
 
     # -- events and samples ------------------------------------------------------------------------------
-    def _position(self, local: LocalStep, s: Any) -> tuple[Any, Any]:
-        """(t, y) within the step at the parameter s (...,)."""
-        return self.t + (s if self.options.nominal else local.time(s)), apply_factors(
-            self.action, local.factors(s[..., None]), self.m
-        )
+    def _position(self, move: Move, s: Any) -> tuple[Any, Any]:
+        """(t, y) within a step at the parameter s (...,)."""
+        passed = s if self.options.nominal else move.local.time(s)
+        low, high = np.minimum(self.t, move.after), np.maximum(self.t, move.after)
+        t = np.where(s == move.h, move.after, np.clip(self.t + passed, low, high))
+        return t, apply_factors(self.action, move.local.factors(s[..., None]), self.m)
 
-    def _look_for_events(self, local: LocalStep, h: Any, after: Any, made: Any, moves: Any) -> Any:
-        """Record events; where a terminal one occurs, the shortened step (times, points, sizes, where)."""
-        if self.events is None:
-            return None
-        values, before = self.events.values(after, made), self.before
-        crossed = [moves & self.events.crossed(i, g, values[i]) for i, g in enumerate(before)]
+    def _point(self, move: Move, time: Any, here: Any) -> Any:
+        """The point at a time within the step."""
+        aim = np.where(here, time - self.t, 0)
+        s = aim if self.options.nominal else size_for(move.local, aim, np.where(here, move.h, 0))
+        return self._position(move, np.where(here & (time == move.after), move.h, s))[1]
+
+    def _watched(self, events: Events, move: Move) -> tuple[Move, Any]:
+        """Record events; where a terminal one occurs, the step is shortened."""
+        values, before, moves = events.values(move.after, move.made), self.before, move.moves
         self.before = [np.where(moves, v, g) for v, g in zip(values, before, strict=True)]
-        if not any(bool(np.any(c)) for c in crossed):
-            return None
-        where = [
-            self.events.locate(i, lambda s: self._position(local, s), h, before[i], c) if bool(np.any(c)) else 0 * h
-            for i, c in enumerate(crossed)
-        ]
-        halted, stop = self._stops(crossed, where, h)
-        for i in np.argsort([float(np.min(np.abs(w))) for w in where]):
-            here = crossed[i] & (np.abs(where[i]) <= np.abs(stop))
-            if bool(np.any(here)):
-                t, y = self._position(local, np.where(here, where[i], 0))
-                self.found.add(int(i), here, t, y)
-        if not bool(np.any(halted)):
-            return None
-        t, y = self._position(local, np.where(halted, stop, 0))
-        self.halted = True
-        return np.where(halted, t, after), np.where(halted[..., None], y, made), np.where(halted, stop, h), halted
-
-    def _stops(self, crossed: list[Any], where: list[Any], h: Any) -> tuple[Any, Any]:
-        """Which trajectories a terminal event ends, and at which parameter."""
-        halted, stop = np.zeros(self.shape, dtype=bool), h
-        for i, here in enumerate(crossed):
-            ends = here & (self.found.occurrences[i] + 1 >= self.events.terminal[i] if self.events else False)
-            stop = np.where(ends & (np.abs(where[i]) <= np.abs(stop)), where[i], stop)
-            halted = halted | ends
-        return halted, stop
-
-    def _sample(self, local: LocalStep, after: Any, h: Any, moves: Any) -> None:
-        if self.samples is None:
-            return
-
-        def at(time: Any, here: Any) -> Any:
-            aim = np.where(here, time - self.t, 0)
-            s = aim if self.options.nominal else size_for(local, aim, np.where(here, h, 0))
-            return self._position(local, s)[1]
-
-        self.samples.fill(at, self.t, after, moves)
+        halted = np.zeros(self.shape, dtype=bool)
+        crossed, where, stop = [], [], move.h
+        for i, (start, end) in enumerate(zip(before, values, strict=True)):
+            at_start = moves & (self.taken == 0) & events.left(i, start, end)
+            if at_start.any():
+                self.found.add(i, at_start, self.t, self.m, counted=False)
+            here = moves & events.crossed(i, start, end)
+            s = move.h
+            if here.any():
+                s = events.locate(i, lambda s: self._position(move, s), move.h, (start, end), here)
+                ends = here & (self.found.occurrences[i] + 1 >= events.terminal[i])
+                stop = np.where(ends & (np.abs(s) <= np.abs(stop)), s, stop)
+                halted = halted | ends
+            crossed.append(here)
+            where.append(s)
+        for i, (here, s) in enumerate(zip(crossed, where, strict=True)):
+            kept = here & (np.abs(s) <= np.abs(stop))
+            if kept.any():
+                self.found.add(i, kept, *self._position(move, np.where(kept, s, 0)))
+        if not halted.any():
+            return move, halted
+        t, y = self._position(move, np.where(halted, stop, 0))
+        after, made = np.where(halted, t, move.after), np.where(halted[..., None], y, move.made)
+        return Move(move.local, np.where(halted, stop, move.h), after, made, moves, move.last), halted
 
     # -- state -------------------------------------------------------------------------------------------
-    def _commit(self, after: Any, made: Any, h: Any, moves: Any, last: Any) -> None:
-        self.t, self.m = after, made
-        self.taken = self.taken + moves
-        self.active = self.active & ~(last & moves)
-        if self.keeps and bool(np.any(moves)):
-            self.times.append(np.where(moves, self.t, np.nan))
-            self.points.append(np.where(moves[..., None], self.m, np.nan))
-            self.sizes.append(h)
-        self._fail(self.active & (self.taken >= self.options.max_steps), f"More than {self.options.max_steps} steps.")
+    def _commit(self, move: Move, halted: Any) -> None:
+        self.t, self.m = move.after, move.made
+        self.taken = self.taken + move.moves
+        if self.keeps:
+            self.path.add(self.t, self.m, move.h, move.moves)
+        done = move.moves & (move.last | halted)
+        if done.any():
+            self._stop(done & ~halted, END)
+            self._stop(halted, EVENT)
+        if np.max(self.taken) >= self.options.max_steps:
+            self._fail(self.taken >= self.options.max_steps, TOO_MANY)
 
-    def _fail(self, where: Any, message: str) -> None:
-        """End the trajectories at `where`."""
-        if bool(np.any(where)):
-            self.failure = message
-            self.active = self.active & ~where
+    def _stop(self, where: Any, code: int) -> None:
+        """End trajectories: from now on they rest at the start."""
+        self.code = np.where(where, code, self.code)
+        self.ended_at = np.where(where, self.t, self.ended_at)
+        self.active = self.active & ~where
+        self.t, self.m = np.where(where, self.span[0], self.t), np.where(where[..., None], self.start, self.m)
+
+    def _fail(self, where: Any, code: int) -> None:
+        where = self.active & where
+        if where.any():
+            self._stop(where, code)
+
+    def _fail_by_psi(self, where: Any, code: int) -> None:
+        """End trajectories, by a code of their own where psi is not finite."""
+        finite = np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
+        self._fail(where & ~finite, PSI)
+        self._fail(where & finite, code)
+
+    def _diagnose(self, error: Exception) -> None:
+        """A step could not be computed: find out for which trajectories, or take smaller steps."""
+        if isinstance(error, ConvergenceError):
+            sizes = np.abs(self.tried)
+            if self.total is None and np.any(self.active & (sizes > 2 * self.tiny)):
+                self.h = sizes / 2
+            else:
+                self._fail(self.active, IMPLICIT)
+            return
+        bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
+        if not bad.any():
+            series = flow_series(self.field, self.m, self.step.order + ERROR_TERMS, self.t)
+            points = [series.point(k) for k in range(series.points.order + 1)]
+            bad = self.active & ~np.isfinite(points).all(axis=(0, -1))
+        if bad.any():
+            self._fail(bad, PSI)
+        else:
+            self._fail(self.active, LINEAR)
 
     def _mark(self) -> tuple[Any, ...]:
         """The state between two steps, cheaply: arrays are replaced, never written into."""
         kept = {name: getattr(self, name) for name in _REPLACED}
         done = None if self.samples is None else self.samples.done
-        return kept, len(self.times), self.account.arrays(), self.found.occurrences, len(self.found.rows), done
+        return kept, len(self.path), self.account.arrays(), self.found.occurrences, len(self.found.rows), done
 
     def _back_to(self, mark: tuple[Any, ...]) -> None:
         """Undo what an interrupted step has done."""
-        kept, length, account, self.found.occurrences, rows, done = mark
+        kept, points, account, self.found.occurrences, rows, done = mark
         for name, value in kept.items():
             setattr(self, name, value)
-        del self.times[length:], self.points[length:], self.sizes[max(length - 1, 0) :], self.found.rows[rows:]
+        self.path.cut(points)
+        del self.found.rows[rows:]
         self.account.restore(account)
         if self.samples is not None:
             self.samples.done = done
 
+    def _fingerprint(self) -> str:
+        """What tells this problem from others: numbers, texts, and psi at the start and next to it."""
+        o, events = self.options, self.events
+        texts = f"{re.sub(' at 0x[0-9a-f]+', '', repr(self.step))} {self.action.exponential.name} {o.texts()}"
+        texts += "" if events is None else f" {events.directions} {events.terminal}"
+        matrices = [a.to_numpy() for a in self.field.representation.matrices]
+        here = np.asarray(self.field.psi(self.m, self.t))
+        ahead = 1e-3 * (self.end - self.span[0])
+        near = self.action.act((ahead * here).astype(self.dtype), self.m)
+        there = np.asarray(self.field.psi(near, self.t + ahead))
+        numbers = [np.array(self.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
+        return files.digest(texts, self.m, *numbers, *matrices, here, there, *self.before)
+
     def _state(self) -> dict[str, Any]:
         """All that `_restore` needs, as arrays."""
-        state = {"t": self.t, "m": self.m, "active": self.active, "h": self.h, "taken": self.taken}
-        state |= {"calls": np.array(self.calls), "halted": np.array(self.halted), "failure": np.array(self.failure)}
-        state |= {"times": np.stack(self.times), "points": np.stack(self.points)}
-        state["sizes"] = np.stack(self.sizes) if self.sizes else np.zeros((0, *self.shape), dtype=self.m.dtype)
-        state |= {f"before{i}": g for i, g in enumerate(self.before)}
-        state |= {f"account_{k}": v for k, v in self.account.arrays().items()}
-        state |= {f"found_{k}": v for k, v in self.found.arrays().items()}
-        if self.samples is not None:
-            state |= {"sample_points": self.samples.points, "sample_done": self.samples.done}
+        state = {name: np.asarray(getattr(self, name)) for name in _REPLACED if name != "before"}
+        state |= {f"before_{i}": g for i, g in enumerate(self.before)}
+        for part, record in self._records().items():
+            state |= {f"{part}_{name}": value for name, value in record.arrays().items()}
         return state
 
     def _restore(self, state: dict[str, Any]) -> None:
-        self.t, self.m, self.active = state["t"], state["m"], state["active"]
-        self.h, self.taken, self.calls = state["h"], state["taken"], int(state["calls"])
-        self.halted, self.failure = bool(state["halted"]), str(state["failure"])
-        self.times, self.points, self.sizes = list(state["times"]), list(state["points"]), list(state["sizes"])
-        self.before = [state[f"before{i}"] for i in range(len(self.before))]
-        self.account.restore({k[8:]: v for k, v in state.items() if k.startswith("account_")})
-        self.found.restore({k[6:]: v for k, v in state.items() if k.startswith("found_")})
-        if self.samples is not None:
-            self.samples.points, self.samples.done = state["sample_points"], state["sample_done"]
+        for name in _REPLACED:
+            if name != "before":
+                setattr(self, name, state[name])
+        self.calls = int(self.calls)
+        self.before = [state[f"before_{i}"] for i in range(len(self.before))]
+        for part, record in self._records().items():
+            start = f"{part}_"
+            record.restore({name[len(start) :]: x for name, x in state.items() if name.startswith(start)})
+
+    def _records(self) -> dict[str, Any]:
+        found = {"path": self.path, "account": self.account, "found": self.found}
+        return found if self.samples is None else {**found, "samples": self.samples}
 
     def _solution(self) -> Solution:
         o = self.options
-        status = -1 if self.failure else int(self.halted)
-        times, points = np.stack(self.times), np.stack(self.points)
+        times, points, sizes = self.path.compact()
         dense = None
         if o.dense_output:
-            sizes = np.stack(self.sizes) if self.sizes else np.zeros((1, *self.shape), dtype=self.m.dtype)
-            known = (times, points) if self.sizes else (np.stack([self.t] * 2), np.stack([self.m] * 2))
-            dense = DenseSolution(self.action, self.psi, self.step, *known, sizes, nominal=o.nominal)
+            psi = Generator(self.field, self.psi.orbit_dimension)
+            dense = DenseSolution(self.action, psi, self.step, times, points, sizes, nominal=o.nominal)
         if self.samples is None:
             t, y = np.moveaxis(times, 0, -1), np.moveaxis(points, 0, -1)
         else:
@@ -345,6 +415,8 @@ class Run:
             if not self.shape:
                 t, y = t[: int(self.samples.done)], y[..., : int(self.samples.done)]
         t_events, y_events = self.found.lists() if self.events is not None else (None, None)
+        statuses = np.maximum(self.code, -1)
+        worst = -1 if np.any(statuses < 0) else int(np.max(statuses, initial=0))
         return Solution(
             t=t,
             y=y,
@@ -352,18 +424,23 @@ class Run:
             t_events=t_events,
             y_events=y_events,
             nfev=self.calls,
-            status=status,
-            message=self.failure or MESSAGES[status],
-            n_steps=int(self.taken) if not self.shape else self.taken,
+            status=worst,
+            message=self._message(worst),
+            n_steps=self.taken if self.shape else int(self.taken),
             report=self.account.report(self.action, "nominal" if o.nominal else "corrected", self.psi.orbit_dimension),
+            statuses=statuses if self.shape else int(statuses),
         )
 
+    def _message(self, status: int) -> str:
+        if status >= 0:
+            return MESSAGES[status]
+        failed = np.argwhere(self.code < 0)
+        index = tuple(int(i) for i in failed[0])
+        message = f"{MESSAGES[int(self.code[index])]} At t = {float(self.ended_at[index]):.10g}"
+        if self.shape:
+            shown = index[0] if len(index) == 1 else index
+            message += f", trajectory {shown}; {len(failed)} of {self.code.size} failed"
+        return message + "."
 
-def _until_the_clock_runs(local: LocalStep, h: Any, direction: Any) -> Any:
-    """Step sizes halved until the clock of the step is usable."""
-    for _ in range(40):
-        slow = ~runs(local, direction * h)
-        if not bool(np.any(slow)):
-            break
-        h = np.where(slow, h / 2, h)
-    return h
+
+_REPLACED = ("t", "m", "active", "code", "ended_at", "h", "taken", "tried", "calls", "before")

@@ -5,6 +5,8 @@ Imports nothing of liehom.
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -50,7 +52,7 @@ class Report:
     >>> print(sol.report)
     Corrected(Euler(), order=3) with exp (Rodrigues), clock corrected
     orbits captured to order 3 at every step (base order 1)
-    range condition: holds, smallest singular value 0.5, rank 2 of 2
+    range condition: holds, smallest singular value 0.354, rank 2 of 2
     least corrections in -tr(rho(x) rho(y)), Ad-invariant
     """
 
@@ -101,16 +103,16 @@ class Report:
 
 
 @final
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Solution:
-    """The result of `integrate`.
+    """The result of `integrate`; its entries are attributes, and items as in a dictionary.
 
     Attributes
     ----------
     t : array (n,), or (..., n) for an ensemble
-        Times; NaN where a trajectory took fewer steps than others.
+        Times; NaN where a trajectory took fewer steps than others. With `t_eval`: these times, (k,).
     y : array (N, n), or (..., N, n)
-        Points.
+        Points. With `t_eval`: (..., N, k), for an ensemble NaN at times that a trajectory has not reached.
     sol : DenseSolution or None
         The solution as a function of t, if dense output was asked for.
     t_events, y_events : list or None
@@ -120,13 +122,16 @@ class Solution:
     njev, nlu : int
         0; as solve_ivp has them.
     status : int
-        0: the end was reached; 1: a terminal event occurred; -1: a step failed.
+        0: the end was reached; 1: a terminal event occurred; -1: a step failed. For an ensemble -1 if any
+        trajectory failed, else 1 if any was ended by an event.
     message : str
     success : bool
         Whether status >= 0.
     n_steps : int or array of shape (...,)
         Steps taken.
     report : Report
+    statuses : int or array of shape (...,)
+        The status of each trajectory.
 
     Examples
     --------
@@ -134,8 +139,10 @@ class Solution:
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
     >>> sol = lh.integrate(field, (0, np.pi), [1.0, 0.0], dt=0.1)
-    >>> sol.success, np.round(sol.y[:, -1], 10).tolist()
+    >>> sol.success, np.round(sol["y"][:, -1], 10).tolist()
     (True, [-1.0, 0.0])
+    >>> print(repr(sol)[:66])
+      message: The solver successfully reached the end of the integrat
     """
 
     t: Any
@@ -148,6 +155,7 @@ class Solution:
     message: str
     n_steps: Any
     report: Report
+    statuses: Any
     njev: int = field(default=0)
     nlu: int = field(default=0)
 
@@ -156,6 +164,63 @@ class Solution:
         """Whether the end was reached or a terminal event occurred."""
         return self.status >= 0
 
+    def keys(self) -> tuple[str, ...]:
+        """The names of the entries."""
+        return NAMES
+
+    def __getitem__(self, name: str) -> Any:
+        """The entry of a name, as of a dictionary."""
+        if name not in NAMES:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in NAMES
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(NAMES)
+
+    def __len__(self) -> int:
+        return len(NAMES)
+
     def __repr__(self) -> str:
-        shape = "x".join(map(str, np.shape(self.y)))
-        return f"<solution: {self.message} status {self.status}, y of shape {shape}, nfev {self.nfev}>"
+        shown = [n for n in CARD if n != "statuses" or np.ndim(self.statuses)]
+        width = max(map(len, shown)) + 1
+        return "\n".join(f"{name:>{width}}: {_card_entry(self[name], width + 2)}" for name in shown)
+
+
+_OF_SOLVE_IVP = ("t", "y", "sol", "t_events", "y_events", "nfev", "njev", "nlu", "status", "message", "success")
+NAMES = (*_OF_SOLVE_IVP, "n_steps", "report", "statuses")
+CARD = (
+    "message",
+    "success",
+    "status",
+    "statuses",
+    "t",
+    "y",
+    "sol",
+    "t_events",
+    "y_events",
+    "nfev",
+    "n_steps",
+    "report",
+)
+
+
+def _card_entry(value: Any, indent: int) -> str:
+    """A value in a few lines, of which those after the first are indented."""
+    if isinstance(value, list):
+        text = f"{len(value)} event{'' if len(value) == 1 else 's'}: " + "; ".join(_occurrences(x) for x in value)
+        text = textwrap.shorten(text, 100, placeholder=" ...")
+    elif isinstance(value, np.ndarray) and value.ndim:
+        shape = f" of shape {value.shape}" if value.ndim > 1 or value.size > 6 else ""
+        text = np.array2string(value, precision=4, threshold=6, edgeitems=2, max_line_width=100) + shape
+    else:
+        text = str(value)
+    return text.replace("\n", "\n" + " " * indent)
+
+
+def _occurrences(found: Any) -> str:
+    """How often an event occurred."""
+    times = found if found.dtype != object else np.concatenate([np.zeros(0), *found.reshape(-1)])
+    return f"{len(times)} time{'' if len(times) == 1 else 's'}"

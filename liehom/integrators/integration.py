@@ -1,6 +1,7 @@
 """integrate: trajectories of a generator field, in the manner of scipy's solve_ivp.
 
-The door checks what comes in; the work is in `run.py`.  Imports run, steps, correctors, homogeneous, errors.
+The door checks what comes in; the work is in `run.py`.
+Imports checkpoint, options, run, solution, steps, correctors, homogeneous, errors.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.field import check_point
-from liehom.integrators.run import Options, Run
+from liehom.integrators.checkpoint import checked_path
+from liehom.integrators.options import Options
+from liehom.integrators.run import Run
 from liehom.integrators.solution import Solution
 from liehom.integrators.steps import LieTaylor
 
@@ -118,11 +121,11 @@ def integrate(
     orbit_dimension = check_point(field.representation, start)
     span = _span(t_span, start.dtype)
     action = Action(field.representation, exponential)
-    field.check(start, np.broadcast_to(span[0], start.shape[:-1]))
+    _check_generator(field, start, span[0])
     if clock not in CLOCKS:
         raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
     options = Options(
-        dt=None if dt is None else _step_size(dt, start),
+        dt=None if dt is None else _step_size(dt, start, span),
         rtol=_positive("rtol", rtol, zero=True),
         atol=_positive("atol", atol, zero=True),
         t_eval=None if t_eval is None else _times(t_eval, span),
@@ -131,22 +134,23 @@ def integrate(
         nominal=clock == "nominal",
         max_step=_positive("max_step", max_step),
         first_step=None if first_step is None else _positive("first_step", first_step),
-        max_steps=int(_positive("max_steps", max_steps)),
+        max_steps=_positive("max_steps", max_steps),
         checkpoint_every=_positive("checkpoint_every", checkpoint_every, zero=True),
     )
     if options.dt is None and options.rtol == 0 and options.atol == 0:
         raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
+    path = None if checkpoint is None else checked_path(checkpoint)
     run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
-    return run.execute(progress, checkpoint)
+    return run.execute(progress, path)
 
 
 def _start(y0: Any) -> Any:
-    array = np.asarray(y0)
-    if array.dtype.kind == "O":
-        try:
+    try:
+        array = np.asarray(y0)
+        if array.dtype.kind == "O":
             array = array.astype(np.float64)
-        except (TypeError, ValueError) as error:
-            raise InputError(f"the start is not a point of floats: {error}") from None
+    except (TypeError, ValueError) as error:
+        raise InputError(f"the start is not a point of floats: {error}") from None
     if array.dtype.kind not in "iuf":
         raise InputError(f"the start has the type {array.dtype}, expected real numbers")
     return array.astype(array.dtype if array.dtype in (np.float64, np.longdouble) else np.float64)
@@ -154,6 +158,8 @@ def _start(y0: Any) -> Any:
 
 def _span(t_span: Any, dtype: Any) -> tuple[Any, Any]:
     try:
+        if isinstance(t_span, str | bytes):
+            raise TypeError
         first, last = (dtype.type(t) for t in t_span)
     except (TypeError, ValueError):
         raise InputError(f"t_span is {t_span!r}, expected two numbers (start, end)") from None
@@ -162,12 +168,31 @@ def _span(t_span: Any, dtype: Any) -> tuple[Any, Any]:
     return first, last
 
 
-def _step_size(dt: Any, start: Any) -> Any:
-    sizes = np.asarray(dt, dtype=start.dtype)
+def _check_generator(field: GeneratorField, start: Any, t: Any) -> None:
+    """psi has the right shape at the start (it says so itself), is real and finite."""
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        psi = np.asarray(field.psi(start, np.full(start.shape[:-1], t)))
+    if psi.dtype.kind not in "iuf":
+        raise InputError(f"psi has the type {psi.dtype} at the start, expected real numbers")
+    bad = ~np.isfinite(psi).all(axis=-1)
+    if bool(bad.any()):
+        index = tuple(int(i) for i in np.argwhere(bad)[0])
+        where = f" of trajectory {index}" if index else ""
+        raise InputError(f"psi is {psi[index]} at the start{where}, t = {t}, m = {start[index]}: it must be finite")
+
+
+def _step_size(dt: Any, start: Any, span: tuple[Any, Any]) -> Any:
+    try:
+        sizes = np.asarray(dt).astype(start.dtype, casting="same_kind")
+    except (TypeError, ValueError):
+        raise InputError(f"dt is {dt!r}, expected a positive step size") from None
     if not bool(np.all(np.isfinite(sizes) & (sizes > 0))):
         raise InputError(f"dt is {dt!r}, expected a positive step size (the direction is that of t_span)")
+    least = 8 * np.finfo(start.dtype).eps * max(abs(span[0]), abs(span[1]))
+    if span[0] != span[1] and bool(np.any(sizes < least)):
+        raise InputError(f"dt is {dt!r}, below the round-off of times in t_span, {least:.2g}")
     try:
-        return np.broadcast_to(sizes, start.shape[:-1])
+        return np.broadcast_to(sizes, start.shape[:-1]).copy()
     except ValueError:
         raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
 
@@ -175,7 +200,7 @@ def _step_size(dt: Any, start: Any) -> Any:
 def _positive(name: str, value: Any, *, zero: bool = False) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = np.nan
     if not (number > 0 or (zero and number == 0)):
         raise InputError(f"{name} is {value!r}, expected a positive number")
@@ -183,13 +208,16 @@ def _positive(name: str, value: Any, *, zero: bool = False) -> float:
 
 
 def _times(t_eval: Any, span: tuple[Any, Any]) -> Any:
-    times = np.asarray(t_eval, dtype=span[0].dtype)
+    try:
+        times = np.asarray(t_eval, dtype=span[0].dtype)
+    except (TypeError, ValueError):
+        raise InputError(f"t_eval is {t_eval!r}, expected a list of times") from None
     if times.ndim != 1:
         raise ShapeError(f"t_eval has shape {times.shape}, expected a list of times")
     low, high = min(span), max(span)
-    if times.size and not bool(np.all((times >= low) & (times <= high))):
+    if not bool(np.all((times >= low) & (times <= high))):
         raise InputError(f"t_eval must lie within t_span, {low} to {high}")
     steps = np.diff(times) * (1 if span[1] >= span[0] else -1)
     if bool(np.any(steps <= 0)):
         raise InputError("t_eval must be sorted in the direction of integration, without repetitions")
-    return times
+    return times.copy()
