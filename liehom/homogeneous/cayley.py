@@ -1,9 +1,9 @@
 """The Cayley transform cay(x) = (1 - x/2)^-1 (1 + x/2), where the group is quadratic.
 
-It lies in the group if the matrices D(x) of a representation contain all cubes D(x)^3 (so, sp, u, and others given
-by a bilinear form, but not sl or su(n), n > 2).  In D itself it is a rational map.  On another representation rho of
-the same algebra it acts through the group: cay(x) = exp(y) with D(y) = 2 artanh(D(x)/2), and exp(y) acts by rho.
-Imports exponential, maps, series, representations, errors.
+It lies in the group if the matrices D(x) of a representation contain all cubes D(x)^3 (so, sp, u, e(n), and others
+given by a bilinear form, but not sl(n) or su(n), n > 2).  In D itself it is a rational map.  On another representation
+rho of the same algebra it acts through the group: cay(x) = exp(y) with D(y) = 2 artanh(D(x)/2), and exp(y) acts by rho.
+Imports exponential, maps, matrix_functions, series, representations, errors.
 """
 
 from __future__ import annotations
@@ -12,16 +12,19 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.errors import InputError
+from liehom.errors import InputError, SingularError
 from liehom.homogeneous.exponential import Exponential, SeriesExponential
-from liehom.homogeneous.maps import FieldMap, action_map
+from liehom.homogeneous.maps import FieldMap, FieldMatrix, action_map
+from liehom.homogeneous.matrix_functions import cayley_logarithm, identity, norms, solve
 from liehom.representations import Representation, defining
-from liehom.series.arrays import is_jax, namespace
+from liehom.series.arrays import is_exact, is_jax
 from liehom.series.jet import Jet
-from liehom.series.lie_series import cayley_magnus
+from liehom.series.lie_series import cayley_magnus, dcayley_inverse, without_constant
 
-RTOL = 1e-9
-SERIES_RADIUS = 0.35
+RTOL = 1e-12
+PROVED_DIMENSION = 28
+# above this norm of the matrix the linear system is solved in extended precision, so that invariants stay
+REFINED_NORM = 4.0
 
 
 @final
@@ -40,6 +43,13 @@ class Cayley(Exponential):
     ------
     InputError
         If no such D is known: the group is then not known to be quadratic.
+    SingularError
+        When it is evaluated where it is not defined: at a real eigenvalue 2 of D(x), or beyond 2 if rho is not D.
+
+    Notes
+    -----
+    That the cubes are in D(g) is proved exactly for algebras of dimension up to 28 over an exact field, else checked
+    numerically to 1e-12.
 
     Examples
     --------
@@ -53,12 +63,12 @@ class Cayley(Exponential):
     """
 
     def __init__(self, representation: Representation, defining_representation: Representation | None = None) -> None:
-        self._action = action_map(representation)
-        self._defining = _quadratic(representation, defining_representation)
-        self._matrices = np.array([a.to_numpy() for a in self._defining.matrices])
-        flat = self._matrices.reshape(len(self._matrices), -1)
-        self._dual = np.linalg.pinv(flat).T.reshape(self._matrices.shape)
-        self._through = None if self._defining is representation else SeriesExponential(representation)
+        found = _quadratic(representation, defining_representation)
+        own = found is representation or found == representation
+        self._defining = found
+        self._matrices = action_map(found)
+        self._dual = FieldMatrix(_left_inverse(found))
+        self._through = None if own else SeriesExponential(representation)
 
     @property
     def name(self) -> str:
@@ -67,39 +77,31 @@ class Cayley(Exponential):
     def act(self, x: Any, m: Any) -> Any:
         if self._through is not None:
             return self._through.act(self._logarithm(x), m)
-        matrix = self._matrix(x)
-        right = matrix @ m[..., None]
-        eye = namespace(matrix).eye(matrix.shape[-1], dtype=matrix.dtype)
-        return m + _solve(eye - matrix / 2, right)[..., 0]
+        matrix = self._matrices.left(x)
+        if is_exact(matrix) or is_exact(m):
+            return _exact_action(self._defining, matrix, m)
+        return m + _increment(matrix, m)
 
     def series(self, x: Jet, m: Any) -> Jet:
+        x = without_constant(x, check=True)
         if self._through is not None:
             return self._through.series(self._logarithmic_jet(x), m)
-        return _rational_series(self._action, x, m)
+        return _rational_series(self._matrices, x, m)
 
     def differential_inverse(self, x: Any, y: Any, terms: int) -> Any:
         """dcay^-1_x y = (1 - x/2) y (1 + x/2), exact."""
-        a, b = self._matrix(x), self._matrix(y)
-        return self._coefficients(b - (a @ b - b @ a) / 2 - a @ b @ a / 4)
+        return self._coefficients(dcayley_inverse(self._matrices.left(x), self._matrices.left(y)))
 
     def logarithmic_series(self, a: Jet) -> Jet:
-        return self._coefficients(cayley_magnus(self._matrix(a)))  # type: ignore[no-any-return]
-
-    def _matrix(self, x: Any) -> Any:
-        return (
-            np.einsum("...a,aij->...ij", x, self._matrices)
-            if not is_jax(x)
-            else namespace(x).einsum("...a,aij->...ij", x, self._matrices)
-        )
+        return self._coefficients(cayley_magnus(self._matrices.left(a)))  # type: ignore[no-any-return]
 
     def _coefficients(self, matrix: Any) -> Any:
-        if is_jax(matrix):
-            return namespace(matrix).einsum("...ij,aij->...a", matrix, self._dual)
-        return np.einsum("...ij,aij->...a", matrix, self._dual)
+        n = matrix.shape[-1]
+        return self._dual(matrix.reshape((*matrix.shape[:-2], n * n)))
 
     def _logarithmic_jet(self, x: Jet) -> Jet:
         """2 artanh(x/2) = x + x^3/12 + x^5/80 + ... as a series in t."""
-        a = self._matrix(x)
+        a = self._matrices.left(x)
         square = a @ a
         power, total = a, a
         for j in range(1, (x.order - 1) // 2 + 1):
@@ -108,62 +110,71 @@ class Cayley(Exponential):
         return self._coefficients(total)  # type: ignore[no-any-return]
 
     def _logarithm(self, x: Any) -> Any:
-        a = self._matrix(x)
-        if is_jax(a) or float(np.abs(a).sum(axis=-1).max(initial=0.0)) < 2 * SERIES_RADIUS:
-            square = a @ a
-            power, total = a, a
-            for j in range(1, 30):
-                power = power @ square / 4
-                total = total + power / (2 * j + 1)
-            return self._coefficients(total)
-        return self._coefficients(_logarithm_of_cayley(a))
+        if is_exact(x):
+            raise InputError("the Cayley transform through the group needs a logarithm: use floats, or series")
+        return self._coefficients(cayley_logarithm(self._matrices.left(x)))
 
     def __repr__(self) -> str:
         return f"<exponential {self.name}>"
 
 
+def _increment(matrix: Any, m: Any) -> Any:
+    """cay(A) m - m = (1 - A/2)^-1 A m."""
+    right = matrix @ m[..., None]
+    if not is_jax(right) and right.dtype != np.longdouble:
+        large = float(np.max(norms(matrix), initial=0.0)) > REFINED_NORM
+        if large:
+            wide = matrix.astype(np.longdouble)
+            made = solve(identity(wide) - wide / 2, wide @ m[..., None].astype(np.longdouble))
+            return made[..., 0].astype(right.dtype)
+    return solve(identity(matrix) - matrix / 2, right)[..., 0]
+
+
 def _rational_series(action: FieldMap, x: Jet, m: Any) -> Jet:
     """z = m + x (m + z)/2, coefficient by coefficient."""
-    start = m if isinstance(m, Jet) else Jet.constant(m, x.order)
-    z = Jet.growing(start.value, x.order)
+    start: Any = m if isinstance(m, Jet) else Jet.constant(m, x.order)
+    shape = np.broadcast_shapes(x.shape[:-1], start.shape[:-1])
+    if start.shape[:-1] != shape:
+        start = np.broadcast_to(start, (*shape, start.shape[-1]))
+    z = Jet.growing(start.value, min(x.order, start.order))
     made = start + action(x, start + z) / 2
     z.node.depends((made.node, 0), rule=lambda k: made.node.known[k])
     return z
 
 
-def _solve(a: Any, b: Any) -> Any:
-    if a.dtype == np.longdouble:
-        found = np.linalg.solve(a.astype(float), b.astype(float)).astype(np.longdouble)
-        for _ in range(2):
-            found = found + np.linalg.solve(a.astype(float), (b - a @ found).astype(float))
-        return found
-    return namespace(a).linalg.solve(a, b)
+def _exact_action(representation: Representation, matrix: Any, m: Any) -> Any:
+    """cay(A) m over the field, point by point."""
+    field, n = representation.field, representation.size
+    lead = np.broadcast_shapes(matrix.shape[:-2], m.shape[:-1])
+    matrix, m = np.broadcast_to(matrix, (*lead, n, n)), np.broadcast_to(m, (*lead, n))
+    out = np.empty(m.shape, dtype=object)
+    for index in np.ndindex(*lead):
+        half = field.matrix((matrix[index] / 2).tolist(), (n, n))
+        point = field.matrix([[v] for v in m[index]], (n, 1))
+        moved = (field.identity(n) - half).solve(point + half @ point)
+        out[index] = moved.entries()
+    return out
 
 
-def _logarithm_of_cayley(a: Any) -> Any:
-    """The principal logarithm of cay(a), matrix by matrix."""
-    from scipy.linalg import logm
-
-    eye = np.eye(a.shape[-1])
-    flat = a.reshape(-1, *a.shape[-2:]).astype(float)
-    logs = [np.real(logm(np.linalg.solve(eye - x / 2, eye + x / 2))) for x in flat]
-    return np.array(logs).reshape(a.shape)
-
-
+# -- which groups are quadratic --------------------------------------------------------------------------
 def _quadratic(representation: Representation, given: Representation | None) -> Representation:
     if given is not None:
+        if not isinstance(given, Representation):
+            raise InputError(f"the defining representation is a Representation, got {given!r}")
         if given.algebra != representation.algebra:
             raise InputError("the defining representation for the Cayley transform is one of another algebra")
-        if not _contains_cubes(given):
+        if not contains_cubes(given):
             raise InputError(f"{given!r} does not contain the cubes of its matrices: its group is not quadratic")
+        if given != representation and not _is_faithful(given):
+            raise InputError(f"{given!r} is not faithful: it does not determine the elements that act on V")
         return given
-    if _contains_cubes(representation):
+    if contains_cubes(representation):
         return representation
     try:
         found = defining(representation.algebra)
     except InputError:
         found = None
-    if found is not None and _contains_cubes(found):
+    if found is not None and contains_cubes(found):
         return found
     raise InputError(
         f"the Cayley transform needs a quadratic group, and none is known for {representation!r}: give "
@@ -171,20 +182,69 @@ def _quadratic(representation: Representation, given: Representation | None) -> 
     )
 
 
-def _contains_cubes(representation: Representation) -> bool:
-    """Whether D(x)^3 lies in D(g) for all x: by polarization, on all triples of the basis."""
+def contains_cubes(representation: Representation) -> bool:
+    """Whether D(x)^3 lies in D(g) for all x, so that the Cayley transform maps into the group.
+
+    Notes
+    -----
+    By polarization and because g is closed under brackets, it does if (a b + b a) c + c (a b + b a) lies in D(g) for
+    all a, b, c of the basis. Then so do all odd powers, and x y x.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> contains_cubes(lh.defining(lh.so(3, 1))), contains_cubes(lh.defining(lh.su(3)))
+    (True, False)
+    """
     a = np.array([m.to_numpy() for m in representation.matrices])
     n = len(a)
     if n == 0:
         return True
-    basis = np.linalg.svd(a.reshape(n, -1), full_matrices=False)[2]
-    basis = basis[: np.linalg.matrix_rank(a.reshape(n, -1))]
-    products = np.einsum("aij,bjk->abik", a, a)
-    for c in range(n):
-        mixed = np.einsum("abij,jk->abik", products, a[c])
-        mixed = mixed + np.einsum("ij,abjk->abik", a[c], products) + np.einsum("aij,jk,bkl->abil", a, a[c], a)
-        mixed = (mixed + np.swapaxes(mixed, 0, 1)).reshape(n * n, -1)
+    flat = a.reshape(n, -1) / np.maximum(np.linalg.norm(a.reshape(n, -1), axis=1, keepdims=True), 1e-300)
+    a = flat.reshape(a.shape)
+    _, sizes, right = np.linalg.svd(flat, full_matrices=False)
+    basis = right[sizes > RTOL * sizes[0]]
+    squares = np.einsum("aij,bjk->abik", a, a)
+    squares = squares + np.swapaxes(squares, 0, 1)
+    for c in a:
+        mixed = (squares @ c + c @ squares).reshape(n * n, -1)
         outside = mixed - (mixed @ basis.T) @ basis
-        if float(np.abs(outside).max()) > RTOL * (1 + float(np.abs(mixed).max())):
+        if not float(np.abs(outside).max()) <= RTOL * n * (1 + float(np.abs(mixed).max())):
+            return False
+    return not representation.field.exact or n > PROVED_DIMENSION or _proves_cubes(representation)
+
+
+def _proves_cubes(representation: Representation) -> bool:
+    field, a = representation.field, representation.matrices
+    size = representation.size**2
+    outside = field.stack_rows([m.reshape(1, size) for m in a], size).null_space().T
+    squares = [a[i] @ b + b @ a[i] for i in range(len(a)) for b in a[i:]]
+    for c in a:
+        mixed = field.stack_rows([(s @ c + c @ s).reshape(1, size) for s in squares], size)
+        if not (mixed @ outside).is_zero():
             return False
     return True
+
+
+def _is_faithful(representation: Representation) -> bool:
+    return bool(_flat(representation).rank() == representation.algebra.dimension)
+
+
+def _flat(representation: Representation) -> Any:
+    size = representation.size**2
+    return representation.field.stack_rows([m.reshape(1, size) for m in representation.matrices], size)
+
+
+def _left_inverse(representation: Representation) -> Any:
+    """The matrix (dim, N^2) of D(x) -> x; x has no component in the kernel of D, where that is not 0."""
+    flat = _flat(representation)
+    if not representation.matrices:
+        return flat
+    kernel = flat.left_null_space()
+    gram = flat @ flat.T
+    if kernel.nrows:
+        gram = gram + kernel.T @ kernel
+    try:
+        return gram.inverse() @ flat
+    except SingularError:  # floats whose Gram matrix has too wide a spread
+        return representation.field.matrix(np.linalg.pinv(flat.to_numpy()).T.tolist(), flat.shape)

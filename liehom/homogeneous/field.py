@@ -2,7 +2,7 @@
 
 psi may be given, or only X, of which the generator of least norm is then computed.  Psi returns one coefficient per
 basis element of g, or one per matrix that the user gave to `Representation.from_matrices`.
-Imports generator, inner_product, maps, series, representations, errors.
+Imports generator, least_norm, maps, series, representations, errors.
 """
 
 from __future__ import annotations
@@ -11,16 +11,13 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.errors import InputError, ShapeError, TangencyError
+from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.generator import Components
-from liehom.homogeneous.inner_product import inner_product
+from liehom.homogeneous.least_norm import RANK_RTOL, TANGENCY_RTOL, LeastNorm
 from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation
-from liehom.series.arrays import is_exact, is_jax
+from liehom.series.arrays import as_values, is_traced, namespace, zeros
 from liehom.series.jet import Jet
-
-RANK_RTOL = 1e-9
-TANGENCY_RTOL = 1e-8
 
 
 @final
@@ -31,13 +28,14 @@ class GeneratorField:
     ----------
     representation : Representation
         rho, on vectors of N coordinates, of an algebra of dimension r.
-    psi : callable or sequence
+    psi : callable, array or sequence
         The generator: a function psi(m) or psi(m, t) that returns an array of shape (..., r) for m of shape
         (..., N) and t of shape (...,), written with numpy functions; or r components, each a number, a text such
-        as "1 + m0**2*sin(t)", or a sympy expression in m0, m1, ..., t. Where the algebra was closed from fewer
-        given matrices, psi may have one coefficient for each of these.
+        as "1 + m0**2*sin(t)", or a sympy expression in m0, m1, ..., t; or a constant array. Where the algebra was
+        closed from fewer given matrices, psi may have one coefficient for each of these.
     time_dependent : bool, optional
-        Whether psi depends on t; by default read off from its parameters or symbols.
+        Whether a function psi is called with t; by default read off from its parameters. It is if it has a second
+        parameter without a default, or one named t.
 
     Raises
     ------
@@ -60,7 +58,7 @@ class GeneratorField:
     (array([0.6, 0. , 2.4]), 0.0)
     """
 
-    __slots__ = ("_action", "_components", "representation", "source", "time_dependent")
+    __slots__ = ("_action", "_components", "_dimension", "representation", "source", "time_dependent")
 
     def __init__(self, representation: Representation, psi: Any, *, time_dependent: bool | None = None) -> None:
         if not isinstance(representation, Representation):
@@ -69,17 +67,22 @@ class GeneratorField:
         self.source = psi
         self._action = action_map(representation)
         dimension = representation.algebra.dimension
-        if isinstance(psi, _LeastNorm):
-            self._components: Any = psi
-        else:
-            self._components = Components(psi, representation.size, (representation.given, dimension), "psi")
-        if time_dependent is not None and callable(psi):
-            self._components.time_dependent = time_dependent
+        counts = (representation.given, dimension)
+        self._components: Components | LeastNorm = (
+            psi if isinstance(psi, LeastNorm) else Components(psi, representation.size, counts, "psi", time_dependent)
+        )
+        self._dimension = dimension
         self.time_dependent: bool = self._components.time_dependent
 
     @classmethod
     def from_vector_field(
-        cls, representation: Representation, field: Any, *, orbit_dimension: int | None = None
+        cls,
+        representation: Representation,
+        field: Any,
+        *,
+        orbit_dimension: int | None = None,
+        rtol: float = TANGENCY_RTOL,
+        time_dependent: bool | None = None,
     ) -> GeneratorField:
         """The field with the generator of least norm of a given vector field X(m) or X(m, t) tangent to the orbits.
 
@@ -90,6 +93,10 @@ class GeneratorField:
             X in one of the forms that psi may have, with N components.
         orbit_dimension : int, optional
             The dimension of the orbits, where the numerical rank at the points is not to decide.
+        rtol : float
+            How large the normal component of X may be, relative to X.
+        time_dependent : bool, optional
+            As for psi.
 
         Raises
         ------
@@ -98,8 +105,8 @@ class GeneratorField:
 
         Notes
         -----
-        psi(m) = A^T (A A^T)^+ X with A = [rho(e_1) m, ..., rho(e_r) m] in an orthonormal basis of g
-        (`inner_product`).
+        psi(m) = A^+ X with A = [rho(b_1) m, ..., rho(b_r) m] in an orthonormal basis of g (`inner_product`). At an
+        equilibrium it is 0. Where the inner product is Ad-invariant, psi is as equivariant as X is.
 
         Examples
         --------
@@ -110,21 +117,47 @@ class GeneratorField:
         >>> np.round(field.vector(np.array([0.6, 0, 0.8])), 12)
         array([0. , 0.6, 0. ])
         """
-        return cls(representation, _LeastNorm(representation, field, orbit_dimension))
+        if not isinstance(representation, Representation):
+            raise InputError(f"expected a Representation, got {representation!r}")
+        return cls(representation, LeastNorm(representation, field, orbit_dimension, rtol, time_dependent))
 
     def psi(self, m: Any, t: Any = 0.0) -> Any:
         """The generator at m (..., N) and t: an array or Jet of shape (..., r)."""
         made = self._components(m, t)
-        missing = self.representation.algebra.dimension - int(made.shape[-1])
+        missing = self._dimension - int(made.shape[-1])
         if missing == 0:
             return made
         value = made.value if isinstance(made, Jet) else made
-        blank = 0 * value[..., :1].repeat(missing, axis=-1)
-        if is_jax(value) and not isinstance(made, Jet):
-            from liehom.series.arrays import namespace
+        blank = zeros(value, (*value.shape[:-1], missing))
+        return (np if isinstance(made, Jet) else namespace(value)).concatenate([made, blank], axis=-1)
 
-            return namespace(value).concatenate([made, blank], axis=-1)
-        return np.concatenate([made, blank], axis=-1)
+    def check(self, m: Any, t: Any = 0.0) -> None:
+        """Check the field at starting points, before anything is integrated.
+
+        Parameters
+        ----------
+        m : array of shape (..., N)
+        t : float or array of shape (...,)
+
+        Raises
+        ------
+        ShapeError
+            If m or psi(m, t) has the wrong shape, or psi of one trajectory depends on the points of others.
+        TangencyError
+            If a vector field is not tangent to the orbits.
+        InputError
+            If a component of psi is not a finite real number; names it. What psi itself raises passes through.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> lh.GeneratorField(lh.defining(lh.so(2)), ["log(m0)"]).check(np.array([[1.0, 0.0], [0.0, 1.0]]))
+        Traceback (most recent call last):
+        ...
+        liehom.errors.InputError: psi[0] is -inf at m = [0. 1.], t = 0.0 (trajectory 1): start where it is defined, ...
+        """
+        self._components.check(m, t)
 
     def vector(self, m: Any, t: Any = 0.0) -> Any:
         """X(m, t) = rho(psi(m, t)) m, an array or Jet of shape (..., N)."""
@@ -137,73 +170,6 @@ class GeneratorField:
     def __repr__(self) -> str:
         kind = "time-dependent " if self.time_dependent else ""
         return f"<{kind}generator field of {self.representation!r}>"
-
-
-@final
-class _LeastNorm:
-    """(m, t) -> the generator of least norm of a vector field."""
-
-    def __init__(self, representation: Representation, field: Any, orbit_dimension: int | None) -> None:
-        self._field = Components(field, representation.size, (representation.size,), "the vector field")
-        self.time_dependent = self._field.time_dependent
-        self._action = action_map(representation)
-        self._basis = inner_product(representation).orthonormal_basis()
-        self._dimension = orbit_dimension
-
-    def __call__(self, m: Any, t: Any = 0.0) -> Any:
-        x = self._field(m, t)
-        value = m.value if isinstance(m, Jet) else m
-        if is_exact(value):
-            raise InputError("the generator of least norm is computed in floats; give psi itself for exact numbers")
-        normal = self._normal_space(np.asarray(value, dtype=float), x)
-        columns = np.einsum("...ia,ab->...ib", self._action.right(m), self._basis)
-        # X lies in the range of A A^T, and `normal` completes it to an invertible matrix: along a curve it stays
-        # complementary to the tangent spaces, so that it need not be followed.
-        square = np.einsum("...ia,...ja->...ij", columns, columns) + normal
-        y = _solve(square, x[..., None])[..., 0]
-        return np.einsum("...ia,...i,ba->...b", columns, y, self._basis)
-
-    def _normal_space(self, m: Any, x: Any) -> Any:
-        """The projector on the normal space at m, scaled as A A^T is; checks that X is tangent."""
-        columns = self._action.right(m) @ self._basis
-        left, sizes, _ = np.linalg.svd(columns)
-        padded = np.zeros((*left.shape[:-2], left.shape[-1]))
-        padded[..., : sizes.shape[-1]] = sizes
-        if self._dimension is None:
-            outside = padded <= RANK_RTOL * padded[..., :1]
-        else:
-            outside = np.broadcast_to(np.arange(left.shape[-1]) >= self._dimension, padded.shape)
-        basis = left * outside[..., None, :]
-        field = np.asarray(x.value if isinstance(x, Jet) else x, dtype=float)
-        normal = (basis @ (np.swapaxes(basis, -1, -2) @ field[..., None]))[..., 0]
-        size = np.linalg.norm(field, axis=-1, keepdims=True)
-        if bool(np.any(np.linalg.norm(normal, axis=-1, keepdims=True) > TANGENCY_RTOL * (size + _tiny(m)))):
-            raise _not_tangent(m, field, normal)
-        return basis @ np.swapaxes(basis, -1, -2) * (padded[..., :1, None] ** 2)
-
-
-def _tiny(m: Any) -> Any:
-    """What counts as zero next to points of this size."""
-    return 1e-6 * np.linalg.norm(m, axis=-1, keepdims=True)
-
-
-def _solve(a: Any, b: Any) -> Any:
-    if getattr(a, "dtype", None) == np.longdouble and not isinstance(a, Jet):
-        from liehom.homogeneous.cayley import _solve as refined
-
-        return refined(a, b)
-    return np.linalg.solve(a, b)
-
-
-def _not_tangent(m: Any, field: Any, normal: Any) -> TangencyError:
-    sizes = np.linalg.norm(normal, axis=-1)
-    index = np.unravel_index(int(np.argmax(sizes)), sizes.shape)
-    where = f" of trajectory {tuple(int(i) for i in index)}" if index else ""
-    return TangencyError(
-        normal[index],
-        f"the vector field is not tangent to the orbit at m = {m[index]}{where}: X = {field[index]} has the normal "
-        f"component {normal[index]} of size {sizes[index]:.3g}",
-    )
 
 
 def check_point(representation: Representation, m: Any) -> Any:
@@ -223,17 +189,20 @@ def check_point(representation: Representation, m: Any) -> Any:
     >>> int(check_point(lh.defining(lh.so(3)), np.array([0, 0, 1.0])))
     2
     """
+    m = as_values(m)
     if m.ndim == 0 or m.shape[-1] != representation.size:
         raise ShapeError(f"a point has {representation.size} coordinates (on its last axis), got shape {m.shape}")
-    if not bool(np.all(np.isfinite(np.asarray(m, dtype=float)))):
+    if is_traced(m):
+        raise InputError("the dimension of an orbit cannot be found from a traced point: check it outside of jax.jit")
+    point = np.asarray(m, dtype=float)
+    if not bool(np.all(np.isfinite(point))):
         raise InputError(f"the point {m} is not finite")
-    columns = action_map(representation).right(np.asarray(m, dtype=float))
-    sizes = np.linalg.svd(columns, compute_uv=False)
+    sizes = np.linalg.svd(action_map(representation).right(point), compute_uv=False)
     scale = max((float(np.abs(a.to_numpy()).max(initial=0.0)) for a in representation.matrices), default=0.0)
-    bound = RANK_RTOL * scale * np.linalg.norm(np.asarray(m, dtype=float), axis=-1)[..., None]
+    bound = RANK_RTOL * scale * np.linalg.norm(point, axis=-1)[..., None]
     ranks = (sizes > bound).sum(axis=-1)
     if bool(np.any(ranks == 0)):
-        index = np.argwhere(ranks == 0)[0]
-        where = f" (trajectory {tuple(int(i) for i in index)})" if len(index) else ""
-        raise InputError(f"the group leaves the point {m[tuple(index)]}{where} fixed: its orbit has dimension 0")
+        index = tuple(int(i) for i in np.argwhere(ranks == 0)[0])
+        where = f" (trajectory {index[0] if len(index) == 1 else index})" if index else ""
+        raise InputError(f"the group leaves the point {m[index]}{where} fixed: its orbit has dimension 0")
     return ranks

@@ -1,7 +1,9 @@
 """The action (x, m) -> rho(x) m and the bracket (x, y) -> [x, y] as bilinear maps on arrays and Jets.
 
-In floats, and over exact scalars (object arrays of numbers of the representation's field) in the field's own
-numbers.  Imports representations, series.
+    B(x, y)_k = sum_(i, j) v_ijk x_i y_j,   v_ijk in the field of the representation
+
+In float64, in extended precision (v as a sum of two floats, so that 1/3 or sqrt(2) is as good as the arithmetic), on
+JAX arrays, and over exact scalars in the field's own numbers.  Imports representations, series, errors.
 """
 
 from __future__ import annotations
@@ -9,12 +11,21 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, final
 
+import numpy as np
+
+from liehom.errors import ShapeError
 from liehom.representations import Representation
-from liehom.series.arrays import is_exact
+from liehom.scalars import Field
+from liehom.series import recurrences
+from liehom.series.arrays import is_exact, is_jax, namespace
 from liehom.series.bilinear import Bilinear
 from liehom.series.jet import Jet
 
 Entries = Iterable[tuple[int, int, int, Any]]
+
+# up to this many coefficients, or this share of entries that are not 0, a dense table is faster than a sparse one
+DENSE_SIZE = 32768
+DENSE_SHARE = 0.2
 
 
 @final
@@ -24,9 +35,14 @@ class FieldMap:
     Parameters
     ----------
     entries : iterable of (i, j, k, value)
-        As in `liehom.series.Bilinear`, with values in the field.
+        B(e_i, e_j) has `value`, a number of the field, in component k.
     shape : (a, b, c)
     field : Field
+
+    Raises
+    ------
+    ShapeError
+        If an argument does not have a, or b, components on its last axis.
 
     Examples
     --------
@@ -35,33 +51,146 @@ class FieldMap:
     [0.0, 1.0]
     """
 
-    __slots__ = ("_entries", "_exact", "_field", "floating")
+    __slots__ = ("_entries", "_exact", "_field", "_floating", "_rest", "_table", "shape")
 
-    def __init__(self, entries: Entries, shape: tuple[int, int, int], field: Any) -> None:
+    def __init__(self, entries: Entries, shape: tuple[int, int, int], field: Field) -> None:
         self._entries = list(entries)
         self._field = field
+        self.shape = shape
+        rounded = [field.to_float(v) for *_, v in self._entries]
+        places = [entry[:3] for entry in self._entries]
+        self._floating = Bilinear([(*p, v) for p, v in zip(places, rounded, strict=True)], shape)
+        rests = [remainder(field, v, near) for (*_, v), near in zip(self._entries, rounded, strict=True)]
+        left = [(*p, r) for p, r in zip(places, rests, strict=True) if r != 0]
+        self._rest = Bilinear(left, shape) if left else None
         self._exact: Bilinear | None = None
-        self.floating = Bilinear([(i, j, k, field.to_float(v)) for i, j, k, v in self._entries], shape)
+        a, b, c = shape
+        dense = a * b * c <= DENSE_SIZE or len(places) > DENSE_SHARE * a * b * c
+        self._table = np.ascontiguousarray(self._floating.tensor().reshape(a, b * c)) if dense else None
 
     def __call__(self, x: Any, y: Any) -> Any:
-        """B(x, y) for arrays or Jets."""
-        return self._for(x, y)(x, y)
+        """B(x, y) for x (..., a) and y (..., b): array or Jet of shape (..., c)."""
+        if isinstance(x, Jet):
+            if isinstance(y, Jet):
+                self._check(x.shape, y.shape)
+                return Jet.from_node(recurrences.multilinear(self._apply, [x.node, y.node]))
+            y = _array(y)
+            self._check(x.shape, y.shape)
+            return Jet.from_node(recurrences.linear(lambda v: self._apply(v, y), [x.node]))
+        x = _array(x)
+        if isinstance(y, Jet):
+            self._check(x.shape, y.shape)
+            return Jet.from_node(recurrences.linear(lambda v: self._apply(x, v), [y.node]))
+        y = _array(y)
+        self._check(x.shape, y.shape)
+        return self._apply(x, y)
 
     def left(self, x: Any) -> Any:
-        """The matrix of y -> B(x, y)."""
-        return self._for(x).left(x)
+        """The matrix of y -> B(x, y), shape (..., c, b)."""
+        x = x if isinstance(x, Jet) else _array(x)
+        self._check(x.shape, (self.shape[1],))
+        if self._table is not None and type(x) is np.ndarray and x.dtype == np.float64:
+            return (x @ self._table).reshape(*x.shape[:-1], self.shape[1], self.shape[2]).swapaxes(-1, -2)
+        return self._matrix(x, "left")
 
     def right(self, y: Any) -> Any:
-        """The matrix of x -> B(x, y)."""
-        return self._for(y).right(y)
+        """The matrix of x -> B(x, y), shape (..., c, a)."""
+        y = y if isinstance(y, Jet) else _array(y)
+        self._check((self.shape[0],), y.shape)
+        return self._matrix(y, "right")
 
-    def _for(self, *arguments: Any) -> Bilinear:
-        values = [a.value if isinstance(a, Jet) else a for a in arguments]
-        if not self._field.exact or not any(is_exact(v) for v in values):
-            return self.floating
+    def _matrix(self, x: Any, side: str) -> Any:
+        if is_exact(x.value if isinstance(x, Jet) else x):
+            return getattr(self._exactly(), side)(x)
+        made = getattr(self._floating, side)(x)
+        return made if self._rest is None or x.dtype != np.longdouble else made + getattr(self._rest, side)(x)
+
+    def _apply(self, x: Any, y: Any) -> Any:
+        if self._table is not None and type(x) is np.ndarray and x.dtype == y.dtype == np.float64:
+            if x.ndim == y.ndim == 1:
+                return y.dot(x.dot(self._table).reshape(self.shape[1:]))
+            matrix = (x @ self._table).reshape(*x.shape[:-1], *self.shape[1:])
+            return np.einsum("...b,...bc->...c", y, matrix)
+        if is_exact(x) or is_exact(y):
+            return self._exactly()(x, y)
+        if self._table is not None:
+            xp = namespace(x, y)
+            matrix = (x @ xp.asarray(self._table, dtype=x.dtype)).reshape(*x.shape[:-1], *self.shape[1:])
+            made = xp.einsum("...b,...bc->...c", y, matrix)
+        else:
+            made = self._floating(x, y)
+        extended = self._rest is not None and made.dtype == np.longdouble
+        return made + self._rest(x, y) if extended and self._rest is not None else made
+
+    def _exactly(self) -> Bilinear:
+        if not self._field.exact:
+            return self._floating
         if self._exact is None:
-            self._exact = Bilinear(self._entries, self.floating.shape)
+            self._exact = Bilinear(self._entries, self.shape)
         return self._exact
+
+    def _check(self, x: tuple[int, ...], y: tuple[int, ...]) -> None:
+        a, b, _ = self.shape
+        if not x or not y or x[-1] != a or y[-1] != b:
+            raise ShapeError(
+                f"arguments of shapes {x} and {y}, expected (..., {a}) and (..., {b}), components on the last axis"
+            )
+
+
+@final
+class FieldMatrix:
+    """A linear map x -> M x on the last axis with entries in a field, on the arguments that a `FieldMap` takes.
+
+    Parameters
+    ----------
+    matrix : Matrix
+        M, over a field.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> third = FieldMatrix(lh.QQ.matrix([["1/3", 0]]))
+    >>> third(np.array([3.0, 1.0])), third(np.array([lh.QQ.one, lh.QQ.zero]))
+    (array([1.]), array([1/3], dtype=object))
+    """
+
+    __slots__ = ("_exact", "_floating", "_rest")
+
+    def __init__(self, matrix: Any) -> None:
+        field = matrix.field
+        self._floating = np.ascontiguousarray(matrix.to_numpy().T)
+        exact = np.empty(matrix.shape, dtype=object)
+        rest = np.zeros(matrix.shape)
+        for i, row in enumerate(matrix.to_rows()):
+            for j, value in enumerate(row):
+                exact[i, j] = value
+                rest[i, j] = remainder(field, value, self._floating[j, i])
+        self._exact = exact.T if field.exact else self._floating
+        self._rest = rest.T if rest.any() else None
+
+    def __call__(self, x: Any) -> Any:
+        """M x for x (..., n), array or Jet."""
+        value = x.value if isinstance(x, Jet) else x
+        if is_exact(value):
+            return x @ self._exact
+        made = x @ namespace(value).asarray(self._floating)
+        return made if self._rest is None or value.dtype != np.longdouble else made + x @ self._rest
+
+
+def remainder(field: Field, value: Any, near: float) -> float:
+    """value - near for the float that is nearest to it: together they are the number to twice the precision.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> remainder(lh.QQ, lh.QQ.convert("1/3"), 1 / 3)
+    1.850371707708594e-17
+    """
+    if not field.exact or near in (0.0, 1.0, -1.0):
+        return 0.0
+    top, bottom = float(near).as_integer_ratio()
+    return field.to_float(value - field.convert(f"{top}/{bottom}"))
 
 
 def action_map(representation: Representation) -> FieldMap:
@@ -94,3 +223,12 @@ def bracket_map(representation: Representation) -> FieldMap:
     for i, j, k, value in representation.algebra.structure_constants():
         entries += [(i, j, k, value), (j, i, k, -value)]
     return FieldMap(entries, (representation.algebra.dimension,) * 3, representation.field)
+
+
+def _array(x: Any) -> Any:
+    if type(x) is np.ndarray and x.dtype.kind == "f":
+        return x
+    if is_jax(x):
+        return x
+    array = np.asarray(x)
+    return array.astype(np.float64) if array.dtype.kind in "iub" else array

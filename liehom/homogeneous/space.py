@@ -11,10 +11,11 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.errors import InputError
-from liehom.homogeneous.exponential import Exponential, exponential_of
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous.exponential import Exponential
 from liehom.homogeneous.inner_product import InnerProduct, inner_product
 from liehom.homogeneous.maps import action_map, bracket_map
+from liehom.homogeneous.own_exponential import exponential_of
 from liehom.representations import Representation
 from liehom.series.arrays import namespace
 
@@ -28,7 +29,7 @@ class Action:
     representation : Representation
     exponential : str, Exponential or callable
         See `exponential_of`: "exp" (default), "cayley", "expm", "series", "rodrigues", an `Exponential`, or a
-        function (x, m) -> Exp(x) m.
+        function (x, m) -> Exp(x) m written with numpy functions.
 
     Raises
     ------
@@ -56,7 +57,8 @@ class Action:
         self.bracket = bracket_map(representation)
         self.inner_product: InnerProduct = inner_product(representation)
         self._basis = self.inner_product.orthonormal_basis()
-        tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(-1, representation.size**2)
+        shape = (representation.algebra.dimension, representation.size**2)
+        tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(shape)
         self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
 
     @property
@@ -70,7 +72,18 @@ class Action:
         return self._size
 
     def act(self, x: Any, m: Any) -> Any:
-        """Exp(x) m for x (..., dim) and m (..., N), arrays or Jets with x(0) = 0."""
+        """Exp(x) m for x (..., dim) and m (..., N), arrays or Jets with x(0) = 0.
+
+        Raises
+        ------
+        ShapeError
+            If x or m does not have the right number of components.
+        """
+        if np.shape(x)[-1:] != (self.dimension,) or np.shape(m)[-1:] != (self.representation.size,):
+            raise ShapeError(
+                f"x of shape {np.shape(x)} and m of shape {np.shape(m)}, expected (..., {self.dimension}) and "
+                f"(..., {self.representation.size})"
+            )
         return self.exponential(x, m)
 
     def isotropy_frame(self, m: Any, orbit_dimension: Any) -> IsotropyFrame:
@@ -91,22 +104,21 @@ class Action:
         """
         xp = namespace(m)
         columns = self.infinitesimal.right(m) @ self._basis
-        rough = columns.astype(np.float64) if columns.dtype == np.longdouble else columns
-        left, sizes, right = xp.linalg.svd(rough, full_matrices=True)
+        extended = columns.dtype == np.longdouble
+        wide = columns.shape[-1] > columns.shape[-2]  # only then the kernel is more than the last right vectors
+        left, sizes, right = xp.linalg.svd(columns.astype(np.float64) if extended else columns, full_matrices=wide)
         rank = np.asarray(orbit_dimension)
-        lowest = int(rank.min())
+        lowest, highest = int(rank.min()), int(rank.max())
         kernel = xp.swapaxes(right[..., lowest:, :], -1, -2)
-        if columns.dtype == np.longdouble:
-            kernel = _refined(columns, left, sizes, right, kernel, lowest)
-        if rank.ndim and int(rank.max()) != lowest:
-            kernel = kernel * (np.arange(lowest, self.dimension) >= rank[..., None])[..., None, :]
-        highest = int(rank.max())
-        inverse = xp.where(np.arange(highest) < rank[..., None], 1 / _positive(sizes[..., :highest], xp), 0.0)
-        lift = self._basis @ (xp.swapaxes(right[..., :highest, :], -1, -2) * inverse[..., None, :])
         tangent = left[..., :, :highest]
-        if highest != lowest:
-            tangent = tangent * (np.arange(highest) < rank[..., None])[..., None, :]
-        return IsotropyFrame(self._basis @ kernel, tangent, lift, rank)
+        lift = xp.swapaxes(right[..., :highest, :], -1, -2) / _positive(sizes[..., None, :highest], xp)
+        if lowest != highest:
+            kernel = kernel * (np.arange(lowest, self.dimension) >= rank[..., None])[..., None, :]
+            tangible = (np.arange(highest) < rank[..., None])[..., None, :]
+            tangent, lift = tangent * tangible, lift * tangible
+        if extended:
+            kernel, tangent, lift = _refined(columns, kernel, tangent, lift)
+        return IsotropyFrame(self._basis @ kernel, tangent, self._basis @ lift, rank)
 
     def __repr__(self) -> str:
         return f"<action by {self.exponential.name} of {self.representation!r}>"
@@ -139,10 +151,24 @@ def _positive(sizes: Any, xp: Any) -> Any:
     return xp.where(sizes > 0, sizes, 1.0)
 
 
-def _refined(columns: Any, left: Any, sizes: Any, right: Any, kernel: Any, rank: int) -> Any:
-    """The kernel to the precision of extended floats, by two Newton steps with the pseudo-inverse in float64."""
-    inverse = np.swapaxes(right[..., :rank, :], -1, -2) / sizes[..., None, :rank]
-    inverse = inverse @ np.swapaxes(left[..., :, :rank], -1, -2)
+def _refined(columns: Any, kernel: Any, tangent: Any, lift: Any) -> tuple[Any, Any, Any]:
+    """The frame to the precision of extended floats, by two Newton steps from the one in float64."""
+    inverse = lift @ np.swapaxes(tangent, -1, -2)
     for _ in range(2):
         kernel = kernel - inverse @ (columns @ kernel)
-    return kernel
+        kernel = _orthonormal(kernel)
+    lift = lift - kernel @ (np.swapaxes(kernel, -1, -2) @ lift)
+    tangent = columns @ lift
+    for _ in range(2):
+        turn = _towards_orthonormal(tangent)
+        tangent, lift = tangent @ turn, lift @ turn
+    return kernel, tangent, lift
+
+
+def _orthonormal(a: Any) -> Any:
+    return a @ _towards_orthonormal(a)
+
+
+def _towards_orthonormal(a: Any) -> Any:
+    """(3 - A^T A) / 2, which takes nearly orthonormal columns to orthonormal ones; columns of zeros stay."""
+    return (3 * np.eye(a.shape[-1], dtype=a.dtype) - np.swapaxes(a, -1, -2) @ a) / 2
