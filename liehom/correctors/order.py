@@ -81,7 +81,7 @@ class Correction:
     def _of_parts(self, name: str, otherwise: float) -> Any:
         xp = namespace(self.residual)
         found = xp.full(xp.shape(self.residual), otherwise)
-        for part in self.parts:
+        for part in [part for part in self.parts if part.solver is not None]:
             value = getattr(part.solver, name)
             found = value if part.here is None else xp.where(part.here, value, found)
         return found
@@ -158,7 +158,9 @@ def correction(
     """
     point = as_values(m)
     if is_exact(point):
-        raise InputError("corrections are computed in floats: give the point in floats, or use liehom.correctors.order_condition")
+        raise InputError(
+            "corrections are computed in floats: give the point in floats, or use liehom.correctors.order_condition"
+        )
     dimension = check_point(field.representation, point)
     action = Action(field.representation, exponential)
     local = step.at(action, Generator(field, dimension), point, np.asarray(t)[..., None])

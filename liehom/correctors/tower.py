@@ -32,17 +32,18 @@ class Part:
     Attributes
     ----------
     leading : int
-        l.
+        l; beyond the order of the expansion where all coefficients of a time-dependent field's flow vanish.
     here : array of bool, shape (...,), or None
         Which they are; None for all.
-    solver : RangeSolver
+    solver : RangeSolver or None
+        None where isotropy cannot enter at any order.
     share : array of shape (...,), or None
         What isotropy takes of a correction; None is everything, everywhere.
     """
 
     leading: int
     here: Any
-    solver: RangeSolver
+    solver: RangeSolver | None
     share: Any
 
 
@@ -96,9 +97,10 @@ class Tower:
         # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
         self.leading = np.ones(self.shape, dtype=int) if is_jax(m) else leading_order(self.flow, total)
         self.parts = self._split(0.5 if one_exponential else 1.0, weight)
-        self.active = self.xp.asarray(self.leading > 0)
-        if is_jax(m) and not field.time_dependent:
-            self.active = ~vanishing(self.flow, 1)
+        if field.time_dependent:
+            self.active = self.xp.ones(self.shape, dtype=bool)
+        else:
+            self.active = ~vanishing(self.flow, 1) if is_jax(m) else self.xp.asarray(self.leading > 0)
         self.levels = 0 * self.xp.asarray(self.leading)
         self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
         self.defects: list[tuple[int, Any]] = []
@@ -112,8 +114,12 @@ class Tower:
 
     def _split(self, factor: float, weight: float | None) -> list[Part]:
         parts = []
-        for l in [int(x) for x in np.unique(self.leading) if x > 0]:
+        for l in [int(x) for x in np.unique(self.leading)]:
             here = None if bool(np.all(self.leading == l)) else self.leading == l
+            if l == 0:
+                if self.flow.time_dependent:
+                    parts.append(Part(self.total + 1, here, None, None))
+                continue
             velocity = _masked(self.xp, here, self.flow.point(l))
             solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
             share = isotropic_share(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
@@ -129,7 +135,7 @@ class Tower:
         changed: dict[int, Any] = {}
         for part in self.parts:
             here = self.active if part.here is None else self.active & part.here
-            if n <= part.leading:
+            if part.solver is None or n <= part.leading:
                 self._complete(changed, n, here, difference)
                 self.levels = self.xp.where(here, n, self.levels)
                 continue
