@@ -64,12 +64,15 @@ if TYPE_CHECKING:
     from liehom.homogeneous import orbit_types as orbit_types
     from liehom.homogeneous import range_condition as range_condition
     from liehom.homogeneous import relative_invariant as relative_invariant
+    from liehom.integrators import RKMK as RKMK
     from liehom.integrators import BackwardEuler as BackwardEuler
+    from liehom.integrators import CommutatorFree4 as CommutatorFree4
+    from liehom.integrators import CrouchGrossman3 as CrouchGrossman3
     from liehom.integrators import Euler as Euler
     from liehom.integrators import Heun as Heun
     from liehom.integrators import LieTaylor as LieTaylor
-    from liehom.integrators import Tableau as Tableau
     from liehom.integrators import Solution as Solution
+    from liehom.integrators import Tableau as Tableau
     from liehom.integrators import integrate as integrate
     from liehom.integrators import tableau as tableau
     from liehom.io import dump as dump
@@ -126,7 +129,9 @@ _NAMES = {
     "liehom.homogeneous": (
         "Action Cayley Exponential GeneratorField failure_cone orbit_types range_condition relative_invariant"
     ),
-    "liehom.integrators": "BackwardEuler Euler Heun LieTaylor Solution Tableau integrate tableau",
+    "liehom.integrators": (
+        "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau integrate tableau"
+    ),
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"
