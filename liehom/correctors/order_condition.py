@@ -290,6 +290,8 @@ def _read_point(representation: Representation, m: Any) -> tuple[Any, Any]:
     dimensions = np.empty(point.shape[:-1], dtype=int)
     for index in np.ndindex(dimensions.shape):
         dimensions[index] = representation.orbit_dimension(made[index])
+        if dimensions[index] == 0:
+            raise InputError(f"the group leaves the point {made[index]} fixed: its orbit has dimension 0")
     return made, dimensions
 
 
