@@ -142,7 +142,7 @@ def test_a_run_that_stops_early_is_exit_1_and_keeps_what_it_has() -> None:
     file = variant(generator=["1/(1/2 - t)", "0", "0"], base="euler", order=3, dt=None)
     result = liehom("integrate", file, "--max-steps", "50")
     assert result.exit_code == 1
-    assert "More than 50 steps" in result.stdout
+    assert "\n50 steps. The end was not reached" in result.stdout
     data = json_of(liehom("integrate", file, "--max-steps", "50", "--json", "--force"))
     assert (data["success"], data["n_steps"]) == (False, 50)
     with np.load("variant.npz") as kept:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 ROWS = 11
 COLUMNS = 4
 ROUND_OFF = 1e-13
-FORMS_UP_TO = 30
+FORMS_UP_TO = 50
 """Invariant forms are looked for in representations of at most this dimension."""
 
 
