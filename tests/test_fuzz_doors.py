@@ -328,6 +328,8 @@ TERMS = st.recursive(
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 @given(st.lists(TERMS, min_size=3, max_size=3), st.sampled_from(["lietaylor", "euler", "rk4", "backward euler"]))
+@example(["m0", "m2 + sqrt(m0)", "m0"], "euler")
+@example(["0", "0", "t" + " + m0*t" * 2000], "lietaylor")
 @settings(max_examples=60)
 def test_any_generator_is_integrated_or_refused(texts: list[str], base: str) -> None:
     data = {**FILES["rigid_body"], "generator": texts, "base": base, "order": 3, "t_span": [0, 1], "dt": 0.2}
