@@ -2,7 +2,7 @@
 
 For a step with defects d_k = |[t^k](F - step)| the step size is the largest h with d_k h^k within the tolerance and
 below a share of the way |X| h that is made (so that the series is used where it converges, next to equilibria too);
-for an embedded pair the step is taken, judged, and repeated where it was too large.  Imports correctors.
+for an embedded pair the step is taken, judged, and repeated where it was too large.  Imports correctors, errors.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import Generator, LocalStep
+from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action
 
 SAFETY = 0.9
@@ -21,6 +22,7 @@ LARGEST_GROWTH = 5.0
 SMALLEST_SHRINK = 0.2
 ERROR_TERMS = 2
 SHARE = 0.1
+MOST_TRIALS = 200
 FINEST = 10.0
 
 
@@ -124,3 +126,44 @@ def next_size(h: Any, ratio: Any, order: int) -> Any:
     safe = np.where(ratio > 0, ratio, 1.0)
     factor = np.where(ratio > 0, SAFETY * safe ** (-1 / order), LARGEST_GROWTH)
     return h * np.clip(factor, SMALLEST_SHRINK, LARGEST_GROWTH)
+
+
+def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
+    """For which trajectories the equations of an implicit step of size h have no solution, bool (...,).
+
+    They are tried group by group, with h = 0 for the others; psi is still called on the whole ensemble.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def factors(h):
+    ...     if np.any(h > 1):
+    ...         raise ConvergenceError("too large")
+    ...     return (h,)
+    >>> unsolvable(LocalStep(factors), np.array([0.5, 2.0, 0.7]), np.array([True, True, True])).tolist()
+    [False, True, False]
+    """
+    found = np.zeros(np.size(h), dtype=bool)
+    groups, trials = [np.flatnonzero(where)], 0
+    while groups:
+        group = groups.pop()
+        chosen = np.zeros(np.size(h), dtype=bool)
+        chosen[group] = True
+        # of the first group it is known
+        if trials and _is_solvable(local, np.where(chosen.reshape(np.shape(h)), h, 0)):
+            trials += 1
+        elif len(group) <= 1 or trials > MOST_TRIALS:
+            found[group] = True
+        else:
+            trials += 1
+            groups += [group[: len(group) // 2], group[len(group) // 2 :]]
+    # a group may fail although its halves do not: the equations are iterated together
+    return found.reshape(np.shape(h)) if bool(found.any()) else where
+
+
+def _is_solvable(local: LocalStep, h: Any) -> bool:
+    try:
+        local.factors(h[..., None])
+    except ConvergenceError:
+        return False
+    return True

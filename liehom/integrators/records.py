@@ -119,13 +119,14 @@ class Account:
         worse = active & (found.residual > seen["residual"])
         if bool(worse.any()):
             seen["residual"] = np.where(worse, found.residual, seen["residual"])
-        less = moving & (found.rank < seen["rank"])
+        rank, singular = found.rank, found.singular_value
+        less = moving & (rank < seen["rank"])
         if bool(less.any()):
-            seen["rank"] = np.where(less, found.rank, seen["rank"])
-        lower = moving & (found.singular_value < seen["singular"])
+            seen["rank"] = np.where(less, rank, seen["rank"])
+        lower = moving & (singular < seen["singular"])
         if bool(lower.any()):
-            self._note_where(np.where(lower, found.singular_value, np.inf), t, m)
-            seen["singular"] = np.where(lower, found.singular_value, seen["singular"])
+            self._note_where(np.where(lower, singular, np.inf), t, m)
+            seen["singular"] = np.where(lower, singular, seen["singular"])
         self._seen = seen
 
     def _note_where(self, lowest: Any, t: Any, m: Any) -> None:

@@ -2,12 +2,12 @@
 
 All trajectories are stepped together, each with its own time, clock and step size.  One that has ended takes steps of
 size 0 from its start, where psi is known to be finite.
-Imports checkpoint, clock, control, dense, events, options, progress, records, solution, correctors, errors.
+Imports checkpoint, clock, control, dense, events, options, progress, records, solution, state, correctors,
+errors.
 """
 
 from __future__ import annotations
 
-import re
 import time as wall
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,8 +22,18 @@ from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators import checkpoint as files
+from liehom.integrators import state
 from liehom.integrators.clock import SLACK, fitted, has_clock, size_for
-from liehom.integrators.control import ERROR_TERMS, Tolerance, defects_of, length, next_size, size_from_defects
+from liehom.integrators.control import (
+    ERROR_TERMS,
+    SMALLEST_SHRINK,
+    Tolerance,
+    defects_of,
+    length,
+    next_size,
+    size_from_defects,
+    unsolvable,
+)
 from liehom.integrators.dense import DenseSolution
 from liehom.integrators.events import Events
 from liehom.integrators.options import (
@@ -45,6 +55,8 @@ from liehom.integrators.solution import Solution
 
 GROWTH = 8.0
 FIRST = 0.01
+WITH_EVENTS = 0.5
+"""Events are seen at the ends of steps: where there are some, a step moves a point by at most half its size."""
 
 
 @final
@@ -89,7 +101,7 @@ class Run:
         self.ended_at = self.t
         self.h = np.full(self.shape, options.first_step or np.inf, dtype=self.dtype)
         self.taken = np.zeros(self.shape, dtype=int)
-        self.tried: Any = self.h
+        self.tried: tuple[LocalStep, Any] | None = None
         self.tolerance = Tolerance(options.rtol, options.atol)
         self.tiny = 8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))
         self.total = None if options.dt is None else self._number_of_steps(options.dt)
@@ -133,24 +145,24 @@ class Run:
         return solution
 
     def _execute_with_checkpoints(self, progress: Progress, path: File) -> None:
-        fingerprint = self._fingerprint()
+        fingerprint = state.fingerprint(self)
         if path.exists():
-            self._restore(files.load(path, fingerprint))
-        mark, due = self._mark(), wall.monotonic() + self.options.checkpoint_every
+            state.restore(self, files.load(path, fingerprint))
+        mark, due = state.mark(self), wall.monotonic() + self.options.checkpoint_every
         try:
             while self.active.any():
-                mark = self._mark()
+                mark = state.mark(self)
                 self.advance()
                 progress.update(self._fraction)
                 if wall.monotonic() >= due:
                     begin = wall.monotonic()
-                    files.save(path, fingerprint, self._state())
+                    files.save(path, fingerprint, state.arrays(self))
                     # a long history takes long to write: at most a tenth of the time goes into it
                     cost = wall.monotonic() - begin
                     due = begin + cost + max(self.options.checkpoint_every, 10 * cost)
         except BaseException:
-            self._back_to(mark)
-            files.save(path, fingerprint, self._state())
+            state.back_to(self, mark)
+            files.save(path, fingerprint, state.arrays(self))
             raise
 
     def _fraction(self) -> float:
@@ -160,10 +172,12 @@ class Run:
 
     def advance(self) -> None:
         """One step of all active trajectories."""
+        active = self.active
         try:
             move = self._proposed()
         except (np.linalg.LinAlgError, ConvergenceError) as error:
-            self._diagnose(error)
+            if np.array_equal(active, self.active):  # else the step is tried again without those that failed
+                self._diagnose(error)
             return
         if not move.moves.any():
             return
@@ -178,23 +192,28 @@ class Run:
 
     def _proposed(self) -> Move:
         """A step of the right size, where it is accepted."""
-        adaptive = self.options.dt is None
+        adaptive, self.tried = self.options.dt is None, None
         local = self.step.at(
             self.action, self.psi, self.m, self.t[..., None], error_terms=ERROR_TERMS if adaptive else 0
         )
         estimate = getattr(local, "estimate", None) if adaptive else None
         size = self._size(local, estimate is not None) if adaptive else self.options.dt
         h, after, last = self._fitted(local, size)
-        self.tried = h
+        self.tried = local, h
         made = apply_factors(self.action, local.factors(h[..., None]), self.m)
         moves = self.active
         if estimate is not None:
             moves = moves & self._judged(estimate(h[..., None]), h, local.estimate_order)  # type: ignore[attr-defined]
         elif adaptive:
             self.h = GROWTH * np.abs(h)
+        if isinstance(local, CorrectedStep):
+            _ = local.correction.singular_value  # computed when it is asked for, and fails where psi is not finite
         good = np.isfinite(made).all(axis=-1)
         if not good.all():
-            self._fail_by_psi(moves & ~good, NOT_FINITE)
+            if adaptive:
+                self.h = np.where(good, self.h, np.abs(h) * SMALLEST_SHRINK)
+            else:
+                self._fail_by_psi(moves & ~good, NOT_FINITE)
             moves = moves & good
         if not moves.all():
             h, after = np.where(moves, h, 0), np.where(moves, after, self.t)
@@ -206,26 +225,28 @@ class Run:
         """The step size that the tolerance asks for, positive, (...,)."""
         left = np.abs(self.end - self.t)
         bound = np.minimum(self.options.max_step, 2 * left)  # not left: the clock may be slow
-        if embedded:
-            if np.isinf(self.h).any():
-                self.h = np.where(np.isinf(self.h), np.minimum(bound, FIRST * self._time_scale()), self.h)
-            h = np.minimum(self.h, bound)
-        else:
-            velocity = self.psi.field.vector(self.m, self.t)
+        first = embedded and bool(np.isinf(self.h).any())
+        scale = np.inf if embedded and not first and self.events is None else self._time_scale()
+        if self.events is not None:
+            bound = np.minimum(bound, WITH_EVENTS * scale)
+        if first:
+            self.h = np.where(np.isinf(self.h), np.minimum(bound, FIRST * scale), self.h)
+        h = np.minimum(self.h, bound)
+        if not embedded:
             defects = defects_of(self.action, self.psi, local, self.m, self.t, self.step.order)
-            bound = np.minimum(bound, self.h)
-            h = size_from_defects(defects, self.tolerance.norm(self.m), length(velocity), bound)
-            h = h.astype(self.dtype)
+            speed = length(self.m) / scale
+            h = size_from_defects(defects, self.tolerance.norm(self.m), speed, h).astype(self.dtype)
         small = self.active & ~(h >= np.minimum(self.tiny, left))
         if small.any():
+            self._fail(small & np.isnan(h), PSI)
             self._fail_by_psi(small, TOO_SMALL)
             h = np.where(self.active, h, 0)
         return h
 
     def _time_scale(self) -> Any:
-        """|m| / |X|."""
+        """|m| / |X|, (...,)."""
         speed = length(self.psi.field.vector(self.m, self.t))
-        return np.where(speed > 0, length(self.m) / np.where(speed > 0, speed, 1.0), np.inf)
+        return length(self.m) / speed
 
     def _fitted(self, local: LocalStep, size: Any) -> tuple[Any, Any, Any]:
         """Signed step sizes that end at the end, the times after them, and which steps are the last."""
@@ -235,7 +256,7 @@ class Run:
             h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
             last = last & self.active
             if not runs.all():
-                self._fail(self.active & ~runs, CLOCK)
+                self._fail_by_psi(self.active & ~runs, CLOCK)
                 h, last = np.where(self.active, h, 0), last & self.active
             return h, np.where(last, self.end, self.t + np.where(self.active, passed, 0)), last
         if self.total is None:
@@ -333,11 +354,13 @@ class Run:
     def _diagnose(self, error: Exception) -> None:
         """A step could not be computed: find out for which trajectories, or take smaller steps."""
         if isinstance(error, ConvergenceError):
-            sizes = np.abs(self.tried)
-            if self.total is None and np.any(self.active & (sizes > 2 * self.tiny)):
-                self.h = sizes / 2
-            else:
-                self._fail(self.active, IMPLICIT)
+            if self.tried is None:
+                raise error
+            where = self.active & unsolvable(*self.tried, self.active)
+            sizes = np.abs(self.tried[1])
+            can_shrink = (sizes > 2 * self.tiny) & (self.total is None)
+            self.h = np.where(where, sizes / 2, self.h)
+            self._fail(where & ~can_shrink, IMPLICIT)
             return
         bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
         if not bad.any():
@@ -348,58 +371,6 @@ class Run:
             self._fail(bad, PSI)
         else:
             self._fail(self.active, LINEAR)
-
-    def _mark(self) -> tuple[Any, ...]:
-        """The state between two steps, cheaply: arrays are replaced, never written into."""
-        kept = {name: getattr(self, name) for name in _REPLACED}
-        done = None if self.samples is None else self.samples.done
-        return kept, len(self.path), self.account.arrays(), self.found.occurrences, len(self.found.rows), done
-
-    def _back_to(self, mark: tuple[Any, ...]) -> None:
-        """Undo what an interrupted step has done."""
-        kept, points, account, self.found.occurrences, rows, done = mark
-        for name, value in kept.items():
-            setattr(self, name, value)
-        self.path.cut(points)
-        del self.found.rows[rows:]
-        self.account.restore(account)
-        if self.samples is not None:
-            self.samples.done = done
-
-    def _fingerprint(self) -> str:
-        """What tells this problem from others: numbers, texts, and psi at the start and next to it."""
-        o, events = self.options, self.events
-        texts = f"{re.sub(' at 0x[0-9a-f]+', '', repr(self.step))} {self.action.exponential.name} {o.texts()}"
-        texts += "" if events is None else f" {events.directions} {events.terminal}"
-        matrices = [a.to_numpy() for a in self.field.representation.matrices]
-        here = np.asarray(self.field.psi(self.m, self.t))
-        ahead = 1e-3 * (self.end - self.span[0])
-        near = self.action.act((ahead * here).astype(self.dtype), self.m)
-        there = np.asarray(self.field.psi(near, self.t + ahead))
-        numbers = [np.array(self.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
-        return files.digest(texts, self.m, *numbers, *matrices, here, there, *self.before)
-
-    def _state(self) -> dict[str, Any]:
-        """All that `_restore` needs, as arrays."""
-        state = {name: np.asarray(getattr(self, name)) for name in _REPLACED if name != "before"}
-        state |= {f"before_{i}": g for i, g in enumerate(self.before)}
-        for part, record in self._records().items():
-            state |= {f"{part}_{name}": value for name, value in record.arrays().items()}
-        return state
-
-    def _restore(self, state: dict[str, Any]) -> None:
-        for name in _REPLACED:
-            if name != "before":
-                setattr(self, name, state[name])
-        self.calls = int(self.calls)
-        self.before = [state[f"before_{i}"] for i in range(len(self.before))]
-        for part, record in self._records().items():
-            start = f"{part}_"
-            record.restore({name[len(start) :]: x for name, x in state.items() if name.startswith(start)})
-
-    def _records(self) -> dict[str, Any]:
-        found = {"path": self.path, "account": self.account, "found": self.found}
-        return found if self.samples is None else {**found, "samples": self.samples}
 
     def _solution(self) -> Solution:
         o = self.options
@@ -441,6 +412,3 @@ class Run:
             shown = index[0] if len(index) == 1 else index
             message += f", trajectory {shown}; {len(failed)} of {self.code.size} failed"
         return message + "."
-
-
-_REPLACED = ("t", "m", "active", "code", "ended_at", "h", "taken", "tried", "calls", "before")

@@ -222,5 +222,5 @@ def _card_entry(value: Any, indent: int) -> str:
 
 def _occurrences(found: Any) -> str:
     """How often an event occurred."""
-    times = found if found.dtype != object else np.concatenate([np.zeros(0), *found.reshape(-1)])
-    return f"{len(times)} time{'' if len(times) == 1 else 's'}"
+    count = len(found) if found.dtype != object else sum(len(times) for times in found.reshape(-1))
+    return f"{count} time{'' if count == 1 else 's'}"
