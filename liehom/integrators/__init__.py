@@ -2,18 +2,22 @@
 
 In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutta method that proves its order),
 `collocation` (methods made from their nodes), `tableaux` (the classical ones by name); `steps`, `rkmk`, `products`
-(steps of Lie group methods).
+(steps of Lie group methods); `integration`; `reference`, `orbit_error`, `convergence` (measured orders).
 """
 
 from liehom.integrators.collocation import collocation as collocation
 from liehom.integrators.collocation import gauss as gauss
+from liehom.integrators.convergence import observed_order as observed_order
+from liehom.integrators.convergence_table import ConvergenceTable as ConvergenceTable
 from liehom.integrators.dense import DenseSolution as DenseSolution
 from liehom.integrators.integration import integrate as integrate
+from liehom.integrators.orbit_error import orbit_distance as orbit_distance
 from liehom.integrators.order_conditions import Violation as Violation
 from liehom.integrators.products import CommutatorFree4 as CommutatorFree4
 from liehom.integrators.products import CrouchGrossman3 as CrouchGrossman3
 from liehom.integrators.products import ProductStep as ProductStep
 from liehom.integrators.products import Scheme as Scheme
+from liehom.integrators.reference import Reference as Reference
 from liehom.integrators.rkmk import RKMK as RKMK
 from liehom.integrators.rkmk import EmbeddedStep as EmbeddedStep
 from liehom.integrators.rooted_trees import RootedTree as RootedTree
