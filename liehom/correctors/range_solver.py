@@ -73,11 +73,14 @@ class RangeSolver:
         self._frame, self._leading, self._weight = frame, leading, weight
         self._size, unit = _normalized(xp, velocity)
         self._down = xp.swapaxes(frame.tangent, -1, -2)
-        moved = action.infinitesimal(xp.swapaxes(frame.basis, -1, -2), unit[..., None, :])
+        self._basis = frame.basis
+        if unit.dtype == np.longdouble:
+            self._basis = _polished(frame.basis, action.inner_product.matrix)
+        moved = action.infinitesimal(xp.swapaxes(self._basis, -1, -2), unit[..., None, :])
         self._moves = factor * (self._down @ xp.swapaxes(moved, -1, -2))
         self._unit = _apply(self._down, unit)
         self._cutoff = factor * RANK_RTOL * action.size
-        self._inverse, self._square_inverse = _pseudo_inverse(xp, self._moves, self._cutoff)
+        self._inverse = _pseudo_inverse(xp, self._moves, self._cutoff)
         self._reaching = self._generator(self._unit)  # M^+ u
         rest = self._unit - _apply(self._moves, self._reaching)
         square = xp.sum(rest * rest, axis=-1, keepdims=True)
@@ -112,7 +115,7 @@ class RangeSolver:
         moved = target + self._leading * c[..., None] * self._unit
         zeta = self._generator(moved)
         residual = moved - _apply(self._moves, zeta)
-        return _apply(self._frame.basis, zeta), c, _apply(self._frame.tangent, residual * self._size)
+        return _apply(self._basis, zeta), c, _apply(self._frame.tangent, residual * self._size)
 
     def _clock(self, target: Any) -> Any:
         c = -self._xp.sum(self._rest * target, axis=-1) / self._leading
@@ -126,12 +129,22 @@ class RangeSolver:
 
     def _generator(self, target: Any) -> Any:
         """M^+ r, in the basis of the frame."""
-        found = _apply(self._inverse, target)
-        if target.dtype == np.longdouble:
-            back = np.swapaxes(self._moves, -1, -2)
-            for _ in range(REFINEMENTS):
-                found = found + _apply(back, _apply(self._square_inverse, target - _apply(self._moves, found)))
+        if target.dtype != np.longdouble:
+            return _apply(self._inverse, target)
+        # M^T G^2 M M^T with G = (M M^T)^+ is M^+ in whatever precision G is known: it ends in the range of M^T, and
+        # rests where M^T (r - M y) = 0
+        turned = np.swapaxes(self._moves, -1, -2)
+        found = np.zeros((*np.broadcast_shapes(target.shape[:-1], turned.shape[:-2]), turned.shape[-2]), target.dtype)
+        for _ in range(REFINEMENTS):
+            left = _apply(self._moves, _apply(turned, target - _apply(self._moves, found)))
+            found = found + _apply(turned, _apply(self._inverse, left))
         return found
+
+
+def _polished(basis: Any, gram: Any) -> Any:
+    """A basis that is orthonormal to double precision, orthonormal to that of extended floats."""
+    square = np.swapaxes(basis, -1, -2) @ gram @ basis
+    return basis @ (1.5 * np.eye(basis.shape[-1], dtype=basis.dtype) - square / 2)
 
 
 def _apply(matrix: Any, vector: Any) -> Any:
@@ -160,20 +173,18 @@ def _single(x: Any) -> Any:
     return x.astype(np.float64) if x.dtype == np.longdouble else x
 
 
-def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float) -> tuple[Any, Any]:
-    """M^+ (..., s, d), and for extended floats (M M^T)^+, with which M^+ is refined."""
+def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float) -> Any:
+    """M^+ (..., s, d); for extended floats ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
     turned = xp.swapaxes(matrix, -1, -2)
     if matrix.shape[-1] == 0:
-        return turned, None
-    if matrix.shape[-1] == 1 and matrix.dtype != np.longdouble:  # a column, as on every two-dimensional orbit
+        return turned
+    extended = matrix.dtype == np.longdouble
+    if matrix.shape[-1] == 1 and not extended:  # a column, as on every two-dimensional orbit of so(3)
         square = xp.sum(matrix * matrix, axis=-2, keepdims=True)
         kept = square > cutoff * cutoff
-        return xp.where(kept, turned / xp.where(kept, square, 1.0), 0.0), None
+        return xp.where(kept, turned / xp.where(kept, square, 1.0), 0.0)
     left, values, right = xp.linalg.svd(_single(matrix), full_matrices=False)
     kept = values > cutoff
     inverse = xp.where(kept, 1 / xp.where(kept, values, 1.0), 0.0)[..., None, :]
-    back = xp.swapaxes(left * kept[..., None, :], -1, -2)
-    if matrix.dtype != np.longdouble:
-        return (xp.swapaxes(right, -1, -2) * inverse) @ back, None
-    square_inverse = (left * inverse**2) @ back
-    return turned @ square_inverse, square_inverse
+    back = xp.swapaxes(left, -1, -2)
+    return (left * inverse**4) @ back if extended else (xp.swapaxes(right, -1, -2) * inverse) @ back

@@ -97,10 +97,12 @@ class Tower:
         # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
         self.leading = np.ones(self.shape, dtype=int) if is_jax(m) else leading_order(self.flow, total)
         self.parts = self._split(0.5 if one_exponential else 1.0, weight)
-        if field.time_dependent:
-            self.active = self.xp.ones(self.shape, dtype=bool)
-        else:
-            self.active = ~vanishing(self.flow, 1) if is_jax(m) else self.xp.asarray(self.leading > 0)
+        # None is all of them, which spares masks
+        self.active: Any = None
+        if is_jax(m) and not field.time_dependent:
+            self.active = ~vanishing(self.flow, 1)
+        elif not field.time_dependent and not bool(np.all(self.leading)):
+            self.active = self.leading > 0
         self.levels = 0 * self.xp.asarray(self.leading)
         self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
         self.defects: list[tuple[int, Any]] = []
@@ -134,15 +136,15 @@ class Tower:
         difference = self.difference(n)
         changed: dict[int, Any] = {}
         for part in self.parts:
-            here = self.active if part.here is None else self.active & part.here
+            here = _both(self.active, part.here)
             if part.solver is None or n <= part.leading:
                 self._complete(changed, n, here, difference)
-                self.levels = self.xp.where(here, n, self.levels)
+                self._reach(n, here)
                 continue
             own = difference if part.share is None else part.share[..., None] * difference
             zeta, c, residual = part.solver.solve(own)
             _add(changed, n - part.leading, _masked(self.xp, here, zeta))
-            self.clock.set(n - part.leading + 1, self.xp.where(here, c, 0.0))
+            self.clock.set(n - part.leading + 1, c if here is None else self.xp.where(here, c, 0.0))
             if part.share is not None:
                 self._complete(changed, n, here, difference - own)
             self._judge(n, here, difference, residual)
@@ -158,18 +160,30 @@ class Tower:
         made = lifted(self.action, self.frame, self.m, difference)
         _add(changed, n, _masked(self.xp, here, made))
 
+    def _reach(self, n: int, where: Any) -> None:
+        self.levels = 0 * self.levels + n if where is None else self.xp.where(where, n, self.levels)
+
     def _judge(self, n: int, here: Any, difference: Any, residual: Any) -> None:
         """Record the residual; where the system was not solved, the order stays and no more is corrected."""
         xp = self.xp
-        left, size = norm(xp, residual), norm(xp, difference)
-        relative = xp.where(here, left / xp.where(size > 0, size, 1.0), 0.0)
-        if is_jax(relative) or bool(np.any(relative > SOLVED_RTOL)):
-            relative = xp.where(left > round_off(self.action, self.m, self.flow, self._factors, n), relative, 0.0)
+        largest = xp.max(xp.abs(difference), axis=-1)
+        scale = xp.where(largest > 0, largest, 1.0)
+        relative = xp.max(xp.abs(residual), axis=-1) / scale
+        if is_jax(relative) or bool(np.any(relative > SOLVED_RTOL / 10)):
+            # scaled, so that squares do not underflow
+            left = norm(xp, residual / scale[..., None])
+            relative = left / xp.maximum(norm(xp, difference / scale[..., None]), 1.0)
+            relative = _masked(xp, here, relative[..., None])[..., 0]
+            noise = round_off(self.action, self.m, self.flow, self._factors, n)
+            relative = xp.where(left * scale > noise, relative, 0.0)
+            solved = relative <= SOLVED_RTOL
+            self.defects.append((n, xp.where(solved, 0.0, left * scale)))
+            self._reach(n, _both(here, solved))
+            self.active = solved if here is None else _both(self.active, solved | ~here)
+        else:
+            self.defects.append((n, xp.zeros_like(relative)))
+            self._reach(n, here)
         self.residual = xp.maximum(self.residual, relative)
-        solved = relative <= SOLVED_RTOL
-        self.defects.append((n, xp.where(here & ~solved, left, 0.0)))
-        self.levels = xp.where(here & solved, n, self.levels)
-        self.active = self.active & (solved | ~here)
 
 
 def with_correction(factors: tuple[Any, ...], zeta: Jet | None, one_exponential: bool) -> tuple[Any, ...]:
@@ -212,6 +226,11 @@ def round_off(action: Action, m: Any, flow: Flow, factors: tuple[Any, ...], n: i
 
 def _add(changed: dict[int, Any], k: int, value: Any) -> None:
     changed[k] = value if k not in changed else changed[k] + value
+
+
+def _both(a: Any, b: Any) -> Any:
+    """a and b, where None is everywhere."""
+    return b if a is None else a if b is None else a & b
 
 
 def _masked(xp: Any, here: Any, value: Any) -> Any:
