@@ -27,13 +27,29 @@ class Corrected(Step):
         n. For n = p + 1 this is Theorem 5; for more it is the tower: p + 1, p + 2, ..., n. For n <= p nothing is
         corrected.
     weight : float, optional
-        Which of several corrections: that of least |zeta|^2 + weight^2 c^2. None (default) is infinite: the least
-        change of the clock, then the least zeta.
+        Which of several corrections at each order: that of least |zeta|^2 + weight^2 c^2. None (default) is
+        infinite: the least change of the clock, then the least zeta.
 
     Raises
     ------
     InputError
         If the order is less than 1, the weight not positive, or the step is itself corrected.
+
+    Notes
+    -----
+    Along the step's own clock the trajectory, not only the orbit, has order n, at every point where the range
+    condition (6.2) holds; where a linear system has no solution the order stays what it was and the residual says so.
+
+    A field psi(m, t) may vanish at some time t_0, as t f(m) does at 0. Isotropy and clock then serve at t_0 itself
+    (leading order l > 1), but shortly after it they are series in h / (t - t_0): by isotropy alone the global order
+    through such a point is 2 for Euler's base, 3 for Heun's, 4 for LieTaylor(3) and 5 for RKMK("rk4"), one more than
+    the base has, for any n (measured on S^2; 2, 2.9, 4 and 5). Therefore a smooth share of each correction is left
+    to terms of the flow's own generator there (`liehom.correctors.completion`), and the order is n again: 4.0, 4.0,
+    5.0 and 5.0 were measured for n = 4, 4, 5, 5 with steps from t_0 = 0 and across it. Away from zeros the share of
+    isotropy is 1, and for autonomous fields it is 1 everywhere.
+
+    Next to equilibria of an autonomous field the corrections stay bounded; points that are equilibria up to
+    round-off stay where they are.
 
     Examples
     --------
