@@ -30,6 +30,13 @@ class Generator:
     field : GeneratorField
     orbit_dimension : int or array of shape (...,)
         Of the orbits of the trajectories; constant along each.
+    start : array of shape (..., N), optional
+        Where the run began.
+
+    Attributes
+    ----------
+    prepared : dict
+        What steps have derived from field and start, computed once: by the step, nothing else.
 
     Examples
     --------
@@ -40,11 +47,13 @@ class Generator:
     [[1.0], [2.0], [3.0]]
     """
 
-    __slots__ = ("field", "orbit_dimension")
+    __slots__ = ("field", "orbit_dimension", "prepared", "start")
 
-    def __init__(self, field: GeneratorField, orbit_dimension: Any) -> None:
+    def __init__(self, field: GeneratorField, orbit_dimension: Any, start: Any = None) -> None:
         self.field = field
         self.orbit_dimension = orbit_dimension
+        self.start = start
+        self.prepared: dict[Any, Any] = {}
 
     def __call__(self, m: Any, t: Any) -> Any:
         return self.field.psi(m, t[..., 0] if np.ndim(t) else t)

@@ -92,7 +92,7 @@ class Run:
         self.action, self.step, self.options = action, step, options
         self.calls = 0
         self.field = psi.field
-        self.psi = Generator(self._counted(psi.field), psi.orbit_dimension)
+        self.psi = Generator(self._counted(psi.field), psi.orbit_dimension, start)
         self.span, self.start, self.shape, self.dtype = span, start, start.shape[:-1], start.dtype
         self.end, self.direction = span[1], self.dtype.type(1 if span[1] >= span[0] else -1)
         self.t, self.m = np.full(self.shape, span[0], dtype=self.dtype), start
@@ -377,7 +377,7 @@ class Run:
         times, points, sizes = self.path.compact()
         dense = None
         if o.dense_output:
-            psi = Generator(self.field, self.psi.orbit_dimension)
+            psi = Generator(self.field, self.psi.orbit_dimension, self.start)
             dense = DenseSolution(self.action, psi, self.step, times, points, sizes, nominal=o.nominal)
         if self.samples is None:
             t, y = np.moveaxis(times, 0, -1), np.moveaxis(points, 0, -1)
