@@ -44,8 +44,10 @@ if TYPE_CHECKING:
     from liehom.correctors import Corrected as Corrected
     from liehom.correctors import OneExponential as OneExponential
     from liehom.correctors import Step as Step
+    from liehom.correctors import closed_form as closed_form
     from liehom.correctors import correction as correction
     from liehom.correctors import flow_series as flow_series
+    from liehom.correctors import order_condition as order_condition
     from liehom.correctors import step_series as step_series
     from liehom.fullness import Certificate as Certificate
     from liehom.fullness import Full as Full
@@ -74,6 +76,7 @@ if TYPE_CHECKING:
     from liehom.integrators import Solution as Solution
     from liehom.integrators import Tableau as Tableau
     from liehom.integrators import integrate as integrate
+    from liehom.integrators import observed_order as observed_order
     from liehom.integrators import tableau as tableau
     from liehom.io import dump as dump
     from liehom.io import from_json as from_json
@@ -121,7 +124,9 @@ _NAMES = {
         "semidirect_sum simple sl so sp su u"
     ),
     "liehom.catalog": "pair",
-    "liehom.correctors": "Corrected OneExponential Step correction flow_series step_series",
+    "liehom.correctors": (
+        "Corrected OneExponential Step closed_form correction flow_series order_condition step_series"
+    ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
         "NumericallyNotFull verify_certificate"
@@ -130,7 +135,8 @@ _NAMES = {
         "Action Cayley Exponential GeneratorField failure_cone orbit_types range_condition relative_invariant"
     ),
     "liehom.integrators": (
-        "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau integrate tableau"
+        "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau "
+        "integrate observed_order tableau"
     ),
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
