@@ -24,6 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
 FULL, NOT_FULL, FLOAT = (str(EXAMPLES / f"{name}.json") for name in ("so4_so3", "so31_so21", "so4_so3_float"))
 SYM3 = str(EXAMPLES / "sym3.json")
+COMMANDS = ("fullness", "verify", "isotropy", "range", "integrate", "order", "catalog", "demo")
 
 
 def liehom(*words: str) -> Result:
@@ -300,21 +301,51 @@ def test_plain_output_without_a_terminal() -> None:
 def test_help_and_version() -> None:
     listed = liehom("--help")
     assert listed.exit_code == 0
-    assert all(word in listed.stdout for word in ("fullness", "verify", "isotropy", "range", "catalog", "demo"))
+    assert all(word in listed.stdout for word in COMMANDS)
     assert liehom("--version").stdout.strip() == f"liehom {lh.__version__}"
 
 
 # -- demo ------------------------------------------------------------------------------------------------
-def test_demo_runs_on_the_example_files() -> None:
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_demo_runs_on_the_example_files_and_ends_with_a_picture(elsewhere: Path) -> None:
     result = liehom("demo")
     assert result.exit_code == 0, result.output
     for expected in ("g2_su3", "not full", "witness, verified", "QQ(sqrt(2))", "equilibrium", "diag(1, 1, 2)"):
         assert expected in result.stdout
+    assert "Corrected(Euler(), order=4)" in result.stdout
+    assert "order 4 NOT reached: the order stays 1" in result.stdout
+    assert "Picture of these errors: liehom-demo.png" in result.stdout
+    assert (elsewhere / "liehom-demo.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_demo_json() -> None:
-    verdicts = json_of(liehom("demo", "--json"))["verdicts"]
-    assert {v["file"]: v["full"] for v in verdicts}["so31_so21.json"] is False
+def test_demo_without_matplotlib_says_how_to_get_it(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("liehom.cli.demo.can_draw", lambda: False)
+    result = liehom("demo")
+    assert result.exit_code == 0, result.output
+    assert "pip install 'liehom[plot]'" in result.stdout
+    assert list(elsewhere.iterdir()) == []
+
+
+def test_demo_where_no_picture_can_be_written(elsewhere: Path) -> None:
+    (elsewhere / "liehom-demo.png").mkdir()
+    result = liehom("demo")
+    assert result.exit_code == 0, result.output
+    assert "No picture of this" in result.stdout
+
+
+def test_demo_json(elsewhere: Path) -> None:
+    data = json_of(liehom("demo", "--json"))
+    assert {v["file"]: v["full"] for v in data["verdicts"]}["so31_so21.json"] is False
+    orders = [(run["file"], run["orbit_order"], run["trajectory_order"]) for run in data["integration"]]
+    assert [file for file, *_ in orders] == ["rigid_body.json", "rigid_body.json", "sym3_generic.json"]
+    assert [round(orbit) for _, orbit, _ in orders] == [1, 4, 1]
+    assert all(abs(orbit - trajectory) < 0.1 for _, orbit, trajectory in orders)
+    assert data["picture"] == "liehom-demo.png"
 
 
 # -- time from the shell, interpreter included -----------------------------------------------------------

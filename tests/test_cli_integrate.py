@@ -156,6 +156,74 @@ def test_what_overflows_is_a_message_and_no_warning() -> None:
     assert result.stderr == ""
 
 
+# -- order -----------------------------------------------------------------------------------------------
+def test_order_prints_the_table() -> None:
+    result = liehom("order", RIGID, "--base", "euler", "--order", "3", "--t-span", "0", "2", "--dt", "0.1,1/20,0.025")
+    assert result.exit_code == 0, result.output
+    assert result.stderr == ""
+    lines = result.stdout.splitlines()
+    assert lines[0].startswith("Corrected(Euler(), order=3) with exp (Rodrigues), clock corrected, t = 0 to 2")
+    assert [line.split()[0] for line in lines[2:5]] == ["0.1", "0.05", "0.025"]
+    assert written() == []
+
+
+@pytest.mark.parametrize(
+    ("file", "words", "orbit", "trajectory"),
+    [
+        (RIGID, ("--base", "euler"), 1, 1),
+        (RIGID, ("--base", "euler", "--order", "4"), 4, 4),
+        (RIGID, ("--base", "euler", "--order", "4", "--clock", "nominal"), 4, 1),
+        (RIGID, ("--base", "rk4"), 4, 4),
+        (RIGID, ("--base", "euler", "--order", "3", "--exponential", "cayley"), 3, 3),
+        (SYM3, (), 1, 1),
+        ("examples/sym3_flow.json", ("--order", "3"), 3, 3),
+        (SPIN, ("--order", "3"), 3, 3),
+    ],
+)
+def test_orders_are_what_they_should_be(file: str, words: tuple[str, ...], orbit: float, trajectory: float) -> None:
+    sizes = ("--t-span", "0", "1", "--dt", "0.05,0.025,0.0125")
+    data = json_of(liehom("order", file, "--json", *sizes, *words))
+    assert data["trajectory_order"] == pytest.approx(trajectory, abs=0.15)
+    assert data["orbit_order"] > orbit - 0.15
+    if file == RIGID:
+        assert data["orbit_order"] == pytest.approx(orbit, abs=0.15)
+    assert [row["dt"] for row in data["rows"]] == [0.05, 0.025, 0.0125]
+    assert data["rows"][0]["orbit_slope"] is None
+
+
+@pytest.mark.parametrize(
+    "sizes", ["", "0.1", "0.1,0.1", "0.1,0", "0.1,-0.05", "0.1,nan", "0.1,x", "0.1,,0.05", "20,10"]
+)
+def test_step_sizes_that_are_none(sizes: str) -> None:
+    refused(liehom("order", RIGID, f"--dt={sizes}"))
+
+
+def test_the_order_of_a_run_that_stands_still() -> None:
+    refused(liehom("order", RIGID, "--t-span", "1", "1"), "t_span")
+
+
+# -- pictures --------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("suffix", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
+def test_pictures_are_drawn(suffix: str, begins: bytes) -> None:
+    picture = f"picture.{suffix}"
+    result = liehom("integrate", RIGID, "--plot", picture)
+    assert result.exit_code == 0, result.output
+    assert result.stdout.endswith(f"picture: {picture}\n")
+    assert Path(picture).read_bytes().startswith(begins)
+    result = liehom("order", RIGID, "--plot", picture, "--t-span", "0", "1", "--dt", "0.1,0.05")
+    assert result.exit_code == 0, result.output
+    assert Path(picture).read_bytes().startswith(begins)
+    assert written() == [picture, "rigid_body.npz"]
+
+
+@pytest.mark.parametrize("words", [("--t-span", "3", "3"), ("--dt", "0.1", "--max-steps", "3"), ("--t-span", "2", "0")])
+def test_pictures_of_odd_runs(words: tuple[str, ...]) -> None:
+    result = liehom("integrate", RIGID, "--plot", "picture.png", "--json", *words)
+    assert result.exit_code in (0, 1)
+    assert json_of(result)["plot"] == "picture.png"
+    assert Path("picture.png").stat().st_size > 1000
+
+
 # -- files -----------------------------------------------------------------------------------------------
 def test_a_file_that_is_there_is_not_overwritten() -> None:
     Path("rigid_body.npz").write_text("mine")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from liehom.cli.guard import YES
@@ -15,6 +15,7 @@ from liehom.io.values import vector
 from liehom.scalars import RR
 
 if TYPE_CHECKING:
+    from liehom.integrators import ConvergenceTable
     from liehom.io import Problem
 
 SIZES = "0.1,0.05,0.025,0.0125"
@@ -61,7 +62,7 @@ def step_sizes(text: str) -> list[float]:
     return sorted(dts, reverse=True)
 
 
-def measured(problem: Problem, dts: list[float]) -> Any:
+def measured(problem: Problem, dts: Sequence[float]) -> ConvergenceTable:
     """The table of `observed_order` for a problem."""
     from liehom.integrators import observed_order
 
@@ -71,6 +72,10 @@ def measured(problem: Problem, dts: list[float]) -> Any:
     return observed_order(problem.field(), start, problem.step(), dts, t_span=t_span, **options)
 
 
-def table_json(table: Any) -> dict[str, Any]:
-    """The fields of a table of orders as JSON."""
-    return {entry.name: plain(getattr(table, entry.name)) for entry in dataclasses.fields(table)}
+def table_json(table: ConvergenceTable) -> dict[str, Any]:
+    """A table of orders as JSON; what means nothing is null."""
+    facts = ("step", "exponential", "clock", "order", "t_span", "reference_accuracy")
+    rows = [{**row._asdict(), "message": text} for row, text in zip(table.rows, table.messages, strict=True)]
+    orbit, trajectory = table.orders
+    made = {"orbit_order": orbit, "trajectory_order": trajectory, **{key: getattr(table, key) for key in facts}}
+    return {key: plain(value) for key, value in {**made, "rows": rows}.items()}

@@ -1,18 +1,26 @@
-"""``liehom demo``: a tour over the example files. Imports show, io, fullness, homogeneous."""
+"""``liehom demo``: a tour over the example files. Imports show, convergence, io, fullness, homogeneous, integrators."""
 
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import liehom.io
+from liehom.cli.convergence import measured, table_json
 from liehom.cli.guard import YES
 from liehom.cli.inputs import examples_folder
+from liehom.cli.problem import can_draw
 from liehom.cli.show import show_json, show_table
+from liehom.errors import FormatError
 from liehom.fullness.decide import decide_fullness
 from liehom.homogeneous.range_condition import range_condition
 from liehom.representations import Pair
+
+if TYPE_CHECKING:
+    from liehom.integrators import ConvergenceTable
 
 PAIRS: tuple[tuple[str, str], ...] = (
     ("so4_so3", "the sphere S^3"),
@@ -25,20 +33,33 @@ PAIRS: tuple[tuple[str, str], ...] = (
     ("so4_so3_float", "the sphere S^3 in floating point"),
 )
 
+# file, order, name in the picture: of these the convergence is measured
+RUNS: tuple[tuple[str, int, str], ...] = (
+    ("rigid_body", 1, "Euler, rigid body"),
+    ("rigid_body", 4, "Euler corrected to order 4, rigid body"),
+    ("sym3_generic", 4, "the same, eigenvalues 1, 2, 3"),
+)
+SPAN, SIZES = (0.0, 2.0), (0.1, 0.05, 0.025, 0.0125)
+PICTURE = "liehom-demo.png"
+
 
 def run_demo(as_json: bool) -> int:
-    """Decide, verify and report on the example files."""
+    """Decide, verify, integrate and report on the example files; draw what has been measured."""
     folder = examples_folder()
     start = time.perf_counter()
     if as_json:
         verdicts = [{"file": f"{name}.json", **_decided(folder, name)[1].to_json()} for name, _ in PAIRS]
-        show_json({"examples": str(folder), "verdicts": verdicts})
+        tables = _convergence(folder)
+        integration = [{"file": f"{name}.json", **table_json(table)} for name, table in tables]
+        found = {"examples": str(folder), "verdicts": verdicts, "integration": integration}
+        show_json({**found, "picture": _picture([table for _, table in tables])[0]})
         return YES
     print(f"Files from {folder}\n")
     _tour_of_verdicts(folder)
     _tour_of_a_certificate(folder)
     _tour_of_isotropy(folder)
     _tour_of_the_range_condition(folder)
+    _tour_of_integration(folder)
     print(f"\nDone in {time.perf_counter() - start:.1f} s. Next: liehom fullness FILE, liehom catalog, liehom --help")
     return YES
 
@@ -99,3 +120,45 @@ def _tour_of_the_range_condition(folder: Path) -> None:
         found = range_condition(pair, psi)
         state = {True: "holds", False: "fails", None: "not decided"}[found.holds]
         print(f"  {text:<8} {state}: rank {found.rank} of {found.dimension}; {found.message}")
+
+
+def _convergence(folder: Path) -> list[tuple[str, ConvergenceTable]]:
+    """Name of the file and table of orders for each of the runs."""
+    tables = []
+    for name, order, _ in RUNS:
+        problem = liehom.io.load_problem(folder / f"{name}.json")
+        options = MappingProxyType({**problem.options, "base": "euler", "order": order, "t_span": SPAN})
+        tables.append((name, measured(replace(problem, options=options), SIZES)))
+    return tables
+
+
+def _tour_of_integration(folder: Path) -> None:
+    print(
+        "\n5. Integration: a rigid body on the sphere by Euler's step, and by the same step corrected to order 4 along"
+    )
+    print("   the isotropy of each point, which is full in so(3); the errors are measured\n")
+    tables = _convergence(folder)
+    for _, table in tables[:-1]:
+        _print_indented(str(table))
+    print("   Symmetric matrices with eigenvalues 1, 2, 3 have no isotropy and nothing is gained, as the report says\n")
+    _print_indented(str(tables[-1][1]))
+    problem = liehom.io.load_problem(folder / "sym3_generic.json")
+    _print_indented("\n".join(str(problem.integrate(t_span=SPAN).report).splitlines()[1:3]))
+    print(_picture([table for _, table in tables])[1])
+
+
+def _print_indented(text: str) -> None:
+    print("".join(f"  {line}\n" for line in text.splitlines()))
+
+
+def _picture(tables: list[ConvergenceTable]) -> tuple[str | None, str]:
+    """Draw the errors; the path of the picture, and what there is to say about it."""
+    if not can_draw():
+        return None, "No picture of this: matplotlib is missing (pip install 'liehom[plot]')"
+    from liehom.plotting import plot_convergence
+
+    try:
+        plot_convergence(tables, PICTURE, labels=[label for _, _, label in RUNS])
+    except FormatError as error:
+        return None, f"No picture of this: {error}"
+    return PICTURE, f"Picture of these errors: {PICTURE}"

@@ -64,6 +64,7 @@ def run_integrate(file: str, words: Words, wanted: Output) -> int:
     output = wanted.checked(file)
     problem = problem_of(file, words)
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
+    options["dense_output"] = output.plot is not None
     options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
     try:
         with np.errstate(all="ignore"):  # what is not finite ends the run with a message

@@ -90,7 +90,7 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     target = Path(path)
     check_target(target, force=force)
     text = json.dumps({"format": FORMAT, "version": 1, **summary_json(solution)}, allow_nan=False)
-    arrays = {"t": np.asarray(solution.t), "y": np.asarray(solution.y), "report": np.array(text)}
+    arrays: dict[str, Any] = {"t": np.asarray(solution.t), "y": np.asarray(solution.y), "report": np.array(text)}
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with open(temporary, "wb") as file:
