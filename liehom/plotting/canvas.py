@@ -1,0 +1,116 @@
+"""Figures, their style and their files: the one place that loads matplotlib.
+
+Colours are those of Okabe and Ito, which people with any kind of colour vision can tell apart; lines differ in their
+markers or dashes too.  Imports io, errors.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import AbstractContextManager
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from liehom.errors import FormatError, InputError
+from liehom.io.solution_file import check_target
+
+# Okabe and Ito without yellow, which is pale on white; grey for what is in the background
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+DASHES = ("-", "--", "-.", ":")
+GREY, PALE = "#6b6b6b", "#d9d9d9"
+
+STYLE = {
+    "font.size": 10,
+    "axes.titlesize": 10,
+    "axes.labelsize": 10,
+    "axes.edgecolor": GREY,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e6e6e6",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.5,
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": "black",
+    "ytick.labelcolor": "black",
+    "savefig.dpi": 160,
+    "svg.hashsalt": "liehom",  # the same picture is the same file
+}
+# what a file would say about the time at which it was written
+UNDATED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+
+
+def matplotlib_module(name: str) -> Any:
+    """A module of matplotlib, ``matplotlib_module("figure")``; loaded when it is first needed.
+
+    Raises
+    ------
+    InputError
+        If matplotlib is not installed; names the extra.
+
+    Examples
+    --------
+    >>> matplotlib_module("figure").__name__  # doctest: +SKIP
+    'matplotlib.figure'
+    """
+    try:
+        import_module("matplotlib")
+    except ModuleNotFoundError:
+        raise InputError("pictures need matplotlib: install it with  pip install 'liehom[plot]'") from None
+    return import_module(f"matplotlib.{name}" if name else "matplotlib")
+
+
+def style() -> AbstractContextManager[None]:
+    """The style of the library's pictures, as a context."""
+    context: AbstractContextManager[None] = matplotlib_module("").rc_context(STYLE)
+    return context
+
+
+def new_figure(width: float, height: float) -> Any:
+    """A figure that no window shows and nobody else knows of."""
+    return matplotlib_module("figure").Figure(figsize=(width, height), layout="constrained")
+
+
+def figure_of(axes: Any) -> Any:
+    """The figure that axes of the caller belong to.
+
+    Raises
+    ------
+    InputError
+        If these are no axes.
+    """
+    if not isinstance(axes, matplotlib_module("axes").Axes):
+        raise InputError(f"axes is {axes!r}, expected axes of matplotlib")
+    return axes.figure
+
+
+def finished(figure: Any, path: str | os.PathLike[str] | None) -> Any:
+    """The figure, written to a file if there is a path.
+
+    Raises
+    ------
+    FormatError
+        If the suffix is not that of a picture, the folder does not exist, or the file cannot be written.
+    """
+    if path is None:
+        return figure
+    target = Path(os.fspath(path))
+    suffix = target.suffix.lower()
+    known = sorted(f".{kind}" for kind in figure.canvas.get_supported_filetypes())
+    if suffix not in known:
+        raise FormatError(f"{os.fspath(path)!r} is not the name of a picture: it must end in one of {', '.join(known)}")
+    check_target(target, force=True)
+    try:
+        with style():
+            figure.savefig(target, metadata=UNDATED.get(suffix))
+    except OSError as error:
+        raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+    return figure

@@ -1,0 +1,202 @@
+"""plot_convergence: errors over step sizes, both logarithmic, with triangles that show the slopes.
+
+Imports canvas, integrators, errors.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from liehom.errors import InputError
+from liehom.integrators import ConvergenceTable
+from liehom.plotting.canvas import COLOURS, GREY, MARKERS, PALE, figure_of, finished, new_figure, style
+
+# a triangle is drawn where a measured order is so close to an integer
+NEAR = 0.3
+# the lower edge of a triangle below its curve, as a factor of the error
+BELOW = 0.4
+# round-off is shown if an error comes so close to it
+SHOWN = 300.0
+
+
+class _Curve(NamedTuple):
+    """Errors above the floor, errors below it, and how they are drawn."""
+
+    label: str | None
+    points: list[tuple[float, float]]
+    lost: list[tuple[float, float]]
+    slope: float
+    colour: str
+    marker: str
+    dashes: str
+
+
+def plot_convergence(
+    tables: ConvergenceTable | Sequence[ConvergenceTable],
+    path: str | os.PathLike[str] | None = None,
+    *,
+    labels: Sequence[str] | None = None,
+    axes: Any = None,
+) -> Any:
+    """Draw the errors of one or several tables of `observed_order` over the step size.
+
+    Parameters
+    ----------
+    tables : ConvergenceTable or sequence of them
+    path : path, optional
+        A file to write: .png, .pdf, .svg, ....
+    labels : sequence of str, optional
+        One for each table; by default the step as printed.
+    axes : matplotlib axes, optional
+        Where to draw, instead of on a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If matplotlib is not installed, or an argument is not right.
+    FormatError
+        If the file cannot be written.
+
+    Notes
+    -----
+    Solid lines are orbit errors, dashed ones trajectory errors. Triangles have the integer slopes that were measured.
+    Errors of the size of round-off, or of the reference's accuracy, are open and grey and take part in no slope.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/2"])
+    >>> table = lh.integrators.observed_order(field, [1.0, 0.0], lh.Euler(), [0.1, 0.05])
+    >>> figure = plot_convergence(table, "orders.pdf")  # doctest: +SKIP
+    """
+    chosen = [tables] if isinstance(tables, ConvergenceTable) else list(tables)
+    if not chosen or not all(isinstance(table, ConvergenceTable) for table in chosen):
+        raise InputError(f"expected tables as liehom.observed_order returns them, got {tables!r}")
+    names = [table.step for table in chosen] if labels is None else [str(label) for label in labels]
+    if len(names) != len(chosen):
+        raise InputError(f"there are {len(chosen)} tables and {len(names)} labels")
+    with style():
+        if axes is None:
+            figure = new_figure(6.4 if len(chosen) == 1 else 8.0, 4.8)
+            axes = figure.add_subplot()
+        else:
+            figure = figure_of(axes)
+        curves = [curve for k, table in enumerate(chosen) for curve in _curves(table, k, len(chosen))]
+        _frame(axes, chosen)
+        for curve in curves:
+            _draw(axes, curve)
+        _draw_triangles(axes, curves)
+        _draw_floor(axes, chosen)
+        if len(chosen) == 1 and curves:
+            axes.legend(loc="lower right")
+        elif curves:
+            _explain(axes, chosen, names)
+    return finished(figure, path)
+
+
+def _curves(table: ConvergenceTable, k: int, count: int) -> list[_Curve]:
+    """The curve of orbit errors and that of trajectory errors; only those that have a point."""
+    made = []
+    kinds = (("orbit", table.orbit_errors, table.orders[0]), ("trajectory", table.trajectory_errors, table.orders[1]))
+    for i, (kind, errors, slope) in enumerate(kinds):
+        rows = [row for row in zip(table.dts, errors, table.floors, strict=True) if row[1] > 0]
+        if rows:
+            number = i if count == 1 else k
+            order = "" if math.isnan(slope) else f", order {slope:.2f}"
+            made.append(
+                _Curve(
+                    f"{kind}{order}" if count == 1 else None,
+                    [(h, e) for h, e, floor in rows if e > floor],
+                    [(h, e) for h, e, floor in rows if e <= floor],
+                    slope,
+                    COLOURS[number % len(COLOURS)],
+                    MARKERS[number % len(MARKERS)],
+                    "-" if kind == "orbit" else "--",
+                )
+            )
+    return made
+
+
+def _frame(axes: Any, tables: Sequence[ConvergenceTable]) -> None:
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("step size $h$")
+    ensemble = any(table.trajectories > 1 for table in tables)
+    axes.set_ylabel("error (root mean square)" if ensemble else "error")
+    sizes = sorted({h for table in tables for h in table.dts})
+    axes.minorticks_off()
+    if len(sizes) <= 7:
+        axes.set_xticks(sizes, [f"{h:.4g}" for h in sizes])
+    first = tables[0]
+    name = f"{first.step}\n" if len(tables) == 1 else ""
+    methods = {(t.exponential, t.clock, t.t_span) for t in tables}
+    if len(methods) == 1:
+        span = f"$t$ = {first.t_span[0]:.4g} to {first.t_span[1]:.4g}"
+        axes.set_title(f"{name}{first.exponential}, clock {first.clock}, {span}")
+
+
+def _draw(axes: Any, curve: _Curve) -> None:
+    both = sorted([*curve.points, *curve.lost])
+    if curve.lost:
+        axes.plot(*zip(*both, strict=True), color=PALE, linestyle=curve.dashes, linewidth=1.0, zorder=1.5)
+        axes.plot(*zip(*curve.lost, strict=True), curve.marker, color=GREY, markerfacecolor="white", zorder=2.5)
+    look = {"color": curve.colour, "marker": curve.marker, "linestyle": curve.dashes, "markersize": 6}
+    hollow = {"markerfacecolor": "white"} if curve.dashes == "--" else {}
+    points = sorted(curve.points) or [(math.nan, math.nan)]
+    axes.plot(*zip(*points, strict=True), label=curve.label, **look, **hollow)
+
+
+def _explain(axes: Any, tables: Sequence[ConvergenceTable], names: Sequence[str]) -> None:
+    """Names and measured orders of several tables, beside the axes; what is solid and what is dashed."""
+    for k, (table, name) in enumerate(zip(tables, names, strict=True)):
+        orders = ", ".join("–" if math.isnan(order) else f"{order:.2f}" for order in table.orders)
+        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "markersize": 6}
+        axes.plot([math.nan], [math.nan], label=f"{name}\norders {orders}", **look)
+    for dashes, fill, kind in (("-", GREY, "orbit"), ("--", "white", "trajectory")):
+        axes.plot([math.nan], [math.nan], dashes, marker="o", markerfacecolor=fill, color=GREY, label=kind)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
+
+
+def _draw_triangles(axes: Any, curves: Sequence[_Curve]) -> None:
+    """One triangle for every integer slope, below the lowest curve that has it."""
+    lowest: dict[int, _Curve] = {}
+    for curve in curves:
+        if len(curve.points) < 2 or math.isnan(curve.slope):
+            continue
+        p = round(curve.slope)
+        if (
+            p > 0
+            and abs(curve.slope - p) < NEAR
+            and (p not in lowest or min(curve.points)[1] < min(lowest[p].points)[1])
+        ):
+            lowest[p] = curve
+    for p, curve in lowest.items():
+        (left, low), (right, high) = sorted(curve.points)[:2]
+        del high
+        base = BELOW * low
+        corners = [(left, base), (right, base), (right, base * (right / left) ** p)]
+        axes.fill(*zip(*corners, strict=True), facecolor=PALE, edgecolor=GREY, linewidth=0.8, alpha=0.6, zorder=1)
+        middle = math.sqrt(corners[1][1] * corners[2][1])
+        axes.annotate(str(p), (right, middle), (4, 0), textcoords="offset points", va="center", color=GREY)
+        axes.annotate(
+            "1", (math.sqrt(left * right), base), (0, -3), textcoords="offset points", ha="center", va="top", color=GREY
+        )
+
+
+def _draw_floor(axes: Any, tables: Sequence[ConvergenceTable]) -> None:
+    """The highest floor, where errors come near it."""
+    highest = max(max(table.floors) for table in tables)
+    errors = [e for t in tables for e in (*t.orbit_errors, *t.trajectory_errors) if e > 0]
+    if errors and min(errors) < SHOWN * highest:
+        axes.axhspan(min(0.3 * min(errors), 0.05 * highest), highest, color=PALE, alpha=0.35, zorder=0, linewidth=0)
+        axes.text(
+            0.01, 0.8 * highest, "round-off or accuracy of the reference", transform=axes.get_yaxis_transform(),
+            va="top", color=GREY, fontsize=8,
+        )  # fmt: skip

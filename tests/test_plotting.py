@@ -1,0 +1,286 @@
+"""Pictures: what is drawn is what was measured and integrated; files; what is refused; nothing global is touched."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.errors import FormatError, InputError
+from liehom.integrators import ConvergenceTable
+from liehom.plotting import plot_convergence, plot_trajectory
+
+matplotlib = pytest.importorskip("matplotlib")
+Figure = pytest.importorskip("matplotlib.figure").Figure
+Text = pytest.importorskip("matplotlib.text").Text
+NAN = float("nan")
+
+
+def table(order: int = 4, *, floor: float = 1e-14, trajectory: int | None = None, **changes: Any) -> ConvergenceTable:
+    """Errors that are powers of the step size."""
+    dts = (0.2, 0.1, 0.05, 0.025)
+    made = ConvergenceTable(
+        f"Method({order})", "exp", "corrected", order, (0.0, 1.0), 1, "float64", dts,
+        tuple(1e-2 * h**order for h in dts), tuple(1e-1 * h ** (trajectory or order) for h in dts),
+        (floor,) * 4, floor / 10, ("",) * 4,
+    )  # fmt: skip
+    return dataclasses.replace(made, **changes)
+
+
+def rotation(size: int) -> lh.GeneratorField:
+    rho = lh.defining(lh.so(size))
+    return lh.GeneratorField(rho, np.arange(1.0, rho.algebra.dimension + 1))
+
+
+def solution(size: int, lead: tuple[int, ...] = (), end: float = 2.0, **options: Any) -> lh.Solution:
+    start = np.random.default_rng(size).normal(size=(*lead, size))
+    start /= np.linalg.norm(start, axis=-1, keepdims=True)
+    return lh.integrate(rotation(size), (0, end), start, dt=0.1, **options)
+
+
+def lines(figure: Any) -> list[Any]:
+    """The data of all lines that are no legend entries."""
+    found = [np.array(line.get_data_3d() if hasattr(line, "get_data_3d") else line.get_data()) for line in
+             figure.axes[0].lines]  # fmt: skip
+    return [line for line in found if np.isfinite(line.astype(float)).any()]
+
+
+def holds(figure: Any, wanted: Any) -> bool:
+    """Whether some line passes through all these points, shape (axes, n)."""
+    return any(line.shape == wanted.shape and np.allclose(line.astype(float), wanted) for line in lines(figure))
+
+
+def texts(figure: Any) -> list[str]:
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
+
+
+# -- convergence -----------------------------------------------------------------------------------------
+def test_errors_are_drawn_over_step_sizes() -> None:
+    made = table()
+    figure = plot_convergence(made)
+    axes = figure.axes[0]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert "$h$" in axes.get_xlabel() and "error" in axes.get_ylabel()
+    for errors in (made.orbit_errors, made.trajectory_errors):
+        assert holds(figure, np.array([made.dts[::-1], errors[::-1]]))
+    assert any("orbit, order 4.00" in text for text in texts(figure))
+
+
+def test_a_triangle_has_the_slope_that_was_measured() -> None:
+    axes = plot_convergence(table(4, trajectory=1)).axes[0]
+    slopes = []
+    for triangle in axes.patches:
+        corners = np.log(triangle.get_xy()[:3])
+        if len(triangle.get_xy()) == 4:
+            slopes.append((corners[2, 1] - corners[0, 1]) / (corners[2, 0] - corners[0, 0]))
+    assert sorted(np.round(slopes, 9)) == [1, 4]
+
+
+def test_no_triangle_for_an_order_that_is_none() -> None:
+    dts = table().dts
+    wild = table(orbit_errors=tuple(h**2.5 for h in dts), trajectory_errors=(NAN,) * 4)
+    assert not plot_convergence(wild).axes[0].patches
+
+
+def test_errors_at_round_off_are_apart() -> None:
+    made = table(floor=1e-7)
+    figure = plot_convergence(made)
+    kept = [i for i, e in enumerate(made.orbit_errors) if e > 1e-7]
+    assert 0 < len(kept) < 4
+    curve = np.array([[made.dts[i] for i in kept[::-1]], [made.orbit_errors[i] for i in kept[::-1]]])
+    assert holds(figure, curve)
+    assert any("round-off" in text for text in texts(figure))
+    assert not any("round-off" in text for text in texts(plot_convergence(table(floor=1e-30))))
+
+
+def test_several_tables() -> None:
+    figure = plot_convergence([table(1), table(2), table(3)], labels=["one", "two", "three"])
+    found = " ".join(texts(figure))
+    assert all(word in found for word in ("one", "two", "three", "orders 2.00, 2.00", "orbit", "trajectory"))
+    assert len({line.get_color() for line in figure.axes[0].lines if len(line.get_xdata()) == 4}) == 3
+
+
+def test_tables_without_any_error() -> None:
+    """A run that failed for all step sizes but one, a method that is exact."""
+    plot_convergence(table(orbit_errors=(NAN,) * 4))
+    plot_convergence(table(orbit_errors=(0.0,) * 4, trajectory_errors=(0.0,) * 4))
+    plot_convergence(table(floor=1.0))
+
+
+def test_on_axes_of_the_caller() -> None:
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    assert plot_convergence(table(), axes=right) is figure
+    assert not left.lines and right.lines
+
+
+@pytest.mark.parametrize(
+    ("tables", "options", "match"),
+    [
+        ([], {}, "tables"),
+        ("abc", {}, "tables"),
+        ([table(), 1], {}, "tables"),
+        (table(), {"labels": ["a", "b"]}, "2 labels"),
+        (table(), {"axes": 3}, "axes"),
+    ],
+)
+def test_what_plot_convergence_refuses(tables: Any, options: Any, match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        plot_convergence(tables, **options)
+
+
+# -- trajectories ----------------------------------------------------------------------------------------
+def test_three_coordinates_on_a_sphere() -> None:
+    made = solution(3)
+    figure = plot_trajectory(made)
+    assert figure.axes[0].name == "3d"
+    assert any("$|m|$ = 1" in text for text in texts(figure))
+    assert {"$m_0$", "$m_1$", "$m_2$"} <= set(texts(figure))
+    drawn = np.concatenate([line.astype(float).T for line in lines(figure)])
+    for point in made.y.T:  # every point lies on a curve, before or behind the sphere
+        assert np.nanmin(np.linalg.norm(drawn - point, axis=-1)) < 1e-12
+
+
+def test_what_is_behind_the_sphere_is_pale() -> None:
+    spin = lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1])
+    made = lh.integrate(spin, (0, 12), [0.8, 0.0, 0.6], dt=0.1)
+    axes = plot_trajectory(made).axes[0]
+    up, around = np.radians(axes.elev), np.radians(axes.azim)
+    eye = np.array([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)])
+    curves = [line for line in axes.lines if len(line.get_data_3d()[0]) == made.y.shape[1]]
+    assert sorted(line.get_alpha() or 1.0 for line in curves) == [0.3, 1.0]
+    for line in curves:
+        depth = eye @ np.array(line.get_data_3d(), dtype=float)
+        depth = depth[np.isfinite(depth)]
+        assert len(depth) > 20
+        assert np.mean((depth < 0) == (line.get_alpha() is not None)) > 0.9
+
+
+def test_three_coordinates_elsewhere_have_no_sphere() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(2, 1)), [0.5, 0.25, 1.0])
+    made = lh.integrate(field, (0, 1), [0.0, 0.0, 1.0], dt=0.1)
+    figure = plot_trajectory(made)
+    assert not any("|m|" in text for text in texts(figure))
+    assert holds(figure, made.y)
+
+
+def test_two_coordinates_in_the_plane() -> None:
+    made = solution(2)
+    figure = plot_trajectory(made)
+    assert holds(figure, made.y)
+    assert figure.axes[0].get_aspect() == 1
+    assert (figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()) == ("$m_0$", "$m_1$")
+
+
+@pytest.mark.parametrize("size", [4, 5])
+def test_more_coordinates_over_time(size: int) -> None:
+    made = solution(size)
+    figure = plot_trajectory(made)
+    for values in made.y:
+        assert holds(figure, np.array([made.t, values]))
+    assert figure.axes[0].get_xlabel() == "time $t$"
+    assert f"$m_{size - 1}$" in texts(figure)
+
+
+def test_many_coordinates_as_colours() -> None:
+    made = lh.integrate(rotation(9), (0, 1), np.eye(9)[0], dt=0.1)
+    mesh = plot_trajectory(made).axes[0].collections[0]
+    assert np.allclose(np.asarray(mesh.get_array()).reshape(9, -1), made.y)
+
+
+def test_dense_output_is_drawn_finely() -> None:
+    made = lh.integrate(rotation(2), (0, 3), [1.0, 0.0], dt=1.0, dense_output=True)
+    curve = max(lines(plot_trajectory(made)), key=lambda line: line.shape[1])
+    assert curve.shape[1] > 100
+    assert np.abs(np.linalg.norm(curve, axis=0) - 1).max() < 1e-12
+    back = lh.integrate(rotation(2), (3, 0), [1.0, 0.0], dt=1.0, dense_output=True)
+    assert np.allclose(max(lines(plot_trajectory(back)), key=lambda line: line.shape[1])[:, 0], [1, 0])
+
+
+@pytest.mark.parametrize(("size", "dense"), [(2, False), (3, True), (4, False), (9, False)])
+def test_ensembles(size: int, dense: bool) -> None:
+    made = solution(size, (2, 30), end=0.3, dense_output=dense)
+    title = plot_trajectory(made).axes[0].get_title(loc="left")
+    assert "of 60 trajectories" in title
+    assert ("first 1" if size == 9 else "first 50") in title
+
+
+@pytest.mark.parametrize("dense", [False, True])
+@pytest.mark.parametrize("size", [2, 3, 4])
+def test_trajectories_of_different_length(size: int, dense: bool) -> None:
+    """Adapted steps fill up with NaN; events end trajectories early."""
+
+    def event(t: Any, y: Any) -> Any:
+        return y[..., 0] - 0.1
+
+    event.terminal = True  # type: ignore[attr-defined]
+    start = np.eye(size)[:2] * [[1.0], [2.0]]
+    made = lh.integrate(rotation(size), (0, 4), start, events=event, dense_output=dense)
+    assert np.isnan(made.t).any() and not np.isnan(made.t[..., :2]).any()
+    figure = plot_trajectory(made)
+    assert all(np.isfinite(line.astype(float)[:, 0]).all() for line in lines(figure))
+
+
+def test_a_solution_without_a_step() -> None:
+    for size in (2, 3, 4, 9):
+        plot_trajectory(lh.integrate(rotation(size), (0, 0), np.eye(size)[0], dense_output=True))
+
+
+def test_what_plot_trajectory_refuses() -> None:
+    with pytest.raises(InputError, match="solution"):
+        plot_trajectory(np.zeros((3, 4)))  # type: ignore[arg-type]
+
+
+# -- files and settings ----------------------------------------------------------------------------------
+@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+def test_the_same_picture_is_the_same_file(suffix: str, tmp_path: Path) -> None:
+    made = solution(3)
+    for draw in (lambda path: plot_trajectory(made, path), lambda path: plot_convergence(table(), path)):
+        first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
+        draw(first)
+        draw(str(second))
+        assert first.read_bytes() == second.read_bytes()
+        assert first.stat().st_size > 1000
+
+
+@pytest.mark.parametrize("name", ["picture.txt", "picture", "no/such/folder/picture.png", ""])
+def test_names_that_are_no_pictures(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(FormatError):
+        plot_convergence(table(), name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_settings_of_matplotlib_stay() -> None:
+    before = dict(matplotlib.rcParams)
+    plot_convergence(table())
+    plot_trajectory(solution(3))
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_no_backend_is_chosen_and_nothing_is_loaded_early() -> None:
+    code = (
+        "import sys, liehom.plotting; assert 'matplotlib' not in sys.modules\n"
+        "import liehom as lh\n"
+        "field = lh.GeneratorField(lh.defining(lh.so(2)), [1])\n"
+        "liehom.plotting.plot_trajectory(lh.integrate(field, (0, 1), [1.0, 0.0], dt=0.5))\n"
+        "assert 'matplotlib.pyplot' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str, package: str | None = None) -> Any:
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+    monkeypatch.setattr(importlib.import_module("liehom.plotting.canvas"), "import_module", missing)
+    for draw in (lambda: plot_convergence(table()), lambda: plot_trajectory(solution(2))):
+        with pytest.raises(InputError, match=r"liehom\[plot\]"):
+            draw()
