@@ -16,6 +16,7 @@ FILES = sorted(path.stem for path in EXAMPLES.glob("*.json"))
 
 VERDICTS = {
     "anisotropic": False,
+    "driven_spin": True,
     "ellipsoid_sqrt2": True,
     "g2_su3": True,
     "rigid_body": True,
@@ -25,6 +26,9 @@ VERDICTS = {
     "so4_so3_float": True,
     "so5_so4_scrambled": True,
     "sym3": True,
+    "sym3_flow": True,
+    "sym3_generic": False,
+    "vector_field": True,
 }
 
 
