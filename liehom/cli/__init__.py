@@ -1,9 +1,12 @@
 """The command line: parses, calls, prints.
 
 guard       exit codes: what an exception becomes
-inputs      arguments to pairs, points and rows
+inputs      arguments to files, pairs, points, rows and numbers
 show        readable output on a terminal, plain lines in a pipe, one JSON object with --json
 app         the commands
+numerical   the options of `integrate` and `order`
+problem     what these two share: the problem of a file, options that override it, pictures
+integration, convergence   their work
 demo        the tour over the example files
 
 Only `guard` is imported before a command runs; everything else is loaded when it is needed.
