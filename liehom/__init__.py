@@ -13,6 +13,7 @@ The layers, in reading order; each imports only those above it in this list:
 `fullness`         is a pair full? the decision, its certificates, the independent checker
 `catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
 `io`               JSON files in and out
+`plotting`         pictures of trajectories and of measured orders
 `testing`          a public conformance suite
 `cli`              the command line
 """
