@@ -114,6 +114,7 @@ _LAYERS = (
     "homogeneous",
     "integrators",
     "io",
+    "plotting",
     "representations",
     "scalars",
     "series",
