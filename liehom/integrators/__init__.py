@@ -11,9 +11,9 @@ from liehom.integrators.convergence import observed_order as observed_order
 from liehom.integrators.convergence_table import ConvergenceTable as ConvergenceTable
 from liehom.integrators.dense import DenseSolution as DenseSolution
 from liehom.integrators.integration import integrate as integrate
-from liehom.integrators.orbit_error import orbit_distance as orbit_distance
 from liehom.integrators.named import step_named as step_named
 from liehom.integrators.named import step_names as step_names
+from liehom.integrators.orbit_error import orbit_distance as orbit_distance
 from liehom.integrators.order_conditions import Violation as Violation
 from liehom.integrators.products import CommutatorFree4 as CommutatorFree4
 from liehom.integrators.products import CrouchGrossman3 as CrouchGrossman3
