@@ -8,7 +8,7 @@ exact scalars and on Jets.  Imports expression, scope, series, errors.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, final
 
 import numpy as np
@@ -65,7 +65,7 @@ class Components:
             self._function, self.time_dependent = _called(source, what, time_dependent)
         elif is_jax(source) or (isinstance(source, np.ndarray) and (source.dtype != object or source.ndim != 1)):
             self._function, self.time_dependent = self._constant(source), False
-        elif isinstance(source, str | bytes | dict | set | frozenset) or not isinstance(source, Iterable):
+        elif isinstance(source, str | bytes | dict | set | frozenset) or not np.iterable(source):
             raise InputError(
                 f"{what} is {source!r}: expected a function of m (and t), or a list of {self._wanted()} components"
             )
@@ -164,7 +164,7 @@ class Components:
             )
         if kind == "O" and exact:
             return made
-        if kind == "O":
+        if kind == "O" and not any(x is None for x in made.flat):
             try:
                 return made.astype(float)
             except (TypeError, ValueError):

@@ -124,7 +124,8 @@ def _is_invariant(algebra: LieAlgebra, form: Any) -> bool:
     for i, j, k, value in algebra.structure_constants():
         bracket[i, j, k] = algebra.field.to_float(value)
         bracket[j, i, k] = -bracket[i, j, k]
-    lowered = bracket @ form
+    scale = 1 / np.sqrt(np.diagonal(form))
+    lowered = scale[:, None, None] * scale[:, None] * scale * (bracket @ form)  # of basis elements of length 1
     defect = np.abs(lowered + np.swapaxes(lowered, 1, 2)).max(initial=0.0)
     return bool(defect <= RTOL * np.abs(lowered).max(initial=0.0))
 

@@ -137,30 +137,35 @@ def cayley_logarithm(a: Any) -> Any:
 
 
 def _halved(z: Any, iterations: int | None) -> Any:
+    """tanh(artanh(z) / 2)."""
     one = identity(z)
-    return solve(one + _square_root(one - z @ z, iterations), z)
+    if iterations is not None:
+        return solve(one + _square_root(one - z @ z, iterations)[0], z)
+    root, found = _square_root(one - z @ z, None)
+    # no root that is a function of 1 - z^2 exists where that has a negative eigenvalue; others do not commute with z
+    if not found or not bool(np.all(norms(root @ z - z @ root) <= 1e-6 * norms(root) * norms(z))):
+        raise SingularError(
+            "the Cayley transform of x is on no one-parameter group: its matrix has a real eigenvalue beyond 2 in "
+            "size; take a smaller step, or exponential='exp'"
+        )
+    return solve(one + root, z)
 
 
-def _square_root(b: Any, iterations: int | None) -> Any:
-    """The principal square root by the coupled Newton iteration y, p -> sqrt(b), 1/sqrt(b)."""
+def _square_root(b: Any, iterations: int | None) -> tuple[Any, bool]:
+    """A square root by the coupled Newton iteration y, p -> sqrt(b), 1/sqrt(b), and whether it converged."""
     y, p = b, namespace(b).broadcast_to(identity(b), b.shape)
-    tolerance = None if iterations else 8 * b.shape[-1] * float(np.finfo(b.dtype).eps)
     for _ in range(iterations or MAX_ITERATIONS):
         before = y
         y, p = (y + inverse(p)) / 2, (p + inverse(y)) / 2
-        if tolerance is not None and bool(np.all(norms(y - before) <= tolerance * norms(y) * _spread(y, p))):
-            return y
-    if tolerance is None:
-        return y
-    raise SingularError(
-        "the Cayley transform of x is on no one-parameter group: its matrix has a real eigenvalue beyond 2 in size; "
-        "take a smaller step, or exponential='exp'"
-    )
+        if iterations is None and _has_converged(y, p, before, b):
+            return y, True
+    return y, iterations is not None
 
 
-def _spread(y: Any, p: Any) -> Any:
-    """The condition number of y, to which its round-off is proportional."""
-    return norms(y) * norms(p)
+def _has_converged(y: Any, p: Any, before: Any, b: Any) -> bool:
+    spread = norms(y) * norms(p)  # the condition number, to which round-off is proportional
+    bound = 8 * b.shape[-1] * float(np.finfo(b.dtype).eps) * norms(y) * spread
+    return bool(np.all(norms(y - before) <= bound)) and bool(np.all(norms(y @ y - b) <= 1e-6 * norms(b)))
 
 
 def _artanh(z: Any, terms: int) -> Any:

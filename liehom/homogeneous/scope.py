@@ -184,7 +184,7 @@ class Function:
         if isinstance(x, Jet):
             return getattr(np, self._name)(x)
         if self._name == "sqrt" and scope.kind == "exact":
-            return np.vectorize(_exact_root, otypes=[object])(x) if np.ndim(x) else _exact_root(x)
+            return np.vectorize(_exact_root, otypes=[object])(x) if np.ndim(x) else _exact_root(np.asarray(x).item())
         return elementary(self._name, x)
 
 
