@@ -44,7 +44,7 @@ def checked_path(path: Any) -> Path:
         target = Path(os.fsdecode(path))
     except TypeError:
         raise InputError(f"checkpoint is {path!r}, expected the path of a file") from None
-    if not target.name or target.is_dir():
+    if not target.name or os.path.isdir(target):
         raise InputError(f"the checkpoint {os.fsdecode(path)!r} is a directory, expected the path of a file")
     temporary = _temporary(target)
     try:
@@ -109,8 +109,8 @@ def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, Any]:
     """
     name = os.fspath(path)
     try:
-        with np.load(path, allow_pickle=False) as file:
-            state = {key: file[key] for key in file.files}
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
+            state = {key: archive[key] for key in archive.files}
     except (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error) as error:
         raise FormatError(f"{name!r} is not a checkpoint of liehom, or is damaged: {error}") from None
     if str(state.pop("format", "")) != FORMAT:

@@ -97,6 +97,7 @@ class DenseSolution:
         ends = _rows(self._times, index + 1) == time
         s = elapsed if self._nominal else size_for(local, elapsed, size)
         made = apply_factors(self._action, local.factors(np.where(ends, size, s)[..., None]), point)
+        made = np.where((elapsed == 0)[..., None], point, made)
         return np.where(ends[..., None], _rows(self._points, (index + 1)[..., None]), made)
 
     def _prepare(self, index: Any, start: Any, point: Any) -> LocalStep:

@@ -140,8 +140,10 @@ def integrate(
     if options.dt is None and options.rtol == 0 and options.atol == 0:
         raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
     path = None if checkpoint is None else checked_path(checkpoint)
-    run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
-    return run.execute(progress, path)
+    # what is not finite is noticed, and ends a trajectory with a message
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
+        return run.execute(progress, path)
 
 
 def _start(y0: Any) -> Any:

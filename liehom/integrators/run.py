@@ -131,7 +131,7 @@ class Run:
     # -- the loop ----------------------------------------------------------------------------------------
     def execute(self, show: bool | Callable[[float], Any], path: File | None) -> Solution:
         """Run to the end, with progress and checkpoints."""
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"), Progress(show) as progress:
+        with Progress(show) as progress:
             if path is None:
                 while self.active.any():
                     self.advance()
