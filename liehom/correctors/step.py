@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, final
 
 import numpy as np
@@ -19,6 +20,7 @@ from liehom.series.jet import Jet
 from liehom.series.node import Node
 
 MAX_ITERATIONS = 200
+JAX_ITERATIONS = 60
 
 
 @final
@@ -221,13 +223,13 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any) -> Any:
         x.node.depends((made.node, 0), rule=lambda k: made.node.known[k])
         return x
     if is_jax(start):
-        for _ in range(60):
-            start = function(start)
-        return start
+        # a loop, not sixty copies of the function, which would take minutes to compile
+        return import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
     eps = np.finfo(np.result_type(start, float)).eps
     before = np.inf
     for _ in range(MAX_ITERATIONS):
-        x = function(start)
+        with np.errstate(over="ignore", invalid="ignore"):  # an iteration that diverges says so below
+            x = function(start)
         change = float(np.abs(x - start).max(initial=0.0))
         size = float(np.abs(x).max(initial=0.0))
         start = x
