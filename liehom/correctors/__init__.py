@@ -1,5 +1,12 @@
 """Isotropy correctors: Theorem 5 at a point, iterated to any order, and what it needs of a step."""
 
+from liehom.correctors.conservation import Conservation as Conservation
+from liehom.correctors.conservation import conservation_map as conservation_map
+from liehom.correctors.conserved_order import ConservedOrder as ConservedOrder
+from liehom.correctors.conserved_order import conserved_order as conserved_order
+from liehom.correctors.conserving import Conserved as Conserved
+from liehom.correctors.conserving import Conserving as Conserving
+from liehom.correctors.conserving import ConservingStep as ConservingStep
 from liehom.correctors.corrected import Corrected as Corrected
 from liehom.correctors.corrected import CorrectedStep as CorrectedStep
 from liehom.correctors.expansion import Clock as Clock
@@ -7,6 +14,7 @@ from liehom.correctors.expansion import Flow as Flow
 from liehom.correctors.expansion import flow_series as flow_series
 from liehom.correctors.expansion import leading_order as leading_order
 from liehom.correctors.expansion import step_series as step_series
+from liehom.correctors.first_integral import FirstIntegral as FirstIntegral
 from liehom.correctors.order import Correction as Correction
 from liehom.correctors.order import correction as correction
 from liehom.correctors.order_condition import OrderCondition as OrderCondition

@@ -115,7 +115,7 @@ class FirstIntegral:
 
     def squeezed(self, value: Any) -> Any:
         """Values of shape (..., k) as the user has them: (...,) for a number."""
-        return value[..., 0] if self.scalar else value
+        return value[..., 0][()] if self.scalar else value
 
     def check(self, flow: Flow, order: int, scale: Any = None) -> None:
         """Check that F is constant along the flow, in the Taylor coefficients 1, ..., order.
