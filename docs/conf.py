@@ -67,8 +67,25 @@ def mathml(visitor: Any, node: nodes.Element, *, display: bool) -> None:
     raise nodes.SkipNode
 
 
+def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Bars and double stars in the text of a docstring are norms and arguments, not markup; code is left alone."""
+    inside = False
+    for i, line in enumerate(lines):
+        text = line.strip()
+        inside = bool(text) and (inside or text.startswith(">>>"))
+        if not inside:
+            parts = re.split(r"(``[^`]*``|`[^`]*`)", line)
+            lines[i] = "".join(
+                part
+                if part.startswith("`")
+                else re.sub(r"\||\*\*(?=\w)", lambda bar: "".join(f"\\{c}" for c in bar[0]), part)
+                for part in parts
+            )
+
+
 def setup(app: Any) -> None:
-    """Register the renderer."""
+    """Register the renderer and the treatment of docstrings."""
+    app.connect("autodoc-process-docstring", keep_bars, priority=900)
     app.add_html_math_renderer(
         "mathml",
         (lambda visitor, node: mathml(visitor, node, display=False), None),
