@@ -176,9 +176,9 @@ def _single(x: Any) -> Any:
 def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float) -> Any:
     """M^+ (..., s, d); for extended floats ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
     turned = xp.swapaxes(matrix, -1, -2)
-    if matrix.shape[-1] == 0:
-        return turned
     extended = matrix.dtype == np.longdouble
+    if matrix.shape[-1] == 0:
+        return matrix @ turned if extended else turned
     if matrix.shape[-1] == 1 and not extended:  # a column, as on every two-dimensional orbit of so(3)
         square = xp.sum(matrix * matrix, axis=-2, keepdims=True)
         kept = square > cutoff * cutoff
