@@ -7,6 +7,8 @@ batch alone.  Imports series, errors.
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Callable
 from math import ceil, log2
 from typing import Any
 
@@ -91,16 +93,29 @@ def series_terms(size: float, eps: float) -> int:
 
 def _taylor(a: Any, terms: int) -> Any:
     """a + a^2/2 + ... by Horner's rule."""
-    total = a / terms
-    for k in range(terms - 1, 0, -1):
-        total = (a + a @ total) / k
-    return total
+    return _repeated(_horner, terms - 1, (a, a / terms, terms - 1))[1]
+
+
+def _horner(_: Any, state: Any) -> Any:
+    a, total, k = state
+    return a, (a + a @ total) / k, k - 1
 
 
 def _doubled(e: Any, times: int) -> Any:
-    for _ in range(times):
-        e = 2 * e + e @ e
-    return e
+    return _repeated(_double, times, e)
+
+
+def _double(_: Any, e: Any) -> Any:
+    return 2 * e + e @ e
+
+
+def _repeated(body: Callable[[Any, Any], Any], times: int, state: Any) -> Any:
+    """body(i, state) for i < times; under JAX in one loop, which is compiled once and can be differentiated."""
+    if any(is_jax(x) for x in (state if isinstance(state, tuple) else (state,))):
+        return sys.modules["jax"].lax.fori_loop(0, times, body, state)
+    for i in range(times):
+        state = body(i, state)
+    return state
 
 
 def cayley_logarithm(a: Any) -> Any:
@@ -139,11 +154,13 @@ def cayley_logarithm(a: Any) -> Any:
 def _halved(z: Any, iterations: int | None) -> Any:
     """tanh(artanh(z) / 2)."""
     one = identity(z)
+    b = one - z @ z
+    start = b, namespace(b).broadcast_to(one, b.shape)
     if iterations is not None:
-        return solve(one + _square_root(one - z @ z, iterations)[0], z)
-    root, found = _square_root(one - z @ z, None)
-    # no root that is a function of 1 - z^2 exists where that has a negative eigenvalue; others do not commute with z
-    if not found or not bool(np.all(norms(root @ z - z @ root) <= 1e-6 * norms(root) * norms(z))):
+        return solve(one + _repeated(_newton, iterations, start)[0], z)
+    root = _square_root(b, start)
+    # where 1 - z^2 has a negative eigenvalue no root is a function of it; others do not commute with z
+    if root is None or not bool(np.all(norms(root @ z - z @ root) <= 1e-6 * norms(root) * norms(z))):
         raise SingularError(
             "the Cayley transform of x is on no one-parameter group: its matrix has a real eigenvalue beyond 2 in "
             "size; take a smaller step, or exponential='exp'"
@@ -151,15 +168,20 @@ def _halved(z: Any, iterations: int | None) -> Any:
     return solve(one + root, z)
 
 
-def _square_root(b: Any, iterations: int | None) -> tuple[Any, bool]:
-    """A square root by the coupled Newton iteration y, p -> sqrt(b), 1/sqrt(b), and whether it converged."""
-    y, p = b, namespace(b).broadcast_to(identity(b), b.shape)
-    for _ in range(iterations or MAX_ITERATIONS):
-        before = y
-        y, p = (y + inverse(p)) / 2, (p + inverse(y)) / 2
-        if iterations is None and _has_converged(y, p, before, b):
-            return y, True
-    return y, iterations is not None
+def _newton(_: Any, state: Any) -> Any:
+    """The coupled iteration y, p -> sqrt(b), 1/sqrt(b) from b, 1."""
+    y, p = state
+    return (y + inverse(p)) / 2, (p + inverse(y)) / 2
+
+
+def _square_root(b: Any, state: Any) -> Any:
+    """The square root of b, None where the iteration does not converge."""
+    for i in range(MAX_ITERATIONS):
+        y, p = _newton(i, state)
+        if _has_converged(y, p, state[0], b):
+            return y
+        state = y, p
+    return None
 
 
 def _has_converged(y: Any, p: Any, before: Any, b: Any) -> bool:
@@ -169,12 +191,14 @@ def _has_converged(y: Any, p: Any, before: Any, b: Any) -> bool:
 
 
 def _artanh(z: Any, terms: int) -> Any:
-    square = z @ z
-    power, total = z, z
-    for j in range(1, terms):
-        power = power @ square
-        total = total + power / (2 * j + 1)
-    return total
+    """z + z^3/3 + z^5/5 + ... by Horner's rule."""
+    start = z @ z, z, z / (2 * terms - 1), 2 * terms - 3
+    return _repeated(_odd_horner, terms - 1, start)[2]
+
+
+def _odd_horner(_: Any, state: Any) -> Any:
+    square, z, total, k = state
+    return square, z, z / k + square @ total, k - 2
 
 
 def solve(a: Any, b: Any) -> Any:

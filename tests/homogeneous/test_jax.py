@@ -22,69 +22,58 @@ def double_precision() -> Any:
         yield
 
 
-NAMES = ["so(3)", "Sym(3)", "so(3,1)", "g2", "so(4) scrambled", "QQ(sqrt 2)"]
+CASES = [("so(3)", "exp"), ("so(3)", "cayley"), ("Sym(3)", "exp"), ("Sym(3)", "cayley")]
 
 
-def exponentials(name: str) -> list[str]:
-    return ["exp", "series", "expm"] if name == "g2" else ["exp", "series", "expm", "cayley"]
+@pytest.mark.parametrize(
+    ("name", "which"), [*CASES, ("Sym(3)", "expm"), ("so(3,1)", "cayley"), ("so(4) scrambled", "exp"), ("g2", "exp")]
+)
+def test_exponentials_agree_with_those_on_numpy_arrays(name: str, which: str) -> None:
+    x, m = vectors(name, 1, (3, 2))
+    exp = exponential_of(representation(name), which)
+    made = jax.jit(exp.__call__)(x, m)
+    assert isinstance(made, jax.Array) and made.dtype == np.float64
+    np.testing.assert_allclose(made, exp(x, m), rtol=1e-12, atol=1e-13, err_msg=which)
+    one = exp(jnp.asarray(x[0, 0]), jnp.asarray(m[0, 0]))
+    assert isinstance(one, jax.Array)
+    np.testing.assert_allclose(one, made[0, 0], rtol=1e-12, atol=1e-13)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("lead", [(), (3, 2)])
-def test_exponentials_agree_with_those_on_numpy_arrays(name: str, lead: tuple[int, ...]) -> None:
-    x, m = vectors(name, 1, lead)
-    for which in exponentials(name):
-        exp = exponential_of(representation(name), which)
-        wanted = exp(x, m)
-        for made in (exp(jnp.asarray(x), jnp.asarray(m)), jax.jit(exp.__call__)(x, m)):
-            assert isinstance(made, jax.Array) and made.dtype == np.float64
-            np.testing.assert_allclose(made, wanted, rtol=1e-12, atol=1e-13, err_msg=which)
+@pytest.mark.parametrize(("name", "which"), CASES)
+def test_arguments_of_all_sizes(name: str, which: str) -> None:
+    exp = exponential_of(representation(name), which)
+    compiled = jax.jit(exp.__call__)
+    for size in (0.0, 1e-300, 1e-3, 30.0, 1e3):
+        x, m = vectors(name, 2, (4,), size)
+        np.testing.assert_allclose(compiled(x, m), exp(x, m), rtol=0, atol=3e-15 * max(100.0, size))
+    if name == "Sym(3)" and which == "exp":  # too large for the number of squarings
+        assert np.isnan(compiled(1e9 * x, m)).all()
 
 
-@pytest.mark.parametrize("name", ["so(3)", "Sym(3)"])
-@pytest.mark.parametrize("size", [1e-300, 1e-3, 30.0, 1e3])
-def test_arguments_of_all_sizes(name: str, size: float) -> None:
-    x, m = vectors(name, 2, (4,), size)
-    for which in exponentials(name):
-        exp = exponential_of(representation(name), which)
-        np.testing.assert_allclose(jax.jit(exp.__call__)(x, m), exp(x, m), rtol=0, atol=3e-15 * max(100.0, size))
-    series = exponential_of(representation(name), "series")
-    assert np.isnan(series(1e9 * jnp.asarray(x), jnp.asarray(m))).all() or size < 1e-5
-
-
-@pytest.mark.parametrize("name", ["so(3)", "Sym(3)", "so(3,1)"])
-def test_gradients_against_differences(name: str) -> None:
+@pytest.mark.parametrize(("name", "which"), CASES)
+def test_gradients_against_differences(name: str, which: str) -> None:
     x, m = vectors(name, 3)
-    for which in exponentials(name):
-        exp = exponential_of(representation(name), which)
-
-        def height(x: Any, exp: Any = exp) -> Any:
-            return exp(x, m)[0]
-
-        made = jax.grad(height)(jnp.asarray(x))
-        h = 1e-5
-        wanted = [(height(x + h * e) - height(x - h * e)) / (2 * h) for e in np.eye(len(x))]
-        np.testing.assert_allclose(made, wanted, rtol=1e-7, atol=1e-8)
-        at_zero = jax.grad(height)(jnp.zeros(len(x)))
-        np.testing.assert_allclose(at_zero, (matrices(name) @ m)[:, 0], atol=1e-13)
+    exp = exponential_of(representation(name), which)
+    gradient = jax.jit(jax.grad(lambda x: exp(x, m)[0]))
+    h = 1e-5
+    wanted = [(exp(x + h * e, m)[0] - exp(x - h * e, m)[0]) / (2 * h) for e in np.eye(len(x))]
+    np.testing.assert_allclose(gradient(x), wanted, rtol=1e-7, atol=1e-8)
+    np.testing.assert_allclose(gradient(0 * x), (matrices(name) @ m)[:, 0], atol=1e-13)
 
 
-@pytest.mark.parametrize("name", ["so(3)", "Sym(3)"])
-def test_series_on_jax_arrays(name: str) -> None:
+@pytest.mark.parametrize(("name", "which"), CASES)
+def test_series_on_jax_arrays(name: str, which: str) -> None:
     x, m = vectors(name, 4, (2,))
-    for which in exponentials(name):
-        exp = exponential_of(representation(name), which)
+    exp = exponential_of(representation(name), which)
 
-        def coefficients(x: Any, m: Any, exp: Any = exp) -> Any:
-            curve = lh.Jet.growing(0 * x, 3, zero=True)
-            curve.extend(x)
-            curve.extend(x * x)
-            curve.extend(None)
-            return exp(curve, m).coefficients
+    def coefficients(x: Any, m: Any) -> Any:
+        curve = lh.Jet.growing(0 * x, 3, zero=True)
+        curve.extend(x)
+        curve.extend(x * x)
+        curve.extend(None)
+        return exp(curve, m).coefficients
 
-        wanted = coefficients(x, m)
-        np.testing.assert_allclose(coefficients(jnp.asarray(x), jnp.asarray(m)), wanted, atol=1e-13)
-        np.testing.assert_allclose(jax.jit(coefficients)(x, m), wanted, atol=1e-13)
+    np.testing.assert_allclose(jax.jit(coefficients)(x, m), coefficients(x, m), atol=1e-13)
 
 
 FORMS = [
@@ -100,10 +89,9 @@ FORMS = [
 def test_generators(psi: Any) -> None:
     field = lh.GeneratorField(representation("so(3)"), psi)
     _, m = vectors("so(3)", 5, (4,))
-    for points in (m, m[0]):
-        np.testing.assert_allclose(field.psi(jnp.asarray(points)), field.psi(points), rtol=1e-14)
-        np.testing.assert_allclose(jax.jit(field.psi)(points), field.psi(points), rtol=1e-14)
-        np.testing.assert_allclose(jax.jit(field.vector)(points), field.vector(points), rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(field.psi(jnp.asarray(m[0])), field.psi(m[0]), rtol=1e-14)
+    np.testing.assert_allclose(jax.jit(field.psi)(m), field.psi(m), rtol=1e-14)
+    np.testing.assert_allclose(jax.jit(field.vector)(m), field.vector(m), rtol=1e-13, atol=1e-14)
     field.check(jnp.asarray(m))
 
 
@@ -125,7 +113,6 @@ def test_the_generator_of_least_norm(given: int | None) -> None:
     x, _ = vectors("Sym(3)", 8, (3,))
     m = lh.Action(rho).act(x, np.array([1.0, 0, 0, 1, 0, 2]))
     wanted = field.psi(m)
-    np.testing.assert_allclose(field.psi(jnp.asarray(m)), wanted, atol=1e-12)
     np.testing.assert_allclose(jax.jit(field.psi)(m), wanted, atol=1e-12)
     flow = jax.jit(lambda m: lh.flow_series(field, m, 4).points.coefficients)
     np.testing.assert_allclose(flow(m), lh.flow_series(field, m, 4).points.coefficients, rtol=1e-8, atol=1e-8)
@@ -146,7 +133,7 @@ def test_its_derivative_along_an_orbit() -> None:
     np.testing.assert_allclose(made, (along(h) - along(-h)) / (2 * h), rtol=1e-8, atol=1e-8)
 
 
-@pytest.mark.parametrize("name", ["so(3)", "Sym(3)", "so(5)", "so(3) tensor"])
+@pytest.mark.parametrize("name", ["Sym(3)", "so(5)"])
 def test_frames(name: str) -> None:
     action = lh.Action(representation(name))
     _, m = vectors(name, 9, (3,))
@@ -169,7 +156,7 @@ def test_traced_points_have_no_dimension() -> None:
 def test_single_precision_stays_single() -> None:
     with jax.enable_x64(False):
         x, m = (jnp.asarray(v, dtype=jnp.float32) for v in vectors("Sym(3)", 10))
-        for which in exponentials("Sym(3)"):
+        for which in ("exp", "cayley"):
             made = exponential_of(representation("Sym(3)"), which)(x, m)
             assert made.dtype == np.float32
             wanted = exponential_of(representation("Sym(3)"), which)(*vectors("Sym(3)", 10))
