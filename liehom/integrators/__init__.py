@@ -7,6 +7,7 @@ In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutt
 
 from liehom.integrators.collocation import collocation as collocation
 from liehom.integrators.collocation import gauss as gauss
+from liehom.integrators.conservation_account import ConservationReport as ConservationReport
 from liehom.integrators.convergence import observed_order as observed_order
 from liehom.integrators.convergence_table import ConvergenceTable as ConvergenceTable
 from liehom.integrators.dense import DenseSolution as DenseSolution

@@ -1,6 +1,7 @@
 """What a run keeps: points at every step or at requested times, events, and the corrector's account.
 
-Each has its state as named arrays, for checkpoints.  Imports solution, correctors.
+Each has its state as named arrays, for checkpoints.
+Imports conservation_account, solution, correctors.
 """
 
 from __future__ import annotations
@@ -10,10 +11,12 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.corrected import Corrected
+from liehom.correctors.conserving import Conserving, ConservingStep
+from liehom.correctors.corrected import Corrected, CorrectedStep
 from liehom.correctors.order import Correction
-from liehom.correctors.step import Step
+from liehom.correctors.step import LocalStep, Step
 from liehom.homogeneous import Action
+from liehom.integrators.conservation_account import ConservationAccount
 from liehom.integrators.solution import Report
 
 NO_RANK = int(np.iinfo(np.int64).max)
@@ -95,7 +98,9 @@ class Account:
     def __init__(self, step: Step, shape: tuple[int, ...]) -> None:
         self._step = step
         self._wanted = step.order
-        self._base = step.step.order if isinstance(step, Corrected) else step.order
+        inner = step.step if isinstance(step, Conserving) else step
+        self._base = inner.step.order if isinstance(inner, Corrected) else step.order
+        self._conservation = ConservationAccount(step, shape)
         self._seen = {
             "reached": np.full(shape, step.order),
             "residual": np.zeros(shape),
@@ -105,6 +110,14 @@ class Account:
             "equilibria": np.zeros(shape, dtype=int),
         }
         self._where: tuple[float, tuple[float, ...]] | None = None
+
+    def take(self, local: LocalStep, h: Any, t: Any, m: Any, active: Any) -> None:
+        """Take in what a step of size h (...,) reports where trajectories are active."""
+        if isinstance(local, ConservingStep):
+            self._conservation.add(local, h, t, m, active)
+            local = local.base
+        if isinstance(local, CorrectedStep):
+            self.add(local.correction, t, m, active)
 
     def add(self, found: Correction, t: Any, m: Any, active: Any) -> None:
         """Take in the correction of one step where trajectories are active."""
@@ -154,18 +167,22 @@ class Account:
             failed_steps=int(seen["failed"].sum()),
             equilibria=int(seen["equilibria"].sum()),
             inner_product=action.inner_product.name,
+            conservation=self._conservation.report(),
         )
 
     def arrays(self) -> dict[str, Any]:
         """The state, for a checkpoint."""
         where = [] if self._where is None else [self._where[0], *self._where[1]]
-        return {**self._seen, "where": np.array(where)}
+        kept = {f"conservation_{name}": x for name, x in self._conservation.arrays().items()}
+        return {**self._seen, "where": np.array(where), **kept}
 
     def restore(self, arrays: dict[str, Any]) -> None:
         """Take a state back."""
         self._seen = {name: arrays[name] for name in self._seen}
         where = [float(x) for x in arrays["where"]]
         self._where = (where[0], tuple(where[1:])) if where else None
+        start = "conservation_"
+        self._conservation.restore({name[len(start) :]: x for name, x in arrays.items() if name.startswith(start)})
 
 
 @final

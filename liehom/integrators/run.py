@@ -16,6 +16,7 @@ from typing import Any, final
 
 import numpy as np
 
+from liehom.correctors.conserving import ConservingStep
 from liehom.correctors.corrected import CorrectedStep
 from liehom.correctors.expansion import flow_series
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
@@ -181,8 +182,7 @@ class Run:
             return
         if not move.moves.any():
             return
-        if isinstance(move.local, CorrectedStep):
-            self.account.add(move.local.correction, self.t, self.m, move.moves)
+        self.account.take(move.local, move.h, self.t, self.m, move.moves)
         halted = np.zeros(self.shape, dtype=bool)
         if self.events is not None:
             move, halted = self._watched(self.events, move)
@@ -206,8 +206,9 @@ class Run:
             moves = moves & self._judged(estimate(h[..., None]), h, local.estimate_order)  # type: ignore[attr-defined]
         elif adaptive:
             self.h = GROWTH * np.abs(h)
-        if isinstance(local, CorrectedStep):
-            _ = local.correction.singular_value  # computed when it is asked for, and fails where psi is not finite
+        inner = local.base if isinstance(local, ConservingStep) else local
+        if isinstance(inner, CorrectedStep):
+            _ = inner.correction.singular_value  # computed when it is asked for, and fails where psi is not finite
         good = np.isfinite(made).all(axis=-1)
         if not good.all():
             if adaptive:

@@ -1,6 +1,6 @@
 """Solution: what `integrate` returns, shaped as scipy's solve_ivp shapes it; and Report, what the corrector says.
 
-Imports nothing of liehom.
+Imports conservation_account.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from typing import Any, final
 
 import numpy as np
+
+from liehom.integrators.conservation_account import ConservationReport
 
 
 @final
@@ -40,6 +42,8 @@ class Report:
         At how many steps the point was an equilibrium.
     inner_product : str
         The inner product in which corrections are least.
+    conservation : ConservationReport or None
+        How first integrals were kept by a `Conserving` step.
     range_condition : bool or None
         Whether the correction could be solved everywhere; None for plain steps.
 
@@ -70,6 +74,7 @@ class Report:
     failed_steps: int
     equilibria: int
     inner_product: str
+    conservation: ConservationReport | None = None
 
     @property
     def range_condition(self) -> bool | None:
@@ -80,6 +85,8 @@ class Report:
         lines = [f"{self.step} with {self.exponential}, clock {self.clock}"]
         if self.range_condition is None:
             lines.append(f"order {self.order}, no correction")
+            if self.conservation is not None:
+                lines.append(str(self.conservation))
             return "\n".join(lines)
         if self.range_condition:
             lines.append(f"orbits captured to order {self.order} at every step (base order {self.base_order})")
@@ -98,6 +105,8 @@ class Report:
                 lines.append(f"    smallest at t = {time:.6g}, m = ({shown})")
         if self.equilibria:
             lines.append(f"equilibria met at {self.equilibria} steps: left as they are")
+        if self.conservation is not None:
+            lines.append(str(self.conservation))
         lines.append(f"least corrections in {self.inner_product}")
         return "\n".join(lines)
 

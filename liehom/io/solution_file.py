@@ -146,6 +146,8 @@ def plain(value: Any) -> Any:
     """
     if hasattr(value, "tolist"):
         value = value.tolist()
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        value = dataclasses.asdict(value)
     if isinstance(value, Mapping):
         return {str(key): plain(x) for key, x in value.items()}
     if isinstance(value, list | tuple):
