@@ -88,38 +88,55 @@ class LeastNorm:
         value = m.value if isinstance(m, Jet) else namespace(m).asarray(m)
         if is_exact(value):
             raise InputError("the generator of least norm is computed in floats; give psi itself for exact numbers")
-        columns = self._action.right(m) @ self._basis
-        down, right, kept = self._decomposed(value, columns, x)
-        if not isinstance(columns, Jet) and not isinstance(x, Jet) and not is_jax(value) and value.dtype == np.float64:
-            moved = (down @ x[..., None]).swapaxes(-1, -2) @ right
-            return (moved @ self._basis.T)[..., 0, :]
+        down, right, kept = self._decomposed(value, x.value if isinstance(x, Jet) else x)
         xp = namespace(value)
-        rows = np.matmul(down, columns) if isinstance(columns, Jet) else down @ columns
-        gram = np.matmul(rows, np.swapaxes(rows, -1, -2)) if isinstance(rows, Jet) else rows @ xp.swapaxes(rows, -1, -2)
-        gram = gram + (~kept)[..., None] * xp.eye(kept.shape[-1], dtype=value.dtype)
-        target = np.matmul(down, x[..., None]) if isinstance(x, Jet) else down @ x[..., None]
-        y = _solved(gram, target)
-        swapped = np.swapaxes(rows, -1, -2) if isinstance(rows, Jet) else xp.swapaxes(rows, -1, -2)
-        made = np.matmul(swapped, y) if isinstance(y, Jet) else swapped @ y
-        return made[..., 0] @ self._basis.T
+
+        def lifted(rows: Any, y: Any) -> Any:
+            return (xp.swapaxes(rows, -1, -2) @ y)[..., 0] @ self._basis.T
+
+        def image(v: Any) -> Any:
+            return down @ v[..., None]
+
+        series = isinstance(m, Jet) or isinstance(x, Jet)
+        if not series and xp is np and value.dtype == np.float64:
+            return lifted(right, image(x))
+
+        def rows_at(v: Any) -> Any:
+            return down @ self._columns(v)
+
+        rest = (~kept)[..., None] * xp.eye(kept.shape[-1], dtype=value.dtype)
+        if not series:
+            rows = rows_at(value)
+            return lifted(rows, solve(rows @ xp.swapaxes(rows, -1, -2) + rest, image(x)))
+        order = min(v.order for v in (m, x) if isinstance(v, Jet))
+        points, field = (v.node if isinstance(v, Jet) else recurrences.constant(v, order) for v in (m, x))
+        along = recurrences.linear(rows_at, [points])
+        gram = recurrences.multilinear(lambda a, b: a @ xp.swapaxes(b, -1, -2), [along, along])
+        gram = recurrences.add(gram, recurrences.constant(rest, order))
+        first = inverse(gram.value)
+        y = recurrences.solution(recurrences.linear(image, [field]), gram, _product, lambda a, _: first @ a)
+        return Jet.from_node(recurrences.multilinear(lifted, [along, y]))
 
     def check(self, m: Any, t: Any = 0.0) -> None:
         """Check that X is finite at starting points, and tangent to their orbits."""
         self.components.check(m, t)
         self(m, t)
 
-    def _decomposed(self, value: Any, columns: Any, x: Any) -> tuple[Any, Any, Any]:
+    def _columns(self, m: Any) -> Any:
+        """A = [rho(b_1) m, ..., rho(b_r) m], shape (..., N, r)."""
+        return self._action.right(m) @ self._basis
+
+    def _decomposed(self, value: Any, field: Any) -> tuple[Any, Any, Any]:
         """S^-1 U^T, V^T, and which of the rows stand for tangent directions (the others are 0)."""
         xp = namespace(value)
-        at = columns.value if isinstance(columns, Jet) else columns
-        field = x.value if isinstance(x, Jet) else x
+        at = self._columns(value)
         if is_jax(value):
             at = sys.modules["jax"].lax.stop_gradient(at)
         elif value.dtype == np.longdouble:
             at, field = at.astype(np.float64), field.astype(np.float64)
         left, sizes, right = xp.linalg.svd(at, full_matrices=False)
         if self._dimension is None:
-            noise = NOISE_RTOL * self._size * xp.linalg.norm(value, axis=-1)[..., None]
+            noise = NOISE_RTOL * self._size * _length(value)[..., None]
             kept = sizes > xp.maximum(RANK_RTOL * sizes[..., :1], noise)
         else:
             kept = (np.arange(sizes.shape[-1]) < self._dimension) & (sizes > 0)
@@ -133,9 +150,9 @@ class LeastNorm:
 
     def _check_tangent(self, m: Any, field: Any, up: Any) -> None:
         normal = field - (np.swapaxes(up, -1, -2) @ (up @ field[..., None]))[..., 0]
-        sizes = np.linalg.norm(normal, axis=-1)
+        sizes = _length(normal)
         # next to points of size |m|, a field below 1e-6 |m| counts as round-off where it is not tangent
-        bound = self._rtol * (np.linalg.norm(field, axis=-1) + 1e-6 * np.linalg.norm(m, axis=-1))
+        bound = self._rtol * (_length(field) + 1e-6 * _length(m))
         if bool(np.any(sizes > bound)):
             index = np.unravel_index(int(np.argmax(np.where(sizes > bound, sizes, -1.0))), sizes.shape)
             place = tuple(int(i) for i in index)
@@ -147,14 +164,9 @@ class LeastNorm:
             )
 
 
-def _solved(gram: Any, target: Any) -> Any:
-    """The solution of gram y = target, arrays or Jets."""
-    if not isinstance(gram, Jet) and not isinstance(target, Jet):
-        return solve(gram, target)
-    order = min(v.order for v in (gram, target) if isinstance(v, Jet))
-    a, b = (v if isinstance(v, Jet) else Jet.constant(v, order) for v in (gram, target))
-    first = inverse(a.value)
-    return Jet.from_node(recurrences.solution(b.node, a.node, _product, lambda y, _: first @ y))
+def _length(v: Any) -> Any:
+    xp = namespace(v)
+    return xp.sqrt(xp.einsum("...i,...i->...", v, v))
 
 
 def _product(a: Any, b: Any) -> Any:

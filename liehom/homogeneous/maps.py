@@ -51,7 +51,7 @@ class FieldMap:
     [0.0, 1.0]
     """
 
-    __slots__ = ("_entries", "_exact", "_field", "_floating", "_rest", "_table", "shape")
+    __slots__ = ("_entries", "_exact", "_field", "_floating", "_rest", "_table", "_turned", "shape")
 
     def __init__(self, entries: Entries, shape: tuple[int, int, int], field: Field) -> None:
         self._entries = list(entries)
@@ -66,6 +66,7 @@ class FieldMap:
         self._exact: Bilinear | None = None
         a, b, c = shape
         dense = a * b * c <= DENSE_SIZE or len(places) > DENSE_SHARE * a * b * c
+        self._turned: Any = None
         self._table = np.ascontiguousarray(self._floating.tensor().reshape(a, b * c)) if dense else None
 
     def __call__(self, x: Any, y: Any) -> Any:
@@ -97,6 +98,11 @@ class FieldMap:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
         y = y if isinstance(y, Jet) else _array(y)
         self._check((self.shape[0],), y.shape)
+        if self._table is not None and type(y) is np.ndarray and y.dtype == np.float64:
+            if self._turned is None:
+                table = self._table.reshape(self.shape).transpose(1, 2, 0)
+                self._turned = np.ascontiguousarray(table.reshape(self.shape[1], -1))
+            return (y @ self._turned).reshape(*y.shape[:-1], self.shape[2], self.shape[0])
         return self._matrix(y, "right")
 
     def _matrix(self, x: Any, side: str) -> Any:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from math import ceil, log2
+from math import ceil, log, log2
 from typing import Any
 
 import numpy as np
@@ -147,7 +147,8 @@ def cayley_logarithm(a: Any) -> Any:
             break
         z, factor = _halved(z, None), 2 * factor
         size = float(norms(z).max(initial=0.0))
-    terms = 2 + int(np.log(np.finfo(a.dtype).eps) / np.log(SERIES_RADIUS**2))
+    # size^(2 terms) is below round-off
+    terms = 2 + int(log(float(np.finfo(a.dtype).eps)) / (2 * log(max(size, 1e-20))))
     return _marked(factor * _artanh(z, terms), bad)
 
 
