@@ -34,8 +34,16 @@ def stepper(field: lh.GeneratorField, step: Any, dimension: int, exponential: An
     return one
 
 
-@pytest.mark.parametrize("exponential", ["exp", "cayley"])
-@pytest.mark.parametrize("base", [lh.Euler(), lh.Heun(), lh.LieTaylor(2)], ids=str)
+@pytest.mark.parametrize(
+    ("base", "exponential"),
+    [
+        (lh.Euler(), "exp"),
+        (lh.Heun(), "cayley"),
+        *[pytest.param(*x, marks=pytest.mark.slow) for x in ((lh.Euler(), "cayley"), (lh.Heun(), "exp"))],
+        *[pytest.param(lh.LieTaylor(2), x, marks=pytest.mark.slow) for x in ("exp", "cayley")],
+    ],
+    ids=str,
+)
 def test_jit_and_vmap(base: Any, exponential: str) -> None:
     field, m, h = rigid_body(), unit(1, 7, 3), 0.1 + 0.02 * np.arange(7)
     step = lh.Corrected(base, 4)

@@ -76,3 +76,18 @@ def test_terms_of_the_flow_in_extended_floats() -> None:
         z, tau = one_step(field, lh.Corrected(lh.Euler(), 4), m, np.longdouble(h), np.longdouble(0.001))
         errors.append(np.linalg.norm((z - exact_flow(field, m, tau, np.longdouble(0.001), steps=2)).astype(float)))
     assert errors[1] < 1e-15 and slopes([2, 1], errors)[0] > 4.7, errors
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.longdouble])
+def test_a_free_action_is_corrected_by_the_clock_alone(kind: Any) -> None:
+    """On the circle there is no isotropy, and none is needed."""
+    field = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/3"])
+    m = np.array([3, 4], dtype=kind) / 5
+    found = lh.correction(field, lh.Euler(), m, 4)
+    assert int(found.reached) == 4 and int(found.rank) == 1
+    assert all(x is None or np.all(x == 0) for x in found.zeta)
+    errors = []
+    for h in (0.1, 0.05):
+        z, tau = one_step(field, lh.Corrected(lh.Euler(), 4), m, kind(h))
+        errors.append(np.linalg.norm((z - exact_flow(field, m, tau, steps=4)).astype(float)))
+    assert slopes([2, 1], errors)[0] > 4.6, errors
