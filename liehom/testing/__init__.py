@@ -20,6 +20,8 @@ from liehom.fullness.verify import verify_certificate
 from liehom.io import from_json, to_json
 from liehom.representations.pair import Pair
 from liehom.representations.representation import Representation
+from liehom.testing.numerical import check_order as check_order
+from liehom.testing.numerical import check_space as check_space
 
 TOLERANCE = 1e-6
 DENSE_DIMENSION = 80
