@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from liehom.correctors import Corrected as Corrected
     from liehom.correctors import OneExponential as OneExponential
     from liehom.correctors import Step as Step
+    from liehom.correctors import chi as chi
     from liehom.correctors import closed_form as closed_form
     from liehom.correctors import correction as correction
     from liehom.correctors import flow_series as flow_series
@@ -127,7 +128,7 @@ _NAMES = {
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (
-        "Corrected OneExponential Step closed_form correction flow_series order_condition step_series"
+        "Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
     ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
