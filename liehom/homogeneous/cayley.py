@@ -22,7 +22,7 @@ from liehom.series.jet import Jet
 from liehom.series.lie_series import cayley_magnus, dcayley_inverse, without_constant
 
 RTOL = 1e-12
-PROVED_DIMENSION = 28
+PROVED_DIMENSION = 21
 # above this norm of the matrix the linear system is solved in extended precision, so that invariants stay
 REFINED_NORM = 4.0
 
@@ -48,7 +48,7 @@ class Cayley(Exponential):
 
     Notes
     -----
-    That the cubes are in D(g) is proved exactly for algebras of dimension up to 28 over an exact field, else checked
+    That the cubes are in D(g) is proved exactly for algebras of dimension up to 21 over an exact field, else checked
     numerically to 1e-12.
 
     Examples

@@ -97,6 +97,15 @@ class TrueExponential(Exponential, ABC):
 
     Another implementation of exp needs a name and `act` on arrays; everything else is here.
 
+    Parameters
+    ----------
+    representation : Representation
+
+    Attributes
+    ----------
+    infinitesimal, bracket : FieldMap
+        (x, m) -> rho(x) m and (x, y) -> [x, y]; ``infinitesimal.left(x)`` is the matrix rho(x).
+
     Examples
     --------
     >>> import liehom as lh
@@ -106,8 +115,8 @@ class TrueExponential(Exponential, ABC):
     """
 
     def __init__(self, representation: Representation) -> None:
-        self._action: FieldMap = action_map(representation)
-        self._bracket: FieldMap = bracket_map(representation)
+        self.infinitesimal: FieldMap = action_map(representation)
+        self.bracket: FieldMap = bracket_map(representation)
 
     def series(self, x: Jet, m: Any) -> Jet:
         """The sum of the nested products rho(x)^j m / j!."""
@@ -115,17 +124,17 @@ class TrueExponential(Exponential, ABC):
         total = m if isinstance(m, Jet) else Jet.constant(m, x.order)
         term = total
         for j in range(1, x.order + 1):
-            term = self._action(x, term)
+            term = self.infinitesimal(x, term)
             if j > 1:
                 term = term / j
             total = total + term
         return total
 
     def differential_inverse(self, x: Any, y: Any, terms: int) -> Any:
-        return dexp_inverse(self._bracket, x, y, terms)
+        return dexp_inverse(self.bracket, x, y, terms)
 
     def logarithmic_series(self, a: Jet) -> Jet:
-        return magnus(self._bracket, a)
+        return magnus(self.bracket, a)
 
 
 @final
@@ -160,8 +169,8 @@ class SeriesExponential(TrueExponential):
 
     def act(self, x: Any, m: Any) -> Any:
         if is_exact(x) or is_exact(m):
-            return exact_exponential(self._action, x, m)
-        matrix = self._action.left(x)
+            return exact_exponential(self.infinitesimal, x, m)
+        matrix = self.infinitesimal.left(x)
         if is_jax(matrix) or is_jax(m):
             return m + _times(expm1(matrix), m)
         if matrix.ndim == 2 and m.ndim == 1:
@@ -203,8 +212,8 @@ class MatrixExponential(TrueExponential):
 
     def act(self, x: Any, m: Any) -> Any:
         if is_exact(x) or is_exact(m):
-            return exact_exponential(self._action, x, m)
-        matrix = self._action.left(x)
+            return exact_exponential(self.infinitesimal, x, m)
+        matrix = self.infinitesimal.left(x)
         if is_jax(matrix) or is_jax(m) or matrix.dtype == np.longdouble:
             return m + _times(expm1(matrix), m)
         from scipy.linalg import expm

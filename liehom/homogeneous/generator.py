@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.expression import FUNCTIONS as FUNCTIONS
-from liehom.homogeneous.expression import TREES, compiled
+from liehom.homogeneous.expression import compiled
 from liehom.homogeneous.scope import Scope
 from liehom.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, zeros
 from liehom.series.jet import Jet
@@ -61,7 +61,7 @@ class Components:
     ) -> None:
         self.size, self.counts, self.what = size, counts, what
         self._function: Callable[[Any, Any], Any]
-        if callable(source) and not isinstance(source, TREES):
+        if callable(source):
             self._function, self.time_dependent = _called(source, what, time_dependent)
         elif is_jax(source) or (isinstance(source, np.ndarray) and (source.dtype != object or source.ndim != 1)):
             self._function, self.time_dependent = self._constant(source), False

@@ -91,7 +91,7 @@ def inner_product(representation: Representation) -> InnerProduct:
     killing = np.asarray(algebra.killing_form().to_numpy()).reshape(n, n)
     if _is_positive(-killing):
         return _made(algebra, -killing, "minus the Killing form")
-    centre = _coefficients_on_the_centre(algebra)
+    centre = _coefficients_on_the_centre(algebra) if _is_semidefinite(-killing) else None
     if centre is not None and _is_positive(centre - killing):
         return _made(algebra, centre - killing, "minus the Killing form, plus the coefficients on the centre")
     if _is_positive(flat @ flat.T) and _contains(flat, turned):
@@ -140,6 +140,12 @@ def _is_positive(form: Any) -> bool:
     scale = 1 / np.sqrt(diagonal)
     values = np.linalg.eigvalsh(scale[:, None] * (form + form.T) / 2 * scale)
     return bool(values[0] > RTOL * abs(values[-1]))
+
+
+def _is_semidefinite(form: Any) -> bool:
+    """Whether a symmetric form has no negative eigenvalue."""
+    values = np.linalg.eigvalsh((form + form.T) / 2)
+    return bool(values[0] >= -RTOL * np.abs(values).max())
 
 
 def _contains(rows: Any, others: Any) -> bool:

@@ -60,14 +60,14 @@ class Rodrigues(TrueExponential):
 
     def act(self, x: Any, m: Any) -> Any:
         if is_exact(x) or is_exact(m):
-            return exact_exponential(self._action, x, m)
-        once = self._action(x, m)
+            return exact_exponential(self.infinitesimal, x, m)
+        once = self.infinitesimal(x, m)
         q = self._form(x, x)
         if q.shape == (1,) and type(q) is np.ndarray and q.dtype == np.float64 and -1e5 < q[0] < 1e15:
             whole, half = _sine_quotient_of(float(q[0])), _sine_quotient_of(float(q[0]) / 4)
         else:
             whole, half = _sine_quotient(q), _sine_quotient(q / 4)
-        return m + (whole * once + 0.5 * half * half * self._action(x, once))
+        return m + (whole * once + 0.5 * half * half * self.infinitesimal(x, once))
 
 
 def _sine_quotient_of(q: float) -> float:

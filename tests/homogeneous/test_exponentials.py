@@ -463,7 +463,7 @@ def test_a_subclass_is_an_exponential() -> None:
         name = "eigen"
 
         def act(self, x: Any, m: Any) -> Any:
-            values, basis = np.linalg.eigh(1j * self._action.left(x))
+            values, basis = np.linalg.eigh(1j * self.infinitesimal.left(x))
             turned = np.swapaxes(basis.conj(), -1, -2) @ m[..., None]
             return np.real(basis @ (np.exp(-1j * values)[..., None] * turned))[..., 0]
 
