@@ -1,7 +1,20 @@
-"""Systems of the paper and beside it, as instances of the generic code: nothing here re-implements it."""
+"""Systems of the paper and beside it, as instances of the generic code: nothing here re-implements it.
 
+In reading order: `sphere` (SO(k) on spheres; `sphere_frame`: order conditions on S^2), `rigid_body` (with its exact
+motion, the updates of Figure 6 by the corrector and in closed form, and the step on the orbit itself),
+`sym_conjugation` (symmetric matrices with given eigenvalues, isospectral flows), `landau_lifshitz` (spins).
+"""
+
+from liehom.instances.closed_forms import ClosedForm as ClosedForm
+from liehom.instances.exact_orbit import ExactOrbit as ExactOrbit
+from liehom.instances.exact_orbit import ExactOrbitUpdate as ExactOrbitUpdate
 from liehom.instances.isospectral import double_bracket_flow as double_bracket_flow
 from liehom.instances.isospectral import qr_flow as qr_flow
 from liehom.instances.isospectral import qr_solution as qr_solution
 from liehom.instances.isospectral import toda_flow as toda_flow
+from liehom.instances.on_time import GeneratorTaylor as GeneratorTaylor
+from liehom.instances.on_time import OnTime as OnTime
+from liehom.instances.rigid_body import RigidBody as RigidBody
 from liehom.instances.sym_conjugation import SymmetricMatrices as SymmetricMatrices
+from liehom.instances.updates import Update as Update
+from liehom.instances.updates import update_names as update_names
