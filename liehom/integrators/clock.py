@@ -125,7 +125,7 @@ def fitted(local: LocalStep, h: Any, left: Any, *, halve: bool) -> tuple[Any, An
         runs, passed = pace(local, h)
     over = (h != 0) & (np.sign(h) * (left - passed) <= SLACK * np.abs(h))
     # where the clock does not run over the whole step it may still run up to the end
-    last = np.where(runs, over, np.abs(left) <= FASTEST * np.abs(h))
+    last = over if bool(runs.all()) else np.where(runs, over, np.abs(left) <= FASTEST * np.abs(h))
     if not bool(last.any()):
         return h, passed, last, runs
     s = size_for(local, np.where(last, left, 0), np.where(runs, h, left))

@@ -129,7 +129,7 @@ def next_size(h: Any, ratio: Any, order: int) -> Any:
 
 
 def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
-    """For which trajectories the equations of an implicit step of size h have no solution, bool (...,).
+    """For which trajectories the equations of a step of size h have no solution, bool (...,).
 
     They are tried group by group, with h = 0 for the others; psi is still called on the whole ensemble.
 
@@ -164,6 +164,6 @@ def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
 def _is_solvable(local: LocalStep, h: Any) -> bool:
     try:
         local.factors(h[..., None])
-    except ConvergenceError:
+    except (ConvergenceError, np.linalg.LinAlgError):
         return False
     return True

@@ -11,7 +11,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
-from liehom.errors import ShapeError
+from liehom.errors import ConvergenceError, ShapeError
 from liehom.homogeneous import Action
 from liehom.integrators.clock import size_for
 
@@ -96,9 +96,18 @@ class DenseSolution:
         elapsed = np.where(size != 0, time - start, 0)
         ends = _rows(self._times, index + 1) == time
         s = elapsed if self._nominal else size_for(local, elapsed, size)
-        made = apply_factors(self._action, local.factors(np.where(ends, size, s)[..., None]), point)
+        made = self._step_to(local, np.where(ends, size, s), size, point)
         made = np.where((elapsed == 0)[..., None], point, made)
         return np.where(ends[..., None], _rows(self._points, (index + 1)[..., None]), made)
+
+    def _step_to(self, local: LocalStep, s: Any, size: Any, point: Any) -> Any:
+        try:
+            return apply_factors(self._action, local.factors(s[..., None]), point)
+        except (ConvergenceError, np.linalg.LinAlgError):
+            # an implicit step that is continued beyond its ends need not have a solution
+            outside = (s * np.sign(size) < 0) | (np.abs(s) > np.abs(size))
+            made = apply_factors(self._action, local.factors(np.where(outside, 0, s)[..., None]), point)
+            return np.where(outside[..., None], np.nan, made)
 
     def _prepare(self, index: Any, start: Any, point: Any) -> LocalStep:
         """The steps of numbers `index`; those of the last call are kept, as times come in order."""

@@ -61,13 +61,19 @@ def integrate(
     dt : float or array of shape (...,), optional
         A fixed step size. Without it the step size is adapted to `rtol` and `atol`, for every trajectory apart.
     rtol, atol : float
-        The error of a step is at most atol + rtol |m|, root mean squares over the coordinates.
+        The error of a step is at most atol + rtol |m|, root mean squares over the coordinates, and never asked to be
+        below 10 units of round-off.
     t_eval : array_like of shape (k,), optional
-        Times at which to store the solution, in the order of integration; by default every step.
+        Times at which to store the solution, in the order of integration; by default every step. Nothing else is
+        kept then, so that ``t_eval=[end]`` saves memory.
     dense_output : bool
         Whether to return the solution as a function of time, in `sol`.
     events : callable or list of callables, optional
-        Functions g(t, y) whose zeros are looked for, with the attributes `terminal` and `direction` of solve_ivp.
+        Functions g(t, y) whose zeros are looked for, with the attributes `terminal` and `direction` of solve_ivp;
+        for an ensemble they return one number per trajectory. A change of sign between the ends of a step is
+        located on the dense output to round-off; two zeros within one step are not seen (see `max_step`; adapted
+        steps move a point by at most half its size where there are events). A zero at the start is recorded, but
+        does not end the run.
     exponential : str, Exponential or callable
         "exp", "cayley", ...: see `liehom.homogeneous.exponential_of`.
     clock : "corrected" or "nominal"
@@ -76,12 +82,12 @@ def integrate(
     max_step, first_step : float, optional
         Bounds for adapted step sizes.
     max_steps : int
-        After so many steps the run ends with status -1.
+        After so many steps a trajectory ends with status -1.
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional
-        A file (.npz) in which the state is kept every `checkpoint_every` seconds and on interruption; a run that
-        finds it continues from it, bit for bit, and deletes it when it is done.
+        A file (.npz) in which the state is kept every `checkpoint_every` seconds, and when an interruption or an
+        error ends the run; a run that finds it continues from it, bit for bit, and deletes it when it is done.
     checkpoint_every : float
         Seconds between two checkpoints.
 
@@ -94,12 +100,23 @@ def integrate(
     ------
     ShapeError, InputError
         If the start, psi at the start, or an option is not right; TangencyError if a field X is not tangent.
+    SeriesError
+        If the step expands psi, and psi branches on values: `RKMK` only calls it.
+    FormatError
+        If the file at `checkpoint` is not a checkpoint, or is damaged.
 
     Notes
     -----
     The last step is shortened (tau(h) = remaining time, by Newton), so that t[-1] == t_span[1]. Where trajectories
     take different numbers of steps, t and y are filled with NaN unless `t_eval` is given. Leading axes: t is handed
     to psi with the shape of the ensemble.
+
+    Step sizes are adapted by the estimate of an embedded pair, or by the Taylor coefficients of the error at the
+    start of a step; the latter cannot foresee a jump of psi (take a pair, or `max_step`).
+
+    A trajectory that cannot go on (psi is not finite, steps below round-off, a clock that does not run, an implicit
+    step without a solution, `max_steps`) ends with status -1 and what was computed up to there; the others of an
+    ensemble go on, and `statuses` and `message` say which ended and when.
 
     Examples
     --------

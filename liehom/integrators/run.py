@@ -3,7 +3,7 @@
 All trajectories are stepped together, each with its own time, clock and step size.  One that has ended takes steps of
 size 0 from its start, where psi is known to be finite.
 Imports checkpoint, clock, control, dense, events, options, progress, records, solution, state, correctors,
-errors.
+series, errors.
 """
 
 from __future__ import annotations
@@ -53,6 +53,7 @@ from liehom.integrators.options import (
 from liehom.integrators.progress import Progress
 from liehom.integrators.records import Account, Found, Path, Samples
 from liehom.integrators.solution import Solution
+from liehom.series.jet import Jet
 
 GROWTH = 8.0
 FIRST = 0.01
@@ -91,7 +92,7 @@ class Run:
         self, action: Action, psi: Generator, step: Step, span: tuple[Any, Any], start: Any, options: Options
     ) -> None:
         self.action, self.step, self.options = action, step, options
-        self.calls = 0
+        self.calls, self.psi_raised = 0, False
         self.field = psi.field
         self.psi = Generator(self._counted(psi.field), psi.orbit_dimension, start)
         self.span, self.start, self.shape, self.dtype = span, start, start.shape[:-1], start.dtype
@@ -120,7 +121,11 @@ class Run:
     def _counted(self, field: GeneratorField) -> GeneratorField:
         def psi(m: Any, t: Any = 0.0) -> Any:
             self.calls += 1
-            return field.psi(m, t)
+            try:
+                return field.psi(m, t)
+            except np.linalg.LinAlgError:
+                self.psi_raised = bool(np.isfinite(m.value if isinstance(m, Jet) else m).all())
+                raise
 
         return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
 
@@ -255,11 +260,11 @@ class Run:
         left = self.end - self.t
         if not self.options.nominal and has_clock(local):
             h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
-            last = last & self.active
             if not runs.all():
                 self._fail_by_psi(self.active & ~runs, CLOCK)
-                h, last = np.where(self.active, h, 0), last & self.active
-            return h, np.where(last, self.end, self.t + np.where(self.active, passed, 0)), last
+                h, passed = np.where(self.active, h, 0), np.where(self.active, passed, 0)
+            after, last = self.t + passed, last & self.active
+            return h, np.where(last, self.end, after) if last.any() else after, last
         if self.total is None:
             last = self.active & (self.direction * (left - h) <= SLACK * np.abs(h))
             after = self.t + h
@@ -354,24 +359,25 @@ class Run:
 
     def _diagnose(self, error: Exception) -> None:
         """A step could not be computed: find out for which trajectories, or take smaller steps."""
-        if isinstance(error, ConvergenceError):
-            if self.tried is None:
-                raise error
-            where = self.active & unsolvable(*self.tried, self.active)
-            sizes = np.abs(self.tried[1])
-            can_shrink = (sizes > 2 * self.tiny) & (self.total is None)
-            self.h = np.where(where, sizes / 2, self.h)
-            self._fail(where & ~can_shrink, IMPLICIT)
+        if self.psi_raised:
+            raise error
+        if isinstance(error, np.linalg.LinAlgError):
+            bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
+            if not bad.any():
+                series = flow_series(self.field, self.m, self.step.order + ERROR_TERMS, self.t)
+                points = [series.point(k) for k in range(series.points.order + 1)]
+                bad = self.active & ~np.isfinite(points).all(axis=(0, -1))
+            if bad.any():
+                self._fail(bad, PSI)
+                return
+        code = IMPLICIT if isinstance(error, ConvergenceError) else LINEAR
+        if self.tried is None:
+            self._fail(self.active, code)
             return
-        bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
-        if not bad.any():
-            series = flow_series(self.field, self.m, self.step.order + ERROR_TERMS, self.t)
-            points = [series.point(k) for k in range(series.points.order + 1)]
-            bad = self.active & ~np.isfinite(points).all(axis=(0, -1))
-        if bad.any():
-            self._fail(bad, PSI)
-        else:
-            self._fail(self.active, LINEAR)
+        where = self.active & unsolvable(*self.tried, self.active)
+        sizes = np.abs(self.tried[1])
+        self.h = np.where(where, sizes / 2, self.h)
+        self._fail(where & ((self.total is not None) | (sizes <= 2 * self.tiny)), code)
 
     def _solution(self) -> Solution:
         o = self.options

@@ -71,7 +71,7 @@ def fingerprint(run: Run) -> str:
     near = run.action.act((ahead * here).astype(run.dtype), run.start)
     there = np.asarray(field.psi(near, t + ahead))
     numbers = [np.array(run.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
-    return digest(texts, run.start, *numbers, *matrices, here, there, *run.before)
+    return digest(texts, run.start, *numbers, *matrices, here, near, there, *run.before)
 
 
 def _records(run: Run) -> dict[str, Any]:

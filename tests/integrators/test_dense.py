@@ -27,7 +27,7 @@ STEPS = [
 CLOCKS = [(step, clock) for step in STEPS for clock in ("corrected", "nominal")]
 
 
-def exact(times: Any, span: tuple[float, float] = (0.0, 1.2)) -> Any:
+def exact(times: Any, span: tuple[float, float] = (0.0, 0.8)) -> Any:
     found = solve_ivp(
         lambda t, y: BODY.vector(y, np.asarray(t)), span, M0, method="DOP853", rtol=1e-13, atol=1e-14, t_eval=times
     )
@@ -36,12 +36,12 @@ def exact(times: Any, span: tuple[float, float] = (0.0, 1.2)) -> Any:
 
 @pytest.mark.parametrize("step", STEPS, ids=repr)
 def test_inside_the_steps_the_order_is_that_of_the_step(step: Any) -> None:
-    for span in ((0.0, 1.2), (0.0, -1.2)):
+    for span in ((0.0, 0.8), (0.0, -0.8)):
         times = np.linspace(*span, 41)[1:-1]
         wanted = exact(times, span)
         errors = [
             np.abs(lh.integrate(BODY, span, M0, step=step, dt=dt, dense_output=True).sol(times) - wanted).max()
-            for dt in (0.1, 0.05, 0.025)
+            for dt in (0.08, 0.04)
         ]
         slopes = np.log2(np.array(errors[:-1]) / errors[1:])
         assert abs(slopes[-1] - step.order) < 0.4, (errors, slopes)
@@ -83,13 +83,13 @@ def test_arguments() -> None:
 
 
 @pytest.mark.parametrize("step", [lh.LieTaylor(5), lh.Corrected(lh.Euler(), 4), lh.RKMK("rk45")], ids=repr)
-@pytest.mark.parametrize("end", [0.4, -0.4])
+@pytest.mark.parametrize("end", [0.2, -0.2])
 def test_an_ensemble_with_very_different_steps(step: Any, end: float) -> None:
     speeds = np.array([[0.01, 1.0], [30.0, 1e-9]])[..., None]
     field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: speeds * (m * [1.0, 2.0, 3.0] + 0.3))
     m = np.broadcast_to(M0, (2, 2, 3))
     sol = lh.integrate(field, (0, end), m, step=step, rtol=1e-7, dense_output=True)
-    assert sol.n_steps.max() > 10 * sol.n_steps.min()
+    assert sol.n_steps.max() > 5 * sol.n_steps.min()
     times = np.linspace(0, end, 23)
     made = sol.sol(times)
     assert made.shape == (2, 2, 3, 23) and np.abs((made**2).sum(axis=-2) - 1).max() < 1e-13

@@ -87,11 +87,11 @@ def test_the_last_step_under_the_corrected_clock_ends_at_the_end() -> None:
 
 
 def test_backwards_returns_to_the_start() -> None:
-    for kind in ({"dt": 0.02}, {"rtol": 1e-11, "atol": 1e-13}):
+    for kind in ({"dt": 0.02}, {"rtol": 1e-10, "atol": 1e-12}):
         for step in (lh.LieTaylor(6), lh.Corrected(lh.Euler(), 6), lh.RKMK("rk45")):
-            there = lh.integrate(BODY, (0, 2), M0, step=step, **kind)
-            back = lh.integrate(BODY, (2, 0), there.y[:, -1], step=step, **kind)
-            assert back.t[0] == 2 and back.t[-1] == 0 and (np.diff(back.t) < 0).all()
+            there = lh.integrate(BODY, (0, 1), M0, step=step, **kind)
+            back = lh.integrate(BODY, (1, 0), there.y[:, -1], step=step, **kind)
+            assert back.t[0] == 1 and back.t[-1] == 0 and (np.diff(back.t) < 0).all()
             assert np.abs(back.y[:, -1] - M0).max() < 2e-8
 
 
@@ -111,7 +111,7 @@ def test_the_order_is_reached(step: Any, direction: int) -> None:
 
 
 # -- ensembles -----------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("shape", [(1,), (3,), (2, 3), (1, 1)])
+@pytest.mark.parametrize("shape", [(1,), (2, 3)])
 @pytest.mark.parametrize(
     "kind", [{"dt": 0.05}, {"step": CORRECTED}, {"step": lh.RKMK("rk45"), "rtol": 1e-8}, {"step": lh.Heun()}], ids=str
 )
@@ -399,9 +399,9 @@ def test_one_bad_start_of_an_ensemble_is_named() -> None:
 @given(
     st.floats(-10, 10), st.floats(-10, 10), st.floats(1e-3, 30), st.booleans(), st.lists(st.floats(0, 1), max_size=4)
 )
-@settings(max_examples=60)
+@settings(max_examples=25)
 def test_whatever_the_span_the_step_and_the_times(start: float, end: float, dt: float, fixed: bool, share: Any) -> None:
-    dt = max(dt, abs(end - start) / 200)
+    dt = max(dt, abs(end - start) / 60)
     times = np.unique(start + np.array(sorted(share)) * (end - start))
     times = np.clip(times if end >= start else times[::-1], min(start, end), max(start, end))
     kind = {"dt": dt} if fixed else {"max_step": dt}
