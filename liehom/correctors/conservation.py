@@ -9,6 +9,7 @@ Imports first_integral, expansion, step, tower, homogeneous, series, errors.
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Any, final
 
 import numpy as np
@@ -89,19 +90,40 @@ class Conservation:
         self.action, self.integral, self.basis, self.m, self.factor = action, integral, frame.basis, m, factor
         self.value, self.gradient = integral.gradient(m)
         self.scale = conditioning(self.value, self.gradient, m)
-        self._velocity = action.infinitesimal(generator, m)
-        self.matrix = self.along(self._velocity)
         noise = NOISE * np.finfo(m.dtype).eps
         tangential = self.gradient @ frame.tangent
         sizes = _length(tangential)
         kept = sizes > noise * _length(self.gradient)
         self._sizes = np.where(kept, sizes, 0.0)
         self.tangential = np.where(kept[..., None], tangential / np.where(kept, sizes, 1.0)[..., None], 0.0)
-        speed = _length(self._velocity)
-        self.moving = moving = speed > noise * action.size * _length(generator) * _length(m)
-        bound = factor * action.size * speed[..., None] * sizes
-        kept = kept & moving[..., None] & (bound > 0)
+        velocity = action.infinitesimal(generator, m)
+        self._take(velocity, _length(velocity) > noise * action.size * _length(generator) * _length(m))
+
+    def _take(self, velocity: Any, moving: Any) -> None:
+        self._velocity, self.moving, self.matrix = velocity, moving, self.along(velocity)
+        bound = self.factor * self.action.size * _length(velocity)[..., None] * self._sizes
+        kept = moving[..., None] & (bound > 0)
         self.hat = np.where(kept[..., None], self.matrix / np.where(kept, bound, 1.0)[..., None], 0.0)
+
+    def toward(self, displacement: Any) -> Conservation:
+        """The same with a displacement (..., N) of the step in place of X where X(m, t) = 0.
+
+        A time-dependent field that vanishes at t moves the point all the same; the displacement has the direction of
+        the leading coefficient of the flow. At an equilibrium it is round-off, and nothing changes.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-t*m0", "-t*m1/2", "-t*m2/4"])
+        >>> found = conservation_map(field, lh.Euler(), [0.6, 0.48, 0.64], "m0**2 + m1**2/2 + m2**2/4", t=0.0)
+        >>> int(found.rank), int(found.toward(field.vector(found.m, 1.0)).rank)
+        (0, 1)
+        """
+        made = copy(self)
+        moved = _length(displacement) > NOISE * np.finfo(self.m.dtype).eps * _length(self.m)
+        made._take(np.where(self.moving[..., None], self._velocity, displacement), self.moving | moved)
+        return made
 
     @property
     def dimension(self) -> int:

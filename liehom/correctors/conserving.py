@@ -30,6 +30,7 @@ from liehom.series.jet import Jet
 AIMS = ("start", "previous")
 ROUND_OFF = 0.5
 SAMPLES = 2
+LATER = 0.01
 
 
 @final
@@ -175,15 +176,16 @@ class _Begun:
             x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.size or 1.0)
             point = action.act(np.broadcast_to(x, (*start.shape[:-1], x.size)), start) if j else start
             point = point.astype(start.dtype, copy=False)
-            usable = np.isfinite(point).all(axis=-1) & np.isfinite(psi.field.psi(point, t)).all(axis=-1)
+            time = t + LATER * j if psi.field.time_dependent else t
+            usable = np.isfinite(point).all(axis=-1) & np.isfinite(psi.field.psi(point, time)).all(axis=-1)
             point = np.where(usable[..., None], point, start)
             frame = action.isotropy_frame(point, psi.orbit_dimension)
-            found = Conservation(action, self.integral, frame, point, psi.field.psi(point, t), factor)
+            found = Conservation(action, self.integral, frame, point, psi.field.psi(point, time), factor)
             first = first or found
             short = short & found.moving & (found.rank < found.wanted)
             if step.conserved_order is None:
-                local = step.step.at(action, inner, point, np.asarray(t)[..., None])
-                flow = flow_series(psi.field, point, bound, t)
+                local = step.step.at(action, inner, point, np.asarray(time)[..., None])
+                flow = flow_series(psi.field, point, bound, time)
                 made = expanded(action, self.integral, local, point, bound)
                 finite = np.isfinite(np.asarray(made)).all(axis=(0, -1))
                 noise = round_off_of(action, self.integral, flow, local, point, bound)
@@ -228,7 +230,7 @@ class Conserved:
     rank, wanted : array of int
         The rank of chi_m, and how many integrals are independent on the orbit at m.
     left : array of bool
-        Where isotropy was left alone because F does not resolve its effect: next to an equilibrium, or h = 0.
+        Where isotropy was left alone because F does not resolve its effect: at or next to an equilibrium, or h = 0.
     """
 
     iterations: Any
@@ -338,14 +340,17 @@ class ConservingStep(LocalStep):
             x = self.sigma() * h ** ((self.n or 1) - 1)
             resolved, iterations, left = found.rank, np.zeros(m.shape[:-1], dtype=int), residual(x)
         else:
+            if not found.moving.all():
+                found = found.toward(z - m)
             directions = found.directions
             jacobian = found.along(z - m, directions)
             aimed = newton(residual, first, directions, jacobian, self._unit, action.size)
             x, resolved, iterations, left = aimed.x, aimed.resolved, aimed.iterations, aimed.residual
         defect = np.abs(left)
         units = (defect / np.maximum(self._unit, np.finfo(defect.dtype).tiny)).max(axis=-1)
-        rank = found.rank
-        record = Conserved(iterations, defect.max(axis=-1), units, rank, found.wanted, resolved < rank)
+        rank, wanted = found.rank, found.wanted
+        alone = (resolved < rank) | ~found.moving | (wanted == 0)
+        record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
         if x is None:
             return made, record
         return ((made[0] + x,) if self._one else (*made, x)), record

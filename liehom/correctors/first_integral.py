@@ -90,7 +90,8 @@ class FirstIntegral:
         lead, shape = m.shape[:-1], made.shape
         if shape == lead:
             scalar = True
-            made = made[..., None]
+            # stacked where numpy has made a bare number of an array of exact numbers
+            made = made[..., None] if lead or made.dtype != object else np.stack([made], axis=-1)
         elif len(shape) == len(lead) + 1 and shape[:-1] == lead and shape[-1]:
             scalar = False
         else:
