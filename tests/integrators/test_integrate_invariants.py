@@ -17,6 +17,7 @@ import liehom as lh
 STEPS, MANY = 2_000, 100_000
 BOUND = 1e-12
 PARTS = 20
+HEUN = lh.RKMK("heun")
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Case:
     start: Any
     invariants: Callable[[Any], Any]
     sizes: Callable[[Any], Any]
-    step: Any = lh.RKMK("heun")
+    step: Any = HEUN
 
 
 def on_a_sphere(rho: lh.Representation) -> Case:
