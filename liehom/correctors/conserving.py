@@ -64,7 +64,8 @@ class Conserving(Step):
     Proposition 10 of the paper, with Newton's method started at the solution of chi_m(sigma_0) = -E_n up to higher
     order (E_n need not vanish, unlike what its proof says); `linear` is the linearisation after it. At an equilibrium
     chi_m = 0, and the step is that of the base; so it is where F does not resolve the orbits at the precision of the
-    numbers. The order as a method for trajectories is that of the base.
+    numbers. Where chi_m loses rank on the way, the level set may be out of the reach of isotropy for large steps of a
+    low order: the report counts steps that miss it. The order as a method for trajectories is that of the base.
 
     Examples
     --------
@@ -319,7 +320,7 @@ class ConservingStep(LocalStep):
 
     # -- private -----------------------------------------------------------------------------------------
     def _made(self, h: Any) -> tuple[Any, tuple[Any, ...], Conserved]:
-        last = self._last
+        last, h = self._last, np.asarray(h)
         if last is None or h.shape != last[0].shape or h.dtype != last[0].dtype or not (h == last[0]).all():
             last = self._last = (h.copy(), *self._corrected(h))
         return last

@@ -129,6 +129,54 @@ def test_the_linear_correction_gains_one_order_in_the_energy(base: Any, n: int) 
     assert np.array_equal(again.y, made.y)
 
 
+# -- any representation ----------------------------------------------------------------------------------
+def symmetric(*eigenvalues: float) -> Any:
+    return [float(x) for x in lh.representations.symmetric_to_vector(np.diag(eigenvalues).tolist())]
+
+
+SPACES: dict[str, tuple[Any, Any]] = {
+    "so(5) on S^4": (lambda: lh.defining(lh.so(5)), [0.6, 0, 0.8, 0, 0]),
+    "so(3) on Sym(3) at (1, 1, 2)": (lambda: lh.sym_conjugation(3), symmetric(1, 1, 2)),
+    "so(4) on Sym(4) at (1, 1, 2, 2)": (lambda: lh.sym_conjugation(4), symmetric(1, 1, 2, 2)),
+    "g2 on S^6": (lambda: lh.defining("g2"), None),
+    "sl(2) on a hyperboloid": (lambda: lh.adjoint(lh.sl(2)), [1.0, 0.3, 0.2]),
+    "coadjoint su(3)": (lambda: lh.coadjoint(lh.su(3)), [0.3, -0.2, 0.5, 0.1, 0.4, -0.3, 0.2, 0.6]),
+}
+
+
+def conservative(rho: lh.Representation, seed: int) -> tuple[lh.GeneratorField, Any]:
+    """A field with a random cubic first integral: psi = K v with K antisymmetric and v_i = DF(m) rho(e_i) m."""
+    rng, n, d = np.random.default_rng(seed), rho.size, rho.algebra.dimension
+    a, b, c, k = rng.normal(size=(n, n)), rng.normal(size=n), rng.normal(size=n), rng.normal(size=(d, d))
+    tensor = np.array([x.to_numpy() for x in rho.matrices])
+
+    def F(m: Any) -> Any:
+        return np.einsum("...i,ij,...j->...", m, a, m) / n + (m @ b) ** 3 / (3 * n) + m @ c
+
+    def psi(m: Any) -> Any:
+        slope = m @ (a + a.T) / n + np.einsum("...,i->...i", (m @ b) ** 2, b) / n + c
+        return np.einsum("...i,aij,...j->...a", slope, tensor, m) @ (k - k.T) / d
+
+    return lh.GeneratorField(rho, psi), F
+
+
+@pytest.mark.parametrize("base", [lh.Heun(), lh.CrouchGrossman3()])
+@pytest.mark.parametrize("space", SPACES)
+def test_any_integral_of_any_representation(space: str, base: Any) -> None:
+    make, m = SPACES[space]
+    rho = make()
+    m = np.eye(rho.size)[0] if m is None else np.array(m)
+    field, F = conservative(rho, len(space))
+    x = field.psi(m)
+    dt = 0.03 / np.linalg.norm(x)
+    end = (10 if "hyperboloid" in space else 20) * dt  # later it meets chi = 0, as indefinite forms allow
+    made = lh.integrate(field, (0, end), m, step=Conserving(base, F), dt=dt)
+    plain = lh.integrate(field, (0, end), m, step=base, dt=dt)
+    report = made.report.conservation
+    assert made.success and (report.rank, report.wanted, report.missed_steps) == (1, 1, 0)
+    assert drift(F, made, m) < 1e-14 * max(1, abs(F(m))) and drift(F, plain, m) > 10 * drift(F, made, m)
+
+
 # -- several integrals -----------------------------------------------------------------------------------
 MASSES = np.array([1.0, 1.7, 2.3, 3.1])
 PLACES = [(i, j) for i in range(4) for j in range(i + 1, 4)]
