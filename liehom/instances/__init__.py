@@ -15,6 +15,8 @@ from liehom.instances.isospectral import toda_flow as toda_flow
 from liehom.instances.on_time import GeneratorTaylor as GeneratorTaylor
 from liehom.instances.on_time import OnTime as OnTime
 from liehom.instances.rigid_body import RigidBody as RigidBody
+from liehom.instances.sphere import Sphere as Sphere
+from liehom.instances.sphere_frame import SphereFrame as SphereFrame
 from liehom.instances.sym_conjugation import SymmetricMatrices as SymmetricMatrices
 from liehom.instances.updates import Update as Update
 from liehom.instances.updates import update_names as update_names
