@@ -111,24 +111,26 @@ def test_the_order_is_reached(step: Any, direction: int) -> None:
 
 
 # -- ensembles -----------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("shape", [(1,), (2, 3)])
+@pytest.mark.parametrize("shape", [(1,), (2, 2)])
 @pytest.mark.parametrize(
-    "kind", [{"dt": 0.05}, {"step": CORRECTED}, {"step": lh.RKMK("rk45"), "rtol": 1e-8}, {"step": lh.Heun()}], ids=str
+    "kind",
+    [{"dt": 0.05}, {"step": CORRECTED}, {"step": lh.RKMK("rk45"), "rtol": 1e-8}, {"step": lh.Heun(), "rtol": 1e-4}],
+    ids=str,
 )
 def test_an_ensemble_is_its_trajectories(shape: tuple[int, ...], kind: Any) -> None:
     m = points(shape)
-    sol = lh.integrate(BODY, (0, 1.5), m, dense_output=True, **kind)
+    sol = lh.integrate(BODY, (0, 0.8), m, dense_output=True, **kind)
     assert sol.t.shape == (*shape, sol.t.shape[-1]) and sol.y.shape == (*shape, 3, sol.t.shape[-1])
     assert sol.n_steps.shape == shape == sol.statuses.shape
     for index in np.ndindex(shape):
-        one = lh.integrate(BODY, (0, 1.5), m[index], dense_output=True, **kind)
+        one = lh.integrate(BODY, (0, 0.8), m[index], dense_output=True, **kind)
         n = sol.n_steps[index]
         assert one.n_steps == n
         # the estimate of a pair is a small difference, so that round-off reaches the step sizes
         assert np.abs(sol.t[index][: n + 1] - one.t).max() < (1e-10 if "rtol" in kind else 1e-13)
         assert np.abs(sol.y[index][:, : n + 1] - one.y).max() < (1e-10 if "rtol" in kind else 1e-13)
         assert np.isnan(sol.t[index][n + 1 :]).all() and np.isnan(sol.y[index][:, n + 1 :]).all()
-        times = np.linspace(0, 1.5, 7)
+        times = np.linspace(0, 0.8, 4)
         assert np.abs(sol.sol(times)[index] - one.sol(times)).max() < 1e-12
 
 
@@ -199,7 +201,7 @@ def test_orbits_of_different_dimensions_in_one_ensemble() -> None:
 
 # -- requested times -----------------------------------------------------------------------------------------
 @pytest.mark.parametrize("step", [lh.LieTaylor(6), lh.Corrected(lh.Euler(), 5), lh.RKMK("rk45")], ids=repr)
-@pytest.mark.parametrize("span", [(0.0, 2.0), (2.0, 0.0)])
+@pytest.mark.parametrize("span", [(0.0, 0.8), (0.8, 0.0)])
 def test_requested_times_are_those_of_the_dense_output(step: Any, span: tuple[float, float]) -> None:
     times = np.linspace(*span, 13)
     for m in (M0, points((2, 2))):
