@@ -124,7 +124,9 @@ class RigidBody:
             return -self.apply(m)
 
         def orthogonal(m: Any) -> Any:
-            return self.rayleigh(m)[..., None] * m - self.apply(m)
+            turned = self.apply(m)
+            h = np.sum(m * turned, axis=-1, keepdims=True) / np.sum(m * m, axis=-1, keepdims=True)
+            return h * m - turned
 
         return {
             kind: GeneratorField(self.representation, psi)
