@@ -12,11 +12,16 @@ from liehom.instances.isospectral import double_bracket_flow as double_bracket_f
 from liehom.instances.isospectral import qr_flow as qr_flow
 from liehom.instances.isospectral import qr_solution as qr_solution
 from liehom.instances.isospectral import toda_flow as toda_flow
+from liehom.instances.joint_spins import JointSpins as JointSpins
+from liehom.instances.landau_lifshitz import LandauLifshitz as LandauLifshitz
+from liehom.instances.macrospin import macrospin as macrospin
+from liehom.instances.macrospin import switching_time as switching_time
 from liehom.instances.on_time import GeneratorTaylor as GeneratorTaylor
 from liehom.instances.on_time import OnTime as OnTime
 from liehom.instances.rigid_body import RigidBody as RigidBody
 from liehom.instances.sphere import Sphere as Sphere
 from liehom.instances.sphere_frame import SphereFrame as SphereFrame
+from liehom.instances.spin_lattice import SpinLattice as SpinLattice
 from liehom.instances.sym_conjugation import SymmetricMatrices as SymmetricMatrices
 from liehom.instances.updates import Update as Update
 from liehom.instances.updates import update_names as update_names
