@@ -258,7 +258,7 @@ def interrupted(path: Path, **change: Any) -> None:
         {"events": height},
         {"dt": None},
     ],
-    ids=str,
+    ids=lambda change: " ".join(change),
 )
 def test_another_problem_is_refused(change: dict[str, Any], tmp_path: Path) -> None:
     path = tmp_path / "run.npz"
