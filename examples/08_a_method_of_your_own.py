@@ -41,6 +41,9 @@ def pade(x, m):
 matrices = np.array([a.to_numpy() for a in vectors.matrices])
 turning = lh.GeneratorField(vectors, lambda m: m * [1.0, 2.0, 3.0])
 step = lh.Corrected(lh.Euler(), order=4)
-ends = [lh.integrate(turning, (0, 1), [0.6, 0.0, 0.8], step=step, dt=1 / 64, exponential=e).y[:, -1] for e in ("exp", pade)]
+ends = [
+    lh.integrate(turning, (0, 1), [0.6, 0.0, 0.8], step=step, dt=1 / 64, exponential=exponential).y[:, -1]
+    for exponential in ("exp", pade)
+]
 print(ends)
 assert np.allclose(*ends, atol=1e-6)

@@ -19,7 +19,7 @@ def crosses_the_equator(t, m):
 
 crosses_the_equator.direction = 1
 
-options = dict(step=lh.Corrected(lh.Euler(), order=6), rtol=1e-9, atol=1e-12, t_eval=np.linspace(0, 20, 101))
+options = {"step": lh.Corrected(lh.Euler(), order=6), "rtol": 1e-9, "atol": 1e-12, "t_eval": np.linspace(0, 20, 101)}
 sol = lh.integrate(field, (0, 20), starts, events=crosses_the_equator, **options)
 print(sol)
 print("steps per trajectory:", sol.n_steps.min(), "to", sol.n_steps.max())
