@@ -4,7 +4,7 @@
 
 The isotropy of S is full exactly where one eigenvalue is simple and the others are equal (projective space), or all
 are equal (a point): the paper's remark on Sym(k) in section 6.  Every field on an orbit is S' = [A(S), S] with A(S)
-skew: an isospectral flow, see `isospectral`.  Imports integrators, representations, algebra, scalars, errors.
+skew: an isospectral flow, see `isospectral`.  Imports homogeneous, representations, algebra, scalars, series, errors.
 """
 
 from __future__ import annotations
