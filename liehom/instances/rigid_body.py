@@ -81,6 +81,8 @@ class RigidBody:
         self.representation: Representation = adjoint(so(3))
         self.inertia = tensor.to_numpy()
         self.inverse = self._inverse.to_numpy()
+        for array in (self.inertia, self.inverse):
+            array.flags.writeable = False
         self._diagonal = all(tensor.to_rows()[i][j] == 0 for i in range(3) for j in range(3) if i != j)
 
     # -- the field ---------------------------------------------------------------------------------------
@@ -158,6 +160,7 @@ class RigidBody:
             found, axes = np.linalg.eigh(self.inverse)
             values = [QQ.convert(Fraction(float(x))) for x in found]
         axes[:, 1] *= np.sign(np.linalg.det(axes))
+        axes.flags.writeable = False
         return values, axes
 
     @property
