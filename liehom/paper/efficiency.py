@@ -1,0 +1,281 @@
+"""Figures 6 and 7: orders and costs of the 13 updates, cost over accuracy, and where two fits intersect.
+
+    ln cost = a x + b,   x = -ln (average energy error on [0, 100]),   cost = steps times cost of a step
+
+over the step sizes of Figures 3 to 5; the unit of cost is a step of xi_b^Eul.  Imports costs, orders, energy_errors,
+samples, pictures, tables, printed_data.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from liehom.paper.costs import Cost, costs
+from liehom.paper.energy_errors import (
+    SETTINGS,
+    Scale,
+    deck_averages,
+    kernels_agree,
+    scale,
+)
+from liehom.paper.orders import Orders, measured_orders
+from liehom.paper.pictures import Curve, draw_costs
+from liehom.paper.printed_data import CROSSOVER, EULER, FIGURE_6, UPDATES
+from liehom.paper.samples import LAW, SEED, described, spread
+from liehom.paper.tables import Check, Reproduction, Table
+
+PANELS = (
+    ("Euler", EULER),
+    ("Heun", ("rk2_b", "rk2_o", "rk2_ib")),
+    ("order 4, by symbols", ("sy4_b", "sy4_o", "sy4_ib")),
+    ("the most efficient of each order", ("eul_i", "rk2_ib", "sy4_o")),
+)
+LOW, HIGH = "eul_i", "sy4_o"  # the updates whose fits intersect
+ORDER_NEAR, OSCILLATING = 0.15, 0.25
+Fit = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Accuracy:
+    """Average errors of an update over the step sizes of its figure.
+
+    Attributes
+    ----------
+    steps : array of shape (sizes,)
+    errors : array of shape (sizes, decks)
+    """
+
+    steps: Any
+    errors: Any
+
+    def fits(self, cost: float) -> Any:
+        """a and b of every deck, shape (2, decks)."""
+        x, y = -np.log(self.errors), np.log(cost * self.steps)[:, None]
+        x0, y0 = x.mean(axis=0), y.mean(axis=0)
+        a = ((x - x0) * (y - y0)).sum(axis=0) / ((x - x0) ** 2).sum(axis=0)
+        return np.stack([a, y0 - a * x0])
+
+
+def accuracy(size: Scale, name: str, quick: bool) -> Accuracy:
+    """Averages over ten triaxial bodies each, on [0, 100].
+
+    Examples
+    --------
+    >>> accuracy(scale(True), "eul_i", True).errors.shape
+    (3, 3)
+    """
+    setting = next(s for s in SETTINGS if name in s.updates)
+    dts = setting.dts[:3] if quick else setting.dts
+    errors = np.stack([deck_averages(size, "triaxial", name, dt) for dt in dts])
+    return Accuracy(size.span / np.array(dts), errors)
+
+
+@cache
+def measured_costs(quick: bool) -> dict[str, Cost]:
+    """The costs, measured once in a run of the program."""
+    return costs(rounds=3) if quick else costs()
+
+
+def figure6(quick: bool = False, seed: int = SEED) -> Reproduction:
+    """Figure 6: orders, relative costs, fits, the crossover.
+
+    Examples
+    --------
+    >>> sorted(figure6(quick=True).tables)
+    ['', 'cost', 'crossover', 'fits', 'own']
+    """
+    size, cost = scale(quick, seed), measured_costs(quick)
+    orders = measured_orders(seed=seed)
+    far = [name for name in UPDATES if not _as_printed(name, orders[name])]
+    worst = {n: f"{orders[n].solution:.2f}/{orders[n].energy:.2f}" for n in far or UPDATES}
+    io = cost["rk2_io"].operations / cost["eul_b"].operations
+    own = own_consistency()
+    tables = {
+        "": _order_table(orders),
+        "cost": _cost_table(cost),
+        "fits": _fit_table(size, cost, quick),
+        "crossover": _crossover_table(size, cost, quick),
+        "own": own,
+    }
+    printed = _crossing(FIGURE_6[LOW][4:], FIGURE_6[HIGH][4:])
+    checks = (
+        Check(
+            "orders of solution and energy are those of the paper",
+            ", ".join(f"{name} {text}" for name, text in worst.items()),
+            not far,
+        ),
+        Check(
+            "xi_io^RK2 costs far less than 17.14 steps of xi_b^Eul",
+            f"{io:.2f} in operations, {cost['rk2_io'].arrays:.1f} in time (arrays)",
+            io < 5 and cost["rk2_io"].arrays < 10,
+        ),
+        Check(
+            "the printed fits intersect at 7.16e-6",
+            f"{printed:.2e} from their three printed digits",
+            abs(printed / CROSSOVER - 1) < 0.05,
+        ),
+        Check(
+            "x = -ln error: the fits for xi_b^Eul and xi_i^Eul follow from the errors in Figure 3",
+            ", ".join(f"{row[0]} {row[1]:.3f} for {row[2]:.3f}" for row in own.rows if row[0] in ("eul_b", "eul_i")),
+            all(abs(row[1] - row[2]) < 0.005 for row in own.rows if row[0] in ("eul_b", "eul_i")),
+        ),
+        kernels_agree(size, UPDATES),
+    )
+    text = f"{described(LAW, size.decks, seed)} Orders: 20 bodies with moments uniform on (1, 3)."
+    return Reproduction("fig6", "Figure 6: orders and costs of the 13 updates", text, tables, checks)
+
+
+def figure7(quick: bool = False, seed: int = SEED) -> Reproduction:
+    """Figure 7: cost over orbit accuracy, with the fits and those of the paper.
+
+    Examples
+    --------
+    >>> figure7(quick=True).tables[""].columns[:2]
+    ('update', 'dt')
+    """
+    size, cost = scale(quick, seed), measured_costs(quick)
+    names = tuple(dict.fromkeys(name for _, panel in PANELS for name in panel))
+    curves, rows = {}, []
+    for name in names:
+        found = accuracy(size, name, quick)
+        error, y = np.median(found.errors, axis=1), np.log(cost[name].arrays * found.steps)
+        a, b = (float(v) for v in np.median(found.fits(cost[name].arrays), axis=1))
+        paper = FIGURE_6[name][4], FIGURE_6[name][5] - paper_unit()
+        curves[name] = Curve(name, -np.log(error), y, (a, b), paper)
+        rows += [
+            (name, float(size.span / n), float(e), float(-np.log(e)), float(v))
+            for n, e, v in zip(found.steps, error, y, strict=True)
+        ]
+    slopes = {name: curve.fit[0] for name, curve in curves.items()}
+    ordered = slopes["sy4_o"] < slopes["eul_i"] < slopes["eul_o"]
+    panels = [(title, [curves[name] for name in panel]) for title, panel in PANELS]
+    return Reproduction(
+        "fig7",
+        "Figure 7: cost over orbit accuracy",
+        described(LAW, size.decks, seed) + " Cost: steps times measured cost of a step, in steps of xi_b^Eul.",
+        {"": Table("Points", ("update", "dt", "average error", "-ln error", "ln cost"), rows)},
+        (
+            Check(
+                "the higher the order, the flatter the line",
+                ", ".join(f"{n} {slopes[n]:.2f}" for n in ("eul_o", "eul_i", "sy4_o")),
+                ordered,
+            ),
+        ),
+        picture=lambda path: draw_costs(panels, path),
+    )
+
+
+# -- the paper by itself ---------------------------------------------------------------------------------
+def _printed_points(name: str) -> tuple[Any, Any]:
+    """x and ln steps, from the triaxial errors of Figures 3 to 5."""
+    setting = next(s for s in SETTINGS if name in s.updates)
+    errors = np.array([setting.printed["triaxial", dt, name] for dt in setting.dts])
+    return -np.log(errors), np.log(100 / np.array(setting.dts))
+
+
+def paper_unit() -> float:
+    """ln of the paper's time for a step of xi_b^Eul, from its fit at the errors of Figure 3.
+
+    Examples
+    --------
+    >>> round(paper_unit(), 2)
+    -8.21
+    """
+    x, y = _printed_points("eul_b")
+    a, b = FIGURE_6["eul_b"][4:]
+    return float(np.mean(a * x + b - y))
+
+
+def own_consistency() -> Table:
+    """The paper's fits against its own errors: slopes, and relative costs implied by a and b.
+
+    Examples
+    --------
+    >>> [f"{x:.2f}" for x in own_consistency().rows[2][1:]]
+    ['0.49', '0.49', '1.40', '1.45']
+    """
+    rows = []
+    for name in UPDATES:
+        x, y = _printed_points(name)
+        a, b = FIGURE_6[name][4:]
+        implied = math.exp(float(np.mean(a * x + b - y)) - paper_unit())
+        rows.append((name, float(np.polyfit(x, y, 1)[0]), a, implied, FIGURE_6[name][2]))
+    return Table(
+        "The last column of the paper against its own Figures 3 to 5",
+        ("update", "slope from its errors", "slope printed", "relative cost implied", "relative cost printed"),
+        rows,
+    )
+
+
+def _as_printed(name: str, found: Orders) -> bool:
+    """Whether measured orders are those of the paper; a leading term that only oscillates may hide behind the next."""
+    solution, energy = FIGURE_6[name][:2]
+    more = OSCILLATING if energy == 4 else 0
+    return abs(found.solution - solution) < ORDER_NEAR and -ORDER_NEAR < found.energy - energy < ORDER_NEAR + more
+
+
+# -- tables ----------------------------------------------------------------------------------------------
+def _order_table(orders: Mapping[str, Any]) -> Table:
+    rows = [
+        (name, orders[name].solution, FIGURE_6[name][0], orders[name].energy, FIGURE_6[name][1]) for name in UPDATES
+    ]
+    columns = ("update", "order of the solution", "paper", "order of the energy", "paper (energy)")
+    return Table("Orders, global", columns, rows)
+
+
+def _cost_table(cost: Mapping[str, Cost]) -> Table:
+    fastest = {order: min(cost[n].operations for n in UPDATES if FIGURE_6[n][0] == order) for order in (1, 2, 4)}
+    rows = [
+        (
+            name,
+            cost[name].operations,
+            cost[name].operations / cost["eul_b"].operations,
+            cost[name].arrays,
+            cost[name].numbers,
+            FIGURE_6[name][2],
+            cost[name].operations / fastest[FIGURE_6[name][0]],
+            FIGURE_6[name][3],
+        )
+        for name in UPDATES
+    ]
+    columns = (
+        "update", "operations", "relative operations", "relative time (arrays)", "relative time (numbers)", "paper",
+        "operations within class", "paper (within class)",
+    )  # fmt: skip
+    return Table("Costs of a step relative to xi_b^Eul, in one run", columns, rows)
+
+
+def _fit_table(size: Scale, cost: Mapping[str, Cost], quick: bool) -> Table:
+    rows = []
+    for name in UPDATES:
+        fits = accuracy(size, name, quick).fits(cost[name].arrays)
+        a, b = spread(fits[0]), spread(fits[1])
+        rows.append((name, *a, FIGURE_6[name][4], *b, FIGURE_6[name][5] - paper_unit()))
+    columns = ("update", "a", "a low", "a high", "a paper", "b", "b low", "b high", "b paper (same unit)")
+    return Table("Fits ln cost = a x + b, x = -ln error", columns, rows)
+
+
+def _crossover_table(size: Scale, cost: Mapping[str, Cost], quick: bool) -> Table:
+    """Where the fits of xi_i^Eul and xi_o^sy4 intersect, with three kinds of cost."""
+    kinds: dict[str, Callable[[str], float]] = {
+        "operations": lambda name: float(cost[name].operations),
+        "measured time (arrays)": lambda name: cost[name].arrays,
+        "the paper's CPU times": lambda name: FIGURE_6[name][2],
+    }
+    rows = []
+    for kind, of in kinds.items():
+        low, high = (accuracy(size, name, quick).fits(of(name)) for name in (LOW, HIGH))
+        rows.append((kind, *spread(_crossing(low, high)), CROSSOVER))
+    columns = ("cost", "error at the crossover", "low", "high", "paper")
+    return Table("Below this error xi_o^sy4 is cheaper than xi_i^Eul", columns, rows)
+
+
+def _crossing(first: Any, second: Any) -> Any:
+    """The error at which two fits agree."""
+    return np.exp(-(second[1] - first[1]) / (first[0] - second[0]))

@@ -1,0 +1,286 @@
+"""Figures 3, 4 and 5: average errors of the energy over [0, 100], for Euler, Heun and the methods of order four.
+
+Imports kernels, samples, tables, printed_data, instances.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from liehom.instances.rigid_body import RigidBody
+from liehom.paper.kernels import kernel
+from liehom.paper.printed_data import EULER, FIGURE_3, FIGURE_4, FIGURE_5, FOURTH, HEUN, Errors
+from liehom.paper.samples import (
+    KINDS,
+    LAW,
+    SEED,
+    Sample,
+    Spread,
+    averages,
+    described,
+    largest_energy_error,
+    random_bodies,
+    slope,
+    spread,
+)
+from liehom.paper.tables import Check, Reproduction, Table
+
+SPAN, DECKS = 100.0, 40
+QUICK_SPAN, QUICK_DECKS = 25.0, 3
+ZERO = 1e-13
+# orders of the energy on [0, T]; where the leading term is odd in D = <X, Om^2 m> it only oscillates, and long runs
+# show up to one order more
+ENERGY_ORDERS: dict[str, dict[str, int | None]] = {
+    "triaxial": dict(zip((*EULER, *HEUN, *FOURTH), (1, 1, 2, 3, 3, 4, 4, 4, 4, 5, 5, 4, 4), strict=True)),
+    "axisymmetric": dict(zip((*EULER, *HEUN, *FOURTH), (1, 1, None, 3, 3, 5, 5, 5, 5, 5, 5, 5, 5), strict=True)),
+}
+NEAR = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What a table of errors is made of: step sizes, and for each kind of body the two that give the slope."""
+
+    figure: int
+    updates: tuple[str, ...]
+    printed: Errors
+    dts: tuple[float, ...]
+    pairs: dict[str, tuple[float, float]]
+
+
+SETTINGS = (
+    Setting(3, EULER, FIGURE_3, (10.0, 1.0, 0.1, 0.01), {"triaxial": (0.02, 0.01), "axisymmetric": (0.02, 0.01)}),
+    Setting(4, HEUN, FIGURE_4, (10.0, 1.0, 0.1, 0.01), {"triaxial": (0.2, 0.1), "axisymmetric": (0.2, 0.1)}),
+    Setting(5, FOURTH, FIGURE_5, (10.0, 1.0, 0.1), {"triaxial": (0.4, 0.2), "axisymmetric": (0.8, 0.4)}),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """How large a sample is, how long runs are."""
+
+    decks: int
+    span: float
+    seed: int
+
+    def sample(self, kind: str) -> Sample:
+        """The bodies of a kind."""
+        return random_bodies(kind, 10 * self.decks, seed=self.seed)
+
+
+def scale(quick: bool, seed: int = SEED) -> Scale:
+    """The scale of the figures, or a small one for tests.
+
+    Examples
+    --------
+    >>> scale(False)
+    Scale(decks=40, span=100.0, seed=2001)
+    """
+    return Scale(QUICK_DECKS, QUICK_SPAN, seed) if quick else Scale(DECKS, SPAN, seed)
+
+
+@cache
+def energy_errors(scale: Scale, kind: str, name: str, dt: float, printed: bool = False) -> Any:
+    """The largest energy error of every run, shape (10 decks,), for an update of Figure 6 or its misprint.
+
+    Examples
+    --------
+    >>> bool(energy_errors(scale(True), "axisymmetric", "eul_i", 1.0).max() < 1e-13)
+    True
+    """
+    sample = scale.sample(kind)
+    update = kernel(name, sample.body, printed=printed)
+    found = largest_energy_error(update, sample.body, sample.points, dt, scale.span)
+    found.setflags(write=False)
+    return found
+
+
+def deck_averages(scale: Scale, kind: str, name: str, dt: float) -> Any:
+    """Averages over ten runs, shape (decks,)."""
+    return averages(energy_errors(scale, kind, name, dt))
+
+
+def figure3(quick: bool = False, seed: int = SEED) -> Reproduction:
+    """Figure 3: Euler's method with omega_b, omega_o and the isotropy correction.
+
+    Examples
+    --------
+    >>> figure3(quick=True).holds
+    True
+    """
+    size, setting = scale(quick, seed), SETTINGS[0]
+    largest = max(float(energy_errors(size, "axisymmetric", "eul_i", dt).max()) for dt in _sizes(setting, quick))
+    zero = Check("axisymmetric, xi_i^Eul: 0.00", f"largest error of all runs {largest:.1e}", largest < ZERO)
+    return _reproduction(setting, size, quick, {}, (zero,))
+
+
+def figure4(quick: bool = False, seed: int = SEED) -> Reproduction:
+    """Figure 4: Heun's method, with the printed forms that cannot have been run beside it.
+
+    Examples
+    --------
+    >>> sorted(figure4(quick=True).tables)
+    ['', 'printed', 'slopes']
+    """
+    size, setting = scale(quick, seed), SETTINGS[1]
+    rows = [
+        _printed_row(size, "rk2_b", "minus sign between the stages: xi = O(dt^2), nothing moves", 1),
+        _printed_row(size, "rk2_ib", "sigma_ib with J^n_j = -I_j (I_k + I_l)(I_k - I_l)^2", 3),
+    ]
+    return _reproduction(setting, size, quick, {"printed": _printed_table(rows)}, _printed_checks(rows))
+
+
+def figure5(quick: bool = False, seed: int = SEED) -> Reproduction:
+    """Figure 5: methods of order four, with the printed forms of xi_b^sy4 and xi_o^sy4.
+
+    Examples
+    --------
+    >>> figure5(quick=True).holds
+    True
+    """
+    size, setting = scale(quick, seed), SETTINGS[2]
+    rows = [
+        _printed_row(size, "sy4_b", "omega_b = +Om m, as in the list of section 4", 2),
+        _printed_row(size, "sy4_o", "<omega', m> m in place of <omega'', m> m", 3),
+        _printed_row(size, "sy4_o", "<omega', m> m in place of <omega'', m> m", 3, "axisymmetric"),
+    ]
+    same = max(
+        float(np.abs(energy_errors(size, "axisymmetric", f"sy4_i{g}", dt)
+                     - energy_errors(size, "axisymmetric", f"sy4_{g}", dt)).max())
+        for g in "bo"
+        for dt in (1.0, 0.1)
+    )  # fmt: skip
+    paper = math.log10(FIGURE_5["axisymmetric", 1, "sy4_o"] / FIGURE_5["axisymmetric", 0.1, "sy4_o"])
+    corrected = _slope(size, setting, "axisymmetric", "sy4_o")
+    checks = (
+        *_printed_checks(rows),
+        Check(
+            "axisymmetric: the improvements of sy4_b and sy4_o vanish", f"largest difference {same:.1e}", same < ZERO
+        ),
+        Check(
+            "axisymmetric xi_o^sy4: the paper's column has the slope of the misprint, not that of the correction",
+            f"paper {paper:.2f}, misprinted {rows[2][5]:.2f}, corrected {corrected:.2f}",
+            abs(paper - rows[2][5]) < NEAR < abs(paper - corrected),
+        ),
+    )
+    return _reproduction(setting, size, quick, {"printed": _printed_table(rows)}, checks)
+
+
+def kernels_agree(size: Scale, names: tuple[str, ...], bodies: int = 3, dt: float = 0.5) -> Check:
+    """The kernels against base scheme and generic corrector."""
+    sample, worst = size.sample("triaxial"), 0.0
+    for i in range(bodies):
+        body = RigidBody(sample.moments[:, i])
+        start = sample.start[:, :5].T
+        one = Sample("triaxial", sample.moments[:, i], sample.start)
+        for name in names:
+            lanes = kernel(name, one.body)((start[:, 0], start[:, 1], start[:, 2]), dt)
+            worst = max(worst, float(np.abs(np.stack(lanes, axis=-1) - body.update(name)(start, dt)).max()))
+    return Check(
+        "the formulas used are base scheme and generic corrector", f"they differ by {worst:.0e}", worst < 1e-14
+    )
+
+
+# -- the tables ------------------------------------------------------------------------------------------
+def _sizes(setting: Setting, quick: bool) -> tuple[float, ...]:
+    return setting.dts[:-1] if quick and len(setting.dts) > 3 else setting.dts
+
+
+def _reproduction(
+    setting: Setting, size: Scale, quick: bool, more: dict[str, Table], checks: tuple[Check, ...]
+) -> Reproduction:
+    names = {3: "the forward Euler method", 4: "the Heun method", 5: "methods of order four"}
+    rows = [
+        _error_row(size, setting, kind, dt, name)
+        for kind in KINDS
+        for dt in _sizes(setting, quick)
+        for name in setting.updates
+    ]
+    columns = ("body", "dt", "update", "average error", "low", "high", "paper", "paper in range")
+    slopes = _slopes(size, setting)
+    wrong = [row for row in slopes if not row[6]]
+    found = "; ".join(f"{row[0]} {row[1]} {row[4]:.2f}" for row in (wrong or slopes) if row[4] == row[4])
+    inside = [row[7] for row in rows if row[7]]
+    tables = {
+        "": Table("Average of the largest energy errors of ten runs", columns, rows),
+        "slopes": Table(
+            "Slopes over the step size (medians over the runs)",
+            ("body", "update", "from dt", "to dt", "slope", "order of the energy", "as expected", "slope in the paper"),
+            [(*row[:6], "yes" if row[6] else "NO", row[7]) for row in slopes],
+        ),
+        **more,
+    }
+    every = (Check("slopes are the orders of the energy (odd leading terms: up to one more)", found, not wrong),)
+    notes = () if quick else (f"{inside.count('yes')} of {len(inside)} averages of the paper lie in the range.",)
+    return Reproduction(
+        f"fig{setting.figure}",
+        f"Figure {setting.figure}: energy errors of {names[setting.figure]} on [0, {size.span:g}]",
+        described(LAW, size.decks, size.seed),
+        tables,
+        (*every, *checks, kernels_agree(size, setting.updates)),
+        notes,
+    )
+
+
+def _error_row(size: Scale, setting: Setting, kind: str, dt: float, name: str) -> tuple[Any, ...]:
+    paper = setting.printed[kind, dt, name]
+    found: Spread = spread(deck_averages(size, kind, name, dt))
+    exact_zero = found.high < ZERO and paper < ZERO
+    return kind, dt, name, *found, paper, "yes" if exact_zero or found.has(paper) else "no"
+
+
+def _slope(size: Scale, setting: Setting, kind: str, name: str, printed: bool = False) -> float:
+    coarse, fine = setting.pairs[kind]
+    before, after = (energy_errors(size, kind, name, dt, printed) for dt in (coarse, fine))
+    return slope(before, after, coarse / fine)
+
+
+def _slopes(size: Scale, setting: Setting) -> list[tuple[Any, ...]]:
+    """(body, update, dt, dt, slope, order, as expected, slope of the paper)."""
+    rows: list[tuple[Any, ...]] = []
+    for kind in KINDS:
+        for name in setting.updates:
+            order = ENERGY_ORDERS[kind][name]
+            found = _slope(size, setting, kind, name)
+            oscillates = kind == "triaxial" and order is not None and order % 2 == 0
+            expected = order is None or order - NEAR < found < order + NEAR + oscillates
+            rows.append((kind, name, *setting.pairs[kind], found, order, expected, _printed_slope(setting, kind, name)))
+    return rows
+
+
+def _printed_slope(setting: Setting, kind: str, name: str) -> float:
+    """The slope between the two smallest step sizes of which the paper's error is above round-off."""
+    errors = [(dt, setting.printed[kind, dt, name]) for dt in setting.dts]
+    above = [(dt, error) for dt, error in errors if error > 2e-13]
+    if len(above) < 2:
+        return math.nan
+    (coarse, large), (fine, small) = above[-2:]
+    return math.log(large / small) / math.log(coarse / fine)
+
+
+def _printed_row(size: Scale, name: str, what: str, order: int, kind: str = "triaxial") -> tuple[Any, ...]:
+    setting = next(s for s in SETTINGS if name in s.updates)
+    coarse, fine = setting.pairs[kind]
+    as_printed, corrected = (_slope(size, setting, kind, name, flag) for flag in (True, False))
+    return kind, name, what, coarse, fine, as_printed, order, corrected
+
+
+def _printed_table(rows: list[tuple[Any, ...]]) -> Table:
+    columns = ("body", "update", "as printed", "from dt", "to dt", "slope as printed", "expected", "slope corrected")
+    return Table("Formulas as the paper prints them", columns, rows)
+
+
+def _printed_checks(rows: list[tuple[Any, ...]]) -> tuple[Check, ...]:
+    return tuple(
+        Check(
+            f"{kind} {name}: as printed ({what}) the energy has order {order}",
+            f"{found:.2f}, corrected {corrected:.2f}",
+            abs(found - order) < 2 * NEAR and corrected > order + 0.5,
+        )
+        for kind, name, what, _, _, found, order, corrected in rows
+    )

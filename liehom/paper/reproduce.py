@@ -1,0 +1,61 @@
+"""reproduce: a figure of the paper by its name.  Imports the figures, tables, errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from liehom.errors import InputError
+from liehom.paper.efficiency import figure6, figure7
+from liehom.paper.energy_errors import figure3, figure4, figure5
+from liehom.paper.separatrix import separatrix
+from liehom.paper.tables import Reproduction
+from liehom.paper.trajectories import figure1, figure2
+
+_FIGURES: dict[str, Callable[..., Reproduction]] = {
+    "fig1": figure1,
+    "fig2": figure2,
+    "fig3": figure3,
+    "fig4": figure4,
+    "fig5": figure5,
+    "fig6": figure6,
+    "fig7": figure7,
+    "separatrix": separatrix,
+}
+NAMES = tuple(_FIGURES)
+
+
+def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Reproduction:
+    """A figure of the paper, or its separatrix experiment, done again.
+
+    Parameters
+    ----------
+    name : str
+        One of `NAMES`: fig1, ..., fig7, separatrix.
+    quick : bool
+        Few bodies and short runs: orders and zeros are shown, averages cannot be compared with the paper's.
+    seed : int, optional
+        Of the random bodies and starting points, in place of that of the figure.
+
+    Returns
+    -------
+    Reproduction
+        With `.tables`, `.checks`, `.holds`, `.markdown()`, `.write(folder)`, `.picture(path)`.
+
+    Raises
+    ------
+    InputError
+        If there is no such name, or the seed is not a non-negative integer.
+
+    Examples
+    --------
+    >>> done = reproduce("fig2", quick=True)
+    >>> done.holds, list(done.tables)
+    (True, [''])
+    """
+    if name not in _FIGURES:
+        raise InputError(f"there is no figure {name!r} to reproduce, expected one of {', '.join(NAMES)}")
+    if seed is None:
+        return _FIGURES[name](quick)
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"a seed is a non-negative integer, got {seed!r}")
+    return _FIGURES[name](quick, seed)

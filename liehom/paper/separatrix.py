@@ -1,0 +1,75 @@
+"""The separatrix experiment of section 4: Euler's method from random points of separatrices, over [0, 500].
+
+Imports kernels, samples, energy_errors, tables, printed_data, instances.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from liehom.instances.rigid_body import RigidBody
+from liehom.paper.energy_errors import kernels_agree, scale
+from liehom.paper.kernels import kernel
+from liehom.paper.printed_data import EULER
+from liehom.paper.printed_data import SEPARATRIX as PRINTED
+from liehom.paper.samples import LAW, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
+from liehom.paper.tables import Check, Reproduction, Table
+
+SPAN, DECKS = 500.0, 40
+ZERO = 1e-12
+
+
+def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
+    """Errors of the energy on separatrices: xi_b^Eul leaves them, xi_o^Eul and xi_i^Eul do not.
+
+    Examples
+    --------
+    >>> separatrix(quick=True).holds
+    True
+    """
+    span, decks = (50.0, 2) if quick else (SPAN, DECKS)
+    sample = separatrix_sample(10 * decks, seed)
+    dts = [dt for dt in PRINTED if not quick or dt > 0.05]
+    rows, largest, apart = [], 0.0, 0.0
+    for dt in dts:
+        for name in EULER:
+            errors = largest_energy_error(kernel(name, sample.body), sample.body, sample.points, dt, span)
+            found = spread(averages(errors))
+            paper = PRINTED[dt] if name == "eul_b" else None
+            rows.append((dt, name, *found, paper, "" if paper is None else "yes" if found.has(paper) else "no"))
+            if name != "eul_b":
+                largest = max(largest, float(errors.max()))
+        steps = [np.stack(kernel(name, sample.body)(sample.points, dt)) for name in ("eul_o", "eul_i")]
+        apart = max(apart, float(np.abs(steps[0] - steps[1]).max()))
+    smallest = min(row[2] for row in rows if row[1] == "eul_b")
+    checks = (
+        Check("xi_o^Eul and xi_i^Eul keep the separatrix", f"largest error {largest:.0e}", largest < ZERO),
+        Check("xi_o^Eul and xi_i^Eul coincide on it", f"they differ by {apart:.0e}", apart < ZERO),
+        Check("xi_b^Eul does not keep it", f"smallest average error {smallest:.1e}", smallest > 1e-5),
+        kernels_agree(scale(True, seed), EULER),
+    )
+    columns = ("dt", "update", "average error", "low", "high", "paper", "paper in range")
+    law = described(LAW, decks, seed).replace(
+        "starting points uniform on the unit sphere", "starting points at uniform angles on the separatrices"
+    )
+    table = Table(f"Average of the largest energy errors of ten runs on [0, {span:g}]", columns, rows)
+    return Reproduction("separatrix", "The separatrix, section 4", law, {"": table}, checks)
+
+
+def separatrix_sample(count: int, seed: int = SEED) -> Sample:
+    """Triaxial bodies, and for each of them a point at a random angle on one of its two great circles h = w_2.
+
+    Examples
+    --------
+    >>> sample = separatrix_sample(5)
+    >>> middle = np.sort(1 / sample.moments, axis=0)[1]
+    >>> bool(np.allclose(2 * sample.body.energy(sample.points), middle))
+    True
+    """
+    drawn: Sample = random_bodies("triaxial", count, LAW, seed)
+    rng = np.random.default_rng([seed, 2])
+    angles, branches = rng.uniform(0, 2 * np.pi, count), rng.choice([-1, 1], count)
+    points: list[Any] = [RigidBody(drawn.moments[:, i]).separatrix(angles[i], int(branches[i])) for i in range(count)]
+    return Sample("triaxial", drawn.moments, np.stack(points, axis=-1))

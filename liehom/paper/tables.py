@@ -1,0 +1,197 @@
+"""What a reproduction consists of: tables (CSV, Markdown), claims with the evidence for them, a picture.
+
+Imports io, errors.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from liehom.errors import FormatError, InputError
+from liehom.io.solution_file import check_target
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Named columns and rows of texts and numbers.
+
+    Parameters
+    ----------
+    title : str
+    columns : sequence of str
+    rows : sequence of sequences
+        None and NaN are written as an empty cell.
+    in_markdown : bool, optional
+        False for points of curves, of which Markdown shows the number only.
+
+    Raises
+    ------
+    InputError
+        If a row has another length than `columns`.
+
+    Examples
+    --------
+    >>> table = Table("errors", ("dt", "error"), [(0.1, 1.25e-7)])
+    >>> print(table.markdown())
+    | dt | error |
+    |---|---|
+    | 0.1 | 1.25e-07 |
+    >>> table.csv()
+    'dt,error\\n0.1,1.25e-07\\n'
+    """
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+    in_markdown: bool = True
+
+    def __post_init__(self) -> None:
+        wrong = [row for row in self.rows if len(row) != len(self.columns)]
+        if wrong:
+            raise InputError(
+                f"a row of the table {self.title!r} has {len(wrong[0])} cells, expected {len(self.columns)}"
+            )
+
+    def csv(self) -> str:
+        """The table as comma-separated values, numbers in full."""
+        target = io.StringIO()
+        writer = csv.writer(target, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows([["" if _is_empty(x) else _plain(x) for x in row] for row in self.rows])
+        return target.getvalue()
+
+    def markdown(self) -> str:
+        """The table in Markdown, numbers with three digits."""
+        lines = ["| " + " | ".join(cells) + " |" for cells in (self.columns, *map(_shown_row, self.rows))]
+        lines.insert(1, "|" + "---|" * len(self.columns))
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A claim of the paper (or of its correction), what was found, and whether it holds."""
+
+    claim: str
+    found: str
+    holds: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """A figure of the paper, done again.
+
+    Attributes
+    ----------
+    name, title : str
+    sample : str
+        The random data: law, numbers, seed.
+    tables : dict of str to Table
+        By the end of the file name: "" is the table itself.
+    checks : tuple of Check
+    notes : tuple of str
+    picture : callable or None
+        Draws into a path, or returns a figure of matplotlib for the path None.
+
+    Examples
+    --------
+    >>> done = Reproduction("fig0", "nothing", "none", {}, (Check("1 = 1", "1", True),))
+    >>> done.holds
+    True
+    """
+
+    name: str
+    title: str
+    sample: str
+    tables: dict[str, Table]
+    checks: tuple[Check, ...] = ()
+    notes: tuple[str, ...] = ()
+    picture: Callable[[Any], Any] | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether all claims hold."""
+        return all(check.holds for check in self.checks)
+
+    def markdown(self) -> str:
+        """Everything but the picture, as a page."""
+        parts = [f"# {self.title}", self.sample]
+        for table in self.tables.values():
+            body = table.markdown() if table.in_markdown else f"{len(table.rows)} rows: see the CSV file."
+            parts.append(f"## {table.title}\n\n{body}")
+        if self.checks:
+            rows = [(c.claim, c.found, "yes" if c.holds else "NO") for c in self.checks]
+            parts.append("## Claims\n\n" + Table("claims", ("claim", "found", "holds"), rows).markdown())
+        return "\n\n".join([*parts, *self.notes]) + "\n"
+
+    def write(self, folder: str | os.PathLike[str], picture: bool = True) -> list[Path]:
+        """Write NAME.md, NAME.csv (one for each table) and NAME.png; the paths.
+
+        Files of these names are replaced. Without matplotlib there is no picture.
+
+        Raises
+        ------
+        FormatError
+            If a file cannot be written.
+        """
+        target = Path(os.fspath(folder))
+        texts = {f"{self.name}.md": self.markdown()}
+        texts |= {f"{self.name}{'_' if end else ''}{end}.csv": table.csv() for end, table in self.tables.items()}
+        written = []
+        try:
+            target.mkdir(parents=True, exist_ok=True)
+            for name, text in texts.items():
+                check_target(target / name, force=True)
+                (target / name).write_text(text, encoding="utf-8")
+                written.append(target / name)
+        except OSError as error:
+            raise FormatError(f"{os.fspath(folder)!r} cannot be written: {error.strerror or error}") from None
+        if picture and self.picture is not None:
+            self.picture(target / f"{self.name}.png")
+            written.append(target / f"{self.name}.png")
+        return written
+
+    def to_json(self) -> dict[str, Any]:
+        """The tables and claims as plain data."""
+        tables = {
+            end or "table": {"columns": list(t.columns), "rows": [[_json(x) for x in row] for row in t.rows]}
+            for end, t in self.tables.items()
+            if t.in_markdown
+        }
+        checks = [{"claim": c.claim, "found": c.found, "holds": c.holds} for c in self.checks]
+        return {"name": self.name, "title": self.title, "sample": self.sample, "tables": tables, "checks": checks}
+
+
+def _is_empty(x: Any) -> bool:
+    return x is None or (not isinstance(x, str) and math.isnan(x))
+
+
+def _plain(x: Any) -> Any:
+    return x if isinstance(x, str | int) else repr(float(x))
+
+
+def _json(x: Any) -> Any:
+    return None if _is_empty(x) else x if isinstance(x, str | int) else float(x)
+
+
+def _shown_row(row: Sequence[Any]) -> list[str]:
+    return [_shown(x) for x in row]
+
+
+def _shown(x: Any) -> str:
+    """A cell of Markdown.
+
+    Examples
+    --------
+    >>> [_shown(x) for x in (None, "a|b", 2, 0.0, 12.345, 1e-9)]
+    ['', 'a\\\\|b', '2', '0', '12.3', '1e-09']
+    """
+    if _is_empty(x):
+        return ""
+    return x.replace("|", "\\|") if isinstance(x, str) else str(x) if isinstance(x, int) else f"{x:.3g}"
