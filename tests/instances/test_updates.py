@@ -170,6 +170,18 @@ def test_root_of_the_step() -> None:
     assert np.allclose(body.energy(after) - body.energy(m), wanted[:, 0], rtol=0, atol=1e-15)
 
 
+def test_tower_on_euler_is_the_series_of_the_root() -> None:
+    """Orbit orders 2, 3, 4: sigma_i (1 + t rho + t^2 (rho^2 + (sigma_i (q - p)/v^2 + v^2)/4)), with Cayley."""
+    for body in (BODIES["triaxial"], BODIES["tilted"], BODIES["disc"]):
+        m = unit(25, 10, 3)
+        at, local = Ingredients(body, m), OrbitStep(body, m)
+        q = np.sum(local.omega * body.apply(local.omega), axis=-1, keepdims=True)
+        last = local.rho**2 + (at.sigma_i * (q / at.v2 - at.R) + at.v2) / 4
+        found = lh.correction(body.field("o"), lh.Euler(), m, 4, exponential="cayley").zeta
+        for k, factor in ((1, 1.0), (2, local.rho), (3, last)):
+            assert np.allclose(found[k], at.sigma_i * factor * m, rtol=0, atol=1e-12)
+
+
 def test_clock_of_the_step_on_the_orbit() -> None:
     body, m = BODIES["triaxial"], 1.4 * unit(22, 5, 3)
     table = lh.observed_order(
