@@ -10,6 +10,7 @@ The layers, in reading order; each imports only those above it in this list:
 `homogeneous`      actions with an exponential, generator fields; the range condition, orbit types
 `correctors`       expansions of flow and step; the order-n isotropy corrector and its clock
 `integrators`      steps, tableaux, `integrate`, measured orders
+`instances`        the paper's systems: spheres, the rigid body, isospectral flows, Landau-Lifshitz spins
 `fullness`         is a pair full? the decision, its certificates, the independent checker
 `catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
 `io`               JSON files in and out
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from liehom.algebra import su as su
     from liehom.algebra import u as u
     from liehom.catalog import pair as pair
+    from liehom.correctors import Conserving as Conserving
     from liehom.correctors import Corrected as Corrected
     from liehom.correctors import OneExponential as OneExponential
     from liehom.correctors import Step as Step
@@ -68,6 +70,10 @@ if TYPE_CHECKING:
     from liehom.homogeneous import orbit_types as orbit_types
     from liehom.homogeneous import range_condition as range_condition
     from liehom.homogeneous import relative_invariant as relative_invariant
+    from liehom.instances import LandauLifshitz as LandauLifshitz
+    from liehom.instances import RigidBody as RigidBody
+    from liehom.instances import Sphere as Sphere
+    from liehom.instances import SymmetricMatrices as SymmetricMatrices
     from liehom.integrators import RKMK as RKMK
     from liehom.integrators import BackwardEuler as BackwardEuler
     from liehom.integrators import CommutatorFree4 as CommutatorFree4
@@ -113,6 +119,7 @@ _LAYERS = (
     "correctors",
     "fullness",
     "homogeneous",
+    "instances",
     "integrators",
     "io",
     "plotting",
@@ -128,7 +135,7 @@ _NAMES = {
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (
-        "Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
+        "Conserving Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
     ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
@@ -141,6 +148,7 @@ _NAMES = {
         "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau "
         "integrate observed_order tableau"
     ),
+    "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"
