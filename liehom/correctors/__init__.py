@@ -1,5 +1,7 @@
 """Isotropy correctors: Theorem 5 at a point, iterated to any order, and what it needs of a step."""
 
+from liehom.correctors.closed_form import ClosedForm as ClosedForm
+from liehom.correctors.closed_form import closed_form as closed_form
 from liehom.correctors.conservation import Conservation as Conservation
 from liehom.correctors.conservation import conservation_map as conservation_map
 from liehom.correctors.conserved_order import ConservedOrder as ConservedOrder

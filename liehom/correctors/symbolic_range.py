@@ -2,8 +2,13 @@
 
     e rho(zeta) w_l - l c w_l = r,    zeta in g_m, c in the field
 
-by normal equations, so that denominators are Gram determinants such as |w_l|^2; of several solutions that of least |c|
-and then of least |zeta|.  Ranks are generic ranks, decided exactly.  Imports exact_range, homogeneous, scalars.
+The solution of least |c| and then of least |zeta|.  A symmetric matrix S of rank k whose characteristic polynomial is
+x^N + p_1 x^(N-1) + ... is inverted on its range by
+
+    Q(S) = -(S^(k-1) + p_1 S^(k-2) + ... + p_(k-1)) / p_k,
+
+where p_k is a sum of squares of minors: the only denominators are functions that vanish exactly where the rank drops,
+and no charts are needed.  Imports exact_range, homogeneous, scalars.
 """
 
 from __future__ import annotations
@@ -13,11 +18,11 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.exact_range import gram_matrix
-from liehom.errors import SingularError
 from liehom.homogeneous import Action
+from liehom.representations import Representation
 from liehom.scalars.function_field import FunctionField
 
-Rows = list[list[Any]]
+MAX_SIZE = 12
 
 
 @final
@@ -28,223 +33,210 @@ class SymbolicRange:
     ----------
     action : Action
     field : FunctionField
-    point : list of N elements
-    isotropy : list of rows of dim g elements, optional
-        A basis of g_m; by default one is computed.
+    point : array of N elements
 
     Attributes
     ----------
-    basis : list of rows
-        Of the isotropy, polynomials.
     orbit_dimension : int
         The generic dimension of the orbit.
+    projector : array of shape (dim g, dim g)
+        The orthogonal projector on g_m.
+    row : array of dim g elements, or None
+        Where g_m has dimension 1 and there is at most one constraint, a polynomial generator of it.
 
     Examples
     --------
     >>> import liehom as lh
     >>> sphere = FunctionField(["x", "y", "z"], [{(2,0,0): 1, (0,2,0): 1, (0,0,2): 1, (0,0,0): -1}], ["x", "y", "z"])
-    >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(3))), sphere, list(sphere.variables))
-    >>> found.basis, found.orbit_dimension
-    ([[z, -y, x]], 2)
+    >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(3))), sphere, array(sphere.variables))
+    >>> found.row, found.orbit_dimension
+    (array([z, -y, x], dtype=object), 2)
     """
 
-    def __init__(self, action: Action, field: FunctionField, point: list[Any], isotropy: Rows | None = None) -> None:
-        self._action, self._field, self._point = action, field, _array(point)
-        self._fixing = transposed([self._moved(x, self._point) for x in self._units()])
-        computed = null_space(field, self._fixing)
-        self.basis = computed if isotropy is None else isotropy
-        self.orbit_dimension = action.dimension - len(computed)
+    def __init__(self, action: Action, field: FunctionField, point: Any) -> None:
+        self._action, self._field, self._point = action, field, point
+        n = action.dimension
+        self._units = np.empty((n, n), dtype=object)
+        self._units[...] = [[field.one if i == j else field.zero for j in range(n)] for i in range(n)]
+        inverse_gram = gram_matrix(action.representation).inverse().to_rows()
+        self._dual = np.empty((n, n), dtype=object)
+        self._dual[...] = [[field.convert(x) for x in row] for row in inverse_gram]
+        metric = invariant_form(action.representation)
+        self._metric = np.empty((len(point), len(point)), dtype=object)
+        self._metric[...] = [[field.convert(x) for x in row] for row in metric.to_rows()]
+        fixing = self._moved(point)
+        adjoint = self._dual @ fixing.T @ self._metric
+        inverse = RangeInverse(fixing @ adjoint)
+        self.orbit_dimension = inverse.rank
+        image = np.stack([inverse(column) for column in fixing.T], axis=-1)
+        self.projector = simple(self._units - adjoint @ image)
+        # without a gcd a row would bring factors that do not cancel
+        own = n - inverse.rank == 1 and len(field.basis) < 2
+        self.row: Any = self._simplest_row() if own else None
 
-    def _units(self) -> Rows:
-        n, field = self._action.dimension, self._field
-        return [[field.one if i == j else field.zero for j in range(n)] for i in range(n)]
+    def _moved(self, m: Any) -> Any:
+        """The matrix of x -> rho(x) m, shape (N, dim g)."""
+        return np.stack([self._action.infinitesimal(x, m) for x in self._units], axis=-1)
 
-    def _moved(self, x: list[Any], m: Any) -> list[Any]:
-        """rho(x) m."""
-        return list(self._action.infinitesimal(_array(x), m))
+    def _simplest_row(self) -> Any:
+        rows = [array(self._field.primitive(list(row))) for row in (self.projector @ self._dual).T if any(row)]
+        return min(rows, key=lambda row: sum(len(x.numerator) for x in row))
 
-    def fixes(self, x: list[Any]) -> bool:
+    def fixes(self, x: Any) -> bool:
         """Whether x is in the isotropy subalgebra.
 
         Examples
         --------
         >>> import liehom as lh
         >>> plane = FunctionField(["x", "y"])
-        >>> SymbolicRange(lh.Action(lh.defining(lh.so(2))), plane, list(plane.variables)).fixes([plane.one])
-        False
+        >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(2))), plane, array(plane.variables))
+        >>> found.fixes(array([plane.one])), found.fixes(array([plane.zero]))
+        (False, True)
         """
-        return not any(self._moved(x, self._point))
+        return not any(self._action.infinitesimal(x, self._point))
 
-    def prepare(self, velocity: list[Any], leading: int, factor: Any) -> None:
-        """Set w_l, l and e."""
+    def prepare(self, velocity: Any, leading: int, factor: Any) -> None:
+        """Set w_l, l and e.
+
+        Parameters
+        ----------
+        velocity : array of N elements
+        leading : int
+        factor : element
+        """
         self._velocity, self._leading = velocity, leading
-        moves = [[factor * v for v in self._moved(x, _array(velocity))] for x in self.basis]
-        independent = [moves[i] for i in pivots(transposed(moves))]
-        self._unique = len(independent) == len(moves)
-        turned = [-leading * v for v in velocity]
-        reaching = len(pivots(transposed([*independent, turned]))) > len(independent)
-        self.rank = len(independent) + int(reaching)
-        self._columns = [*independent, turned] if reaching else independent
-        self._clocked = reaching
-        self._gram = inverse(self._field, [[dot(a, b) for b in self._columns] for a in self._columns])
-        if not self._unique:
-            self._prepare_least(factor)
+        if self.row is None:
+            moves = simple(factor * self._moved(velocity) @ self.projector)
+            self._adjoint = simple(self._dual @ moves.T @ self._metric)
+        else:  # an orthonormal basis is not at hand, and not needed: zeta is unique, or 0
+            moves = simple(factor * self._action.infinitesimal(self.row, velocity))[:, None]
+            self._adjoint = moves.T @ self._metric
+        self._inverse = RangeInverse(simple(moves @ self._adjoint))
+        self._moves = moves
+        self._rest = simple((velocity - self._projected(velocity)) @ self._metric)
+        square = simple(self._rest @ velocity)[()]
+        self._determined = square != 0
+        self._square = square
+        self.rank = self._inverse.rank + int(self._determined)
 
-    def _prepare_least(self, factor: Any) -> None:
-        """zeta = G^-1 A^T y of least norm with A zeta = (rho(zeta) m, e rho(zeta) w) = (0, r + l c w)."""
-        driving = transposed([[factor * v for v in self._moved(x, _array(self._velocity))] for x in self._units()])
-        rows = self._fixing + driving
-        self._kept = pivots(transposed(rows))
-        product = gram_matrix(self._action.representation).inverse().to_rows()
-        chosen = [rows[i] for i in self._kept]
-        self._turned = [[dot(row, column) for column in product] for row in chosen]
-        self._least = inverse(self._field, [[dot(a, b) for b in self._turned] for a in chosen])
+    def _projected(self, vector: Any) -> Any:
+        return self._moves @ (self._adjoint @ self._inverse(vector))
 
-    def solve(self, right: list[Any]) -> tuple[list[Any], Any]:
-        """zeta (dim g elements) and c; in least squares where there is no solution."""
-        field = self._field
-        projected = [dot(column, right) for column in self._columns]
-        found = [dot(row, projected).cancelled() for row in self._gram]
-        c = found[-1] if self._clocked else field.zero
-        parts = found[: len(found) - int(self._clocked)]
-        if self._unique:
-            zeta = combination(parts, self.basis, self._action.dimension, field)
-            return zeta, c
-        target = combination(parts, self._columns[: len(parts)], len(right), field)
-        wanted = [field.zero] * len(self._fixing) + target
-        chosen = [wanted[i] for i in self._kept]
-        weights = [dot(row, chosen).cancelled() for row in self._least]
-        return combination(weights, self._turned, self._action.dimension, field), c
+    def solve(self, right: Any) -> tuple[Any, Any]:
+        """zeta (dim g elements, or the factor of `row` where there is one) and c; in least squares if there is none."""
+        c = self._field.zero
+        if self._determined:
+            c = (-(self._rest @ right) / (self._square * self._leading)).cancelled()
+        target = simple(right + self._leading * c * self._velocity)
+        return simple(self._adjoint @ self._inverse(target)), c
 
 
-# -- linear algebra over the field -----------------------------------------------------------------------
-def dot(a: list[Any], b: list[Any]) -> Any:
-    """The sum of the products.
+def invariant_form(representation: Representation) -> Any:
+    """A positive definite form on V that the group keeps, near to the sum of squares; where none is found this sum itself.
+
+    With it the normal equations have denominators that are as invariant as the problem is. Where the system has a
+    solution, the solution does not depend on the form.
 
     Examples
     --------
-    >>> dot([1, 2], [3, 4])
-    11
+    >>> import liehom as lh
+    >>> print(invariant_form(lh.sym_conjugation(2)))
+    [4/5, 0, 1/5]
+    [0, 6/5, 0]
+    [1/5, 0, 4/5]
     """
-    total: Any = None
-    for x, y in zip(a, b, strict=True):
-        if x == 0 or y == 0:
-            continue
-        total = x * y if total is None else total + x * y
-    return 0 * a[0] if total is None else total
+    field, n = representation.field, representation.size
+    identity = field.identity(n)
+    if n > MAX_SIZE or all((a + a.T).is_zero() for a in representation.matrices):
+        return identity
+    pairs = [(i, j) for i in range(n) for j in range(i, n)]
+    units = []
+    for i, j in pairs:
+        entries = [field.one if {k // n, k % n} == {i, j} else field.zero for k in range(n * n)]
+        units.append(field.from_entries(entries, n, n))
+    rows = [
+        field.stack_columns([(a.T @ b + b @ a).reshape(1, n * n) for a in representation.matrices], 1) for b in units
+    ]
+    kept = field.stack_rows(rows, n * n * len(representation.matrices)).left_null_space()
+    if kept.nrows == 0:
+        return identity
+    flat = kept @ field.stack_rows([b.reshape(1, n * n) for b in units], n * n)
+    weights = (flat @ flat.T).solve(flat @ identity.reshape(n * n, 1))
+    found = (weights.T @ flat).reshape(n, n)
+    return found if found.is_positive_definite() else identity
 
 
-def combination(weights: list[Any], rows: Rows, n: int, field: FunctionField) -> list[Any]:
-    """The sum of the rows with weights, without common factors.
+@final
+class RangeInverse:
+    """v -> Q(S) v for a positive semidefinite, self-adjoint matrix S: its inverse on its range.
 
-    Examples
-    --------
-    >>> plane = FunctionField(["x", "y"])
-    >>> x, y = plane.variables
-    >>> combination([1 / x], [[x, x * y]], 2, plane)
-    [1, y]
-    """
-    made = [field.zero] * n
-    for weight, row in zip(weights, rows, strict=True):
-        made = [total + weight * v for total, v in zip(made, row, strict=True)]
-    return [v.cancelled() for v in made]
+    Parameters
+    ----------
+    matrix : array of shape (N, N), of elements of a field
 
-
-def transposed(rows: Rows) -> Rows:
-    """The columns.
-
-    Examples
-    --------
-    >>> transposed([[1, 2], [3, 4]])
-    [[1, 3], [2, 4]]
-    """
-    return [list(column) for column in zip(*rows, strict=True)]
-
-
-def echelon(rows: Rows) -> tuple[Rows, list[int]]:
-    """The reduced echelon form, with simple pivots where there is a choice, and the pivot columns.
+    Attributes
+    ----------
+    rank : int
 
     Examples
     --------
     >>> x, y = FunctionField(["x", "y"]).variables
-    >>> echelon([[x, y], [x * x, x * y]])[1]
-    [0]
+    >>> v = array([x, y])
+    >>> found = RangeInverse(np.outer(v, v))  # of rank 1
+    >>> found.rank, found(v)[0] == x / (x**2 + y**2)
+    (1, True)
     """
-    rows, found, done = [list(row) for row in rows], [], 0
-    for column in range(len(rows[0]) if rows else 0):
-        candidates = [i for i in range(done, len(rows)) if rows[i][column] != 0]
-        if not candidates:
-            continue
-        best = min(candidates, key=lambda i: len(rows[i][column].numerator) + len(rows[i][column].powers))
-        rows[done], rows[best] = rows[best], rows[done]
-        factor = rows[done][column].inverse()
-        rows[done] = [(v * factor).cancelled() for v in rows[done]]
-        for i, row in enumerate(rows):
-            if i != done and row[column] != 0:
-                weight = row[column]
-                rows[i] = [(v - weight * p).cancelled() for v, p in zip(row, rows[done], strict=True)]
-        found.append(column)
-        done += 1
-    return rows[:done], found
+
+    def __init__(self, matrix: Any) -> None:
+        self._matrix = matrix
+        zero = 0 * matrix[0, 0]
+        one = np.empty(matrix.shape, dtype=object)
+        one[...] = [[zero + int(i == j) for j in range(len(matrix))] for i in range(len(matrix))]
+        self._coefficients: list[Any] = [zero + 1]
+        power = matrix
+        for k in range(1, len(matrix) + 1):  # Faddeev and LeVerrier
+            power = power if k == 1 else simple(matrix @ (power + self._coefficients[-1] * one))
+            if not any(power.flat):
+                break
+            self._coefficients.append((-np.trace(power) / k).cancelled())
+        while self._coefficients[-1] == 0:
+            self._coefficients.pop()
+        self.rank = len(self._coefficients) - 1
+        self._last = -1 / self._coefficients[-1] if self.rank else zero
+
+    def __call__(self, vector: Any) -> Any:
+        if self.rank == 0:
+            return self._last * vector
+        made = vector
+        for p in self._coefficients[1:-1]:
+            made = simple(self._matrix @ made + p * vector)
+        return simple(self._last * made)
 
 
-def pivots(rows: Rows) -> list[int]:
-    """Columns that are independent and span all.
+def simple(values: Any) -> Any:
+    """An array of elements, or an element, without common factors of numerators and denominators that are seen.
 
     Examples
     --------
     >>> x, y = FunctionField(["x", "y"]).variables
-    >>> pivots([[x, x, y], [x, x, x]])
-    [0, 2]
+    >>> simple(array([x * y / x]))
+    array([y], dtype=object)
     """
-    return echelon(rows)[1]
+    values = np.asarray(values, dtype=object)
+    made = np.empty(values.shape, dtype=object)
+    for index, x in np.ndenumerate(values):
+        made[index] = x.cancelled()
+    return made
 
 
-def null_space(field: FunctionField, rows: Rows) -> Rows:
-    """A basis of {x : A x = 0}, of polynomials without common divisor where one is seen.
+def array(elements: Any) -> Any:
+    """A list of elements as an array of objects.
 
     Examples
     --------
-    >>> plane = FunctionField(["x", "y"])
-    >>> x, y = plane.variables
-    >>> null_space(plane, [[x, x * y]])
-    [[y, -1]]
+    >>> array(FunctionField(["x", "y"]).variables)
+    array([x, y], dtype=object)
     """
-    reduced, leading = echelon(rows)
-    basis = []
-    for free in [j for j in range(len(rows[0])) if j not in leading]:
-        vector = [field.zero] * len(rows[0])
-        vector[free] = field.one
-        for row, j in zip(reduced, leading, strict=True):
-            vector[j] = -row[free]
-        basis.append(field.primitive(vector))
-    return basis
-
-
-def inverse(field: FunctionField, rows: Rows) -> Rows:
-    """The inverse of a square matrix.
-
-    Raises
-    ------
-    SingularError
-        If there is none.
-
-    Examples
-    --------
-    >>> plane = FunctionField(["x", "y"])
-    >>> x, y = plane.variables
-    >>> inverse(plane, [[x, y], [plane.zero, plane.one]])
-    [[(1)/((x)), (-y)/((x))], [0, 1]]
-    """
-    n = len(rows)
-    wide = [[*row, *(field.one if i == j else field.zero for j in range(n))] for i, row in enumerate(rows)]
-    reduced, leading = echelon(wide)
-    if leading != list(range(n)):
-        raise SingularError(f"a matrix of size {n} that has to be inverted is singular")
-    return [row[n:] for row in reduced]
-
-
-def _array(values: list[Any]) -> Any:
-    made = np.empty(len(values), dtype=object)
-    made[:] = values
+    made = np.empty(len(elements), dtype=object)
+    made[:] = list(elements)
     return made
