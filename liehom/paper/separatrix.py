@@ -52,7 +52,8 @@ def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
     )
     columns = ("dt", "update", "average error", "low", "high", "paper", "paper in range")
     law = described(LAW, decks, seed).replace(
-        "starting points uniform on the unit sphere", "starting points at uniform angles on the separatrices"
+        "I_1 = I_2 for axisymmetric bodies; starting points uniform on the unit sphere",
+        "starting points at uniform angles on the separatrices",
     )
     table = Table(f"Average of the largest energy errors of ten runs on [0, {span:g}]", columns, rows)
     return Reproduction("separatrix", "The separatrix, section 4", law, {"": table}, checks)
