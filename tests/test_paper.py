@@ -25,7 +25,7 @@ from liehom.paper.orders import measured_orders
 from liehom.paper.pictures import draw_spheres
 from liehom.paper.printed_data import CROSSOVER, FIGURE_3, FIGURE_4, FIGURE_5, FIGURE_6, UPDATES
 from liehom.paper.samples import largest_energy_error, random_bodies
-from liehom.paper.separatrix import separatrix_sample
+from liehom.paper.separatrices import separatrix_sample
 from liehom.paper.trajectories import trajectory
 
 

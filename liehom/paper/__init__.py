@@ -2,7 +2,7 @@
 
 In reading order: `printed_data` (the paper's numbers), `kernels` (the 13 updates on coordinates), `samples` (random
 bodies), `tables` (what a reproduction consists of), `energy_errors` (Figures 3 to 5), `trajectories` (1 and 2),
-`separatrix`, `orders`, `costs`, `efficiency` (6 and 7), `pictures`, `reproduce`.
+`separatrices`, `orders`, `costs`, `efficiency` (6 and 7), `pictures`, `figures` (by name).
 """
 
 from liehom.paper.efficiency import figure6 as figure6
@@ -10,9 +10,9 @@ from liehom.paper.efficiency import figure7 as figure7
 from liehom.paper.energy_errors import figure3 as figure3
 from liehom.paper.energy_errors import figure4 as figure4
 from liehom.paper.energy_errors import figure5 as figure5
-from liehom.paper.reproduce import NAMES as NAMES
-from liehom.paper.reproduce import reproduce as reproduce
-from liehom.paper.separatrix import separatrix as separatrix
+from liehom.paper.figures import NAMES as NAMES
+from liehom.paper.figures import reproduce as reproduce
+from liehom.paper.separatrices import separatrix as separatrix
 from liehom.paper.tables import Check as Check
 from liehom.paper.tables import Reproduction as Reproduction
 from liehom.paper.tables import Table as Table
