@@ -14,6 +14,7 @@ The layers, in reading order; each imports only those above it in this list:
 `fullness`         is a pair full? the decision, its certificates, the independent checker
 `catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
 `io`               JSON files in and out
+`paper`            the figures of the paper, done again
 `plotting`         pictures of trajectories and of measured orders
 `testing`          a public conformance suite
 `cli`              the command line
@@ -122,6 +123,7 @@ _LAYERS = (
     "instances",
     "integrators",
     "io",
+    "paper",
     "plotting",
     "representations",
     "scalars",
