@@ -103,7 +103,7 @@ class ClosedForm:
         """
         return bool(self.symbols.element(a) == self.symbols.element(b))
 
-    def in_terms_of(self, invariants: Mapping[Any, Any], k: int | None = None, *, degree: int = 3) -> Any:
+    def in_terms_of(self, invariants: Mapping[Any, Any], k: int | str | None = None, *, degree: int = 3) -> Any:
         """factor[k] (or the clock's c_k, for k = "clock 2" and so on) as a polynomial in named functions.
 
         Parameters
@@ -279,6 +279,7 @@ def closed_form(
     -----
     Theorem 5 with its factor, one order after the other. The solution is that of least |c| and then of least |zeta|,
     which `liehom.correction` computes in numbers; where the system has no solution, `reached` is less than `order`.
+    With several constraints there are no unique factors: formulas are less short, and lose digits next to equilibria.
     The order that counts for the first correction is that of the orbit: a base whose orbits are better than its
     trajectories has zeta_k = 0 for the orders between, with c_k that are not 0.
 
@@ -295,7 +296,7 @@ def closed_form(
     >>> found.equal(found.factor[1], f"({h} - w1)*({h} - w2)*({h} - w3)/{v2}"), found.residual_is_zero
     (True, True)
     """
-    symbols, components = read_symbols(representation, psi, constraints, parameters)
+    symbols, components = read_symbols(representation, psi, constraints, parameters, isotropy or ())
     generator = GeneratorField(representation, symbols.generator(components))
     action = Action(representation, exponential)
     solver = SymbolicRange(action, symbols.field, array(symbols.point))

@@ -116,7 +116,7 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
 
     order = [symbols.symbols[name] for name in symbols.names]
     parts: list[Any] = []  # sums of at most CHUNK terms: a compiler reads a long sum as a deep tree
-    plans: list[tuple[float, list[tuple[list[int], int]]]] = []
+    plans: list[tuple[tuple[int, int], list[tuple[list[int], int]]]] = []
     for element in elements:
         content, factors = symbols.factors(element)
         plan = []
@@ -124,7 +124,7 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
             chunks = symbols.chunks(p, CHUNK)
             plan.append((list(range(len(parts), len(parts) + len(chunks))), k))
             parts += chunks
-        plans.append((QQ.to_float(content), plan))
+        plans.append(((int(content.p), int(content.q)), plan))
     run = sympy.lambdify(order, parts, modules="numpy", cse=True)
 
     def function(m: Any, t: Any = 0.0, **parameters: Any) -> Any:
@@ -139,8 +139,8 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
         shape = np.broadcast_shapes(*(v.shape for v in values))
         found = run(*values)
         made = []
-        for content, plan in plans:
-            top, bottom = xp.ones(shape) * content, xp.ones(shape)
+        for (above, below), plan in plans:
+            top, bottom = xp.ones(shape) * above, xp.ones(shape) * below
             for chunks, k in plan:
                 base = sum(found[i] for i in chunks)
                 top, bottom = (top * base**k, bottom) if k > 0 else (top, bottom * base**-k)

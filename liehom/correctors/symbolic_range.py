@@ -132,7 +132,7 @@ class SymbolicRange:
 
 
 def invariant_form(representation: Representation) -> Any:
-    """A positive definite form on V that the group keeps, near to the sum of squares; where none is found this sum itself.
+    """A positive definite form on V that the group keeps, near the sum of squares; this sum itself if none is found.
 
     With it the normal equations have denominators that are as invariant as the problem is. Where the system has a
     solution, the solution does not depend on the form.

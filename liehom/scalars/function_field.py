@@ -13,8 +13,8 @@ Imports rational_function, errors; sympy for the Groebner basis of several const
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import product
-from math import comb
+from itertools import combinations_with_replacement, product
+from math import comb, prod
 from typing import Any, final
 
 import flint
@@ -28,7 +28,7 @@ from liehom.scalars.rational_function import join
 # a divisor of more terms is taken as it is, without a search for its factors
 MAX_TERMS_TO_FACTOR = 3000
 # with several constraints, a quotient is looked for among polynomials of so many coefficients
-MAX_UNKNOWNS = 120
+MAX_UNKNOWNS = 500
 
 
 @final
@@ -181,14 +181,14 @@ class FunctionField:
 
     def _divide_by_ansatz(self, p: Any, q: Any) -> Any:
         """A quotient of low degree by linear algebra: normal forms of degree have no unique factors."""
-        for degree in {max(0, int(p.total_degree()) - int(q.total_degree())) + k for k in (0, 1)}:
+        least = max(0, int(p.total_degree()) - int(q.total_degree()))
+        for degree in (least, least + 1):
             used = [i for i, d in enumerate(p.degrees()) if d]
             count = comb(len(used) + degree, degree)
             if count > MAX_UNKNOWNS:
                 return None
-            monomials = [self.ring.constant(1)]
-            for _ in range(degree):
-                monomials += [m * g for m in monomials for g in (self.ring.gens()[i] for i in used)]
+            gens = [self.ring.constant(1), *(self.ring.gens()[i] for i in used)]
+            monomials = [prod(chosen, start=gens[0]) for chosen in combinations_with_replacement(gens, degree)]
             kept = {str(m): m for m in map(self.reduce, monomials) if len(m) == 1}
             candidates = list(kept.values())
             products = [dict(self.reduce(m * q).terms()) for m in candidates]
