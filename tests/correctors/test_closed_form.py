@@ -81,7 +81,7 @@ def body(kind: str, step: Any, order: int, exponential: str = "cayley", **option
 
 @pytest.mark.parametrize("name", FIVE)
 def test_the_five_corrections_of_the_paper(name: str) -> None:
-    """The brief for a session is a minute each; they take a fraction of a second."""
+    """Each within a minute; they take a fraction of a second."""
     kind, step, order, paper = FIVE[name]
     start = time.perf_counter()
     found = body(kind, step, order)
