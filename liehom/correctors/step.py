@@ -64,15 +64,13 @@ class Generator:
 class Step(ABC):
     """A one-step method on homogeneous spaces.
 
-    A new method needs `order` and `factors`. Its arguments are:
+    A new method needs `order` and `factors(action, psi, m, t, h)`, with
 
-    action : Action
-        ``action.act(x, m)`` is Exp(x) m, ``action.bracket``, ``action.exponential``.
-    psi : callable
-        (m, t) -> (..., dim g), the generator.
-    m : array (..., N)
-    t, h : array (..., 1), or for h a Jet without constant term
-        Time and step size, with a last axis of length 1 so that ``h * psi(m, t)`` broadcasts.
+    * `action`, the `Action`: ``action.act(x, m)`` is Exp(x) m;
+    * `psi`, the generator as a function (m, t) -> (..., dim g);
+    * `m`, the point, of shape (..., N);
+    * `t` and `h`, time and step size, with a last axis of length 1 so that ``h * psi(m, t)`` broadcasts; to be
+      expanded, `h` is a `Jet` without constant term.
 
     Examples
     --------
