@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.correctors.corrected import Corrected
 from liehom.correctors.step import Generator, Step
-from liehom.errors import InputError
+from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.instances.on_time import GeneratorTaylor, OnTime
 from liehom.integrators.reference import points_of
@@ -177,7 +177,11 @@ def step_sizes(dt: Any, m: Any) -> Any:
     >>> step_sizes(0.1, np.zeros((2, 3))).shape
     (2, 1)
     """
-    return np.broadcast_to(np.asarray(dt, dtype=m.dtype), m.shape[:-1])[..., None].copy()
+    sizes = np.asarray(dt, dtype=m.dtype)
+    try:
+        return np.broadcast_to(sizes, m.shape[:-1])[..., None].copy()
+    except ValueError:
+        raise ShapeError(f"dt has shape {sizes.shape}, expected that of the leading axes of m, {m.shape[:-1]}") from None
 
 
 def _off_the_origin(m: Any) -> Any:
