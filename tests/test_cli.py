@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -263,14 +262,14 @@ def test_interrupt_is_130(tmp_path: Path) -> None:
     """A pair given through a pipe that never ends keeps the command waiting until it is interrupted."""
     pipe = tmp_path / "pipe.json"
     os.mkfifo(pipe)
+    # a test run in the background inherits an ignored SIGINT, and so would the command
+    listening = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
     process = subprocess.Popen(
-        [sys.executable, "-m", "liehom", "fullness", str(pipe)],
+        [sys.executable, "-c", f"{listening}; from liehom.cli import main; main()", "fullness", str(pipe)],
         cwd=ROOT,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        # a test run in the background inherits an ignored SIGINT, and so would the command
-        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     try:
         with pipe.open("w"):  # opens when the command has opened it for reading
