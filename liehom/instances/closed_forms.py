@@ -18,7 +18,7 @@ import numpy as np
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.instances.updates import checked_name, scheme, step_sizes
-from liehom.integrators.reference import points_of
+from liehom.integrators.points import points_of
 
 if TYPE_CHECKING:
     from liehom.instances.rigid_body import RigidBody

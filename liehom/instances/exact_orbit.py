@@ -20,7 +20,7 @@ from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.instances.closed_forms import Ingredients, dot
 from liehom.instances.updates import step_sizes
-from liehom.integrators.reference import points_of
+from liehom.integrators.points import points_of
 from liehom.series.jet import Jet
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from liehom.instances.closed_forms import ClosedForm
 from liehom.instances.exact_orbit import ExactOrbit, ExactOrbitUpdate
 from liehom.instances.free_motion import free_motion
 from liehom.instances.updates import Update
-from liehom.integrators.reference import points_of
+from liehom.integrators.points import points_of
 from liehom.representations import Representation, adjoint
 from liehom.scalars import QQ
 

@@ -22,7 +22,7 @@ from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.generator import Components
 from liehom.homogeneous.maps import FieldMap
-from liehom.integrators.reference import points_of
+from liehom.integrators.points import points_of
 from liehom.representations import Representation, adjoint, defining
 from liehom.series.jet import Jet
 

@@ -20,7 +20,7 @@ from liehom.correctors.step import Generator, OneExponential, step_variable
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.instances.sphere import Sphere
-from liehom.integrators.reference import points_of
+from liehom.integrators.points import points_of
 
 ORDER = 4
 

@@ -18,7 +18,7 @@ from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.instances.on_time import GeneratorTaylor, OnTime
-from liehom.integrators.reference import points_of
+from liehom.integrators.points import points_of
 from liehom.integrators.rkmk import RKMK
 from liehom.integrators.steps import Euler, Heun, LieTaylor
 
@@ -181,7 +181,9 @@ def step_sizes(dt: Any, m: Any) -> Any:
     try:
         return np.broadcast_to(sizes, m.shape[:-1])[..., None].copy()
     except ValueError:
-        raise ShapeError(f"dt has shape {sizes.shape}, expected that of the leading axes of m, {m.shape[:-1]}") from None
+        raise ShapeError(
+            f"dt has shape {sizes.shape}, expected that of the leading axes of m, {m.shape[:-1]}"
+        ) from None
 
 
 def _off_the_origin(m: Any) -> Any:

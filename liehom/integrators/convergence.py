@@ -20,7 +20,8 @@ from liehom.homogeneous import GeneratorField
 from liehom.integrators.convergence_table import MARGIN, NAN, ConvergenceTable
 from liehom.integrators.integration import integrate
 from liehom.integrators.orbit_error import orbit_distance
-from liehom.integrators.reference import Reference, points_of
+from liehom.integrators.points import points_of
+from liehom.integrators.reference import Reference
 from liehom.integrators.solution import Solution
 
 

@@ -18,6 +18,7 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.field import check_point
 from liehom.integrators.checkpoint import checked_path
 from liehom.integrators.options import Options
+from liehom.integrators.points import points_of
 from liehom.integrators.run import Run
 from liehom.integrators.solution import Solution
 from liehom.integrators.steps import LieTaylor
@@ -134,7 +135,7 @@ def integrate(
     step = LieTaylor(6) if step is None else step
     if not isinstance(step, Step):
         raise InputError(f"step is {step!r}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
-    start = _start(y0)
+    start = points_of(y0)
     orbit_dimension = check_point(field.representation, start)
     span = _span(t_span, start.dtype)
     action = Action(field.representation, exponential)
@@ -161,18 +162,6 @@ def integrate(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
         return run.execute(progress, path)
-
-
-def _start(y0: Any) -> Any:
-    try:
-        array = np.asarray(y0)
-        if array.dtype.kind == "O":
-            array = array.astype(np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"the start is not a point of floats: {error}") from None
-    if array.dtype.kind not in "iuf":
-        raise InputError(f"the start has the type {array.dtype}, expected real numbers")
-    return array.astype(array.dtype if array.dtype in (np.float64, np.longdouble) else np.float64)
 
 
 def _span(t_span: Any, dtype: Any) -> tuple[Any, Any]:

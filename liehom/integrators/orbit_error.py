@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from liehom.errors import ConvergenceError, InputError, ShapeError
-from liehom.integrators.reference import Reference, points_of
+from liehom.integrators.points import points_of
+from liehom.integrators.reference import Reference
 
 ITERATIONS = 100
 HALVINGS = 30

@@ -1,7 +1,7 @@
 """Reference: the solution of m' = rho(psi(m, t)) m to round-off, against which integrators are measured.
 
 A piecewise Taylor series in V, F(t_i + s) = w_0 + w_1 s + ... + w_n s^n with the coefficients of `flow_series`; no
-exponential, no step of the library takes part.  Imports correctors, homogeneous, errors.
+exponential, no step of the library takes part.  Imports points, correctors, homogeneous, errors.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from liehom.correctors.expansion import flow_series
 from liehom.errors import ConvergenceError, InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.field import check_point
+from liehom.integrators.points import points_of
 
 ORDERS = {np.dtype(np.float64): 20, np.dtype(np.longdouble): 24}
 LEAST_ORDER = 4
@@ -142,30 +143,6 @@ class Reference:
 
     def __repr__(self) -> str:
         return f"<reference of order {self.order}, {self.start.dtype.name}, through t = {self.t0} for {self.field!r}>"
-
-
-def points_of(y0: Any) -> Any:
-    """Starting points as float64 or longdouble.
-
-    Raises
-    ------
-    InputError
-        If they are not real numbers.
-
-    Examples
-    --------
-    >>> points_of([1, 0]).dtype.name
-    'float64'
-    """
-    try:
-        array = np.asarray(y0)
-        if array.dtype.kind == "O":
-            array = array.astype(np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"the start is not a point of floats: {error}") from None
-    if array.dtype.kind not in "iuf":
-        raise InputError(f"the start has the type {array.dtype}, expected real numbers")
-    return array.astype(array.dtype if array.dtype in (np.float64, np.longdouble) else np.float64)
 
 
 def _number(name: str, value: Any, dtype: Any) -> Any:
