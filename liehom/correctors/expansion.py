@@ -191,7 +191,9 @@ class Clock:
         for i in range(1, k):
             power = self._power(i, k)
             if power is not None:
-                total = total + power[..., None] * self._flow.point(i)
+                # products of 0-d arrays of objects are the objects themselves
+                lifted = power if hasattr(power, "ndim") else np.asarray(power, dtype=object)
+                total = total + lifted[..., None] * self._flow.point(i)
         return total
 
     def _power(self, i: int, k: int) -> Any:
