@@ -68,7 +68,7 @@ def mathml(visitor: Any, node: nodes.Element, *, display: bool) -> None:
 
 
 def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Bars and double stars in the text of a docstring are norms and arguments, not markup; code is left alone."""
+    """Bars and stars in the text of a docstring are norms and arguments, not markup; code is left alone."""
     inside = False
     for i, line in enumerate(lines):
         text = line.strip()
@@ -78,7 +78,11 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
             lines[i] = "".join(
                 part
                 if part.startswith("`")
-                else re.sub(r"\||\*\*(?=\w)", lambda bar: "".join(f"\\{c}" for c in bar[0]), part)
+                else re.sub(
+                    r"\||\*\*(?=\w)|(?<![\w*])\*(?=\w+(?:[^\w*]|$))",
+                    lambda bar: "".join(f"\\{c}" for c in bar[0]),
+                    part,
+                )
                 for part in parts
             )
 
