@@ -14,13 +14,12 @@ import numpy as np
 
 from liehom.correctors.expansion import Flow, flow_series
 from liehom.correctors.first_integral import FirstIntegral, conditioning
+from liehom.correctors.points import read_point
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors, step_variable
 from liehom.correctors.tower import NOISE, round_off
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.field import check_point
-from liehom.representations import Representation
-from liehom.series.arrays import as_values, is_exact
+from liehom.series.arrays import is_exact
 from liehom.series.jet import Jet
 
 BEYOND = 4
@@ -159,30 +158,6 @@ def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Any, 
     if not isinstance(made, Jet):
         return [0 * made] * (bound + 1)
     return [0 * made.coefficient(0), *[made.coefficient(k) for k in range(1, bound + 1)]]
-
-
-def read_point(representation: Representation, m: Any) -> tuple[Any, Any]:
-    """Floats, or numbers of the representation's field; and the dimensions of their orbits.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> point, dimension = read_point(lh.defining(lh.so(3)), [0, 0, 1])
-    >>> point, int(dimension)
-    (array([0., 0., 1.]), 2)
-    """
-    point = as_values(m)
-    if not is_exact(point):
-        return point, check_point(representation, point)
-    if point.ndim == 0 or point.shape[-1] != representation.size:
-        raise ShapeError(f"a point has {representation.size} coordinates (on its last axis), got shape {point.shape}")
-    made = np.empty(point.shape, dtype=object)
-    for index, value in np.ndenumerate(point):
-        made[index] = representation.field.convert(value)
-    dimension = np.empty(point.shape[:-1], dtype=int)
-    for index in np.ndindex(dimension.shape):
-        dimension[index] = representation.orbit_dimension(made[index])
-    return made, dimension
 
 
 def round_off_of(

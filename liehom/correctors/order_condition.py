@@ -20,13 +20,12 @@ import numpy as np
 from liehom.correctors.completion import generator_norm
 from liehom.correctors.exact_range import ExactSolution, solve_exactly
 from liehom.correctors.expansion import Clock, Flow, flow_series, leading_order
+from liehom.correctors.points import read_point
 from liehom.correctors.range_solver import RangeSolver
 from liehom.correctors.step import Generator, Step, apply_factors, step_variable
 from liehom.correctors.tower import round_off, with_correction
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.field import check_point
-from liehom.representations import Representation
 from liehom.scalars import RankDecision
 from liehom.series.arrays import as_values, is_exact, zeros
 from liehom.series.jet import Jet
@@ -222,7 +221,7 @@ class _Expansion:
         if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
             raise InputError(f"the order is an integer at least 1, got {n!r}")
         self.representation = field.representation
-        self.point, self.orbit_dimension = _read_point(field.representation, m)
+        self.point, self.orbit_dimension = read_point(field.representation, m)
         self.exact = is_exact(self.point)
         self.one_exponential = step.one_exponential
         self.action = Action(field.representation, exponential)
@@ -275,24 +274,6 @@ class _Expansion:
         if self.exact:
             return all(x == 0 for x in difference.flat)
         return bool(np.linalg.norm(difference) <= round_off(self.action, self.point, self.flow, self.factors, k))
-
-
-def _read_point(representation: Representation, m: Any) -> tuple[Any, Any]:
-    """Floats, or numbers of the representation's field; and the dimensions of the orbits."""
-    point = as_values(m)
-    if not is_exact(point):
-        return point, check_point(representation, point)
-    if point.ndim == 0 or point.shape[-1] != representation.size:
-        raise ShapeError(f"a point has {representation.size} coordinates (on its last axis), got shape {point.shape}")
-    made = np.empty(point.shape, dtype=object)
-    for index, value in np.ndenumerate(point):
-        made[index] = representation.field.convert(value)
-    dimensions = np.empty(point.shape[:-1], dtype=int)
-    for index in np.ndindex(dimensions.shape):
-        dimensions[index] = representation.orbit_dimension(made[index])
-        if dimensions[index] == 0:
-            raise InputError(f"the group leaves the point {made[index]} fixed: its orbit has dimension 0")
-    return made, dimensions
 
 
 def _solve(expansion: _Expansion, leading: int, right: Any) -> ExactSolution:
