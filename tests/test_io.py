@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom import errors, io
-from liehom.io import json_text, pair_file, values
+from liehom.io import algebra_file, json_text, values
 from liehom.io.values import RawList
 from liehom.scalars import QQ, RR
 
@@ -518,10 +518,10 @@ def parse_cost(data: dict[str, Any]) -> float:
 
     def parse() -> None:
         read = json_text.parse_object(text)
-        index, constants = pair_file._read_entries(read["structure_constants"], read["dimension"], False)
+        index, constants = algebra_file.read_entries(read["structure_constants"], read["dimension"], False)
         rows, k, n = values.table_of_rows(read["subalgebra"], "subalgebra", read["dimension"])
         field = values.field_for(read, [constants, rows], False)
-        pair_file._table(field, n, index, constants)
+        algebra_file.made_table(field, n, index, constants)
         rows.matrix(field, k, n)
 
     return best_seconds(parse) / best_seconds(lambda: json.loads(text))

@@ -1,7 +1,8 @@
-"""Files: pairs, representations and certificates in JSON, read strictly; solutions as arrays.
+"""Files: algebras, pairs, representations and certificates in JSON, read strictly; solutions as arrays.
 
 json_text            a text to a JSON object: no duplicate keys, no NaN, unknown keys named
 values               lists of JSON values to numbers of a field, quickly
+algebra_file         {"dimension", "structure_constants", ...} to a LieAlgebra
 pair_file            {"dimension", "structure_constants", "subalgebra", ...} to a Pair
 problem              `Problem`: the field, the start and the options of an integration
 representation_file  {"matrices", "point", "generator", ...} to a Representation and a Problem

@@ -1,6 +1,6 @@
 """The verbs: load, load_pair, load_problem, loads, from_json, to_json, dump.
 
-Imports json_text, pair_file, problem, representation_file.
+Imports algebra_file, json_text, pair_file, problem, representation_file.
 """
 
 from __future__ import annotations
@@ -11,18 +11,21 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, overload
 
+from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.errors import FormatError
-from liehom.io import pair_file, representation_file
+from liehom.io import algebra_file, pair_file, representation_file
 from liehom.io.json_text import kind_of, parse_object, read_object, shown
 from liehom.io.problem import Problem
 from liehom.representations.pair import Pair
 from liehom.representations.representation import Representation
 
-FORMATS = (pair_file.FORMAT, representation_file.FORMAT)
+FORMATS = (algebra_file.FORMAT, pair_file.FORMAT, representation_file.FORMAT)
 
 
-def load(path: str | os.PathLike[str]) -> Pair | Representation:
-    """Read a file: a Pair from a pair file or a representation file with a point, else a Representation.
+def load(path: str | os.PathLike[str]) -> LieAlgebra | Pair | Representation:
+    """Read a file: a LieAlgebra from an algebra file, a Pair or a Representation from theirs.
+
+    A representation file with a point determines a Pair.
 
     Parameters
     ----------
@@ -35,6 +38,10 @@ def load(path: str | os.PathLike[str]) -> Pair | Representation:
         If it is not of the documented form; names the key and the index.
     JacobiError, NotASubalgebraError, DependentRowsError, NotClosedError
         If it does not describe what it should.
+
+    Notes
+    -----
+    An algebra file says so, ``"format": "liehom-algebra"``: without `format` a file has matrices or is a pair.
 
     Examples
     --------
@@ -53,7 +60,7 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
     Raises
     ------
     FormatError
-        As `load`, and for a representation file without a point.
+        As `load`, and for an algebra file or a representation file without a point.
 
     Examples
     --------
@@ -65,6 +72,8 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
     <pair of dimensions 3/1 over QQ>
     """
     found = load(path)
+    if isinstance(found, LieAlgebra):
+        raise FormatError("this is an algebra file, which names no subalgebra, so it describes no pair")
     if not isinstance(found, Pair):
         raise FormatError("this representation file has no 'point', so it describes no pair")
     return found
@@ -92,14 +101,14 @@ def load_problem(path: str | os.PathLike[str]) -> Problem:
 
 
 @overload
-def loads(text: str) -> Pair | Representation: ...
+def loads(text: str) -> LieAlgebra | Pair | Representation: ...
 
 
 @overload
 def loads(text: str, *, problem: Literal[True]) -> Problem: ...
 
 
-def loads(text: str, *, problem: bool = False) -> Pair | Representation | Problem:
+def loads(text: str, *, problem: bool = False) -> LieAlgebra | Pair | Representation | Problem:
     """As `load` (or `load_problem`), from a text.
 
     Examples
@@ -111,7 +120,7 @@ def loads(text: str, *, problem: bool = False) -> Pair | Representation | Proble
     return _problem(data) if problem else from_json(data)
 
 
-def from_json(data: Mapping[str, Any]) -> Pair | Representation:
+def from_json(data: Mapping[str, Any]) -> LieAlgebra | Pair | Representation:
     """As `load`, from a parsed JSON object.
 
     Examples
@@ -123,12 +132,15 @@ def from_json(data: Mapping[str, Any]) -> Pair | Representation:
     """
     if _format(data) == representation_file.FORMAT:
         return representation_file.read_representation(data)
+    if _format(data) == algebra_file.FORMAT:
+        return algebra_file.read_algebra(data)
     return pair_file.read_pair(data)
 
 
 def _problem(data: Mapping[str, Any]) -> Problem:
     if _format(data) != representation_file.FORMAT:
-        raise FormatError("this is a pair file, expected a representation file, with 'matrices'")
+        kind = "an algebra file" if _format(data) == algebra_file.FORMAT else "a pair file"
+        raise FormatError(f"this is {kind}, expected a representation file, with 'matrices'")
     return representation_file.read_problem(data)
 
 
@@ -138,14 +150,16 @@ def _format(data: Any) -> str:
         raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
     stated = data.get("format")
     if stated is not None and stated not in FORMATS:
-        raise FormatError(f"format is {shown(stated)}, expected {' or '.join(map(repr, FORMATS))}")
+        raise FormatError(
+            f"format is {shown(stated)}, expected {', '.join(map(repr, FORMATS[:-1]))} or {FORMATS[-1]!r}"
+        )
     if stated is None:
         return representation_file.FORMAT if "matrices" in data else pair_file.FORMAT
     return str(stated)
 
 
 def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
-    """The JSON object of a pair, a representation (with a point, if given), a certificate or a verdict.
+    """The JSON object of an algebra, a pair, a representation (with a point, if given), a certificate or a verdict.
 
     A mapping is taken to be a JSON object already.
 
@@ -160,6 +174,8 @@ def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
     >>> to_json(lh.Pair(lh.LieAlgebra({(0, 1): {1: "1/2"}}), [[1, 0]]))["structure_constants"]
     [[0, 1, 1, '1/2']]
     """
+    if isinstance(thing, LieAlgebra):
+        return algebra_file.write_algebra(thing)
     if isinstance(thing, Pair):
         return pair_file.write_pair(thing)
     if isinstance(thing, Representation):
@@ -168,7 +184,9 @@ def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
         return dict(thing)
     if callable(getattr(thing, "to_json", None)):
         return dict(thing.to_json())
-    raise FormatError(f"a {type(thing).__name__} has no file format; expected a pair, representation or certificate")
+    raise FormatError(
+        f"a {type(thing).__name__} has no file format; expected an algebra, pair, representation or certificate"
+    )
 
 
 def dump(thing: Any, path: str | os.PathLike[str], *, point: Any = None) -> None:
