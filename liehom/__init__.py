@@ -30,12 +30,16 @@ from liehom import errors as errors
 if TYPE_CHECKING:
     from liehom.algebra import Homomorphism as Homomorphism
     from liehom.algebra import LieAlgebra as LieAlgebra
+    from liehom.algebra import RootSystem as RootSystem
     from liehom.algebra import Subalgebra as Subalgebra
     from liehom.algebra import abelian as abelian
+    from liehom.algebra import cartan_matrix as cartan_matrix
     from liehom.algebra import direct_sum as direct_sum
+    from liehom.algebra import dynkin_diagram as dynkin_diagram
     from liehom.algebra import euclidean as euclidean
     from liehom.algebra import gl as gl
     from liehom.algebra import heisenberg as heisenberg
+    from liehom.algebra import root_system as root_system
     from liehom.algebra import semidirect_sum as semidirect_sum
     from liehom.algebra import simple as simple
     from liehom.algebra import sl as sl
@@ -132,8 +136,8 @@ _LAYERS = (
 )
 _NAMES = {
     "liehom.algebra": (
-        "Homomorphism LieAlgebra Subalgebra abelian direct_sum euclidean gl heisenberg "
-        "semidirect_sum simple sl so sp su u"
+        "Homomorphism LieAlgebra RootSystem Subalgebra abelian cartan_matrix direct_sum dynkin_diagram "
+        "euclidean gl heisenberg root_system semidirect_sum simple sl so sp su u"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (

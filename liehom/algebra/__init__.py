@@ -13,8 +13,12 @@ from liehom.algebra.constructions import so as so
 from liehom.algebra.constructions import sp as sp
 from liehom.algebra.constructions import su as su
 from liehom.algebra.constructions import u as u
+from liehom.algebra.dynkin import cartan_matrix as cartan_matrix
+from liehom.algebra.dynkin import dynkin_diagram as dynkin_diagram
 from liehom.algebra.homomorphism import Homomorphism as Homomorphism
 from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
+from liehom.algebra.root_system import RootSystem as RootSystem
+from liehom.algebra.root_system import root_system as root_system
 from liehom.algebra.simple import simple as simple
 from liehom.algebra.structure_constants import StructureConstants as StructureConstants
 from liehom.algebra.subalgebra import Subalgebra as Subalgebra
