@@ -5,6 +5,8 @@ values               lists of JSON values to numbers of a field, quickly
 algebra_file         {"dimension", "structure_constants", ...} to a LieAlgebra
 pair_file            {"dimension", "structure_constants", "subalgebra", ...} to a Pair
 problem              `Problem`: the field, the start and the options of an integration
+gap_format           `to_gap`, `from_gap`: the structure constant tables of GAP
+sage_format          `to_sage`, `from_sage`: the dictionaries of brackets of Sage
 representation_file  {"matrices", "point", "generator", ...} to a Representation and a Problem
 solution_file        a solution as an .npz archive: t, y and the report
 files                `load`, `load_pair`, `load_problem`, `loads`, `from_json`, `to_json`, `dump`
@@ -20,9 +22,13 @@ from liehom.io.files import load_pair as load_pair
 from liehom.io.files import load_problem as load_problem
 from liehom.io.files import loads as loads
 from liehom.io.files import to_json as to_json
+from liehom.io.gap_format import from_gap as from_gap
+from liehom.io.gap_format import to_gap as to_gap
 from liehom.io.json_text import parse_object as parse_object
 from liehom.io.json_text import read_object as read_object
 from liehom.io.problem import Problem as Problem
+from liehom.io.sage_format import from_sage as from_sage
+from liehom.io.sage_format import to_sage as to_sage
 from liehom.io.solution_file import save_solution as save_solution
 
 __all__ = [
@@ -37,4 +43,8 @@ __all__ = [
     "read_object",
     "Problem",
     "save_solution",
+    "to_gap",
+    "from_gap",
+    "to_sage",
+    "from_sage",
 ]
