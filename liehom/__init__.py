@@ -101,11 +101,19 @@ if TYPE_CHECKING:
     from liehom.representations import Pair as Pair
     from liehom.representations import Representation as Representation
     from liehom.representations import adjoint as adjoint
+    from liehom.representations import character as character
     from liehom.representations import coadjoint as coadjoint
+    from liehom.representations import decompose_character as decompose_character
     from liehom.representations import defining as defining
+    from liehom.representations import dominant_character as dominant_character
+    from liehom.representations import dual_weight as dual_weight
+    from liehom.representations import frobenius_schur_indicator as frobenius_schur_indicator
     from liehom.representations import sym_conjugation as sym_conjugation
     from liehom.representations import symbolic_isotropy as symbolic_isotropy
+    from liehom.representations import tensor_product_decomposition as tensor_product_decomposition
     from liehom.representations import trivial as trivial
+    from liehom.representations import weyl_dimension as weyl_dimension
+    from liehom.representations import weyl_orbit as weyl_orbit
     from liehom.scalars import QQ as QQ
     from liehom.scalars import RR as RR
     from liehom.scalars import FloatField as FloatField
@@ -157,7 +165,9 @@ _NAMES = {
     "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
-        "adjoint coadjoint defining Pair Representation sym_conjugation symbolic_isotropy trivial"
+        "adjoint character coadjoint decompose_character defining dominant_character dual_weight "
+        "frobenius_schur_indicator Pair Representation sym_conjugation symbolic_isotropy "
+        "tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

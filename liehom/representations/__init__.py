@@ -1,5 +1,10 @@
 """Representations by matrices, pairs (g, h), and the isotropy of a point."""
 
+from liehom.representations.characters import character as character
+from liehom.representations.characters import decompose_character as decompose_character
+from liehom.representations.characters import dominant_character as dominant_character
+from liehom.representations.characters import tensor_product_decomposition as tensor_product_decomposition
+from liehom.representations.characters import weyl_dimension as weyl_dimension
 from liehom.representations.constructions import adjoint as adjoint
 from liehom.representations.constructions import coadjoint as coadjoint
 from liehom.representations.constructions import defining as defining
@@ -11,3 +16,6 @@ from liehom.representations.pair import Pair as Pair
 from liehom.representations.representation import Representation as Representation
 from liehom.representations.symbolic import SymbolicIsotropy as SymbolicIsotropy
 from liehom.representations.symbolic import symbolic_isotropy as symbolic_isotropy
+from liehom.representations.weights import dual_weight as dual_weight
+from liehom.representations.weights import frobenius_schur_indicator as frobenius_schur_indicator
+from liehom.representations.weights import weyl_orbit as weyl_orbit
