@@ -33,20 +33,37 @@ if TYPE_CHECKING:
     from liehom.algebra import RootSystem as RootSystem
     from liehom.algebra import Subalgebra as Subalgebra
     from liehom.algebra import abelian as abelian
+    from liehom.algebra import affine as affine
+    from liehom.algebra import affine_of as affine_of
+    from liehom.algebra import almost_abelian as almost_abelian
+    from liehom.algebra import bargmann as bargmann
+    from liehom.algebra import bianchi as bianchi
     from liehom.algebra import cartan_matrix as cartan_matrix
+    from liehom.algebra import conformal as conformal
     from liehom.algebra import direct_sum as direct_sum
     from liehom.algebra import dynkin_diagram as dynkin_diagram
     from liehom.algebra import euclidean as euclidean
+    from liehom.algebra import filiform as filiform
+    from liehom.algebra import free_nilpotent as free_nilpotent
+    from liehom.algebra import galilei as galilei
     from liehom.algebra import gl as gl
     from liehom.algebra import heisenberg as heisenberg
+    from liehom.algebra import oscillator as oscillator
+    from liehom.algebra import parabolic_subalgebra as parabolic_subalgebra
+    from liehom.algebra import poincare as poincare
     from liehom.algebra import root_system as root_system
     from liehom.algebra import semidirect_sum as semidirect_sum
     from liehom.algebra import simple as simple
     from liehom.algebra import sl as sl
     from liehom.algebra import so as so
+    from liehom.algebra import so_form as so_form
+    from liehom.algebra import so_star as so_star
     from liehom.algebra import sp as sp
+    from liehom.algebra import sp_form as sp_form
+    from liehom.algebra import strictly_upper_triangular as strictly_upper_triangular
     from liehom.algebra import su as su
     from liehom.algebra import u as u
+    from liehom.algebra import upper_triangular as upper_triangular
     from liehom.catalog import pair as pair
     from liehom.correctors import Conserving as Conserving
     from liehom.correctors import Corrected as Corrected
@@ -144,8 +161,10 @@ _LAYERS = (
 )
 _NAMES = {
     "liehom.algebra": (
-        "Homomorphism LieAlgebra RootSystem Subalgebra abelian cartan_matrix direct_sum dynkin_diagram "
-        "euclidean gl heisenberg root_system semidirect_sum simple sl so sp su u"
+        "Homomorphism LieAlgebra RootSystem Subalgebra abelian affine affine_of almost_abelian bargmann "
+        "bianchi cartan_matrix conformal direct_sum dynkin_diagram euclidean filiform free_nilpotent galilei "
+        "gl heisenberg oscillator parabolic_subalgebra poincare root_system semidirect_sum simple sl so "
+        "so_form so_star sp sp_form strictly_upper_triangular su u upper_triangular"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (

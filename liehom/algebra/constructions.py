@@ -7,6 +7,7 @@ one after the other.  Imports classical, closure, lie_algebra.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from liehom.algebra.classical import Parameter, classical_matrices, classical_name, linear_algebra
@@ -202,7 +203,7 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
     Parameters
     ----------
     *algebras : LieAlgebra
-        At least one.
+        At least one; the direct power g^3 is ``direct_sum(*[g] * 3)``.
     name : str, optional
         By default the names of the summands joined by '+', if all have one.
 
@@ -240,6 +241,7 @@ def semidirect_sum(
     ideal: LieAlgebra | None = None,
     *,
     size: int | None = None,
+    basis: Sequence[str] | None = None,
     name: str | None = None,
     check: bool = True,
 ) -> LieAlgebra:
@@ -255,6 +257,8 @@ def semidirect_sum(
         V with its own bracket, of dimension N; by default abelian.
     size : int, optional
         N, needed only where h has dimension 0 and no ideal is given.
+    basis : sequence of str, optional
+        Names of the basis elements, those of h first.
     name : str, optional
     check : bool
         Prove the Jacobi identity, that is that the matrices are a representation by derivations (default).
@@ -292,7 +296,7 @@ def semidirect_sum(
         if ideal.field != algebra.field:
             raise InputError(f"the algebra is over {algebra.field.name}, the ideal over {ideal.field.name}")
         entries += [(i + h, j + h, k + h, v) for i, j, k, v in ideal.structure_constants()]
-    return LieAlgebra(StructureConstants(algebra.field, h + d, entries), name=name, check=check)
+    return LieAlgebra(StructureConstants(algebra.field, h + d, entries), basis=basis, name=name, check=check)
 
 
 def _classical(kind: str, first: int, second: Parameter) -> LieAlgebra:
