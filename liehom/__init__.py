@@ -125,6 +125,8 @@ if TYPE_CHECKING:
     from liehom.representations import dominant_character as dominant_character
     from liehom.representations import dual_weight as dual_weight
     from liehom.representations import frobenius_schur_indicator as frobenius_schur_indicator
+    from liehom.representations import spin_representation as spin_representation
+    from liehom.representations import spinor_type as spinor_type
     from liehom.representations import sym_conjugation as sym_conjugation
     from liehom.representations import symbolic_isotropy as symbolic_isotropy
     from liehom.representations import tensor_product_decomposition as tensor_product_decomposition
@@ -185,8 +187,8 @@ _NAMES = {
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint character coadjoint decompose_character defining dominant_character dual_weight "
-        "frobenius_schur_indicator Pair Representation sym_conjugation symbolic_isotropy "
-        "tensor_product_decomposition trivial weyl_dimension weyl_orbit"
+        "frobenius_schur_indicator Pair Representation spin_representation spinor_type sym_conjugation "
+        "symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

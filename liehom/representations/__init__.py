@@ -14,6 +14,9 @@ from liehom.representations.constructions import trivial as trivial
 from liehom.representations.constructions import vector_to_symmetric as vector_to_symmetric
 from liehom.representations.pair import Pair as Pair
 from liehom.representations.representation import Representation as Representation
+from liehom.representations.spin import SpinorType as SpinorType
+from liehom.representations.spin import spin_representation as spin_representation
+from liehom.representations.spin import spinor_type as spinor_type
 from liehom.representations.symbolic import SymbolicIsotropy as SymbolicIsotropy
 from liehom.representations.symbolic import symbolic_isotropy as symbolic_isotropy
 from liehom.representations.weights import dual_weight as dual_weight
