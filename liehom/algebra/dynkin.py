@@ -148,26 +148,27 @@ def type_name(cartan: Sequence[Sequence[int]]) -> str:
 
 
 def join_types(names: Any) -> str:
-    """The names of simple types as one sum, in order of letter and rank; '0' if there is none.
+    """The names of simple types as one sum, in order of letters and rank; '0' if there is none.
 
     Examples
     --------
     >>> join_types(["A10", "B2", "A9"])
     'A9 + A10 + B2'
     """
-    return " + ".join(sorted(names, key=lambda name: (name[0], int(name[1:])))) or "0"
+    return " + ".join(sorted(names, key=lambda name: (name.rstrip("0123456789"), len(name), name))) or "0"
 
 
-def diagram_automorphisms(cartan: Sequence[Sequence[int]]) -> list[tuple[int, ...]]:
-    """The symmetries of the Dynkin diagram, as permutations p of the nodes with a[p[i]][p[j]] = a[i][j].
+def isomorphisms(first: Sequence[Sequence[int]], second: Sequence[Sequence[int]]) -> list[tuple[int, ...]]:
+    """The isomorphisms of two Dynkin diagrams, sorted: each the tuple p with second[p[i]][p[j]] = first[i][j].
 
     Examples
     --------
-    >>> diagram_automorphisms(cartan_matrix("A3")), len(diagram_automorphisms(cartan_matrix("D4")))
-    ([(0, 1, 2), (2, 1, 0)], 6)
+    >>> isomorphisms(cartan_matrix("A3"), cartan_matrix("D3"))
+    [(1, 0, 2), (2, 0, 1)]
+    >>> len(isomorphisms(cartan_matrix("D4"), cartan_matrix("D4")))
+    6
     """
-    diagram = dynkin_diagram(cartan)
-    return sorted(_isomorphisms(diagram, diagram))
+    return sorted(_isomorphisms(dynkin_diagram(first), dynkin_diagram(second)))
 
 
 @lru_cache(maxsize=256)
