@@ -30,6 +30,7 @@ from liehom import errors as errors
 if TYPE_CHECKING:
     from liehom.algebra import Homomorphism as Homomorphism
     from liehom.algebra import LieAlgebra as LieAlgebra
+    from liehom.algebra import RealForm as RealForm
     from liehom.algebra import RootSystem as RootSystem
     from liehom.algebra import Subalgebra as Subalgebra
     from liehom.algebra import abelian as abelian
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from liehom.algebra import almost_abelian as almost_abelian
     from liehom.algebra import bargmann as bargmann
     from liehom.algebra import bianchi as bianchi
+    from liehom.algebra import canonical_real_form as canonical_real_form
     from liehom.algebra import cartan_matrix as cartan_matrix
     from liehom.algebra import conformal as conformal
     from liehom.algebra import direct_sum as direct_sum
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
     from liehom.algebra import oscillator as oscillator
     from liehom.algebra import parabolic_subalgebra as parabolic_subalgebra
     from liehom.algebra import poincare as poincare
+    from liehom.algebra import real_forms as real_forms
     from liehom.algebra import root_system as root_system
     from liehom.algebra import semidirect_sum as semidirect_sum
     from liehom.algebra import simple as simple
@@ -163,10 +166,11 @@ _LAYERS = (
 )
 _NAMES = {
     "liehom.algebra": (
-        "Homomorphism LieAlgebra RootSystem Subalgebra abelian affine affine_of almost_abelian bargmann "
-        "bianchi cartan_matrix conformal direct_sum dynkin_diagram euclidean filiform free_nilpotent galilei "
-        "gl heisenberg oscillator parabolic_subalgebra poincare root_system semidirect_sum simple sl so "
-        "so_form so_star sp sp_form strictly_upper_triangular su u upper_triangular"
+        "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
+        "bargmann bianchi canonical_real_form cartan_matrix conformal direct_sum dynkin_diagram euclidean "
+        "filiform free_nilpotent galilei gl heisenberg oscillator parabolic_subalgebra poincare real_forms "
+        "root_system semidirect_sum simple sl so so_form so_star sp sp_form strictly_upper_triangular su u "
+        "upper_triangular"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (

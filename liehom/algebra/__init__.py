@@ -28,8 +28,14 @@ from liehom.algebra.form_algebras import sp_form as sp_form
 from liehom.algebra.free_nilpotent import free_nilpotent as free_nilpotent
 from liehom.algebra.homomorphism import Homomorphism as Homomorphism
 from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
+from liehom.algebra.real_form import RealForm as RealForm
+from liehom.algebra.real_form import complex_form as complex_form
+from liehom.algebra.real_form import real_forms as real_forms
+from liehom.algebra.real_form import real_forms_with as real_forms_with
+from liehom.algebra.real_form_names import canonical_real_form as canonical_real_form
 from liehom.algebra.root_system import RootSystem as RootSystem
 from liehom.algebra.root_system import root_system as root_system
+from liehom.algebra.satake import SatakeDiagram as SatakeDiagram
 from liehom.algebra.simple import simple as simple
 from liehom.algebra.solvable_families import almost_abelian as almost_abelian
 from liehom.algebra.solvable_families import bianchi as bianchi
@@ -39,3 +45,4 @@ from liehom.algebra.solvable_families import strictly_upper_triangular as strict
 from liehom.algebra.solvable_families import upper_triangular as upper_triangular
 from liehom.algebra.structure_constants import StructureConstants as StructureConstants
 from liehom.algebra.subalgebra import Subalgebra as Subalgebra
+from liehom.algebra.vogan import VoganDiagram as VoganDiagram
