@@ -71,6 +71,18 @@ class JacobiError(StructureError):
         )
 
 
+class CocycleError(StructureError):
+    """A bilinear form is no cocycle; `indices` is a triple (i, j, k) that shows it, `value` the cyclic sum."""
+
+    def __init__(self, indices: tuple[int, int, int], value: str, names: tuple[str, str, str]) -> None:
+        self.indices = indices
+        self.value = value
+        super().__init__(
+            f"the form is no cocycle for (i, j, k) = {indices}, that is for {', '.join(names)}: "
+            f"w([i,j],k) + w([j,k],i) + w([k,i],j) = {value}, expected 0"
+        )
+
+
 class NotASubalgebraError(InputError):
     """The span of the given rows is not closed; `pair` names the two rows whose bracket leaves it."""
 

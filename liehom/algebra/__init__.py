@@ -15,6 +15,12 @@ from liehom.algebra.constructions import su as su
 from liehom.algebra.constructions import u as u
 from liehom.algebra.dynkin import cartan_matrix as cartan_matrix
 from liehom.algebra.dynkin import dynkin_diagram as dynkin_diagram
+from liehom.algebra.extensions import ComplexLieAlgebra as ComplexLieAlgebra
+from liehom.algebra.extensions import central_extension as central_extension
+from liehom.algebra.extensions import complexification as complexification
+from liehom.algebra.extensions import quotient as quotient
+from liehom.algebra.extensions import quotient_map as quotient_map
+from liehom.algebra.extensions import realification as realification
 from liehom.algebra.families import affine as affine
 from liehom.algebra.families import affine_of as affine_of
 from liehom.algebra.families import bargmann as bargmann
