@@ -6,6 +6,8 @@ basis elements, a key of a file), carries it as an attribute.  Imports nothing.
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class LiehomError(Exception):
     """Root of all exceptions raised by liehom.
@@ -16,6 +18,16 @@ class LiehomError(Exception):
     >>> issubclass(lh.errors.JacobiError, lh.errors.LiehomError)
     True
     """
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # constructors take what messages are made of: pickle must not call them with the message
+        return _again, (type(self), self.args, self.__dict__)
+
+
+def _again(kind: type[LiehomError], args: tuple[Any, ...], attributes: dict[str, Any]) -> LiehomError:
+    error = kind.__new__(kind, *args)
+    error.__dict__.update(attributes)
+    return error
 
 
 class InputError(LiehomError, ValueError):
@@ -148,6 +160,15 @@ class CertificateFormatError(CertificateError, FormatError):
 
 class ConvergenceError(LiehomError, ArithmeticError):
     """An iteration did not converge: an implicit step, a clock, a point of an orbit."""
+
+
+class WorkerLostError(LiehomError, RuntimeError):
+    """Workers were lost before all tasks were done; `done` and `missing` count the tasks."""
+
+    def __init__(self, done: int, missing: int, message: str) -> None:
+        self.done = done
+        self.missing = missing
+        super().__init__(message)
 
 
 class UndecidedError(LiehomError, TypeError):

@@ -54,12 +54,12 @@ class Components:
     (array([6., 0.]), True)
     """
 
-    __slots__ = ("_function", "counts", "size", "time_dependent", "what")
+    __slots__ = ("_function", "_source", "counts", "size", "time_dependent", "what")
 
     def __init__(
         self, source: Any, size: int, counts: tuple[int, ...], what: str, time_dependent: bool | None = None
     ) -> None:
-        self.size, self.counts, self.what = size, counts, what
+        self.size, self.counts, self.what, self._source = size, counts, what, source
         self._function: Callable[[Any, Any], Any]
         if callable(source):
             self._function, self.time_dependent = _called(source, what, time_dependent)
@@ -71,6 +71,10 @@ class Components:
             )
         else:
             self._function, self.time_dependent = self._from_list(list(source))
+
+    def __reduce__(self) -> Any:
+        # closures over the source cannot be pickled; the source can, if it is no function or has a name in a module
+        return Components, (self._source, self.size, self.counts, self.what, self.time_dependent)
 
     def __call__(self, m: Any, t: Any = 0.0) -> Any:
         """The components at m (..., N) and t (...,): array or Jet of shape (..., count)."""

@@ -19,7 +19,10 @@ from liehom.scalars.floating import RankDecision as RankDecision
 from liehom.scalars.number_fields import common_field as common_field
 from liehom.scalars.number_fields import exact_value as exact_value
 from liehom.scalars.number_fields import number_field as number_field
+from liehom.scalars.pickling import register as _register
 from liehom.scalars.polynomial import Polynomial as Polynomial
 from liehom.scalars.rational import QQ as QQ
 from liehom.scalars.rational import RationalField as RationalField
 from liehom.scalars.subspace import Subspace as Subspace
+
+_register()
