@@ -7,6 +7,8 @@ pair_file            {"dimension", "structure_constants", "subalgebra", ...} to 
 problem              `Problem`: the field, the start and the options of an integration
 gap_format           `to_gap`, `from_gap`: the structure constant tables of GAP
 sage_format          `to_sage`, `from_sage`: the dictionaries of brackets of Sage
+latex_text           `latex` of brackets, matrices, subalgebras, numbers
+sympy_format         `to_sympy`
 representation_file  {"matrices", "point", "generator", ...} to a Representation and a Problem
 solution_file        a solution as an .npz archive: t, y and the report
 files                `load`, `load_pair`, `load_problem`, `loads`, `from_json`, `to_json`, `dump`
@@ -26,10 +28,12 @@ from liehom.io.gap_format import from_gap as from_gap
 from liehom.io.gap_format import to_gap as to_gap
 from liehom.io.json_text import parse_object as parse_object
 from liehom.io.json_text import read_object as read_object
+from liehom.io.latex_text import latex as latex
 from liehom.io.problem import Problem as Problem
 from liehom.io.sage_format import from_sage as from_sage
 from liehom.io.sage_format import to_sage as to_sage
 from liehom.io.solution_file import save_solution as save_solution
+from liehom.io.sympy_format import to_sympy as to_sympy
 
 __all__ = [
     "load",
@@ -47,4 +51,6 @@ __all__ = [
     "from_gap",
     "to_sage",
     "from_sage",
+    "latex",
+    "to_sympy",
 ]
