@@ -134,6 +134,19 @@ class RepresentationError(HomomorphismError):
     """Matrices do not satisfy rho([x, y]) = rho(x) rho(y) - rho(y) rho(x); `pair` names i, j."""
 
 
+class NotInvariantError(InputError):
+    """A subspace is not invariant; `vector` is the number of a row and `element` that of a basis element moving it out."""
+
+    def __init__(self, vector: int, element: int, what: str) -> None:
+        self.vector = vector
+        self.element = element
+        super().__init__(what)
+
+
+class NotCompletelyReducibleError(InputError):
+    """A representation is not a sum of irreducible ones, or an invariant subspace has no invariant complement."""
+
+
 class NotClosedError(InputError):
     """Matrices do not span a Lie algebra; `pair` names two whose commutator leaves the span."""
 
