@@ -1,20 +1,26 @@
-"""Simple Lie algebras by type and real form, as far as a construction is here.
+"""Simple Lie algebras by type and real form: every real form of every type, and the complex ones as real algebras.
 
-Imports classical, matrix_families.
+Classical algebras, g2, f4 and two forms of e6 are spanned by integer matrices; e7(7) and e8(8) have the Chevalley
+basis; the others have a basis of eigenvectors of a Cartan involution, with integer structure constants.
+Imports classical, matrix_families, chevalley, compact_form, real_form, real_form_names.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 
 from liehom.algebra import matrix_families as families
+from liehom.algebra.chevalley import chevalley
 from liehom.algebra.classical import classical_matrices, classical_name, linear_algebra
+from liehom.algebra.compact_form import real_form_of
+from liehom.algebra.dynkin import parse_type
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.matrix_basis import IntegerArray
+from liehom.algebra.real_form import RealForm, complex_form, real_forms
+from liehom.algebra.real_form_names import canonical_real_form, parse_name
 from liehom.errors import CatalogError
 
-Builder = Callable[[], IntegerArray]
+Builder = Callable[[], LieAlgebra]
 
 
 def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
@@ -23,51 +29,68 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
     Parameters
     ----------
     type_name : str
-        'A3', 'B2', ..., 'G2', 'F4', 'E6'.
+        'A3', 'B2', ..., 'E8', 'F4', 'G2'.
     real_form : str, optional
-        Its name, such as 'so(4,1)', 'sl(2,H)', 'so*(6)', 'f4(-20)', 'e6(-26)'; by default the split form.
+        Its name, such as 'so(4,1)', 'sl(2,H)', 'so*(6)', 'f4(-20)', 'e7(-25)', 'sl(3,C)', or 'split', 'compact',
+        'complex'; other names of the same algebra, such as 'e8(-248)', are understood. By default the split form.
+
+    Returns
+    -------
+    LieAlgebra
+        Over QQ, with integer structure constants, and with the name of its construction.
 
     Raises
     ------
     CatalogError
-        If there is no such type or form, or no construction of it yet; lists the forms that there are.
+        If there is no such type or form; lists the forms that there are.
+
+    Notes
+    -----
+    `liehom.real_forms` describes the forms of a type. Classical algebras have the bases of the constructors `so`,
+    `su`, ...; for other bases see `chevalley` and `liehom.algebra.real_form_of`.
 
     Examples
     --------
     >>> import liehom as lh
-    >>> lh.simple("G2", "g2").killing_signature(), lh.simple("B2").name
-    ((0, 14, 0), 'so(3,2)')
+    >>> lh.simple("G2", "g2").killing_signature(), lh.simple("B2").name, lh.simple("E7", "e7(-25)").dimension
+    ((0, 14, 0), 'so(3,2)', 133)
     """
-    forms = dict(real_forms(type_name))
+    forms = constructions(type_name)
     wanted = next(iter(forms)) if real_form is None else real_form.replace(" ", "")
-    if wanted not in forms:
-        known = ", ".join(forms)
-        raise CatalogError(f"the form {wanted!r} of {type_name} comes from no construction yet; known: {known}")
-    return linear_algebra(forms[wanted](), wanted)
+    wanted = {"split": real_forms(type_name)[0].name, "compact": real_forms(type_name)[-1].name}.get(wanted, wanted)
+    if wanted in forms:
+        return forms[wanted]()
+    complex_one = complex_form(type_name)
+    asked = _canonical(wanted)
+    if wanted == "complex" or asked == complex_one.name:
+        return _complex_algebra(complex_one)
+    for name, build in forms.items():
+        if asked is not None and canonical_real_form(name) == asked:
+            return build()
+    known = ", ".join([*forms, complex_one.name])
+    raise CatalogError(f"{type_name} has no real form {wanted!r}; known: {known}, and 'split', 'compact', 'complex'")
 
 
-def real_forms(type_name: str) -> Iterator[tuple[str, Builder]]:
-    """The real forms of a complex type that can be built, the split one first, with builders of their matrices.
+def constructions(type_name: str) -> dict[str, Builder]:
+    """The real forms of a complex type by the names of their constructions, the split one first, with builders.
 
     Raises
     ------
     CatalogError
-        If there is no such type, or none of its forms has a construction.
+        If there is no such type, or it is not simple.
 
     Examples
     --------
-    >>> [name for name, _ in real_forms("A3")]
-    ['sl(4)', 'su(4)', 'su(3,1)', 'su(2,2)', 'sl(2,H)']
+    >>> list(constructions("A3")), list(constructions("E6"))
+    (['sl(4)', 'su(4)', 'su(3,1)', 'su(2,2)', 'sl(2,H)'], ['e6(6)', 'e6(2)', 'e6(-14)', 'e6(-26)', 'e6'])
     """
-    match = re.fullmatch(r"([A-G])(\d+)", type_name)
-    series, rank = (match[1], int(match[2])) if match else ("", 0)
-    if rank < _LEAST_RANK.get(series, 1):
+    parts = parse_type(type_name)
+    if len(parts) != 1 or parts[0] == ("D", 2):
         raise CatalogError(f"{type_name!r} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, G2, F4, E6")
+    series, rank = parts[0]
     if series in _CLASSICAL:
-        return _CLASSICAL[series](rank)
-    if type_name not in _EXCEPTIONAL:
-        raise CatalogError(f"{type_name} comes from no construction yet; known: A, B, C, D, {', '.join(_EXCEPTIONAL)}")
-    return iter(_EXCEPTIONAL[type_name].items())
+        return dict(_CLASSICAL[series](rank))
+    return {form.name: _exceptional(form) for form in real_forms(type_name)}
 
 
 def exceptional_matrices(form: str) -> IntegerArray:
@@ -76,22 +99,52 @@ def exceptional_matrices(form: str) -> IntegerArray:
     Raises
     ------
     CatalogError
-        If it comes from no construction yet.
+        If there are no matrices of this form here.
 
     Examples
     --------
     >>> exceptional_matrices("g2(2)").shape
     (14, 7, 7)
     """
-    for forms in _EXCEPTIONAL.values():
-        if form in forms:
-            return forms[form]()
-    known = [name for forms in _EXCEPTIONAL.values() for name in forms]
-    raise CatalogError(f"{form!r} comes from no construction yet; known: {', '.join(known)}")
+    if form not in _EXCEPTIONAL:
+        known = ", ".join(_EXCEPTIONAL)
+        raise CatalogError(f"{form!r} has no construction by matrices here; known: {known}; see also lh.simple")
+    return _EXCEPTIONAL[form]()
+
+
+def _canonical(name: str) -> str | None:
+    try:
+        return canonical_real_form(name)
+    except CatalogError:
+        return None
+
+
+def _exceptional(form: RealForm) -> Builder:
+    if form.name in _EXCEPTIONAL:
+        return _of_matrices(_EXCEPTIONAL[form.name], form.name)
+    if form.is_split:
+        return lambda: _renamed(chevalley(form.type), form.name)
+    return lambda: real_form_of(form.vogan, form.name)
+
+
+def _complex_algebra(form: RealForm) -> LieAlgebra:
+    kind, numbers, _ = parse_name(form.name)
+    if not numbers:
+        return real_form_of(form.vogan, form.name)
+    return linear_algebra(classical_matrices(kind, numbers[0], "C"), form.name)
+
+
+def _renamed(algebra: LieAlgebra, name: str) -> LieAlgebra:
+    return LieAlgebra(algebra.table, basis=algebra.basis_names, name=name, check=False)  # the same table
+
+
+def _of_matrices(build: Callable[[], IntegerArray], name: str) -> Builder:
+    return lambda: linear_algebra(build(), name)
 
 
 def _form(kind: str, first: int, second: int | str = 0) -> tuple[str, Builder]:
-    return classical_name(kind, first, second), lambda: classical_matrices(kind, first, second)
+    name = classical_name(kind, first, second)
+    return name, _of_matrices(lambda: classical_matrices(kind, first, second), name)
 
 
 def _type_a(rank: int) -> Iterator[tuple[str, Builder]]:
@@ -113,19 +166,18 @@ def _type_c(rank: int) -> Iterator[tuple[str, Builder]]:
 
 def _type_d(rank: int) -> Iterator[tuple[str, Builder]]:
     yield from (_form("so", 2 * rank - q, q) for q in range(rank, -1, -1))
-    yield f"so*({2 * rank})", lambda: families.so_star(rank)
+    name = f"so*({2 * rank})"
+    yield name, _of_matrices(lambda: families.so_star(rank), name)
 
-
-_LEAST_RANK = {"": 1, "A": 1, "B": 1, "C": 1, "D": 3}
 
 _CLASSICAL = {"A": _type_a, "B": _type_b, "C": _type_c, "D": _type_d}
 
-_EXCEPTIONAL: dict[str, dict[str, Builder]] = {
-    "G2": {"g2(2)": lambda: families.g2(families.SPLIT_OCTONIONS), "g2": families.g2},
-    "F4": {
-        "f4(4)": lambda: families.f4(parameters=families.SPLIT_OCTONIONS),
-        "f4": families.f4,
-        "f4(-20)": lambda: families.f4((-1, 1, 1)),
-    },
-    "E6": {"e6(6)": lambda: families.e6(families.SPLIT_OCTONIONS), "e6(-26)": families.e6},
+_EXCEPTIONAL: dict[str, Callable[[], IntegerArray]] = {
+    "g2(2)": lambda: families.g2(families.SPLIT_OCTONIONS),
+    "g2": families.g2,
+    "f4(4)": lambda: families.f4(parameters=families.SPLIT_OCTONIONS),
+    "f4": families.f4,
+    "f4(-20)": lambda: families.f4((-1, 1, 1)),
+    "e6(6)": lambda: families.e6(families.SPLIT_OCTONIONS),
+    "e6(-26)": families.e6,
 }

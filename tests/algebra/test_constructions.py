@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import liehom as lh
 from liehom.algebra.classical import classical_matrices
 from liehom.algebra.jacobi import prove_jacobi
-from liehom.algebra.simple import exceptional_matrices, real_forms
+from liehom.algebra.simple import constructions, exceptional_matrices
 from liehom.errors import CatalogError, InputError, JacobiError, ShapeError
 
 
@@ -156,22 +156,31 @@ COMPACT_PARTS = {
     "f4(4)": 24,
     "e6(6)": 36,
     "e6(-26)": 52,
+    "e6(2)": 38,
+    "e6(-14)": 46,
+    "e6": 78,
 }
 
 
 @pytest.mark.parametrize("type_name", ["A1", "A3", "B2", "C2", "D3", "G2", "F4", "E6"])
 def test_real_forms(type_name: str) -> None:
     dimension = {"A1": 3, "A3": 15, "B2": 10, "C2": 10, "D3": 15, "G2": 14, "F4": 52, "E6": 78}[type_name]
-    for name, _ in real_forms(type_name):
+    for name in constructions(type_name):
         g = lh.simple(type_name, name)
         assert (g.name, g.dimension, g.killing_signature()[2]) == (name, dimension, 0)
         assert compact_dimension(g) == COMPACT_PARTS.get(name, compact_dimension(g))
 
 
-@pytest.mark.parametrize("arguments", [("E8",), ("E7", "e7"), ("E6", "e6"), ("B2", "so(9)"), ("D2",), ("X1",), ("A0",)])
-def test_what_comes_from_no_construction_says_so(arguments: tuple[str, ...]) -> None:
-    with pytest.raises(CatalogError):
+@pytest.mark.parametrize("arguments", [("E7", "e7(3)"), ("E6", "e7"), ("B2", "so(9)"), ("A3", "so(2)"), ("G2", "")])
+def test_a_form_that_there_is_not_is_refused_with_those_that_there_are(arguments: tuple[str, str]) -> None:
+    with pytest.raises(CatalogError, match=f"{arguments[0]} has no real form .*known: .*C\\)"):
         lh.simple(*arguments)
+
+
+@pytest.mark.parametrize("name", ["D2", "X1", "A0", "E9", "A1 + A1"])
+def test_what_is_no_simple_type_is_refused(name: str) -> None:
+    with pytest.raises(CatalogError, match="not the type of a simple Lie algebra"):
+        lh.simple(name)
 
 
 def test_centralizers_of_one_element() -> None:
