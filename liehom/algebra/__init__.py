@@ -1,7 +1,10 @@
 """Lie algebras by structure constants: the algebra, its subalgebras, and how they are made."""
 
+from liehom.algebra.chevalley import chevalley as chevalley
 from liehom.algebra.closure import Closure as Closure
 from liehom.algebra.closure import lie_closure as lie_closure
+from liehom.algebra.compact_form import compact_form as compact_form
+from liehom.algebra.compact_form import real_form_of as real_form_of
 from liehom.algebra.constructions import abelian as abelian
 from liehom.algebra.constructions import direct_sum as direct_sum
 from liehom.algebra.constructions import euclidean as euclidean
