@@ -123,6 +123,7 @@ if TYPE_CHECKING:
     from liehom.io import load_problem as load_problem
     from liehom.io import loads as loads
     from liehom.io import to_json as to_json
+    from liehom.representations import HighestWeightModule as HighestWeightModule
     from liehom.representations import Pair as Pair
     from liehom.representations import Representation as Representation
     from liehom.representations import adjoint as adjoint
@@ -133,6 +134,7 @@ if TYPE_CHECKING:
     from liehom.representations import dominant_character as dominant_character
     from liehom.representations import dual_weight as dual_weight
     from liehom.representations import frobenius_schur_indicator as frobenius_schur_indicator
+    from liehom.representations import highest_weight_module as highest_weight_module
     from liehom.representations import spin_representation as spin_representation
     from liehom.representations import spinor_type as spinor_type
     from liehom.representations import sym_conjugation as sym_conjugation
@@ -197,8 +199,9 @@ _NAMES = {
     "liehom.io": "dump from_json load load_pair load_problem loads to_json",
     "liehom.representations": (
         "adjoint character coadjoint decompose_character defining dominant_character dual_weight "
-        "frobenius_schur_indicator Pair Representation spin_representation spinor_type sym_conjugation "
-        "symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
+        "frobenius_schur_indicator highest_weight_module HighestWeightModule Pair Representation "
+        "spin_representation spinor_type sym_conjugation symbolic_isotropy tensor_product_decomposition "
+        "trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

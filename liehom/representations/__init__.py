@@ -1,5 +1,7 @@
 """Representations by matrices, pairs (g, h), and the isotropy of a point."""
 
+from liehom.representations.admissible_lattice import AdmissibleLattice as AdmissibleLattice
+from liehom.representations.admissible_lattice import admissible_lattice as admissible_lattice
 from liehom.representations.characters import character as character
 from liehom.representations.characters import decompose_character as decompose_character
 from liehom.representations.characters import dominant_character as dominant_character
@@ -12,6 +14,8 @@ from liehom.representations.constructions import sym_conjugation as sym_conjugat
 from liehom.representations.constructions import symmetric_to_vector as symmetric_to_vector
 from liehom.representations.constructions import trivial as trivial
 from liehom.representations.constructions import vector_to_symmetric as vector_to_symmetric
+from liehom.representations.highest_weight import HighestWeightModule as HighestWeightModule
+from liehom.representations.highest_weight import highest_weight_module as highest_weight_module
 from liehom.representations.pair import Pair as Pair
 from liehom.representations.representation import Representation as Representation
 from liehom.representations.spin import SpinorType as SpinorType

@@ -8,17 +8,19 @@ the lattice at the weight mu.  What the raising operators do to them is known fr
 
 and a vector of weight mu other than lambda is zero if and only if all e_j kill it, because V(lambda) is irreducible.
 So the images under (e_1, ..., e_r) tell which of these vectors are a basis and what the others are.
-Imports weights, scalars.
+Imports weights, algebra, scalars.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial
 from typing import final
 
-from liehom.representations.weights import Weight, WeightSpace
+from liehom.algebra.root_system import RootSystem
+from liehom.representations.weights import Weight, WeightSpace, checked_weight, weight_space
 from liehom.scalars import QQ
 
 Vector = dict[int, int]
@@ -39,19 +41,48 @@ class AdmissibleLattice:
 
     Examples
     --------
-    >>> from liehom.representations.weights import weight_space
-    >>> lattice = admissible_lattice(weight_space("A1"), (2,))
-    >>> lattice.weights, lattice.raising, lattice.lowering
-    (((2,), (0,), (-2,)), (({}, {0: 2}, {1: 1}),), (({1: 1}, {2: 2}, {}),))
+    >>> from liehom.representations import admissible_lattice
+    >>> admissible_lattice("E8", [0, 0, 0, 0, 0, 0, 0, 1])
+    <admissible lattice of highest weight (0, 0, 0, 0, 0, 0, 0, 1), rank 248>
     """
 
     weights: tuple[Weight, ...]
     raising: tuple[tuple[Vector, ...], ...]
     lowering: tuple[tuple[Vector, ...], ...]
 
+    def __repr__(self) -> str:
+        return f"<admissible lattice of highest weight {self.weights[0]}, rank {len(self.weights)}>"
 
-def admissible_lattice(space: WeightSpace, top: Weight) -> AdmissibleLattice:
-    """The admissible lattice of the irreducible module with a dominant highest weight."""
+
+def admissible_lattice(system: RootSystem | str, weight: Sequence[int]) -> AdmissibleLattice:
+    """The admissible lattice of the irreducible module with a given highest weight.
+
+    Parameters
+    ----------
+    system : RootSystem or str
+        A root system, or a type such as 'E8' or 'A2 + G2'.
+    weight : sequence of int
+        Dominant, in fundamental coordinates, in Bourbaki's numbering.
+
+    Raises
+    ------
+    ShapeError, InputError
+        If it is not a dominant integral weight.
+    CatalogError
+        If there is no such type.
+
+    Examples
+    --------
+    >>> lattice = admissible_lattice("A1", [2])
+    >>> lattice.raising, lattice.lowering
+    ((({}, {0: 2}, {1: 1}),), (({1: 1}, {2: 2}, {}),))
+    """
+    space = weight_space(system)
+    return lattice_of(space, checked_weight(space, weight))
+
+
+def lattice_of(space: WeightSpace, top: Weight) -> AdmissibleLattice:
+    """The admissible lattice of the module with a highest weight that has been checked."""
     builder = _Builder(space, top)
     level = [top]
     while level:

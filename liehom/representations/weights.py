@@ -102,12 +102,24 @@ def weight_space(system: RootSystem | str) -> WeightSpace:
     CatalogError
         If there is no such type.
     """
-    roots = RootSystem.of_type(system) if isinstance(system, str) else system
-    if not isinstance(roots, RootSystem):
-        raise InputError(f"a root system or the name of a type such as 'B3' or 'A2 + G2' is needed, got {system!r}")
+    roots = root_system_of(system)
     coroots = [roots.coroot(alpha) for alpha in roots.positive_roots]
     heights = tuple(map(sum, zip(*coroots, strict=True)))
     return WeightSpace(roots.cartan, tuple(norm // 2 for norm in roots.norms), roots.positive_roots, heights)
+
+
+def root_system_of(system: RootSystem | str) -> RootSystem:
+    """A root system, or that of a type.
+
+    Raises
+    ------
+    CatalogError, InputError
+        If there is no such type, or if it is neither.
+    """
+    roots = RootSystem.of_type(system) if isinstance(system, str) else system
+    if not isinstance(roots, RootSystem):
+        raise InputError(f"a root system or the name of a type such as 'B3' or 'A2 + G2' is needed, got {system!r}")
+    return roots
 
 
 def checked_weight(space: WeightSpace, weight: Sequence[int], *, dominant: bool = True) -> Weight:

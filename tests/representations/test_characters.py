@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
+from liehom.algebra.root_system import RootSystem
 from liehom.errors import CatalogError, InputError, ShapeError
 
 ORACLE = json.loads(
@@ -150,7 +151,7 @@ def test_the_orbit_is_listed_once_and_is_closed(kind: str, weight: tuple[int, ..
 def test_a_semisimple_type_and_the_zero_algebra() -> None:
     assert lh.weyl_dimension("A2 + G2", [1, 1, 1, 0]) == 8 * 7
     assert lh.character("A1 + A1", [1, 1]) == {(1, 1): 1, (1, -1): 1, (-1, 1): 1, (-1, -1): 1}
-    nothing = lh.root_system("A1").__class__([])
+    nothing = RootSystem([])
     assert lh.weyl_dimension(nothing, []) == 1
     assert lh.character(nothing, []) == {(): 1}
 
