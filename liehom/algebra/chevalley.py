@@ -122,8 +122,7 @@ def cartan_weights(system: RootSystem) -> IntArray:
     >>> cartan_weights(RootSystem.of_type("A1")).tolist()
     [[2], [-2]]
     """
-    rank = system.rank
-    return _rows(system.roots, rank) @ _rows(system.cartan, rank)
+    return system.root_matrix() @ _square(system.cartan)
 
 
 def coroots(system: RootSystem) -> IntArray:
@@ -134,9 +133,8 @@ def coroots(system: RootSystem) -> IntArray:
     >>> coroots(RootSystem.of_type("B2")).tolist()
     [[1, 0], [0, 1], [2, 1], [1, 1]]
     """
-    roots = _rows(system.positive_roots, system.rank) * np.array(system.norms, dtype=np.int64)
-    norms = [system.norm(a) for a in system.positive_roots]
-    return roots // np.array(norms, dtype=np.int64).reshape(-1, 1)
+    norms = np.array([system.norm(a) for a in system.positive_roots], dtype=np.int64).reshape(-1, 1)
+    return system.root_matrix()[: len(norms)] * np.array(system.norms, dtype=np.int64) // norms
 
 
 def root_brackets(system: RootSystem) -> RootBrackets:
@@ -151,7 +149,7 @@ def root_brackets(system: RootSystem) -> RootBrackets:
     a, b, c, number = _simply_laced_brackets(cover)
     if cover is system:
         return RootBrackets(a, b, c, number)
-    place = np.array([system.index(x) for x in (_rows(cover.roots, cover.rank) @ folding).tolist()], dtype=np.int64)
+    place = np.array([system.index(x) for x in (cover.root_matrix() @ folding).tolist()], dtype=np.int64)
     # the sum over an orbit c has every e of the orbit with the same coefficient: read off one of them
     _, representatives = np.unique(place, return_index=True)
     kept = np.isin(c, representatives) & (place[a] != place[b])
@@ -166,7 +164,7 @@ def root_brackets(system: RootSystem) -> RootBrackets:
 
 def _simply_laced_brackets(system: RootSystem) -> RootBrackets:
     rank, half = system.rank, len(system.positive_roots)
-    roots, cartan = _rows(system.roots, rank), _rows(system.cartan, rank)
+    roots, cartan = system.root_matrix(), _square(system.cartan)
     a, b = np.nonzero(roots @ cartan @ roots.T == -1)
     places = {root.tobytes(): place for place, root in enumerate(roots)}
     c = np.array([places[root.tobytes()] for root in roots[a] + roots[b]], dtype=np.int64)
@@ -201,5 +199,5 @@ def _component(system: RootSystem, node: int) -> list[int]:
     return max(supports, key=len)
 
 
-def _rows(vectors: Any, rank: int) -> IntArray:
-    return np.array(vectors, dtype=np.int64).reshape(-1, rank)
+def _square(cartan: Any) -> IntArray:
+    return np.array(cartan, dtype=np.int64).reshape(len(cartan), len(cartan))

@@ -14,6 +14,9 @@ from fractions import Fraction
 from math import prod
 from typing import Any, final
 
+import numpy as np
+import numpy.typing as npt
+
 from liehom.algebra.dynkin import CartanMatrix, cartan_matrix, dynkin_diagram, identify, join_types
 from liehom.errors import InputError, ShapeError
 
@@ -130,6 +133,10 @@ class RootSystem:
         return tuple(highest[frozenset(nodes)] for _, nodes in self.components())
 
     # -- verbs -------------------------------------------------------------------------------------------
+    def root_matrix(self) -> npt.NDArray[np.int64]:
+        """The roots as rows of an integer array, shape (number of roots, rank)."""
+        return np.array(self.roots, dtype=np.int64).reshape(self.number_of_roots, self.rank)
+
     def components(self) -> list[tuple[str, tuple[int, ...]]]:
         """The irreducible components: the type of each and its nodes in Bourbaki's order, sorted by type.
 

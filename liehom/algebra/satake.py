@@ -72,9 +72,9 @@ class SatakeDiagram:
             raise InputError(f"arrows join different white nodes, each at most once; got {self.arrows}")
         if not set(touched) | set(self.black) <= set(range(rank)):
             raise InputError(f"the nodes of {self.type} are 0, ..., {rank - 1}; got {self.black}, {self.arrows}")
-        theta, roots = self.involution(), self.root_system()
-        image = [tuple(x) for x in theta.tolist()]
-        if not all(roots.is_root(x) for x in image) or (theta @ theta != np.eye(rank, dtype=np.int64)).any():
+        theta, cartan = self.involution(), np.array(self.root_system().cartan, dtype=np.int64).reshape(rank, rank)
+        gram = cartan * np.array(self.root_system().norms, dtype=np.int64)
+        if (theta @ theta != np.eye(rank, dtype=np.int64)).any() or (theta @ gram @ theta.T != gram).any():
             raise InputError(f"black nodes {self.black} and arrows {self.arrows} define no involution of {self.type}")
 
     @classmethod
@@ -193,7 +193,7 @@ class SatakeDiagram:
             row[k] -= pairings[k]
 
     def _projections(self) -> Counter[Root]:
-        roots = np.array(self.root_system().roots, dtype=np.int64).reshape(-1, self.root_system().rank)
+        roots = self.root_system().root_matrix()
         return Counter(map(tuple, (roots - roots @ self.involution()).tolist()))
 
     def _restricted(self) -> tuple[str, dict[str, int]]:
@@ -224,7 +224,7 @@ def _from_vogan(vogan: VoganDiagram) -> SatakeDiagram:
     system = vogan.root_system()
     theta = _maximally_split(vogan)
     rows = _simple_roots_for(system, theta)
-    images = [tuple(x) for x in (np.array(rows, dtype=np.int64).reshape(-1, system.rank) @ theta).tolist()]
+    images = [tuple(x) for x in (np.array(rows, dtype=np.int64).reshape(system.rank, system.rank) @ theta).tolist()]
     black = {i for i, image in enumerate(images) if image == rows[i]}
     tau = {i: _white_part(system, rows, black, images[i]) for i in range(len(rows)) if i not in black}
     pictures = []
@@ -242,7 +242,7 @@ def _maximally_split(vogan: VoganDiagram) -> IntArray:
     """The involution on the root lattice after Cayley transforms by noncompact roots, until none is left."""
     system, theta = vogan.root_system(), vogan.involution()
     gram = np.array(system.cartan, dtype=np.int64).reshape(system.rank, system.rank) * np.array(system.norms) // 2
-    roots = np.array(system.roots, dtype=np.int64).reshape(-1, system.rank)
+    roots = system.root_matrix()
     imaginary = (roots @ theta == roots).all(axis=1)
     roots, signs = roots[imaginary], vogan.signs()[imaginary]
     while (signs == -1).any():
@@ -259,7 +259,7 @@ def _maximally_split(vogan: VoganDiagram) -> IntArray:
 
 def _simple_roots_for(system: RootSystem, theta: IntArray) -> list[Root]:
     """Simple roots for an order in which the part of a root in the (-1)-eigenspace of theta decides first."""
-    roots = np.array(system.roots, dtype=np.int64).reshape(-1, system.rank)
+    roots = system.root_matrix()
     split = dict(zip(system.roots, (roots - roots @ theta).tolist(), strict=True))
     return simple_system(system.roots, lambda a: (generic(split[a]), generic(a)))
 

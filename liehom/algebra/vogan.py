@@ -104,7 +104,7 @@ class VoganDiagram:
         >>> VoganDiagram("A2", (), (1, 0)).signs().tolist()
         [1, 1, -1, 1, 1, -1]
         """
-        roots = np.array(self.root_system().roots, dtype=np.int64).reshape(-1, len(self.automorphism))
+        roots = self.root_system().root_matrix()
         b = bilinear_form(self.root_system())
         sigma = list(self.automorphism)
         change = np.triu(b[np.ix_(sigma, sigma)] - b, 1)
@@ -126,7 +126,7 @@ class VoganDiagram:
         ('E6', 1)
         """
         system = self.root_system()
-        roots = np.array(system.roots, dtype=np.int64).reshape(-1, system.rank)
+        roots = system.root_matrix()
         kept = ~self._fixed() | (self.signs() == 1)
         restricted = {tuple(x) for x in (roots + roots @ self.involution())[kept].tolist()}
         simple = simple_system(restricted, lambda a: (generic(a),))
@@ -134,7 +134,7 @@ class VoganDiagram:
         return join_types(name for name, _ in identify(gram_to_cartan(system, simple))), orbits - len(simple)
 
     def _fixed(self) -> Any:
-        roots = np.array(self.root_system().roots, dtype=np.int64).reshape(-1, len(self.automorphism))
+        roots = self.root_system().root_matrix()
         return (roots[:, list(self.automorphism)] == roots).all(axis=1)
 
 
