@@ -199,10 +199,11 @@ def step_variable(order: int, like: Any) -> Jet:
     return Jet.from_node(Node(order, zero, [None, zero + 1, *[None] * (order - 1)][: order + 1]))
 
 
-def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any) -> Any:
+def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stacked: bool = False) -> Any:
     """The solution x of x = function(x), where function has a factor h.
 
-    On Jets coefficient by coefficient; on arrays by iteration from `start` until x no longer changes.
+    On Jets coefficient by coefficient; on arrays by iteration from `start` until x no longer changes, for every
+    trajectory apart, so that none depends on what it is solved with. `stacked`: the first axis is none of the ensemble.
 
     Raises
     ------
@@ -224,19 +225,22 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any) -> Any:
         # a loop, not sixty copies of the function, which would take minutes to compile
         return import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
     eps = np.finfo(np.result_type(start, float)).eps
-    before = np.inf
+    axes = (0, -1) if stacked else (-1,) if np.ndim(start) else ()
+    before, change = np.inf, np.zeros(())
+    settled: Any = np.zeros((), dtype=bool)
     for _ in range(MAX_ITERATIONS):
         with np.errstate(over="ignore", invalid="ignore"):  # an iteration that diverges says so below
             x = function(start)
-        change = float(np.abs(x - start).max(initial=0.0))
-        size = float(np.abs(x).max(initial=0.0))
-        start = x
-        if change <= 2 * eps * size or (change <= 1e4 * eps * size and change >= before):
-            return x
-        if not np.isfinite(change):
+            change = np.where(settled, 0.0, np.abs(x - start).max(axis=axes, keepdims=True, initial=0.0))
+        size = np.abs(x).max(axis=axes, keepdims=True, initial=0.0)
+        start = np.where(settled, start, x) if settled.any() else x
+        settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
+        if settled.all():
+            return start
+        if not np.isfinite(change).all():
             break
         before = change
     raise ConvergenceError(
-        f"an implicit step did not converge in {MAX_ITERATIONS} iterations (last change {change:.2g}): "
+        f"an implicit step did not converge in {MAX_ITERATIONS} iterations (last change {np.max(change):.2g}): "
         "take a smaller step size"
     )

@@ -76,6 +76,7 @@ def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
     s = np.where(within, share * guess, time)
     low, high = 0 * s, np.where(within, guess, np.sign(time) * np.inf)
     eps = np.finfo(s.dtype).eps
+    settled = np.zeros(np.shape(s), dtype=bool)  # a trajectory does not depend on those it is solved with
     for _ in range(ITERATIONS):
         before, now, beyond = local.time(np.stack([s - 1e-4 * s, s, s + 1e-4 * s]))
         missing = time - now
@@ -86,8 +87,9 @@ def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
         outside = (new - low) * (new - high) > 0
         new = np.where(outside, np.where(np.isfinite(high), (low + high) / 2, 2 * s), new)
         done = (np.abs(new - s) <= 2 * eps * np.abs(s)) | (missing == 0)
-        s = np.where(missing == 0, s, new)
-        if bool(done.all()):
+        s = np.where(settled | (missing == 0), s, new)
+        settled = settled | done
+        if bool(settled.all()):
             break
     solved = np.abs(local.time(s) - time) <= 64 * eps * np.abs(time)
     return np.where(solved, s, np.nan)

@@ -247,7 +247,7 @@ class _Stages:
             made = [self._stage(i, _combined(row, k), h) for i, row in enumerate(rows)]
             return namespace(*made).stack(made)
 
-        k = solve_implicitly(stages, zeros(self.m, (len(rows), *self._shape)), h)
+        k = solve_implicitly(stages, zeros(self.m, (len(rows), *self._shape)), h, stacked=True)
         return [k[i] for i in range(len(rows))]
 
     def _stage(self, i: int, u: Any, h: Any) -> Any:
