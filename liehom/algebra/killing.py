@@ -21,7 +21,7 @@ def killing_form(table: StructureConstants) -> Any:
     if n == 0 or not len(table):
         return table.field.zeros(n, n)
     if table.is_dense() or table.field.degree > 1:
-        flat = table.dense().reshape(n, n * n)
+        flat = table.flat()
         swapped = flat.select(columns=[j * n + k for k in range(n) for j in range(n)])
         return flat @ swapped.T
     flat_sparse = table.sparse().reshape(n, n * n)

@@ -13,6 +13,7 @@ import numpy as np
 
 from liehom.algebra.jacobi import prove_jacobi
 from liehom.algebra.structure_constants import StructureConstants
+from liehom.algebra.structure_verbs import StructureVerbs
 from liehom.algebra.tables import constants_from, field_of_constants
 from liehom.errors import InputError, ShapeError
 from liehom.scalars import Field, FloatField, Scalar, Subspace
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @final
-class LieAlgebra:
+class LieAlgebra(StructureVerbs):
     """A real Lie algebra in a basis e_0, ..., e_{n-1}.
 
     Parameters

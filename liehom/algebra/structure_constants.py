@@ -33,7 +33,7 @@ class StructureConstants:
         Each position once, i < j, values non-zero elements of the field.
     """
 
-    __slots__ = ("_dense", "_sparse", "den", "dimension", "field", "i", "j", "k", "parts")
+    __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "field", "i", "j", "k", "parts")
 
     def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
         ordered = sorted(entries, key=lambda e: e[:3])
@@ -44,6 +44,7 @@ class StructureConstants:
         values = [e[3] for e in ordered]
         self.parts, self.den = _integers(field, values)
         self._dense: Any = None
+        self._flat: Any = None
         self._sparse: Any = None
 
     @classmethod
@@ -62,17 +63,33 @@ class StructureConstants:
         first = [numerators[x] // common for x in order]
         made.parts = (first, *([0] * len(order) for _ in range(field.degree - 1)))
         made.den = den // common
-        made._dense = made._sparse = None
+        made._dense = made._flat = made._sparse = None
         return made
 
     @classmethod
     def from_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
         """The table with [e_i, e_j] = row j of block i; antisymmetry is the caller's knowledge."""
+        if field.degree == 1 and field.exact:
+            return cls._from_rational_blocks(field, n, blocks)
         entries, zero = [], field.zero
         for i, block in enumerate(blocks):
             found = enumerate(block.entries())
             entries += [(i, place // n, place % n, v) for place, v in found if place >= (i + 1) * n and v != zero]
         return cls(field, n, entries)
+
+    @classmethod
+    def _from_rational_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
+        den = lcm(*(block.den for block in blocks))
+        places: list[int] = []
+        numerators: list[int] = []
+        for i, block in enumerate(blocks):
+            factor = den // block.den
+            entries = block.parts[0].entries()
+            found = [x for x in range((i + 1) * n, n * n) if entries[x]]
+            places += [i * n * n + x for x in found]
+            numerators += [int(entries[x]) * factor for x in found]
+        index = np.array(places, dtype=np.int64)
+        return cls.from_integers(field, n, index // (n * n), index // n % n, index % n, numerators, den)
 
     # -- entries -----------------------------------------------------------------------------------------
     def __len__(self) -> int:
@@ -136,6 +153,13 @@ class StructureConstants:
                 self._dense = _dense_exact(self.field, n, forward.tolist(), backward.tolist(), self.parts, self.den)
         return self._dense
 
+    def flat(self) -> Any:
+        """The matrix (n, n*n) with row i the matrix c[i, :, :] row after row (cached: x flat() is ad x transposed)."""
+        if self._flat is None:
+            n = self.dimension
+            self._flat = self.dense().reshape(n, n * n)
+        return self._flat
+
     def sparse(self) -> SparseInteger:
         """The integer table (n*n, n) as a sparse matrix; only over QQ."""
         if self._sparse is None:
@@ -149,7 +173,7 @@ class StructureConstants:
         """The matrix of y -> [x, y] on columns; x a row matrix (1, n)."""
         n = self.dimension
         if self.is_dense():
-            return (x @ self.dense().reshape(n, n * n)).reshape(n, n).T
+            return (x @ self.flat()).reshape(n, n).T
         return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
 
     def contract(self, left: Any, right: Any, out: Any) -> list[Any]:
@@ -171,9 +195,11 @@ class StructureConstants:
         if p == 0 or q == 0 or r == 0 or n == 0:
             return [self.field.zeros(q, r) for _ in range(p)]
         if self.is_dense() or self.field.degree > 1:
-            first = (self.dense() @ out).reshape(n, n * r)
-            mixed = left @ first
-            return [right @ block for block in mixed.split_rows(n, r)]
+            one = self.field.identity(n)
+            blocks = (self.flat() if left == one else left @ self.flat()).split_rows(n, n)
+            if right != one:
+                blocks = [right @ block for block in blocks]
+            return blocks if out == one else [block @ out for block in blocks]
         product = self._contract_sparse(left, right, out)
         return product.dense_blocks(self.field, p, q, r)  # type: ignore[arg-type]
 

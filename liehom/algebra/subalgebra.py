@@ -12,7 +12,7 @@ from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError
 from liehom.scalars import Scalar, Subspace
-from liehom.scalars.quotient import Quotient, quotient
+from liehom.scalars.quotient import Quotient, echelon_quotient, quotient
 
 
 @final
@@ -59,8 +59,7 @@ class Subalgebra:
         rank = self.basis.rank()
         if rank < self.basis.nrows:
             raise DependentRowsError(rank, _dependent(self.basis), "rows of the subalgebra")
-        projection = self.quotient().projection
-        failure = self.algebra.table.first_nonzero(self.basis, self.basis, projection)
+        failure = self.algebra.table.first_nonzero(self.basis, self.basis, self._projection())
         if failure is not None:
             a, b = failure
             bracket = self.algebra.bracket(self.basis.row(a), self.basis.row(b))
@@ -91,12 +90,18 @@ class Subalgebra:
             self._quotient = quotient(self.basis)
         return self._quotient
 
+    def _projection(self) -> Any:
+        """Some matrix (n, d) of rank d that kills h: for questions that are asked once."""
+        if self._quotient is not None or not self.algebra.field.exact:
+            return self.quotient().projection
+        return echelon_quotient(self.basis).projection
+
     def rows(self) -> list[list[Scalar]]:
         """The basis as lists of field elements."""
         return self.basis.to_rows()  # type: ignore[no-any-return]
 
     def __contains__(self, x: Any) -> bool:
-        return bool((self.algebra.row(x) @ self.quotient().projection).is_zero())
+        return bool((self.algebra.row(x) @ self._projection()).is_zero())
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Subalgebra) and self.algebra == other.algebra and self.subspace == other.subspace
@@ -124,7 +129,7 @@ class Subalgebra:
     def is_ideal(self) -> bool:
         """Whether [g, h] lies in h."""
         whole = self.algebra.field.identity(self.algebra.dimension)
-        return self.algebra.table.first_nonzero(self.basis, whole, self.quotient().projection) is None
+        return self.algebra.table.first_nonzero(self.basis, whole, self._projection()) is None
 
     def quotient_algebra(self, name: str | None = None) -> LieAlgebra:
         """g/h for an ideal h, in the basis of the complement of `quotient`; `NotAnIdealError` otherwise."""
@@ -181,7 +186,7 @@ def _span(algebra: LieAlgebra, rows: Any) -> Any:
     return matrix.row_space()
 
 
-def _products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
+def products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
     """A basis of the span of [left, right]."""
     n = algebra.dimension
     blocks = algebra.table.contract(left, right, algebra.field.identity(n))
@@ -201,7 +206,7 @@ def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
     span, before = _span(algebra, rows), -1
     while before < span.nrows:
         before = span.nrows
-        span = algebra.field.stack_rows([span, _products(algebra, span, span)], n).row_space()
+        span = algebra.field.stack_rows([span, products(algebra, span, span)], n).row_space()
     return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
 
 
@@ -219,7 +224,7 @@ def ideal_generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
     span, before = _span(algebra, rows), -1
     while before < span.nrows:
         before = span.nrows
-        span = algebra.field.stack_rows([span, _products(algebra, span, whole)], n).row_space()
+        span = algebra.field.stack_rows([span, products(algebra, span, whole)], n).row_space()
     return Subalgebra(algebra, span, check=False)  # an ideal is a subalgebra
 
 
@@ -250,7 +255,7 @@ def normalizer(subalgebra: Subalgebra) -> Subalgebra:
     """
     algebra = subalgebra.algebra
     n = algebra.dimension
-    blocks = algebra.table.contract(subalgebra.basis, algebra.field.identity(n), subalgebra.quotient().projection)
+    blocks = algebra.table.contract(subalgebra.basis, algebra.field.identity(n), subalgebra._projection())
     conditions = algebra.field.stack_columns(blocks, n) if blocks else algebra.field.zeros(n, 0)
     return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
 
@@ -266,7 +271,7 @@ def derived_series(algebra: LieAlgebra) -> list[Subalgebra]:
     """
     terms = [algebra.field.identity(algebra.dimension)]
     while True:
-        following = _products(algebra, terms[-1], terms[-1])
+        following = products(algebra, terms[-1], terms[-1])
         if following.nrows == terms[-1].nrows:
             return [Subalgebra(algebra, t, check=False) for t in terms]  # [I, I] of an ideal is an ideal
         terms.append(following)
@@ -284,7 +289,7 @@ def lower_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
     whole = algebra.field.identity(algebra.dimension)
     terms = [whole]
     while True:
-        following = _products(algebra, whole, terms[-1])
+        following = products(algebra, whole, terms[-1])
         if following.nrows == terms[-1].nrows:
             return [Subalgebra(algebra, t, check=False) for t in terms]  # [g, I] of an ideal is an ideal
         terms.append(following)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from liehom.scalars.exact_field import ExactField
 
 FIRST_PRIME = (1 << 61) - 1
+TALL = 2
 GUESSED_INVERSE = 40
 
 
@@ -109,9 +110,14 @@ class ExactMatrix(Matrix):
         """The same matrix with the least positive common denominator."""
         if self.den == 1:
             return self
-        split = [(flint.fmpq_mat(a) / self.den).numer_denom() for a in self.parts]
-        den = lcm(*(int(d) for _, d in split))
-        return ExactMatrix(self._field, tuple(a * (den // int(d)) for a, d in split), den)
+        common = flint.fmpz(self.den)
+        for a in self.parts:
+            for x in a.entries():
+                common = common.gcd(x)
+                if common == 1:
+                    return self
+        integers = tuple((flint.fmpq_mat(a) / common).numer_denom()[0] for a in self.parts)
+        return ExactMatrix(self._field, integers, self.den // int(common))
 
     def cleared(self) -> ExactMatrix:
         """The matrix times its common denominator."""
@@ -251,6 +257,10 @@ class ExactMatrix(Matrix):
         m, ncols = self._field.degree, self.ncols
         if 0 in self.shape:
             return self._field.zeros(0, ncols), []
+        if self.nrows > TALL * ncols:
+            found = self._tall_echelon()
+            if found is not None:
+                return found
         reduced, den, full_rank = self._restricted().rref()
         rank = full_rank // m
         table = reduced.entries()
@@ -262,6 +272,17 @@ class ExactMatrix(Matrix):
         sign = -1 if den < 0 else 1
         matrix = ExactMatrix(self._field, tuple(a * sign for a in parts), int(den) * sign).normalized()
         return matrix, _pivots(matrix, rank, ncols)
+
+    def _tall_echelon(self) -> tuple[ExactMatrix, list[int]] | None:
+        """The echelon form from rows that are independent modulo a prime, if the others are shown to depend on them."""
+        image, rank = self.modulo().transpose().rref()
+        rows = nmod_pivots(image, int(rank))
+        if rank == self.ncols:  # independent modulo a prime, so independent
+            return self._field.identity(self.ncols), list(range(self.ncols))
+        reduced, pivots = self.select(rows=rows).echelon()
+        if self.select(columns=pivots) @ reduced != self:
+            return None
+        return reduced, pivots
 
     def row_space(self) -> ExactMatrix:
         return self.echelon()[0]
@@ -366,6 +387,17 @@ class ExactMatrix(Matrix):
 def _sign_changes(signs: Sequence[int]) -> int:
     kept = [s for s in signs if s]
     return sum(1 for a, b in itertools.pairwise(kept) if a != b)
+
+
+def nmod_pivots(reduced: Any, rank: int) -> list[int]:
+    """The pivot columns of a reduced echelon form modulo a prime (``flint.nmod_mat``)."""
+    pivots, column = [], 0
+    for i in range(rank):
+        while int(reduced[i, column]) == 0:
+            column += 1
+        pivots.append(column)
+        column += 1
+    return pivots
 
 
 def _pivots(reduced: ExactMatrix, rank: int, ncols: int) -> list[int]:

@@ -13,7 +13,7 @@ from typing import Any
 import flint
 
 from liehom.scalars.exact_field import ExactField
-from liehom.scalars.exact_matrix import ExactMatrix
+from liehom.scalars.exact_matrix import ExactMatrix, nmod_pivots
 
 
 def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
@@ -146,13 +146,7 @@ def _primitive(row: ExactMatrix) -> ExactMatrix:
 def pivot_columns(image: Any) -> list[int]:
     """The pivot columns of a matrix modulo a prime (``flint.nmod_mat``)."""
     reduced, rank = image.rref()
-    pivots, column = [], 0
-    for i in range(int(rank)):
-        while int(reduced[i, column]) == 0:
-            column += 1
-        pivots.append(column)
-        column += 1
-    return pivots
+    return nmod_pivots(reduced, int(rank))
 
 
 def _row_basis(image: Any) -> tuple[Any, int]:

@@ -64,9 +64,25 @@ def quotient(basis: Matrix) -> Quotient:
     n = basis.ncols
     if basis.field.degree == 1 and 0 < basis.nrows < n <= LATTICE_DIMENSION and not _is_small(reduced):
         return _by_lattice(basis)
-    chosen = set(pivots)
+    return _from_echelon(reduced, pivots)
+
+
+def echelon_quotient(basis: ExactMatrix) -> Quotient:
+    """The same without the search for small numbers, for what is used once: the complement consists of unit vectors.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> echelon_quotient(QQ.matrix([[1, 7, 0]])).projection.to_strings()
+    [['-7', '0'], ['1', '0'], ['0', '1']]
+    """
+    return _from_echelon(*basis.echelon())
+
+
+def _from_echelon(reduced: ExactMatrix, pivots: list[int]) -> Quotient:
+    n, chosen = reduced.ncols, set(pivots)
     free = [j for j in range(n) if j not in chosen]
-    lift = basis.field.identity(n).select(rows=free)
+    lift = reduced.field.identity(n).select(rows=free)
     return Quotient(reduced, lift, _projection(reduced, pivots, free))
 
 

@@ -1,0 +1,91 @@
+"""A Cartan subalgebra: nilpotent and its own normalizer.
+
+For x in g let g_0(x) be the null component of ad x, {y : (ad x)^k y = 0 for some k}: a subalgebra that is its own
+normalizer.  While the subalgebra at hand is not nilpotent, some element of its basis or some sum of two has a
+smaller null component in it (de Graaf, Lie Algebras: Theory and Algorithms, 3.2); the basis of g is tried first,
+so that a basis of root vectors gives the split Cartan subalgebra that it shows.
+Imports lie_algebra, subalgebra, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from liehom.algebra.lie_algebra import LieAlgebra
+from liehom.algebra.subalgebra import Subalgebra, lower_central_series
+from liehom.errors import FieldError, InternalError
+
+
+def cartan_subalgebra(algebra: LieAlgebra) -> Subalgebra:
+    """A Cartan subalgebra, found deterministically and proved to be nilpotent and its own normalizer.
+
+    Raises
+    ------
+    FieldError
+        Over float64.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> cartan_subalgebra(lh.sl(3)).dimension, cartan_subalgebra(lh.heisenberg(1)).dimension
+    (2, 3)
+    """
+    field, n = algebra.field, algebra.dimension
+    if not field.exact:
+        raise FieldError("a Cartan subalgebra is computed exactly: build the algebra over QQ or a number field")
+    rows = field.identity(n)
+    while True:
+        smaller = _smaller(algebra, rows)
+        if smaller is None:
+            break
+        rows = smaller
+    found = Subalgebra(algebra, rows.primitive() if rows.nrows else rows)
+    if not _is_nilpotent(found):
+        raise InternalError("no element has a smaller null component, but the subalgebra is not nilpotent")
+    if algebra.normalizer(found).dimension != found.dimension:
+        raise InternalError("a null component is not its own normalizer")
+    return found
+
+
+def _is_nilpotent(subalgebra: Subalgebra) -> bool:
+    inner = subalgebra.as_algebra()
+    return inner.is_abelian() or lower_central_series(inner)[-1].dimension == 0
+
+
+def _smaller(algebra: LieAlgebra, rows: Any) -> Any:
+    """The null component, in the span of the rows, of the first candidate for which it is smaller; or None."""
+    for candidate in _candidates(rows):
+        action = algebra.ad(candidate).T
+        image, places = rows.modulo(), rows.nrows
+        step = action.modulo()
+        # The rank of rows (ad x)^k is constant from k = number of rows on.
+        power = 1
+        while power < places:
+            step, power = step * step, 2 * power
+        rank = int((image * step).rank())
+        if rank:
+            return _null_component(rows, action, places - rank)
+    return None
+
+
+def _null_component(rows: Any, action: Any, expected: int) -> Any:
+    """The combinations of rows that some power of the action kills; there are `expected` of them modulo a prime."""
+    moved = rows @ action
+    kernel = moved.left_null_space()
+    while kernel.nrows < expected:
+        moved = moved @ action
+        larger = moved.left_null_space()
+        if larger.nrows == kernel.nrows:
+            break
+        kernel = larger
+    return (kernel @ rows).row_space()
+
+
+def _candidates(rows: Any) -> Iterator[Any]:
+    k = rows.nrows
+    for i in range(k):
+        yield rows.select(rows=[i])
+    for i in range(k):
+        for j in range(i):
+            yield rows.select(rows=[i]) + rows.select(rows=[j])
