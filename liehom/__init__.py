@@ -117,12 +117,18 @@ if TYPE_CHECKING:
     from liehom.integrators import observed_order as observed_order
     from liehom.integrators import tableau as tableau
     from liehom.io import dump as dump
+    from liehom.io import from_gap as from_gap
     from liehom.io import from_json as from_json
+    from liehom.io import from_sage as from_sage
+    from liehom.io import latex as latex
     from liehom.io import load as load
     from liehom.io import load_pair as load_pair
     from liehom.io import load_problem as load_problem
     from liehom.io import loads as loads
+    from liehom.io import to_gap as to_gap
     from liehom.io import to_json as to_json
+    from liehom.io import to_sage as to_sage
+    from liehom.io import to_sympy as to_sympy
     from liehom.representations import HighestWeightModule as HighestWeightModule
     from liehom.representations import Pair as Pair
     from liehom.representations import Representation as Representation
@@ -196,7 +202,9 @@ _NAMES = {
         "integrate observed_order tableau"
     ),
     "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
-    "liehom.io": "dump from_json load load_pair load_problem loads to_json",
+    "liehom.io": (
+        "dump from_gap from_json from_sage latex load load_pair load_problem loads to_gap to_json to_sage to_sympy"
+    ),
     "liehom.representations": (
         "adjoint character coadjoint decompose_character defining dominant_character dual_weight "
         "frobenius_schur_indicator highest_weight_module HighestWeightModule Pair Representation "
