@@ -129,6 +129,8 @@ if TYPE_CHECKING:
     from liehom.io import to_json as to_json
     from liehom.io import to_sage as to_sage
     from liehom.io import to_sympy as to_sympy
+    from liehom.representations import Decomposition as Decomposition
+    from liehom.representations import HermitianForms as HermitianForms
     from liehom.representations import HighestWeightModule as HighestWeightModule
     from liehom.representations import Pair as Pair
     from liehom.representations import Representation as Representation
@@ -209,7 +211,7 @@ _NAMES = {
         "adjoint character coadjoint decompose_character defining dominant_character dual_weight "
         "frobenius_schur_indicator highest_weight_module HighestWeightModule Pair Representation "
         "spin_representation spinor_type sym_conjugation symbolic_isotropy tensor_product_decomposition "
-        "trivial weyl_dimension weyl_orbit"
+        "trivial weyl_dimension weyl_orbit Decomposition HermitianForms"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

@@ -14,8 +14,13 @@ from liehom.representations.constructions import sym_conjugation as sym_conjugat
 from liehom.representations.constructions import symmetric_to_vector as symmetric_to_vector
 from liehom.representations.constructions import trivial as trivial
 from liehom.representations.constructions import vector_to_symmetric as vector_to_symmetric
+from liehom.representations.decomposition import Component as Component
+from liehom.representations.decomposition import Decomposition as Decomposition
+from liehom.representations.decomposition import IsotypicComponent as IsotypicComponent
+from liehom.representations.hermitian_forms import HermitianForms as HermitianForms
 from liehom.representations.highest_weight import HighestWeightModule as HighestWeightModule
 from liehom.representations.highest_weight import highest_weight_module as highest_weight_module
+from liehom.representations.intertwiners import InvariantForms as InvariantForms
 from liehom.representations.pair import Pair as Pair
 from liehom.representations.representation import Representation as Representation
 from liehom.representations.spin import SpinorType as SpinorType

@@ -10,7 +10,8 @@ from typing import Any, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure import lie_closure, square_matrices
-from liehom.errors import FieldError, InputError, RepresentationError, ShapeError
+from liehom.errors import InputError, RepresentationError, ShapeError
+from liehom.representations.analysis_verbs import AnalysisVerbs
 from liehom.representations.bracket_proof import failing_pair
 from liehom.representations.induced import (
     EntryMap,
@@ -21,15 +22,13 @@ from liehom.representations.induced import (
     right_factor_map,
     symmetric_power_map,
 )
-from liehom.representations.intertwiners import InvariantForms, commutant, invariant_forms, invariant_vectors
-from liehom.representations.irreducibility import is_irreducible
 from liehom.representations.pair import Pair
 from liehom.representations.stabilizer import orbit_dimension, stabilizer
-from liehom.scalars import Field, FloatField, Subspace
+from liehom.scalars import Field, FloatField
 
 
 @final
-class Representation:
+class Representation(AnalysisVerbs):
     """A representation of a Lie algebra on K^N.
 
     Parameters
@@ -184,68 +183,6 @@ class Representation:
         return Pair(self.algebra, self.isotropy(point))
 
     # -- constructions -----------------------------------------------------------------------------------
-    def commutant(self) -> list[Any]:
-        """A basis of the matrices that commute with all rho(x), proved exactly.
-
-        Raises
-        ------
-        FieldError
-            Over float64.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> len(lh.defining(lh.su(2)).commutant())
-        4
-        """
-        return commutant(self._exact_matrices(), self.size, self.field)
-
-    def invariant_forms(self) -> InvariantForms:
-        """The bilinear forms P with rho(x)^T P + P rho(x) = 0 for all x, symmetric and skew ones apart.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> forms = lh.defining(lh.so(3, 1)).invariant_forms()
-        >>> len(forms.symmetric), len(forms.skew), forms.symmetric[0].signature()
-        (1, 0, (3, 1, 0))
-        """
-        return invariant_forms(self._exact_matrices(), self.size, self.field)
-
-    def invariant_vectors(self) -> Subspace:
-        """The subspace of vectors that all rho(x) kill.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> lh.adjoint(lh.gl(2)).invariant_vectors().dimension
-        1
-        """
-        return invariant_vectors(self._exact_matrices(), self.size, self.field)
-
-    def is_irreducible(self) -> bool:
-        """Whether no subspace of R^N other than 0 and R^N is invariant; decided exactly, over the reals.
-
-        Notes
-        -----
-        Irreducible over QQ is weaker: a commutant such as QQ(sqrt(2)) splits over the reals. The zero space is
-        not irreducible.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> lh.Representation.from_matrices([[[0, -1], [1, 0]]]).is_irreducible()
-        True
-        >>> lh.Representation.from_matrices([[[0, 2], [1, 0]]]).is_irreducible()
-        False
-        """
-        return is_irreducible(self._exact_matrices(), self.size, self.field)
-
-    def _exact_matrices(self) -> tuple[Any, ...]:
-        if not self.field.exact:
-            raise FieldError("intertwiners are computed exactly: build the representation over QQ or a number field")
-        return self.matrices
-
     def dual(self) -> Representation:
         """The dual representation x -> -rho(x)^T, in the dual basis.
 
