@@ -3,6 +3,7 @@
 The layers, in reading order; each imports only those above it in this list:
 
 `errors`           what the library refuses, and why
+`parallel`         many tasks on any executor, and their results on disk
 `scalars`          QQ, real number fields, float64, and linear algebra over them
 `algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
 `representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners
@@ -114,6 +115,7 @@ if TYPE_CHECKING:
     from liehom.integrators import Solution as Solution
     from liehom.integrators import Tableau as Tableau
     from liehom.integrators import integrate as integrate
+    from liehom.integrators import integrate_ensemble as integrate_ensemble
     from liehom.integrators import observed_order as observed_order
     from liehom.integrators import tableau as tableau
     from liehom.io import dump as dump
@@ -173,6 +175,7 @@ _LAYERS = (
     "integrators",
     "io",
     "paper",
+    "parallel",
     "plotting",
     "representations",
     "scalars",
@@ -201,7 +204,7 @@ _NAMES = {
     ),
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau "
-        "integrate observed_order tableau"
+        "integrate integrate_ensemble observed_order tableau"
     ),
     "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
     "liehom.io": (

@@ -15,6 +15,7 @@ PACKAGE = ROOT / "liehom"
 # layer -> the layers directly below it; a layer may import whatever can be reached downward
 BELOW: dict[str, tuple[str, ...]] = {
     "errors": (),
+    "parallel": ("errors",),
     "scalars": ("errors",),
     "algebra": ("scalars",),
     "representations": ("algebra",),
@@ -22,10 +23,10 @@ BELOW: dict[str, tuple[str, ...]] = {
     "homogeneous": ("representations", "series"),
     "fullness": ("homogeneous",),
     "correctors": ("homogeneous", "series"),
-    "integrators": ("correctors",),
+    "integrators": ("correctors", "parallel"),
     "instances": ("integrators",),
     "catalog": ("homogeneous",),
-    "atlas": ("catalog", "fullness"),
+    "atlas": ("catalog", "fullness", "parallel"),
     "io": ("catalog", "fullness", "integrators"),
     "plotting": ("io",),
     "paper": ("plotting", "instances"),
@@ -44,7 +45,7 @@ DOORS: dict[str, tuple[str, ...]] = {
     "matplotlib": ("liehom.plotting", "liehom.paper"),
     "jax": ("liehom.integrators", "liehom.series"),
     "numba": ("liehom.integrators",),
-    "dask": ("liehom.integrators",),
+    "zarr": ("liehom.parallel",),
     "typer": ("liehom.cli",),
     "rich": ("liehom.cli", "liehom.integrators.progress"),
 }

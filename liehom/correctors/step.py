@@ -226,7 +226,8 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stac
         return import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
     eps = np.finfo(np.result_type(start, float)).eps
     axes = (0, -1) if stacked else (-1,) if np.ndim(start) else ()
-    before, change = np.inf, np.zeros(())
+    before: Any = np.inf
+    change: Any = np.zeros(())
     settled: Any = np.zeros((), dtype=bool)
     for _ in range(MAX_ITERATIONS):
         with np.errstate(over="ignore", invalid="ignore"):  # an iteration that diverges says so below

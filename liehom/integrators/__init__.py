@@ -2,7 +2,8 @@
 
 In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutta method that proves its order),
 `collocation` (methods made from their nodes), `tableaux` (the classical ones by name); `steps`, `rkmk`, `products`
-(steps of Lie group methods); `integration`; `reference`, `orbit_error`, `convergence` (measured orders).
+(steps of Lie group methods); `integration`; `ensemble` (in chunks, on any executor); `reference`, `orbit_error`,
+`convergence` (measured orders).
 """
 
 from liehom.integrators.collocation import collocation as collocation
@@ -11,6 +12,10 @@ from liehom.integrators.conservation_account import ConservationReport as Conser
 from liehom.integrators.convergence import observed_order as observed_order
 from liehom.integrators.convergence_table import ConvergenceTable as ConvergenceTable
 from liehom.integrators.dense import DenseSolution as DenseSolution
+from liehom.integrators.ensemble import EnsemblePart as EnsemblePart
+from liehom.integrators.ensemble import ensemble_parts as ensemble_parts
+from liehom.integrators.ensemble import integrate_ensemble as integrate_ensemble
+from liehom.integrators.ensemble import stored_parts as stored_parts
 from liehom.integrators.integration import integrate as integrate
 from liehom.integrators.named import step_named as step_named
 from liehom.integrators.named import step_names as step_names

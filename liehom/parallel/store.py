@@ -1,0 +1,251 @@
+"""Store: results as they come, on disk, each whole or not there; a folder of .npz and .json files, or a zarr group.
+
+Nothing in it is a pickle.  A store knows by a fingerprint which problem it belongs to.  Imports errors.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import struct
+import zipfile
+import zlib
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, final
+
+import numpy as np
+
+from liehom.errors import FormatError, InputError
+
+FORMAT = "liehom-store"
+ABOUT = "store.json"
+UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
+DAMAGED = (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error)
+"""What reading a damaged file may raise."""
+
+Shard = tuple[dict[str, Any], dict[str, Any]]
+"""Arrays by name, and facts that JSON can hold."""
+
+
+class Store(ABC):
+    """Shards by name; made by `open_store`.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> store = open_store(os.path.join(tempfile.mkdtemp(), "runs"), "abc")
+    >>> store.save("part-0", {"y": np.zeros(3)}, {"status": 0})
+    >>> sorted(store.names()), store.load("part-0")[1]
+    (['part-0'], {'status': 0})
+    """
+
+    path: str
+
+    @abstractmethod
+    def names(self) -> frozenset[str]:
+        """The names of the shards that are there, whole."""
+
+    @abstractmethod
+    def save(self, name: str, arrays: Mapping[str, Any], facts: Mapping[str, Any]) -> None:
+        """Write a shard; one that is there is replaced.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+
+    @abstractmethod
+    def load(self, name: str) -> Shard:
+        """Read a shard.
+
+        Raises
+        ------
+        FormatError
+            If it is not there, or is damaged.
+        """
+
+    def __repr__(self) -> str:
+        return f"<store {self.path!r}>"
+
+
+def open_store(path: str | os.PathLike[str], fingerprint: str | None = None) -> Store:
+    """The store at a path, made if there is none.
+
+    Parameters
+    ----------
+    path : path_like
+        A folder; a name that ends in .zarr is a zarr group (extra ``distributed``).
+    fingerprint : str, optional
+        Of the problem: a store of another one is refused. None: the store must be there, of whatever problem.
+
+    Raises
+    ------
+    InputError
+        If the store belongs to another problem, or cannot be written.
+    FormatError
+        If there is something else at the path, or no store where there must be one.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "runs")
+    >>> open_store(path, "abc").names()
+    frozenset()
+    >>> open_store(path, "abd")  # doctest: +IGNORE_EXCEPTION_DETAIL
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: the store ... belongs to another problem ...
+    """
+    try:
+        name = os.fsdecode(path)
+    except TypeError:
+        raise InputError(f"store is {path!r}, expected the path of a folder") from None
+    kind = _Zarr if name.rstrip("/").endswith(".zarr") else _Folder
+    return kind(name, fingerprint)
+
+
+@final
+class _Folder(Store):
+    def __init__(self, path: str, fingerprint: str | None) -> None:
+        self.path = path
+        self._folder = Path(path)
+        about = self._folder / ABOUT
+        if not about.exists():
+            if fingerprint is None:
+                raise _no_store(path)
+            if self._folder.exists() and not _is_empty(self._folder):
+                raise FormatError(f"{path!r} is there and is no store of liehom: give the path of a new folder")
+            with _writing(path):
+                self._folder.mkdir(parents=True, exist_ok=True)
+            self._write(ABOUT, json.dumps(_about(fingerprint)).encode())
+        elif fingerprint is not None:
+            try:
+                found = json.loads(about.read_text(encoding="utf-8"))
+            except (OSError, ValueError) as error:
+                raise FormatError(f"{os.fspath(about)!r} is damaged: {error}") from None
+            _check(path, found, fingerprint)
+
+    def names(self) -> frozenset[str]:
+        # shards end in .npz or .json; what is being written begins with a dot
+        files = (f for f in self._folder.iterdir() if f.suffix in (".npz", ".json"))
+        return frozenset(f.stem for f in files if f.name != ABOUT and not f.name.startswith("."))
+
+    def save(self, name: str, arrays: Mapping[str, Any], facts: Mapping[str, Any]) -> None:
+        text = json.dumps(facts)
+        if not arrays:
+            self._write(f"{name}.json", text.encode())
+            return
+        from io import BytesIO
+
+        buffer = BytesIO()
+        np.savez(buffer, facts=np.array(text), **arrays)
+        self._write(f"{name}.npz", buffer.getbuffer())
+
+    def load(self, name: str) -> Shard:
+        plain, packed = self._folder / f"{name}.json", self._folder / f"{name}.npz"
+        try:
+            if plain.exists():
+                return {}, json.loads(plain.read_text(encoding="utf-8"))
+            with open(packed, "rb") as file, np.load(file, allow_pickle=False) as archive:
+                arrays = {key: archive[key] for key in archive.files}
+            return arrays, json.loads(str(arrays.pop("facts")))
+        except DAMAGED as error:
+            raise _damaged(os.fspath(plain if plain.exists() else packed), error) from None
+
+    def _write(self, name: str, data: Any) -> None:
+        target = self._folder / name
+        temporary = target.with_name(f".{name}.{os.getpid()}.part")
+        try:
+            with _writing(self.path):
+                with open(temporary, "wb") as file:
+                    file.write(data)
+                    file.flush()
+                    os.fsync(file.fileno())
+                os.replace(temporary, target)
+        finally:
+            with contextlib.suppress(OSError):
+                temporary.unlink()
+
+
+@final
+class _Zarr(Store):
+    def __init__(self, path: str, fingerprint: str | None) -> None:
+        try:
+            import zarr
+        except ImportError:
+            raise InputError(
+                f"the store {path!r} is a zarr group: install liehom[distributed], or leave .zarr"
+            ) from None
+        self.path = path
+        if fingerprint is None and not os.path.isdir(path):
+            raise _no_store(path)
+        try:
+            self._root: Any = zarr.open_group(path, mode="a")
+        except DAMAGED as error:
+            raise FormatError(f"{path!r} is no zarr group: {error}") from None
+        found = dict(self._root.attrs)
+        if fingerprint is not None and found:
+            _check(path, found, fingerprint)
+        elif not found:
+            if fingerprint is None:
+                raise _no_store(path)
+            self._root.attrs.update(_about(fingerprint))
+
+    def names(self) -> frozenset[str]:
+        return frozenset(name for name, part in self._root.groups() if "facts" in part.attrs)
+
+    def save(self, name: str, arrays: Mapping[str, Any], facts: Mapping[str, Any]) -> None:
+        with _writing(self.path):
+            part = self._root.create_group(name, overwrite=True)
+            for key, array in arrays.items():
+                part[key] = np.asarray(array)
+            part.attrs["facts"] = json.dumps(facts)  # last: a shard without it is not whole
+
+    def load(self, name: str) -> Shard:
+        try:
+            part = self._root[name]
+            arrays = {key: np.asarray(part[key][...]) for key in part.array_keys()}
+            return arrays, json.loads(str(part.attrs["facts"]))
+        except DAMAGED as error:
+            raise _damaged(f"{self.path}/{name}", error) from None
+
+
+# -- private helpers -------------------------------------------------------------------------------------
+def _about(fingerprint: str) -> dict[str, Any]:
+    return {"format": FORMAT, "version": 1, "fingerprint": fingerprint}
+
+
+def _check(path: str, found: Mapping[str, Any], fingerprint: str) -> None:
+    if found.get("format") != FORMAT or found.get("version") != 1:
+        raise FormatError(f"{path!r} is not a store of liehom of this version")
+    if found.get("fingerprint") != fingerprint:
+        raise InputError(
+            f"the store {path!r} belongs to another problem (what is computed, its numbers, options or chunk differ): "
+            "delete it, or give another path"
+        )
+
+
+def _is_empty(folder: Path) -> bool:
+    """Whether it is a folder without files; those that begin with a dot were not finished."""
+    return folder.is_dir() and all(file.name.startswith(".") for file in folder.iterdir())
+
+
+@contextlib.contextmanager
+def _writing(path: str) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"the store {path!r} cannot be written: {reason}") from None
+
+
+def _no_store(path: str) -> FormatError:
+    return FormatError(f"there is no store of liehom at {path!r}")
+
+
+def _damaged(path: str, error: BaseException) -> FormatError:
+    return FormatError(f"the shard {path!r} is not there or is damaged ({error}): delete it, and it is computed again")

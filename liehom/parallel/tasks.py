@@ -1,0 +1,224 @@
+"""completed: the results of many tasks on any `concurrent.futures.Executor`, as they are done; lost workers survived.
+
+Nothing is known of an executor but `submit`: processes, threads, a dask client's, those of mpi4py.  A task is a
+function of its argument alone, so that results do not depend on the executor.  Imports errors.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from queue import SimpleQueue
+from typing import Any, final
+
+from liehom.errors import InputError, WorkerLostError
+
+Source = Executor | Callable[[], Executor] | None
+"""An executor; a function that makes one, called again where one is broken; None for the calling process."""
+
+RETRIES = 2
+# dask's own exceptions for workers that died, by name, as dask is not imported here
+LOST = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PConsistencyError")
+
+
+def completed(
+    function: Callable[[Any], Any], tasks: Sequence[Any], executor: Source = None, *, retries: int = RETRIES
+) -> Iterator[tuple[int, Any]]:
+    """Pairs (number of the task, function(task)), in the order in which tasks are done.
+
+    Parameters
+    ----------
+    function : callable
+        Of one argument; where tasks go to other processes it must be picklable, as must tasks and results.
+    tasks : sequence
+    executor : Executor, callable or None
+        An executor is used, and left open; a function without parameters that returns one is called to make it, and
+        again when it is broken; what it made is shut down at the end. None: in the calling process, in order.
+    retries : int
+        How often a task is submitted again whose worker was lost, and how many times in succession an executor may
+        break with no task finished in between.
+
+    Raises
+    ------
+    InputError
+        If `executor` is neither, `retries` is negative, or something cannot be pickled.
+    WorkerLostError
+        If workers are lost more often, or the executor is broken and there is no function to make another.
+
+    Notes
+    -----
+    What `function` raises passes through, at once; tasks that were not begun are cancelled then.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> sorted(completed(abs, [-1, 2, -3], lambda: ThreadPoolExecutor(2)))
+    [(0, 1), (1, 2), (2, 3)]
+    """
+    if isinstance(retries, bool) or not isinstance(retries, int) or retries < 0:
+        raise InputError(f"retries is {retries!r}, expected an integer at least 0")
+    if executor is None:
+        return ((number, function(task)) for number, task in enumerate(tasks))
+    return _Run(function, tasks, _Pool(executor), retries).results()
+
+
+@final
+class _Pool:
+    """The executor of the moment."""
+
+    def __init__(self, source: Executor | Callable[[], Executor]) -> None:
+        given = callable(getattr(source, "submit", None))
+        if not given and not callable(source):
+            raise InputError(
+                f"executor is {source!r}, expected a concurrent.futures.Executor, or a function that makes one"
+            )
+        self._make: Any = None if given else source
+        self._executor: Any = source if given else None
+
+    @property
+    def renewable(self) -> bool:
+        """Whether another executor can be made."""
+        return self._make is not None
+
+    def submit(self, function: Callable[[Any], Any], task: Any) -> Future[Any]:
+        """Submit a task; BrokenExecutor where the executor takes none."""
+        if self._executor is None:
+            self._executor = self._make()
+            if not callable(getattr(self._executor, "submit", None)):
+                raise InputError(f"the function that makes executors returned {self._executor!r}")
+        try:
+            return self._executor.submit(function, task)  # type: ignore[no-any-return]
+        except RuntimeError as error:  # also what an executor raises that was shut down
+            if isinstance(error, BrokenExecutor):
+                raise
+            raise BrokenExecutor(str(error)) from error
+
+    def drop(self) -> None:
+        """Have no more to do with an executor that is broken, or at the end."""
+        if self.renewable and self._executor is not None:
+            self._executor.shutdown(wait=True, cancel_futures=True)
+            self._executor = None
+
+
+@final
+class _Run:
+    """One call of `completed`."""
+
+    def __init__(self, function: Callable[[Any], Any], tasks: Sequence[Any], pool: _Pool, retries: int) -> None:
+        self.function, self.tasks, self.pool, self.retries = function, tasks, pool, retries
+        self.todo = deque(range(len(tasks)))
+        self.waiting: dict[Future[Any], int] = {}
+        self.ready: SimpleQueue[Future[Any]] = SimpleQueue()
+        self.done, self.breaks = 0, 0
+        self.lost: Counter[int] = Counter()
+
+    def results(self) -> Iterator[tuple[int, Any]]:
+        """The results as they come."""
+        try:
+            while self.todo or self.waiting:
+                broken = self._submit()
+                for future in self._finished():
+                    number = self.waiting.pop(future)
+                    error = _error_of(future)
+                    if error is None:
+                        self.done, self.breaks = self.done + 1, 0
+                        yield number, future.result()
+                    elif isinstance(error, BrokenExecutor):
+                        broken = error
+                        self.todo.append(number)
+                    elif is_loss(error):
+                        self._again(number, error)
+                    else:
+                        raise _explained(error)
+                if broken is not None:
+                    self._renew(broken)
+        finally:
+            for future in self.waiting:
+                future.cancel()
+            self.pool.drop()
+
+    def _submit(self) -> BaseException | None:
+        """Submit what is to be done; the error if the executor is broken."""
+        while self.todo:
+            try:
+                future = self.pool.submit(self.function, self.tasks[self.todo[0]])
+            except (BrokenExecutor, ConnectionError) as error:
+                return error
+            except (TypeError, AttributeError, pickle.PicklingError) as error:
+                raise _explained(error) from None
+            self.waiting[future] = self.todo.popleft()
+            future.add_done_callback(self.ready.put)
+        return None
+
+    def _finished(self) -> list[Future[Any]]:
+        """The futures that are done, at least one where there are some; none of an executor that is gone."""
+        found: list[Future[Any]] = []
+        while self.waiting and (not found or not self.ready.empty()):
+            future = self.ready.get()
+            if future in self.waiting:
+                found.append(future)
+        return found
+
+    def _again(self, number: int, error: BaseException) -> None:
+        """A task whose worker was lost: try it again."""
+        self.lost[number] += 1
+        if self.lost[number] > self.retries:
+            raise self._gave_up(error) from error
+        self.todo.append(number)
+
+    def _renew(self, error: BaseException) -> None:
+        """Have another executor made, for all that is not done."""
+        self.breaks += 1
+        if self.breaks > self.retries or not self.pool.renewable:
+            raise self._gave_up(error) from error
+        self.todo = deque(sorted([*self.todo, *self.waiting.values()]))
+        self.waiting.clear()
+        self.pool.drop()
+
+    def _gave_up(self, error: BaseException) -> WorkerLostError:
+        missing = len(self.tasks) - self.done
+        advice = "pass a function that makes an executor, and another is made when one is broken"
+        if self.pool.renewable or not isinstance(error, BrokenExecutor):
+            advice = "is there memory enough for a task? (a script that starts processes needs __name__ == '__main__')"
+        return WorkerLostError(
+            self.done,
+            missing,
+            f"workers were lost ({type(error).__name__}: {error}); {self.done} tasks are done, {missing} are not; "
+            f"what is in a store is kept, and the same call continues from it; {advice}",
+        )
+
+
+def is_loss(error: BaseException) -> bool:
+    """Whether an exception says that a worker, or all of them, are gone, rather than that the task failed.
+
+    Examples
+    --------
+    >>> is_loss(BrokenExecutor("a process was killed")), is_loss(ValueError("psi"))
+    (True, False)
+    """
+    kinds = (BrokenExecutor, CancelledError, ConnectionError)
+    return isinstance(error, kinds) or type(error).__name__ in LOST
+
+
+def _error_of(future: Future[Any]) -> BaseException | None:
+    try:
+        return future.exception()
+    except CancelledError as error:
+        return error
+
+
+def _explained(error: BaseException) -> BaseException:
+    """The error of a task; of pickle's, one that says what to do."""
+    text = str(error)
+    is_type = isinstance(error, TypeError | AttributeError) and ("pickle" in text or "serialize" in text)
+    if not is_type and not isinstance(error, pickle.PicklingError):
+        return error
+    made = InputError(
+        f"a task cannot be sent to another process: {text}; give functions that have a name in a module (no lambda, "
+        "no function within a function), psi as a list of texts such as ['m0', 'sin(t)'], or take an executor whose "
+        "tasks are pickled by cloudpickle (dask), or threads"
+    )
+    made.__cause__ = error
+    return made
