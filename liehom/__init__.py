@@ -135,6 +135,7 @@ if TYPE_CHECKING:
     from liehom.representations import HermitianForms as HermitianForms
     from liehom.representations import HighestWeightModule as HighestWeightModule
     from liehom.representations import Pair as Pair
+    from liehom.representations import RealModule as RealModule
     from liehom.representations import Representation as Representation
     from liehom.representations import adjoint as adjoint
     from liehom.representations import character as character
@@ -145,6 +146,8 @@ if TYPE_CHECKING:
     from liehom.representations import dual_weight as dual_weight
     from liehom.representations import frobenius_schur_indicator as frobenius_schur_indicator
     from liehom.representations import highest_weight_module as highest_weight_module
+    from liehom.representations import real_module as real_module
+    from liehom.representations import real_module_type as real_module_type
     from liehom.representations import spin_representation as spin_representation
     from liehom.representations import spinor_type as spinor_type
     from liehom.representations import sym_conjugation as sym_conjugation
@@ -211,10 +214,10 @@ _NAMES = {
         "dump from_gap from_json from_sage latex load load_pair load_problem loads to_gap to_json to_sage to_sympy"
     ),
     "liehom.representations": (
-        "adjoint character coadjoint decompose_character defining dominant_character dual_weight "
-        "frobenius_schur_indicator highest_weight_module HighestWeightModule Pair Representation "
-        "spin_representation spinor_type sym_conjugation symbolic_isotropy tensor_product_decomposition "
-        "trivial weyl_dimension weyl_orbit Decomposition HermitianForms"
+        "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
+        "dual_weight frobenius_schur_indicator HermitianForms highest_weight_module HighestWeightModule Pair "
+        "real_module real_module_type RealModule Representation spin_representation spinor_type "
+        "sym_conjugation symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

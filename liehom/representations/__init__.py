@@ -22,6 +22,9 @@ from liehom.representations.highest_weight import HighestWeightModule as Highest
 from liehom.representations.highest_weight import highest_weight_module as highest_weight_module
 from liehom.representations.intertwiners import InvariantForms as InvariantForms
 from liehom.representations.pair import Pair as Pair
+from liehom.representations.real_form_module import RealModule as RealModule
+from liehom.representations.real_form_module import real_module as real_module
+from liehom.representations.real_form_module import real_module_type as real_module_type
 from liehom.representations.representation import Representation as Representation
 from liehom.representations.spin import SpinorType as SpinorType
 from liehom.representations.spin import spin_representation as spin_representation

@@ -38,6 +38,8 @@ class AdmissibleLattice:
         Of the basis vectors; the highest weight comes first, and they fall in height.
     raising, lowering : tuples of tuples of Vector
         raising[i][b] is e_i applied to basis vector b, lowering[i][b] is f_i applied to it.
+    recipes : tuple of tuples of (coefficient, i, k, b)
+        Each basis vector as a sum of coefficient * f_i^(k) b with earlier basis vectors b; () for the first.
 
     Examples
     --------
@@ -49,6 +51,7 @@ class AdmissibleLattice:
     weights: tuple[Weight, ...]
     raising: tuple[tuple[Vector, ...], ...]
     lowering: tuple[tuple[Vector, ...], ...]
+    recipes: tuple[tuple[tuple[int, int, int, int], ...], ...]
 
     def __repr__(self) -> str:
         return f"<admissible lattice of highest weight {self.weights[0]}, rank {len(self.weights)}>"
@@ -109,14 +112,13 @@ class _Builder:
         self.space = space
         self.weights = [top]
         self.places: dict[Weight, range] = {top: range(1)}
-        # how a basis vector was made, f_i^(k) b with this i
-        self.made_by = [-1]
+        self.recipes: list[tuple[tuple[int, int, int, int], ...]] = [()]
         self.raising: list[list[Vector]] = [[{}] for _ in range(space.rank)]
         self.lowering: list[list[Vector]] = [[{}] for _ in range(space.rank)]
 
     def finished(self) -> AdmissibleLattice:
         raising, lowering = (tuple(tuple(columns) for columns in maps) for maps in (self.raising, self.lowering))
-        return AdmissibleLattice(tuple(self.weights), raising, lowering)
+        return AdmissibleLattice(tuple(self.weights), raising, lowering, tuple(self.recipes))
 
     def add_weight(self, mu: Weight) -> bool:
         """Find the lattice at a weight below those found; whether there is any."""
@@ -127,15 +129,16 @@ class _Builder:
         start = len(self.weights)
         self.places[mu] = range(start, start + len(chosen))
         for image, origin in chosen:
-            self._append(mu, image, -1 if origin is None else candidates[origin].i)
+            used = [(v, candidates[x]) for x, v in origin.items() if v]
+            self._append(mu, image, tuple((v, c.i, c.power, c.source) for v, c in used))
         for candidate, row in zip(candidates, coordinates, strict=True):
             if candidate.power == 1:
                 self.lowering[candidate.i][candidate.source] = {start + k: v for k, v in row.items()}
         return True
 
-    def _append(self, mu: Weight, image: Vector, made_by: int) -> None:
+    def _append(self, mu: Weight, image: Vector, recipe: tuple[tuple[int, int, int, int], ...]) -> None:
         self.weights.append(mu)
-        self.made_by.append(made_by)
+        self.recipes.append(recipe)
         for j in range(self.space.rank):
             place = self.places.get(_moved(self.space, mu, j, 1), range(0))
             self.raising[j].append({b: v for b, v in image.items() if b in place})
@@ -149,7 +152,7 @@ class _Builder:
             while nu in self.places:
                 for b in self.places[nu]:
                     # f_i^(k) f_i^(l) c is a multiple of f_i^(k + l) c, which is a candidate itself
-                    if power == 1 or self.made_by[b] != i:
+                    if power == 1 or {step[1] for step in self.recipes[b]} != {i}:
                         found.append(_Candidate(i, power, b, self._image(i, power, b)))
                 power, nu = power + 1, _moved(self.space, nu, i, 1)
         return sorted(found, key=lambda candidate: -candidate.power)
@@ -157,21 +160,29 @@ class _Builder:
     def _image(self, i: int, power: int, b: int) -> Vector:
         total: Vector = {}
         for j in range(self.space.rank):
-            _add(total, self._lowered(self.raising[j][b], i, power), 1)
+            _add(total, divided_power(self.lowering[i], self.raising[j][b], power), 1)
         factor = self.weights[b][i] - power + 1
         if factor:
-            _add(total, self._lowered({b: 1}, i, power - 1), factor)
+            _add(total, divided_power(self.lowering[i], {b: 1}, power - 1), factor)
         return {c: v for c, v in total.items() if v}
 
-    def _lowered(self, vector: Vector, i: int, power: int) -> Vector:
-        """f_i^(power) applied to a vector; the lattice contains the quotient by power!."""
-        for _ in range(power):
-            image: Vector = {}
-            for b, v in vector.items():
-                _add(image, self.lowering[i][b], v)
-            vector = image
-        divisor = factorial(power)
-        return {b: v // divisor for b, v in vector.items() if v}
+
+def divided_power(columns: Sequence[Vector], vector: Vector, power: int) -> Vector:
+    """x^power / power! applied to a vector of the admissible lattice, x a root vector given by its columns.
+
+    Examples
+    --------
+    >>> (lower,) = admissible_lattice("A1", [2]).lowering
+    >>> divided_power(lower, {0: 1}, 2)
+    {2: 1}
+    """
+    for _ in range(power):
+        image: Vector = {}
+        for b, v in vector.items():
+            _add(image, columns[b], v)
+        vector = image
+    divisor = factorial(power)  # the lattice contains the quotient
+    return {b: v // divisor for b, v in vector.items() if v}
 
 
 def _moved(space: WeightSpace, mu: Weight, i: int, times: int) -> Weight:
@@ -183,28 +194,29 @@ def _add(total: Vector, vector: Vector, factor: int) -> None:
         total[b] = total.get(b, 0) + factor * v
 
 
-def _lattice_basis(vectors: list[Vector]) -> tuple[list[tuple[Vector, int | None]], list[Vector]]:
+def _lattice_basis(vectors: list[Vector]) -> tuple[list[tuple[Vector, Vector]], list[Vector]]:
     """A basis of the lattice that non-zero integer vectors span, and the coordinates of each of them in it.
 
-    A basis vector comes with its number where it is one of the given ones.  The first independent vectors are a
+    A basis vector comes with its coefficients in the given ones.  The first independent vectors are a
     basis of the space.  While a given vector has a coordinate that is no integer, its difference to the nearest
     combination replaces a basis vector; the index of the lattice falls by half or more each time.
     """
     if len(vectors) == 1:
-        return [(vectors[0], 0)], [{0: 1}]
+        return [(vectors[0], {0: 1})], [{0: 1}]
     columns = sorted({b for vector in vectors for b in vector})
     entries = [vector.get(b, 0) for b in columns for vector in vectors]
     reduced, pivots = QQ.from_integers(entries, len(columns), len(vectors)).echelon()
-    basis: list[tuple[Vector, int | None]] = [(vectors[x], x) for x in pivots]
+    basis: list[tuple[Vector, Vector]] = [(vectors[x], {x: 1}) for x in pivots]
     table = [[Fraction(int(v.p), int(v.q)) for v in row] for row in reduced.T.to_rows()]
     while (found := _not_integral(table)) is not None:
         x, k = found
         nearest = [round(c) for c in table[x]]
         shift = [c - n for c, n in zip(table[x], nearest, strict=True)]
-        new: Vector = dict(vectors[x])
-        for (vector, _), n in zip(basis, nearest, strict=True):
-            _add(new, vector, -n)
-        basis[k] = ({b: v for b, v in new.items() if v}, None if any(nearest) else x)
+        new: tuple[Vector, Vector] = (dict(vectors[x]), {x: 1})
+        for old, n in zip(basis, nearest, strict=True):
+            _add(new[0], old[0], -n)
+            _add(new[1], old[1], -n)
+        basis[k] = ({b: v for b, v in new[0].items() if v}, new[1])
         table = [_exchanged(row, shift, k) for row in table]
     return basis, [{k: int(c) for k, c in enumerate(row) if c} for row in table]
 

@@ -71,7 +71,7 @@ def failing_generator_pair(
     Parameters
     ----------
     table : StructureConstants
-        Of a Lie algebra, with integer constants.
+        Of a Lie algebra, over QQ.
     stack : SparseStack
         One matrix per basis element.
     generators : iterable of int
@@ -93,24 +93,29 @@ def failing_generator_pair(
         constants = SparseInteger(brackets.rows[kept] % d, brackets.columns[kept], brackets.values[kept], (d, d))
         left = (matrix @ stack.wide).regroup(n, d, n)  # (j, b N + c), as the other two
         right = (stack.tall @ matrix).reshape(d, n * n)
-        found = _first_row_of_sum([(left, 1), (right, -1), (constants @ stack.flat, -1)])
+        found = _first_row_of_sum([(left, table.den), (right, -table.den), (constants @ stack.flat, -1)])
         if found is not None:
             return i, found
     return None
 
 
 def _first_row_of_sum(terms: list[tuple[SparseInteger, int]]) -> int | None:
-    """The least row in which a signed sum of sparse matrices is not zero, or None."""
+    """The least row in which a combination of sparse matrices is not zero, or None."""
     width = terms[0][0].shape[1]
     places = np.concatenate([a.rows * width + a.columns for a, _ in terms])
     if not len(places):
         return None
-    values: Any = np.concatenate([sign * a.values for a, sign in terms])
-    if values.dtype != object and int(np.abs(values).max()) > SUM_LIMIT:
-        values = values.astype(object)
+    values: Any = np.concatenate([_times(a.values, factor) for a, factor in terms])
     order = np.argsort(places, kind="stable")
     places, values = places[order], values[order]
     starts: IntArray = np.flatnonzero(np.concatenate([[True], places[1:] != places[:-1]]))
     sums = np.add.reduceat(values, starts)
     wrong = places[starts][sums != 0]
     return int(wrong[0] // width) if len(wrong) else None
+
+
+def _times(values: Any, factor: int) -> Any:
+    """Multiples of integers, as Python integers where a sum of three of them might overflow."""
+    if values.dtype != object and len(values) and int(np.abs(values).max()) * abs(factor) > SUM_LIMIT:
+        values = values.astype(object)
+    return values * factor

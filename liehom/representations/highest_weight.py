@@ -132,18 +132,19 @@ def highest_weight_module(
         if isinstance(system, str)
         else LieAlgebra(chevalley_constants(roots), name=roots.type, check=False)
     )
-    columns = _chevalley_basis(roots, algebra.table.by_pair(), lattice)
+    columns = chevalley_matrices(roots, lattice)
     size = len(lattice.weights)
     if check:
         _prove(algebra.table, columns, size, roots)
     # The matrices of V(lambda), as explained above, and proved if that was asked for.
     name = f"V({', '.join(map(str, top))})"
-    rho = Representation(algebra, [_matrix(c, size) for c in columns], size=size, name=name, check=False)
+    rho = Representation(algebra, [sparse_matrix(c, size) for c in columns], size=size, name=name, check=False)
     return HighestWeightModule(roots, top, lattice.weights, rho)
 
 
-def _chevalley_basis(roots: RootSystem, brackets: Any, lattice: AdmissibleLattice) -> list[Columns]:
+def chevalley_matrices(roots: RootSystem, lattice: AdmissibleLattice) -> list[Columns]:
     """The matrices of h_1, ..., h_r, of e_a and of e_(-a) for the positive roots a, as columns."""
+    brackets = chevalley_constants(roots).by_pair()
     rank, count = roots.rank, len(roots.positive_roots)
     places = {alpha: x for x, alpha in enumerate(roots.positive_roots)}
     found: list[list[Columns]] = []
@@ -191,7 +192,8 @@ def _commutator(left: Columns, right: Columns, divisor: int) -> list[Vector]:
     return made
 
 
-def _matrix(columns: Columns, size: int) -> Any:
+def sparse_matrix(columns: Columns, size: int) -> Any:
+    """The square matrix over QQ with these columns."""
     matrix = QQ.zeros(size, size)
     (numerators,) = matrix.parts  # of a matrix that nobody else has seen: written to, entry by entry
     for c, column in enumerate(columns):

@@ -189,7 +189,7 @@ def test_a_program_that_computes_wrong_matrices_is_found_out(monkeypatch: pytest
         lattice = right(space, top)
         raising = [list(columns) for columns in lattice.raising]
         raising[0][-1] = {0: 1}
-        return type(lattice)(lattice.weights, tuple(map(tuple, raising)), lattice.lowering)
+        return type(lattice)(lattice.weights, tuple(map(tuple, raising)), lattice.lowering, lattice.recipes)
 
     monkeypatch.setattr(module_under_test, "lattice_of", wrong)
     with pytest.raises(RepresentationError, match="not a representation"):
