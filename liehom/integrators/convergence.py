@@ -3,12 +3,13 @@
     orbit error = min over s near T of |y - F_s(m_0)|,   trajectory error = |y - F_T(m_0)|,   y after steps of size h,
 
 root mean squares over an ensemble; the order is the slope of log(error) over log(h).
-Imports convergence_table, integration, orbit_error, reference, solution, correctors, homogeneous, errors.
+Imports convergence_table, orbit_error, problem, reference, solution, correctors, homogeneous, parallel, errors.
 """
 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -21,8 +22,10 @@ from liehom.integrators.convergence_table import MARGIN, NAN, ConvergenceTable
 from liehom.integrators.integration import integrate
 from liehom.integrators.orbit_error import orbit_distance
 from liehom.integrators.points import points_of
+from liehom.integrators.problem import Problem, all_solved
 from liehom.integrators.reference import Reference
 from liehom.integrators.solution import Solution
+from liehom.parallel import Source
 
 
 def observed_order(
@@ -35,6 +38,9 @@ def observed_order(
     exponential: Any = "exp",
     clock: str = "corrected",
     reference: Reference | None = None,
+    executor: Source = None,
+    store: str | os.PathLike[str] | None = None,
+    retries: int = 2,
 ) -> ConvergenceTable:
     """Measure the order of a step on a problem.
 
@@ -53,6 +59,8 @@ def observed_order(
         As for `integrate`. With clock="nominal" the trajectory is compared at the nominal time.
     reference : Reference, optional
         The exact solution through (t_span[0], y0); by default it is made in extended precision.
+    executor, store, retries
+        As for `integrate_ensemble`: the runs with the different step sizes go to an executor, and are kept.
 
     Returns
     -------
@@ -86,9 +94,9 @@ def observed_order(
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
     if reference is not None and not isinstance(reference, Reference):
         raise InputError(f"reference is {reference!r}, expected a liehom.integrators.Reference")
-    runs = [
-        integrate(field, (first, last), start, step=step, dt=h, exponential=exponential, clock=clock) for h in sizes
-    ]
+    options = {"step": step, "exponential": exponential, "clock": clock}
+    problems = [Problem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
+    runs = all_solved(problems, executor, store, retries)
     if not any(run.success for run in runs):
         raise ConvergenceError(f"no step size came through; the smallest, {sizes[-1]}: {runs[-1].message}")
     if reference is None:

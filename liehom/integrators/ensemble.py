@@ -1,7 +1,7 @@
 """integrate_ensemble: an ensemble in chunks, each by `integrate`, on any executor; kept on disk as they are done.
 
 Where the boundaries of the chunks are depends on their number and size alone, never on the executor, so that neither
-do the results.  Imports checkpoint, integration, merging, points, progress, solution, homogeneous, parallel, errors.
+do the results.  Imports merging, points, problem, progress, solution, homogeneous, parallel, errors.
 """
 
 from __future__ import annotations
@@ -14,12 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from liehom.errors import InputError, LiehomError, ShapeError
+from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.integrators.checkpoint import digest
-from liehom.integrators.integration import integrate
 from liehom.integrators.merging import from_shard, merged, to_shard
 from liehom.integrators.points import points_of
+from liehom.integrators.problem import Fields, Problem, solved
 from liehom.integrators.progress import Progress
 from liehom.integrators.solution import Solution
 from liehom.parallel import Source, completed, open_store
@@ -31,10 +30,6 @@ NOT_HERE = {
     "checkpoint": "give store=...: what is finished is kept there",
     "checkpoint_every": "give store=...: what is finished is kept there",
 }
-
-ARRAYS = ("dt", "t_eval")
-
-Fields = GeneratorField | Callable[..., GeneratorField]
 
 
 class EnsemblePart(NamedTuple):
@@ -181,7 +176,7 @@ def ensemble_parts(
         raise ShapeError(f"y0 has shape {start.shape}, expected an ensemble, (n, ..., N); one run is `integrate`'s")
     if isinstance(chunk, bool) or not isinstance(chunk, int | np.integer) or chunk < 1:
         raise InputError(f"chunk is {chunk!r}, expected the number of trajectories of a task")
-    problem = _Problem(field, t_span, start, _checked(parameters, field, len(start)), options)
+    problem = Problem(field, t_span, start, _checked(parameters, field, len(start)), options)
     bounds = _bounds(len(start), int(chunk))
     whole = problem.check(bounds)
     kept = None if store is None else open_store(store, problem.fingerprint(whole, bounds))
@@ -192,7 +187,7 @@ def ensemble_parts(
         for rows in bounds:
             if kept is not None and _name(rows) in done:
                 yield EnsemblePart(*rows, from_shard(*kept.load(_name(rows))))
-        for number, solution in completed(_solved, [problem.task(rows) for rows in todo], executor, retries=retries):
+        for number, solution in completed(solved, [problem.task(rows) for rows in todo], executor, retries=retries):
             rows = todo[number]
             if kept is not None:
                 kept.save(_name(rows), *to_shard(solution))
@@ -229,79 +224,6 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
     return (EnsemblePart(*r, from_shard(*kept.load(_name(r)))) for r in sorted(rows))
 
 
-class _Problem(NamedTuple):
-    """What is cut into tasks."""
-
-    field: Fields
-    t_span: Any
-    start: Any
-    parameters: dict[str, Any]
-    options: dict[str, Any]
-
-    def task(self, rows: tuple[int, int]) -> _Problem:
-        """The problem of some rows: a task, which is what goes to a worker."""
-        here = slice(*rows)
-        options = self.options
-        dt: Any = options.get("dt")
-        if np.ndim(dt):
-            try:
-                options = {**options, "dt": np.broadcast_to(np.asarray(dt), self.start.shape[:-1])[here]}
-            except ValueError:
-                raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
-        mine = {name: array[here] for name, array in self.parameters.items()}
-        return _Problem(self.field, self.t_span, self.start[here], mine, options)
-
-    def ends(self) -> tuple[float, float]:
-        """Start and end as floats; what is no time is refused by `integrate`."""
-        try:
-            first, last = (float(t) for t in self.t_span)
-        except (TypeError, ValueError):
-            return 0.0, 0.0
-        return first, last
-
-    def made(self) -> GeneratorField:
-        """The field of these trajectories."""
-        found = self.field if isinstance(self.field, GeneratorField) else self.field(**self.parameters)
-        if not isinstance(found, GeneratorField):
-            raise InputError(f"field(**parameters) returned {found!r}, expected a GeneratorField")
-        return found
-
-    def check(self, bounds: list[tuple[int, int]]) -> GeneratorField:
-        """The field of the whole ensemble, if psi of a chunk is what it is within the whole."""
-        whole = self.made()
-        time = self.ends()[0]
-        with np.errstate(all="ignore"):
-            values = np.asarray(whole.psi(self.start, np.full(self.start.shape[:-1], time)))
-            for rows in {bounds[0], bounds[-1]} if len(bounds) > 1 else ():
-                part = self.task(rows)
-                try:
-                    mine = np.asarray(part.made().psi(part.start, np.full(part.start.shape[:-1], time)))
-                    same = np.allclose(mine, values[slice(*rows)], rtol=1e-6, equal_nan=True)
-                except (ValueError, LiehomError) as error:
-                    raise _whole_only(rows) from error
-                if not same:
-                    raise _whole_only(rows)
-        return whole
-
-    def fingerprint(self, whole: GeneratorField, bounds: list[tuple[int, int]]) -> str:
-        """What tells the problem from others: numbers, texts, and psi at the start and next to it."""
-        texts = [f"{name}={_text(value)}" for name, value in sorted(self.options.items()) if name not in ARRAYS]
-        numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
-        parameters = [self.parameters[name] for name in sorted(self.parameters)]
-        matrices = [a.to_numpy() for a in whole.representation.matrices]
-        first, last = self.ends()
-        lead, ahead = self.start.shape[:-1], 1e-3 * (last - first)
-        here = np.asarray(whole.psi(self.start, np.full(lead, first)))
-        near = self.start + ahead * np.asarray(whole.vector(self.start, np.full(lead, first)))
-        there = np.asarray(whole.psi(near, np.full(lead, first + ahead)))
-        span = np.array([first, last])
-        return digest(repr(texts), repr(bounds), span, self.start, *numbers, *parameters, *matrices, here, there)
-
-
-def _solved(task: _Problem) -> Solution:
-    return integrate(task.made(), task.t_span, task.start, **task.options)
-
-
 def _checked(parameters: Mapping[str, Any] | None, field: Any, n: int) -> dict[str, Any]:
     if parameters is None:
         if not isinstance(field, GeneratorField) and not callable(field):
@@ -327,20 +249,3 @@ def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:
 
 def _name(rows: tuple[int, int]) -> str:
     return f"part-{rows[0]:09d}-{rows[1]:09d}"
-
-
-def _whole_only(rows: tuple[int, int]) -> ShapeError:
-    return ShapeError(
-        f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
-        "carry one parameter for each trajectory? Pass a function that makes the field, and parameters={'name': array}"
-    )
-
-
-def _text(value: Any) -> str:
-    """A text for an option, the same in every process."""
-    if isinstance(value, list | tuple):
-        return repr([_text(x) for x in value])
-    if callable(value) and hasattr(value, "__qualname__"):
-        marks = [repr(getattr(value, name, None)) for name in ("terminal", "direction")]
-        return f"{value.__module__}.{value.__qualname__} {marks}"
-    return re.sub(" at 0x[0-9a-f]+", "", repr(value))

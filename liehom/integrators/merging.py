@@ -158,9 +158,9 @@ def _from_shard(arrays: dict[str, Any], facts: dict[str, Any]) -> Solution:
         nfev=facts["nfev"],
         status=facts["status"],
         message=facts["message"],
-        n_steps=arrays["n_steps"],
+        n_steps=arrays["n_steps"] if shape else int(arrays["n_steps"]),
         report=_report(facts["report"]),
-        statuses=arrays["statuses"],
+        statuses=arrays["statuses"] if shape else int(arrays["statuses"]),
     )
 
 

@@ -1,0 +1,138 @@
+"""Tasks on executors of every kind; workers that are killed, errors of tasks, what cannot be pickled."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from liehom.errors import DependentRowsError, InputError, WorkerLostError
+from liehom.parallel import completed
+from tests.parallel import work
+
+
+def processes() -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn"))
+
+
+def threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(2)
+
+
+class Immediate(Executor):
+    """Runs tasks as they are submitted; `moods` are errors of the next futures, None for none."""
+
+    def __init__(self, *moods: BaseException | None) -> None:
+        self.moods, self.calls, self.ended = list(moods), 0, False
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        self.calls += 1
+        future: Future[Any] = Future()
+        error = self.moods.pop(0) if self.moods else None
+        try:
+            if error is not None:
+                raise error
+            future.set_result(function(*args))
+        except Exception as caught:  # noqa: BLE001 - as executors do
+            future.set_exception(caught)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        self.ended = True
+
+
+class KilledWorker(Exception):
+    """As dask's is called."""
+
+
+def test_without_executor_in_order() -> None:
+    assert list(completed(work.square, [3, 1, 2])) == [(0, 9), (1, 1), (2, 4)]
+
+
+def test_no_tasks() -> None:
+    assert list(completed(work.square, [], threads)) == []
+
+
+def test_an_executor_is_used_and_left_open() -> None:
+    pool = Immediate()
+    assert sorted(completed(work.square, range(4), pool)) == [(0, 0), (1, 1), (2, 4), (3, 9)]
+    assert (pool.calls, pool.ended) == (4, False)
+
+
+def test_one_that_was_made_is_shut_down() -> None:
+    made: list[Immediate] = []
+
+    def make() -> Immediate:
+        made.append(Immediate())
+        return made[-1]
+
+    assert len(list(completed(work.square, range(4), make))) == 4
+    assert [pool.ended for pool in made] == [True]
+
+
+def test_processes_and_a_killed_one(tmp_path: Path) -> None:
+    tasks = [(str(tmp_path), x) for x in range(5)]
+    assert sorted(completed(work.kills_its_worker_once, tasks, processes)) == [(x, x) for x in range(5)]
+    assert (tmp_path / "killed").exists()
+
+
+def test_a_process_that_is_killed_again_and_again() -> None:
+    with pytest.raises(WorkerLostError, match="0 tasks are done, 2 are not") as caught:
+        list(completed(work.kills_its_worker, [0, 1], processes, retries=1))
+    assert (caught.value.done, caught.value.missing) == (0, 2)
+    assert isinstance(caught.value.__cause__, BrokenExecutor)
+
+
+def test_an_executor_that_breaks_and_cannot_be_made_again() -> None:
+    pool = Immediate(None, BrokenExecutor("gone"))
+    with pytest.raises(WorkerLostError, match="pass a function that makes an executor") as caught:
+        list(completed(work.square, range(3), pool))
+    assert caught.value.done == 2
+
+
+@pytest.mark.parametrize("loss", [KilledWorker("a task"), CancelledError(), ConnectionError("lost")], ids=repr)
+def test_a_lost_task_is_submitted_again(loss: BaseException) -> None:
+    pool = Immediate(None, loss)
+    assert sorted(completed(work.square, range(3), pool)) == [(0, 0), (1, 1), (2, 4)]
+    assert pool.calls == 4
+
+
+def test_a_task_that_is_lost_too_often() -> None:
+    pool = Immediate(*[KilledWorker("again")] * 3)
+    with pytest.raises(WorkerLostError):
+        list(completed(work.square, [5], pool, retries=2))
+    assert pool.calls == 3
+
+
+def test_breaks_in_succession_are_counted_anew_after_progress() -> None:
+    moods = [[None, BrokenExecutor("a")]] * 4  # each executor does one task and breaks
+    made = iter([Immediate(*mood) for mood in moods] + [Immediate()])
+    assert len(list(completed(work.square, range(6), lambda: next(made), retries=1))) == 6
+
+
+@pytest.mark.parametrize("executor", [None, threads, processes], ids=["none", "threads", "processes"])
+def test_what_a_task_raises_passes_through(executor: Any) -> None:
+    with pytest.raises(DependentRowsError) as caught:
+        list(completed(work.fails_at_three, range(5), executor))
+    assert caught.value.dependent == [3]
+
+
+def test_what_cannot_be_pickled_is_said() -> None:
+    with pytest.raises(InputError, match="no lambda"):
+        list(completed(lambda x: x, [1], processes))
+
+
+@pytest.mark.parametrize("executor", [3, "dask", [1]])
+def test_what_is_no_executor(executor: Any) -> None:
+    with pytest.raises(InputError, match=r"expected a concurrent.futures.Executor"):
+        list(completed(work.square, [1], executor))
+
+
+@pytest.mark.parametrize("retries", [-1, 1.5, True])
+def test_retries_is_a_number(retries: Any) -> None:
+    with pytest.raises(InputError, match="retries"):
+        list(completed(work.square, [1], retries=retries))
