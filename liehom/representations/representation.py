@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
-from liehom.algebra.closure import lie_closure, square_matrices
+from liehom.algebra.closure import Completion, lie_closure, square_matrices
 from liehom.errors import InputError, RepresentationError, ShapeError
 from liehom.representations.analysis_verbs import AnalysisVerbs
 from liehom.representations.bracket_proof import failing_pair
@@ -88,12 +88,18 @@ class Representation(AnalysisVerbs):
 
     @classmethod
     def from_matrices(
-        cls, matrices: Any, *, field: Field | None = None, independent: bool = False, name: str | None = None
+        cls,
+        matrices: Any,
+        *,
+        field: Field | None = None,
+        independent: bool = False,
+        name: str | None = None,
+        completion: Completion = "auto",
     ) -> Representation:
         """The Lie algebra that matrices generate, with its defining representation.
 
         The first basis elements are the given matrices in order; missing brackets are appended in
-        lexicographic order of (i, j).
+        lexicographic order of (i, j), or reduced matrices where the brackets would give numbers of thousands of digits.
 
         Parameters
         ----------
@@ -103,6 +109,8 @@ class Representation(AnalysisVerbs):
         independent : bool
             Drop matrices that depend on earlier ones; `dropped` of the closure says which (default: refuse).
         name : str, optional
+        completion : {'auto', 'commutators', 'reduced'}
+            What is appended; see `liehom.algebra.lie_closure`.
 
         Raises
         ------
@@ -115,7 +123,7 @@ class Representation(AnalysisVerbs):
         >>> rho.given, rho.algebra.dimension, rho.appended
         (2, 3, ((0, 1),))
         """
-        made = lie_closure(matrices, field=field, independent=independent)
+        made = lie_closure(matrices, field=field, independent=independent, completion=completion)
         size = int(square_matrices(matrices, field)[0].nrows)
         # The constants are those of the commutators themselves.
         return cls(
