@@ -1,26 +1,24 @@
 """The centroid of a Lie algebra: the matrices phi with phi [x, y] = [phi x, y] for all x, y.
 
 phi commutes with ad x for every x, so phi v commutes with whatever commutes with v: it lies in the centre of the
-centralizer C(v), a small space when v is generic (for semisimple algebras a Cartan subalgebra).  A few v have
+centralizer C(v), a small space when v is generic (for semisimple algebras a Cartan subalgebra).  A few seeds v have
 brackets [v, g] that span [g, g], and phi [v, y] = [phi v, y]: the unknowns are the values on these v and on a
 complement of [g, g] alone.  What a few equations leave is verified against a generating set.
-Imports lie_algebra, scalars, errors.
+Imports bracket_seeds, commuting_maps, lie_algebra, scalars, errors.
 """
 
 from __future__ import annotations
 
-import random
 from typing import Any, final
 
+from liehom.algebra.bracket_seeds import BracketSeeds
+from liehom.algebra.commuting_maps import are_independent
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.errors import FieldError, InternalError
-from liehom.scalars.lattice import integral_basis
-from liehom.scalars.modular import invariant_hull_rank, pivot_columns
+from liehom.scalars.integral_basis import integral_basis
+from liehom.scalars.modular import pivot_columns
 
-WEIGHT = 1
-FEW_GENERATORS = 12
-DIRECT_INVERSE = 100
-ROUNDS = 60
+ROUNDS = 16
 REDUCED = 60
 
 
@@ -57,134 +55,152 @@ def centroid(algebra: LieAlgebra) -> tuple[Any, ...]:
     [0, 1, 0]
     [0, 0, 1]
     """
-    field, n = algebra.field, algebra.dimension
-    if not field.exact:
+    return centroid_of(seeds_of(algebra), None)
+
+
+def seeds_of(algebra: LieAlgebra) -> BracketSeeds:
+    """`BracketSeeds` of an algebra over an exact field; `FieldError` over float64."""
+    if not algebra.field.exact:
         raise FieldError("the centroid is computed over exact fields only; give the structure constants as fractions")
+    return BracketSeeds(algebra)
+
+
+def centroid_of(seeds: BracketSeeds, center: Any) -> tuple[Any, ...]:
+    """A basis of the centroid; given the centre z (rows), of a complement of the maps g/[g, g] -> z in it.
+
+    Where z lies in [g, g] these maps are an ideal of square 0.  The centre may be given only where the brackets of
+    the seeds are known to span [g, g].
+    """
+    field, n = seeds.field, seeds.n
     if n == 0:
         return ()
-    problem = _Problem(algebra)
-    conditions = field.zeros(0, problem.size)
+    problem = _Problem(seeds, center)
+    conditions, solved = field.zeros(0, problem.size), False
+    count = problem.size // (2 * max(seeds.spanned, 1)) + 1
     for _ in range(ROUNDS):
-        conditions = field.stack_rows([conditions, problem.conditions()], problem.size).row_space()
+        before, conditions = conditions.nrows, _chosen([conditions, problem.conditions(count, solved)])
         if conditions.nrows == problem.size - 1:
-            return (field.identity(n),)  # the identity is in the centroid, and nothing else is left
+            return (field.identity(n),)  # the identity is a solution, and nothing else is left
+        if conditions.nrows > before:
+            count = count if solved else 2 * count
+            continue
         candidates = problem.maps(problem.reduced(conditions.null_space()))
-        if problem.all_commute(candidates):
+        if problem.all_commute(candidates) and are_independent(candidates):
             return candidates
+        count, solved = len(candidates) + 2 if not solved else 2 * count, True
     raise InternalError("centroid: the equations did not settle")
+
+
+def _chosen(blocks: list[Any]) -> Any:
+    """As many rows as the rank modulo a prime: every row is a necessary condition, so leaving some out is no error."""
+    whole = blocks[0].field.stack_rows(blocks, blocks[0].ncols)
+    return whole.select(rows=pivot_columns(whole.modulo().transpose()))
 
 
 @final
 class _Problem:
-    """The values of phi on seeds as unknowns; every vector as a sum of brackets with seeds and of seeds."""
+    """The values of phi on the seeds as unknowns."""
 
-    def __init__(self, algebra: LieAlgebra) -> None:
-        self.algebra = algebra
-        self.field = algebra.field
-        self.n = algebra.dimension
-        self.rng = random.Random(self.n)
-        table = algebra.table
-        self.flat = table.dense().reshape(self.n, self.n**2) if table.is_dense() else None
-        self.seeds, self.bracketed, self.columns = self._spanning()
-        self.values = [self._allowed(v, i) for i, v in enumerate(self.seeds)]
+    def __init__(self, seeds: BracketSeeds, center: Any) -> None:
+        self.seeds = seeds
+        self.field = seeds.field
+        self.n = seeds.n
+        self.values = [self._allowed(i, v) for i, v in enumerate(seeds.seeds)]
+        for i in seeds.free if center is not None and center.nrows else []:
+            self.values[i] = _complement(center, self.values[i])
         self.size = sum(u.nrows for u in self.values)
-        self._inverse: Any = None
-
-    # -- brackets ----------------------------------------------------------------------------------------
-    def brackets(self, left: Any, right: Any) -> list[Any]:
-        """For each row a of `left` the matrix with rows [left_a, right_b]."""
-        if self.flat is None:
-            return self.algebra.table.contract(left, right, self.field.identity(self.n))
-        return [right @ block for block in (left @ self.flat).split_rows(self.n, self.n)]
-
-    def ads(self, left: Any) -> list[Any]:
-        """For each row a of `left` the matrix with rows [left_a, e_b]."""
-        if self.flat is None:
-            return self.brackets(left, self.field.identity(self.n))
-        return (left @ self.flat).split_rows(self.n, self.n)  # type: ignore[no-any-return]
-
-    def random_rows(self, count: int) -> Any:
-        rows = [[self.rng.randint(-WEIGHT, WEIGHT) for _ in range(self.n)] for _ in range(count)]
-        return self.field.matrix(rows, (count, self.n))
 
     # -- unknowns ----------------------------------------------------------------------------------------
-    def _spanning(self) -> tuple[list[Any], list[Any], list[int]]:
-        """Seeds, the matrices [v, e_b] of those v that are used so, and a basis among all these rows.
-
-        Places in the basis count the rows of the matrices first, then the seeds.
-        """
-        seeds: list[Any] = []
-        tables: list[Any] = []
-        rank = 0
-        while rank < self.n:
-            v = self.random_rows(1)
-            grown = [*tables, self.ads(v)[0]]
-            found = int(self.field.stack_rows(grown, self.n).modulo().rank())
-            if found == rank:
-                break  # [v, g] of a random v adds nothing: [g, g] is spanned
-            seeds, tables, rank = [*seeds, v], grown, found
-        extended = self.field.stack_rows([*tables, *seeds, self.field.identity(self.n)], self.n)
-        chosen = pivot_columns(extended.modulo().transpose())
-        first_unit = len(tables) * self.n + len(seeds)
-        units = [x - first_unit for x in chosen if x >= first_unit]
-        kept = [x for x in chosen if x < first_unit] + [first_unit + i for i in range(len(units))]
-        return seeds + [self.field.unit(self.n, i) for i in units], tables, kept
-
-    def _allowed(self, v: Any, place: int) -> Any:
+    def _allowed(self, place: int, v: Any) -> Any:
         """A space that holds phi v for every phi: the centralizer of v cut down towards its centre."""
-        table = self.bracketed[place] if place < len(self.bracketed) else self.ads(v)[0]
-        space = centralizing = table.left_null_space()
-        idle = 0
-        while idle < 2 and space.nrows > 1:
-            weights = [[self.rng.choice((-1, 1)) for _ in range(centralizing.nrows)]]
-            element = self.field.matrix(weights, (1, centralizing.nrows)) @ centralizing
-            images = space @ self.ads(element)[0]
-            if images.is_zero():
-                idle += 1
-                continue
-            space, idle = images.left_null_space() @ space, 0
-        return space.primitive()
+        tables = self.seeds.tables
+        table = tables[place] if place < len(tables) else self.seeds.ads(v)[0]
+        centralizing = table.left_null_space()
+        if centralizing.nrows == self.n:  # v is central
+            return self.seeds.center()
+        return self._commuting(centralizing).primitive()
+
+    def _commuting(self, whole: Any) -> Any:
+        """The elements of a space that commute with many random elements of it: more until none is lost."""
+        k = whole.nrows
+        count, space = k // (2 * max(self.seeds.spanned, 1)) + 1, whole
+        while count < 4 * k:
+            weights = [[self.seeds.rng.choice((-1, 1)) for _ in range(k)] for _ in range(count)]
+            elements = (self.field.matrix(weights, (count, k)) @ whole).primitive()
+            images = [m.T for m in self.seeds.narrow_brackets(elements, space)]
+            conditions = _chosen(images)
+            if conditions.nrows == 0:
+                break
+            space, count = conditions.null_space() @ space, 2 * count
+        return space
 
     # -- equations ---------------------------------------------------------------------------------------
-    def coordinates(self, rows: Any) -> tuple[list[Any], Any]:
-        """For rows y the w_v and a_s with c y = sum_v [v, w_v] + sum_s a_s s: matrices (q, n), and one (q, seeds).
-
-        The integer c > 0 clears denominators and is the same for all rows.
-        """
-        n, tables = self.n, self.bracketed
-        basis = self.field.stack_rows([*tables, *self.seeds], n).select(rows=self.columns)
-        if self._inverse is None and (n <= DIRECT_INVERSE or rows.nrows >= n):
-            self._inverse = basis.inverse()
-        found = basis.T.solve(rows.T).T if self._inverse is None else rows @ self._inverse
-        padded = self.field.stack_columns([found.cleared(), self.field.zeros(rows.nrows, 1)], rows.nrows)
-        where = {x: i for i, x in enumerate(self.columns)}
-        moved = [padded.select(columns=[where.get(i * n + b, n) for b in range(n)]) for i in range(len(tables))]
-        first = len(tables) * n
-        return moved, padded.select(columns=[where.get(first + s, n) for s in range(len(self.seeds))])
-
-    def images(self, rows: Any) -> list[Any]:
-        """For each unknown the matrix (q, n) whose rows are what it contributes to phi y, times a common integer."""
-        moved, weights = self.coordinates(rows)
+    def images(self, rows: Any) -> tuple[int, list[Any]]:
+        """An integer c, and for each unknown the matrix (q, n) whose rows are what it contributes to c phi y."""
+        factor, moved, weights = self.seeds.coordinates(rows)
         made: list[Any] = []
         for s, allowed in enumerate(self.values):
-            direct = weights.select(columns=[s])
-            parts = [direct @ allowed.select(rows=[a]) for a in range(allowed.nrows)]
             if s < len(moved):
-                parts = [p + b for p, b in zip(parts, self.brackets(allowed, moved[s]), strict=True)]
+                parts = self.seeds.brackets(allowed, moved[s])
+            else:
+                parts = [self.field.zeros(rows.nrows, self.n)] * allowed.nrows
+            if s in self.seeds.free:
+                direct = weights.select(columns=[s])
+                parts = [p + direct @ allowed.select(rows=[a]) for a, p in enumerate(parts)]
             made += parts
+        return factor, made
+
+    def conditions(self, count: int, solved: bool) -> Any:
+        """Equations on the unknowns, from random elements x and y, as rows.
+
+        Either [phi x, y] = [x, phi y], with small numbers, or phi [x, y] = [x, phi y], where coordinates of [x, y]
+        have to be found; the first imply the others up to the centre.
+        """
+        made = self._solved_conditions(count) if solved else self._small_conditions(count)
+        width = made[0].nrows * self.n
+        return self.field.stack_rows([m.reshape(1, width) for m in made], width).T
+
+    def _small_conditions(self, count: int) -> list[Any]:
+        """For y = sum_v [v, w_v] + sum_s a_s s with w and a chosen, phi y needs no solution of equations."""
+        seeds, n, field = self.seeds, self.n, self.field
+        size, tables = len(seeds.seeds), seeds.tables
+        rng = seeds.rng
+        mixed = [rng.randint(-1, 1) for _ in range(size)]
+        x = field.matrix([mixed], (1, size)) @ field.stack_rows(seeds.seeds, n)
+        table = seeds.ads(x)[0]
+        moved = [seeds.random_rows(count) for _ in tables]
+        weights = [[rng.randint(-1, 1) * (s in seeds.free) for s in range(size)] for _ in range(count)]
+        direct = field.matrix(weights, (count, size))
+        y = direct @ field.stack_rows(seeds.seeds, n)
+        for w, t in zip(moved, tables, strict=True):
+            y = y + w @ t
+        made: list[Any] = []
+        for s, allowed in enumerate(self.values):
+            column = direct.select(columns=[s])
+            right = [column @ allowed.select(rows=[a]) for a in range(allowed.nrows)]
+            if s < len(moved):
+                right = [r + b for r, b in zip(right, seeds.brackets(allowed, moved[s]), strict=True)]
+            left = seeds.brackets(allowed.scale(mixed[s]), y)
+            made += [a - r @ table for a, r in zip(left, right, strict=True)]
         return made
 
-    def conditions(self) -> Any:
-        """Equations on the unknowns: phi [x, y] = [x, phi y] for random x and y."""
-        count = self.size // self.n + 2
-        blocks = []
-        for table in self.ads(self.random_rows(2)):
-            ys = self.random_rows(count)
-            both = self.images(self.field.stack_rows([ys @ table, ys], self.n))
-            half = range(count), range(count, 2 * count)
-            differences = [m.select(rows=half[0]) - m.select(rows=half[1]) @ table for m in both]
-            blocks.append(self.field.stack_rows([d.reshape(1, count * self.n) for d in differences], count * self.n).T)
-        return self.field.stack_rows(blocks, self.size)
+    def _solved_conditions(self, count: int) -> list[Any]:
+        """phi [x, y] = [x, phi y], and phi v as it is expressed by other values is the value on the seed v."""
+        seeds, field = self.seeds, self.field
+        x, ys = seeds.ads(seeds.random_rows(1))[0], seeds.random_rows(count)
+        given = [s for s in range(len(seeds.tables)) if s not in seeds.free]
+        rows = field.stack_rows([ys @ x, ys, *(seeds.seeds[s] for s in given)], self.n)
+        factor, images = self.images(rows)
+        made = []
+        owners = [(s, a) for s, allowed in enumerate(self.values) for a in range(allowed.nrows)]
+        for (s, a), m in zip(owners, images, strict=True):
+            moved = m.select(rows=range(count)) - m.select(rows=range(count, 2 * count)) @ x
+            rest = m.select(rows=range(2 * count, m.nrows))
+            if s in given:
+                place = field.unit(len(given), given.index(s)).T
+                rest = rest - place @ self.values[s].select(rows=[a]).scale(factor)
+            made.append(field.stack_rows([moved, rest], self.n))
+        return made
 
     def reduced(self, unknowns: Any) -> list[Any]:
         """For each seed s the values phi s, one row for each row of unknowns; combined so that they are small."""
@@ -200,32 +216,29 @@ class _Problem:
 
     def maps(self, values: list[Any]) -> tuple[Any, ...]:
         """The matrices phi, on columns, with multiples of the given values on the seeds (one row a map)."""
-        moved, weights = self.coordinates(self.field.identity(self.n))
+        _, moved, weights = self.seeds.coordinates(self.field.identity(self.n))
         totals = [self.field.zeros(self.n, self.n) for _ in range(values[0].nrows)]
         for s, images in enumerate(values):
-            direct = weights.select(columns=[s])
-            parts = self.brackets(images, moved[s]) if s < len(moved) else None
-            for i in range(len(totals)):
-                if parts is not None:
-                    totals[i] = totals[i] + parts[i]
-                if not direct.is_zero():
-                    totals[i] = totals[i] + direct @ images.select(rows=[i])
+            if s < len(moved):
+                parts = self.seeds.brackets(images, moved[s])
+                totals = [t + p for t, p in zip(totals, parts, strict=True)]
+            if s in self.seeds.free:
+                direct = weights.select(columns=[s])
+                totals = [t + direct @ images.select(rows=[i]) for i, t in enumerate(totals)]
         return tuple(t.T.primitive() for t in totals)
 
-    # -- proof -------------------------------------------------------------------------------------------
     def all_commute(self, maps: tuple[Any, ...]) -> bool:
         """Whether the maps commute with ad x for all x: it is enough that they do for generators of the algebra."""
-        for table in self._generating():
+        for table in self.seeds.generating():
             adjoint = table.T
             if not all((phi @ adjoint - adjoint @ phi).is_zero() for phi in maps):
                 return False
         return True
 
-    def _generating(self) -> list[Any]:
-        """The matrices [x, e_b] for x in a set that generates the algebra, which is proved."""
-        if len(self.seeds) <= FEW_GENERATORS:
-            span = self.field.stack_rows(self.seeds, self.n)
-            tables = self.ads(span)
-            if invariant_hull_rank(span, tables) == self.n:
-                return tables
-        return self.ads(self.field.identity(self.n))
+
+def _complement(center: Any, space: Any) -> Any:
+    """Rows of a space that are a complement of the centre in it; all rows where a prime does not show them."""
+    k = center.nrows
+    stacked = center.field.stack_rows([center, space], center.ncols)
+    chosen = [x - k for x in pivot_columns(stacked.modulo().transpose()) if x >= k]
+    return space.select(rows=chosen) if len(chosen) == space.nrows - k else space

@@ -14,7 +14,6 @@ from typing import Any
 
 from liehom.errors import InternalError, SingularError
 from liehom.scalars import Polynomial
-from liehom.scalars.modular import pivot_columns
 
 ATTEMPTS = 40
 
@@ -86,20 +85,27 @@ def semisimple_rank(maps: Sequence[Any]) -> int:
 
 
 def combinations(maps: Sequence[Any], rng: random.Random) -> Iterator[Any]:
-    """The matrices themselves, then random sums of them with growing small weights, `ATTEMPTS` of these."""
+    """The matrices themselves, then random sums of them with growing weights, `ATTEMPTS` of these."""
     yield from maps
     for attempt in range(ATTEMPTS):
-        size = 1 + attempt // 4
+        size = len(maps) * (1 + attempt // 2) // 2
         total = maps[0].scale(rng.randint(-size, size))
         for a in maps[1:]:
             total = total + a.scale(rng.randint(-size, size))
         yield total
 
 
-def independent(maps: Sequence[Any]) -> list[Any]:
-    """Members that are a basis of the span modulo a prime (of the span itself for nearly all primes)."""
+def are_independent(maps: Sequence[Any]) -> bool:
+    """Whether matrices of one shape are linearly independent.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> are_independent([QQ.identity(2), QQ.identity(2).scale(3)])
+    False
+    """
     if not maps:
-        return []
+        return True
     size = maps[0].nrows * maps[0].ncols
     flat = maps[0].field.stack_rows([a.reshape(1, size) for a in maps], size)
-    return [maps[i] for i in pivot_columns(flat.modulo().transpose())]
+    return bool(flat.rank() == len(maps))
