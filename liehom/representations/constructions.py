@@ -1,24 +1,26 @@
 """Representations made from a Lie algebra alone: defining, adjoint, coadjoint, trivial; conjugation on Sym(k).
 
 What is made from a representation (dual, sums, products, powers, restriction) are methods of `Representation`.
-Imports representation, induced, algebra.
+Imports representation, highest_weight, real_form_module, induced, algebra.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra import matrix_families as families
 from liehom.algebra.classical import classical_matrices, linear_algebra
 from liehom.algebra.closure import lie_closure
-from liehom.algebra.simple import exceptional_matrices
+from liehom.algebra.simple import exceptional_matrices, simple
 from liehom.errors import InputError, RepresentationError, ShapeError
+from liehom.representations.highest_weight import highest_weight_module
 from liehom.representations.induced import congruence_map, monomials
+from liehom.representations.real_form_module import real_module
 from liehom.representations.representation import Representation
-from liehom.scalars import QQ, Field
+from liehom.scalars import QQ, ExactField, Field
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
 _SO_STAR = re.compile(r"so\*\(([0-9]*[02468])\)")
@@ -50,6 +52,8 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     Notes
     -----
     The forms of f4 and e6 act on the Albert algebra of dimension 27; spin(p, q) acts on a real spin representation.
+    The exceptional algebras that `liehom.simple` makes without matrices have their modules of least dimension: e6(2),
+    e6(-14) and e6 on R^54, e7(7) and e7(-25) on R^56, e7(-5) and e7 on R^112, and the forms of e8 on themselves.
 
     Examples
     --------
@@ -60,6 +64,8 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     (4, True, 4)
     """
     name = algebra if isinstance(algebra, str) else algebra.name
+    if (least := _LEAST_MODULES.get((name or "").replace(" ", ""))) is not None:
+        return _of_algebra(least(), algebra)
     matrices = standard_matrices(name)
     size = int(matrices.shape[1])
     if isinstance(algebra, str) and not len(matrices):
@@ -68,13 +74,43 @@ def defining(algebra: LieAlgebra | str) -> Representation:
         made = lie_closure(matrices, close=False, name=name)
         # The constants are those of the commutators themselves.
         return Representation(made.algebra, made.matrices, name="defining", check=False)
-    convert, make = algebra.field.convert, algebra.field.from_entries
-    over = [make([convert(x) for x in a.ravel().tolist()], size, size) for a in matrices]
+    if isinstance(algebra.field, ExactField):
+        over = [algebra.field.from_integers(a.ravel().tolist(), size, size) for a in matrices]
+    else:
+        over = [algebra.field.from_entries([float(x) for x in a.ravel().tolist()], size, size) for a in matrices]
     if len(over) != algebra.dimension:
         raise RepresentationError(
             (0, 0), f"{algebra!r} does not have the dimension {len(over)} of the standard matrices of {name}"
         )
     return Representation(algebra, over, size=size, name="defining")
+
+
+def _of_algebra(rho: Representation, algebra: LieAlgebra | str) -> Representation:
+    """The same matrices for an equal algebra, which may be over a larger field."""
+    if isinstance(algebra, str):
+        return rho
+    made = rho if algebra.field == rho.field else rho.over(algebra.field)
+    if made.algebra != algebra:
+        raise RepresentationError((0, 0), f"{algebra!r} does not have the basis that liehom.simple gives it")
+    # the constants are those of the algebra that the matrices represent
+    return Representation(algebra, made.matrices, size=made.size, name=made.name, check=False)
+
+
+def _adjoint_of(type_name: str, form: str) -> Callable[[], Representation]:
+    return lambda: adjoint(simple(type_name, form))
+
+
+def _least_real_module(form: str, weight: Sequence[int]) -> Callable[[], Representation]:
+    return lambda: real_module(form, weight).representation
+
+
+# The exceptional forms without a family of matrices, in the bases of `liehom.simple`.
+_LEAST_MODULES: dict[str, Callable[[], Representation]] = {
+    **{name: _least_real_module(name, [1, 0, 0, 0, 0, 0]) for name in ("e6(2)", "e6(-14)", "e6")},
+    **{name: _least_real_module(name, [0, 0, 0, 0, 0, 0, 1]) for name in ("e7(-5)", "e7(-25)", "e7")},
+    "e7(7)": lambda: highest_weight_module("E7", [0, 0, 0, 0, 0, 0, 1]).representation,
+    **{name: _adjoint_of("E8", name) for name in ("e8(8)", "e8(-24)", "e8")},
+}
 
 
 def standard_matrices(name: str | None) -> Any:
@@ -112,10 +148,21 @@ def adjoint(algebra: LieAlgebra) -> Representation:
     >>> lh.adjoint(lh.so(3)).size
     3
     """
-    n = algebra.dimension
-    matrices = [algebra.ad(algebra.field.unit(n, i)) for i in range(n)]
     # ad [x, y] = [ad x, ad y] is the Jacobi identity, which the algebra has proved.
-    return Representation(algebra, matrices, size=n, name="adjoint", check=False)
+    return Representation(algebra, _adjoint_matrices(algebra), size=algebra.dimension, name="adjoint", check=False)
+
+
+def _adjoint_matrices(algebra: LieAlgebra) -> list[Any]:
+    n, over = algebra.dimension, algebra.field
+    if over != QQ:
+        return [algebra.ad(over.unit(n, i)) for i in range(n)]
+    table = algebra.table
+    made = [QQ.zeros(n, n) for _ in range(n)]
+    for (i, j), terms in table.by_pair().items():
+        (numerators,) = made[i].parts  # of a matrix that nobody else has seen: written to, entry by entry
+        for k, value in terms:
+            numerators[k, j] = value
+    return made if table.den == 1 else [a.scale(QQ.one / table.den) for a in made]
 
 
 def coadjoint(algebra: LieAlgebra) -> Representation:

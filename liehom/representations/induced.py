@@ -15,6 +15,7 @@ import numpy as np
 
 from liehom.errors import InputError
 from liehom.scalars import FloatField, FloatMatrix
+from liehom.scalars.placed_entries import matrix_of_places
 
 Term = tuple[tuple[int, int], tuple[int, int], int]
 
@@ -54,14 +55,14 @@ class EntryMap:
                 for at, factor in self._by_source.get(place, ()) if value else ():
                     array[at] += factor * value
             return FloatMatrix(field, array.reshape(m, m))
-        parts = []
+        tables: list[dict[int, int]] = []
         for part in matrix.parts:
-            out = [0] * (m * m)
+            table: dict[int, int] = {}
             for place, value in enumerate(part.entries()):
                 for at, factor in self._by_source.get(place, ()) if value else ():
-                    out[at] += factor * value
-            parts.append(out)
-        return field.from_parts(parts, m, m, matrix.den)
+                    table[at] = table.get(at, 0) + factor * value
+            tables.append(table)
+        return matrix_of_places(field, tables, m, m, matrix.den)
 
 
 def dual_map(n: int) -> EntryMap:
