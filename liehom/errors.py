@@ -62,6 +62,10 @@ class SeriesError(InputError):
     """A function cannot be expanded in a Taylor series: it branches on values or has no recurrence."""
 
 
+class TraceError(InputError):
+    """A step cannot be compiled: it branches on values, or uses a function that compiled code does not have."""
+
+
 class SingularError(LiehomError, ArithmeticError):
     """A linear system has no solution, or a matrix that should be invertible is singular."""
 

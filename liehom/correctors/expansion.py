@@ -263,6 +263,33 @@ def vanishing(flow: Flow, k: int) -> Any:
     return size <= NOISE * np.finfo(w.dtype).eps * terms / k
 
 
+def at_rest(action: Action, flow: Flow) -> Any:
+    """Whether w_1 of an autonomous field is zero up to round-off, from norms alone: `vanishing`, short.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m[..., ::-1] * [1, -1, 1])  # in g_m
+    >>> flow = flow_series(field, np.array([0.6, 0.0, 0.8]), 2)
+    >>> bool(at_rest(lh.Action(field.representation), flow))
+    True
+    """
+    w, m = flow.point(1), flow.point(0)
+    xp = namespace(w)
+    bound = (NOISE * float(np.finfo(w.dtype).eps) * action.size) ** 2
+    speed, size = xp.sum(w * w, axis=-1), xp.sum(m * m, axis=-1)
+    gram = xp.asarray(action.inner_product.matrix)
+
+    def square(x: Any) -> Any:
+        return xp.sum((x @ gram) * x, axis=-1)
+
+    still = speed <= bound * square(flow.psi(0)) * size
+    if flow.generator.order < 1:
+        return still
+    return still | (speed * speed <= bound * square(flow.psi(1)) * size * size)
+
+
 def _moved(xp: Any, flow: Flow, x: Any, m: Any) -> Any:
     """The largest coordinate of |rho(x)| |m|: what the coordinates of rho(x) m are rounded by."""
     columns = flow.field.infinitesimal(x[..., None, :], xp.eye(m.shape[-1], dtype=m.dtype))

@@ -236,11 +236,12 @@ def correct(
     for k in range(order + 1, tower.total + 1):
         tower.defects.append((k, norm(tower.xp, tower.difference(k))))
     reached = tower.xp.maximum(tower.levels, base_order)
+    leading = tower.leading if tower.moving is None else tower.xp.where(tower.moving, 1, 0)
     return Correction(
         tuple(tower.zeta.node.known[: order + 1]),
         tuple(tower.clock.coefficients[: order + 1]),
-        tower.leading,
-        tower.xp.where(tower.xp.asarray(tower.leading) == 0, order, reached),  # an equilibrium stays
+        leading,
+        tower.xp.where(leading == 0, order, reached),  # an equilibrium stays
         tower.residual,
         tuple(tower.defects),
         tuple(tower.parts),

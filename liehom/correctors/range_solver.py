@@ -17,7 +17,9 @@ from typing import Any, final
 import numpy as np
 
 from liehom.homogeneous import Action, IsotropyFrame
+from liehom.homogeneous.lazy_frame import decomposed
 from liehom.series.arrays import namespace
+from liehom.tracing.array import Traced
 
 RANK_RTOL = 1e-8
 REACHED_RTOL = 1e-7
@@ -141,6 +143,57 @@ class RangeSolver:
         return found
 
 
+@final
+class EvenRangeSolver:
+    """The same map where the orbits are even (`liehom.homogeneous.lazy_frame`): it always has a solution.
+
+    With w = w_l and mu of the evenness: c = -<w, r> / (l <w, w>), and zeta is the part in g_m of
+    G^-1 R^T (r + l c w) / (e mu <w, w>), R = [rho(e_1) w, ...].
+
+    Parameters
+    ----------
+    action : Action
+        With its `even` set.
+    m : array of shape (N,)
+    frame : IsotropyFrame
+    velocity : array of shape (N,)
+    leading : int
+    factor : float
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.homogeneous.lazy_frame import evenness
+    >>> from liehom.tracing import Tape, Traced
+    >>> action = lh.Action(lh.defining(lh.so(3)))
+    >>> action = action.on_even_orbits(evenness(action, np.eye(3), 2))
+    >>> tape = Tape()
+    >>> m, w, r = (Traced(tape, x) for x in ([0, 0, 1.0], [1.0, 0, 0], [0.25, 0.5, 0]))
+    >>> zeta, c, _ = EvenRangeSolver(action, m, action.isotropy_frame(m, 2), w, 1, 0.5).solve(r)
+    >>> float(c), [round(abs(float(x)), 12) for x in zeta]
+    (-0.25, [1.0, 0.0, 0.0])
+    """
+
+    def __init__(
+        self, action: Action, m: Any, frame: IsotropyFrame, velocity: Any, leading: int, factor: float
+    ) -> None:
+        xp = namespace(velocity)
+        square = xp.sum(velocity * velocity, axis=-1)
+        self._over = xp.where(square > 0, 1.0 / xp.where(square > 0, square, 1.0), 0.0)
+        self._action, self._m, self._frame, self._velocity = action, m, frame, velocity
+        self._leading, self._factor = leading, factor
+
+    def solve(self, right: Any) -> tuple[Any, Any, None]:
+        """zeta (dim g,), c and None for no residual."""
+        action, even, w = self._action, self._action.even, self._velocity
+        xp = namespace(right)
+        share = xp.sum(w * right, axis=-1) * self._over
+        across = right - share * w
+        turned = xp.swapaxes(action.infinitesimal.right(w), -1, -2) @ across
+        y = even.inverse @ turned * (self._over / (self._factor * even.isotropy))  # type: ignore[union-attr]
+        return y - self._frame.lift @ action.infinitesimal(y, self._m), -share / self._leading, None
+
+
 def _polished(basis: Any, gram: Any) -> Any:
     """A basis that is orthonormal to double precision, orthonormal to that of extended floats."""
     square = np.swapaxes(basis, -1, -2) @ gram @ basis
@@ -173,10 +226,13 @@ def _single(x: Any) -> Any:
     return x.astype(np.float64) if x.dtype == np.longdouble else x
 
 
-def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float) -> Any:
+def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float, rank: int | None = None) -> Any:
     """M^+ (..., s, d); for extended floats ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
     turned = xp.swapaxes(matrix, -1, -2)
     extended = matrix.dtype == np.longdouble
+    if type(matrix) is Traced:
+        found = decomposed(matrix, min(matrix.shape[-2:]) if rank is None else rank, cutoff)
+        return found.lift @ xp.swapaxes(found.image, -1, -2)
     if matrix.shape[-1] == 0:
         return matrix @ turned if extended else turned
     if matrix.shape[-1] == 1 and not extended:  # a column, as on every two-dimensional orbit of so(3)

@@ -13,12 +13,13 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.completion import generator_norm, isotropic_share, lifted
-from liehom.correctors.expansion import Clock, Flow, flow_series, leading_order, vanishing
-from liehom.correctors.range_solver import RangeSolver
+from liehom.correctors.expansion import Clock, Flow, at_rest, flow_series, leading_order, vanishing
+from liehom.correctors.range_solver import EvenRangeSolver, RangeSolver
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
-from liehom.series.arrays import is_jax, namespace
+from liehom.series.arrays import is_lazy, namespace
 from liehom.series.jet import Jet
+from liehom.tracing.array import Traced
 
 SOLVED_RTOL = 1e-6
 NOISE = 64
@@ -43,7 +44,7 @@ class Part:
 
     leading: int
     here: Any
-    solver: RangeSolver | None
+    solver: RangeSolver | EvenRangeSolver | None
     share: Any
 
 
@@ -95,12 +96,14 @@ class Tower:
         self.clock = Clock(self.flow, total, self.shape)
         self.frame: IsotropyFrame = action.isotropy_frame(m, orbit_dimension)
         # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
-        self.leading = np.ones(self.shape, dtype=int) if is_jax(m) else leading_order(self.flow, total)
+        self.leading = np.ones(self.shape, dtype=int) if is_lazy(m) else leading_order(self.flow, total)
         self.parts = self._split(0.5 if one_exponential else 1.0, weight)
         # None is all of them, which spares masks
         self.active: Any = None
-        if is_jax(m) and not field.time_dependent:
-            self.active = ~vanishing(self.flow, 1)
+        self.moving: Any = None
+        if is_lazy(m) and not field.time_dependent:
+            still = at_rest(action, self.flow) if type(m) is Traced else vanishing(self.flow, 1)
+            self.active = self.moving = ~still
         elif not field.time_dependent and not bool(np.all(self.leading)):
             self.active = self.leading > 0
         self.levels = 0 * self.xp.asarray(self.leading)
@@ -123,9 +126,13 @@ class Tower:
                     parts.append(Part(self.total + 1, here, None, None))
                 continue
             velocity = _masked(self.xp, here, self.flow.point(l))
-            solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
+            solver: RangeSolver | EvenRangeSolver
+            if self.action.even is not None and type(self.m) is Traced:
+                solver = EvenRangeSolver(self.action, self.m, self.frame, velocity, l, factor)
+            else:
+                solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
             share = isotropic_share(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
-            if share is not None and not is_jax(share) and bool(np.all(share == 1)):
+            if share is not None and not is_lazy(share) and bool(np.all(share == 1)):
                 share = None
             parts.append(Part(l, here, solver, share))
         return parts
@@ -166,10 +173,13 @@ class Tower:
     def _judge(self, n: int, here: Any, difference: Any, residual: Any) -> None:
         """Record the residual; where the system was not solved, the order stays and no more is corrected."""
         xp = self.xp
+        if residual is None:  # it always has a solution
+            self._reach(n, here)
+            return
         largest = xp.max(xp.abs(difference), axis=-1)
         scale = xp.where(largest > 0, largest, 1.0)
         relative = xp.max(xp.abs(residual), axis=-1) / scale
-        if is_jax(relative) or bool(np.any(relative > SOLVED_RTOL / 10)):
+        if is_lazy(relative) or bool(np.any(relative > SOLVED_RTOL / 10)):
             # scaled, so that squares do not underflow
             left = norm(xp, residual / scale[..., None])
             relative = left / xp.maximum(norm(xp, difference / scale[..., None]), 1.0)

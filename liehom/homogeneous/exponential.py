@@ -22,6 +22,7 @@ from liehom.series import recurrences
 from liehom.series.arrays import as_values, is_exact, is_jax
 from liehom.series.jet import Jet
 from liehom.series.lie_series import dexp_inverse, magnus, without_constant
+from liehom.tracing.array import Traced, exponential_action
 
 # up to this norm of rho(x) the series on the vector is cheaper than a matrix exponential of its precision
 MAX_NORM = 8.0
@@ -171,6 +172,8 @@ class SeriesExponential(TrueExponential):
         if is_exact(x) or is_exact(m):
             return exact_exponential(self.infinitesimal, x, m)
         matrix = self.infinitesimal.left(x)
+        if type(matrix) is Traced or type(m) is Traced:
+            return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m):
             return m + _times(expm1(matrix), m)
         if matrix.ndim == 2 and m.ndim == 1:
@@ -214,6 +217,8 @@ class MatrixExponential(TrueExponential):
         if is_exact(x) or is_exact(m):
             return exact_exponential(self.infinitesimal, x, m)
         matrix = self.infinitesimal.left(x)
+        if type(matrix) is Traced or type(m) is Traced:
+            return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m) or matrix.dtype == np.longdouble:
             return m + _times(expm1(matrix), m)
         from scipy.linalg import expm

@@ -17,7 +17,7 @@ from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.expression import FUNCTIONS as FUNCTIONS
 from liehom.homogeneous.expression import compiled
 from liehom.homogeneous.scope import Scope
-from liehom.series.arrays import as_values, is_exact, is_jax, is_traced, namespace, zeros
+from liehom.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.series.jet import Jet
 
 
@@ -257,10 +257,10 @@ def joined(made: Any, m: Any) -> Any:
     >>> joined([np.zeros(5), np.ones(5)], np.zeros((5, 3))).shape
     (5, 2)
     """
-    if isinstance(made, Jet) or is_jax(made):
+    if isinstance(made, Jet) or is_lazy(made):
         return made
     if isinstance(made, np.ndarray):
-        if made.dtype != object or not any(isinstance(x, Jet) or is_jax(x) for x in made.flat):
+        if made.dtype != object or not any(isinstance(x, Jet) or is_lazy(x) for x in made.flat):
             return made
         return _joined([joined(part, m) for part in made], 0) if made.ndim else made.item()
     if isinstance(made, list | tuple) and made:
@@ -275,11 +275,11 @@ def _joined(parts: list[Any], axis: int) -> Any:
     if any(isinstance(p, Jet) for p in parts):
         return np.stack([np.broadcast_to(p, shape) if p.shape != shape else p for p in map(_arrayed, parts)], axis=axis)
     xp = namespace(*parts)
-    return xp.stack([xp.broadcast_to(xp.asarray(p), shape) for p in parts], axis=axis)
+    return xp.stack([xp.broadcast_to(p if is_lazy(p) else xp.asarray(p), shape) for p in parts], axis=axis)
 
 
 def _arrayed(part: Any) -> Any:
-    return part if isinstance(part, Jet) or is_jax(part) else np.asarray(part)
+    return part if isinstance(part, Jet) or is_lazy(part) else np.asarray(part)
 
 
 def _stacked(parts: list[Any], m: Any) -> Any:
@@ -289,7 +289,7 @@ def _stacked(parts: list[Any], m: Any) -> Any:
         spread = [p if np.shape(p) == lead else np.broadcast_to(_arrayed(p), lead) for p in map(_arrayed, parts)]
         return np.stack(spread, axis=-1)
     value = m.value if isinstance(m, Jet) else m
-    if is_jax(value) or any(map(is_jax, parts)):
+    if is_lazy(value) or any(map(is_lazy, parts)):
         return _joined([*parts, namespace(value).zeros(lead)], -1)[..., :-1]
     if is_exact(value):
         out = np.empty((*lead, len(parts)), dtype=object)

@@ -17,9 +17,10 @@ from liehom.errors import ShapeError
 from liehom.representations import Representation
 from liehom.scalars import Field
 from liehom.series import recurrences
-from liehom.series.arrays import is_exact, is_jax, namespace
+from liehom.series.arrays import is_exact, is_lazy, namespace
 from liehom.series.bilinear import Bilinear
 from liehom.series.jet import Jet
+from liehom.tracing.array import Traced
 
 Entries = Iterable[tuple[int, int, int, Any]]
 
@@ -106,6 +107,12 @@ class FieldMap:
         return self._matrix(y, "right")
 
     def _matrix(self, x: Any, side: str) -> Any:
+        if type(x) is Traced:
+            count = self.shape[1] if side == "left" else self.shape[0]
+            columns = self._traced(
+                *((x[..., None, :], np.eye(count)) if side == "left" else (np.eye(count), x[..., None, :]))
+            )
+            return np.swapaxes(columns, -1, -2)
         if is_exact(x.value if isinstance(x, Jet) else x):
             return getattr(self._exactly(), side)(x)
         made = getattr(self._floating, side)(x)
@@ -117,6 +124,8 @@ class FieldMap:
                 return y.dot(x.dot(self._table).reshape(self.shape[1:]))
             matrix = (x @ self._table).reshape(*x.shape[:-1], *self.shape[1:])
             return np.einsum("...b,...bc->...c", y, matrix)
+        if type(x) is Traced or type(y) is Traced:
+            return self._traced(x, y)
         if is_exact(x) or is_exact(y):
             return self._exactly()(x, y)
         if self._table is not None:
@@ -127,6 +136,17 @@ class FieldMap:
             made = self._floating(x, y)
         extended = self._rest is not None and made.dtype == np.longdouble
         return made + self._rest(x, y) if extended and self._rest is not None else made
+
+    def _traced(self, x: Any, y: Any) -> Traced:
+        """One product for each entry that is not 0."""
+        tape = (x if type(x) is Traced else y).tape
+        left, right = Traced(tape, x).entries, Traced(tape, y).entries
+        lead = np.broadcast_shapes(left.shape[:-1], right.shape[:-1])
+        out = np.empty((*lead, self.shape[2]), dtype=object)
+        out.fill(tape.zero)
+        for i, j, k, value in self._entries:
+            out[..., k] = out[..., k] + left[..., i] * right[..., j] * self._field.to_float(value)
+        return Traced(tape, out)
 
     def _exactly(self) -> Bilinear:
         if not self._field.exact:
@@ -234,7 +254,7 @@ def bracket_map(representation: Representation) -> FieldMap:
 def _array(x: Any) -> Any:
     if type(x) is np.ndarray and x.dtype.kind == "f":
         return x
-    if is_jax(x):
+    if is_lazy(x):
         return x
     array = np.asarray(x)
     return array.astype(np.float64) if array.dtype.kind in "iub" else array

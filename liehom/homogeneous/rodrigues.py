@@ -18,6 +18,7 @@ from liehom.homogeneous.exponential import TrueExponential, exact_exponential
 from liehom.homogeneous.maps import FieldMap
 from liehom.representations import Representation
 from liehom.series.arrays import is_exact, namespace
+from liehom.tracing.array import Traced, special
 
 CUBIC_DIMENSION = 10
 RTOL = 1e-12
@@ -63,6 +64,9 @@ class Rodrigues(TrueExponential):
             return exact_exponential(self.infinitesimal, x, m)
         once = self.infinitesimal(x, m)
         q = self._form(x, x)
+        if type(q) is Traced:  # S(q) = S(q/4) C(q/4): no branches
+            sine = special("sinq", q / 4)
+            return m + (sine * special("cosq", q / 4) * once + 0.5 * sine * sine * self.infinitesimal(x, once))
         if q.shape == (1,) and type(q) is np.ndarray and q.dtype == np.float64 and -1e5 < q[0] < 1e15:
             whole, half = _sine_quotient_of(float(q[0])), _sine_quotient_of(float(q[0]) / 4)
         else:

@@ -6,6 +6,7 @@ point the isotropy subalgebra in an orthonormal basis.  Imports exponential, inn
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -14,10 +15,12 @@ import numpy as np
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.exponential import Exponential
 from liehom.homogeneous.inner_product import InnerProduct, inner_product
+from liehom.homogeneous.lazy_frame import Evenness, decomposed
 from liehom.homogeneous.maps import action_map, bracket_map
 from liehom.homogeneous.own_exponential import exponential_of
 from liehom.representations import Representation
 from liehom.series.arrays import namespace
+from liehom.tracing.array import Traced
 
 
 @final
@@ -46,7 +49,16 @@ class Action:
     1.0
     """
 
-    __slots__ = ("_basis", "_size", "bracket", "exponential", "infinitesimal", "inner_product", "representation")
+    __slots__ = (
+        "_basis",
+        "_size",
+        "bracket",
+        "even",
+        "exponential",
+        "infinitesimal",
+        "inner_product",
+        "representation",
+    )
 
     def __init__(self, representation: Representation, exponential: Any = "exp") -> None:
         if not isinstance(representation, Representation):
@@ -59,6 +71,7 @@ class Action:
         self._basis = self.inner_product.orthonormal_basis()
         shape = (representation.algebra.dimension, representation.size**2)
         tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(shape)
+        self.even: Evenness | None = None
         self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
 
     @property
@@ -102,6 +115,8 @@ class Action:
         >>> lh.Action(lh.defining(lh.so(3))).isotropy_frame(np.array([0, 0, 1.0]), 2).basis.shape
         (3, 1)
         """
+        if type(m) is Traced:
+            return self._lazy_frame(m, int(np.max(orbit_dimension)))
         xp = namespace(m)
         columns = self.infinitesimal.right(m) @ self._basis
         extended = columns.dtype == np.longdouble
@@ -119,6 +134,25 @@ class Action:
         if extended:
             kernel, tangent, lift = _refined(columns, kernel, tangent, lift)
         return IsotropyFrame(self._basis @ kernel, tangent, self._basis @ lift, rank)
+
+    def on_even_orbits(self, even: Evenness | None) -> Action:
+        """This action, where lazy arrays of points are known to be on orbits with these properties."""
+        made = copy(self)
+        made.even = even
+        return made
+
+    def _lazy_frame(self, m: Any, rank: int) -> IsotropyFrame:
+        """The projector on g_m in place of a basis, of which only the range matters."""
+        xp = namespace(m)
+        columns = self.infinitesimal.right(m)
+        if self.even is not None:
+            over = rank / (m @ (self.even.trace @ m))
+            lift = self.even.inverse @ xp.swapaxes(columns, -1, -2) * over
+            return IsotropyFrame(np.eye(self.dimension) - lift @ columns, np.eye(m.shape[-1]), lift, np.asarray(rank))
+        columns = columns @ xp.asarray(self._basis)
+        found = decomposed(columns, rank)
+        kernel = np.eye(self.dimension) - found.rows @ xp.swapaxes(found.rows, -1, -2)
+        return IsotropyFrame(self._basis @ kernel, found.image, self._basis @ found.lift, np.asarray(rank))
 
     def __repr__(self) -> str:
         return f"<action by {self.exponential.name} of {self.representation!r}>"

@@ -1,7 +1,7 @@
 """integrate: trajectories of a generator field, in the manner of scipy's solve_ivp.
 
 The door checks what comes in; the work is in `run.py`.
-Imports checkpoint, options, run, solution, steps, correctors, homogeneous, errors.
+Imports checkpoint, compiled, options, run, solution, steps, correctors, homogeneous, errors.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.field import check_point
 from liehom.integrators.checkpoint import checked_path
+from liehom.integrators.compiled import compiled_steps
 from liehom.integrators.options import Options
 from liehom.integrators.points import points_of
 from liehom.integrators.run import Run
@@ -46,6 +47,7 @@ def integrate(
     progress: bool | Callable[[float], Any] = False,
     checkpoint: str | os.PathLike[str] | None = None,
     checkpoint_every: float = 30.0,
+    compile: str | None = None,
 ) -> Solution:
     """Integrate m' = rho(psi(m, t)) m, staying on the orbit of the start.
 
@@ -91,6 +93,8 @@ def integrate(
         error ends the run; a run that finds it continues from it, bit for bit, and deletes it when it is done.
     checkpoint_every : float
         Seconds between two checkpoints.
+    compile : "numba", optional
+        Compile the step (extra ``numba``): see Notes. Fixed steps only.
 
     Returns
     -------
@@ -103,6 +107,8 @@ def integrate(
         If the start, psi at the start, or an option is not right; TangencyError if a field X is not tangent.
     SeriesError
         If the step expands psi, and psi branches on values: `RKMK` only calls it.
+    TraceError
+        With `compile`, if the step cannot be compiled; says why.
     FormatError
         If the file at `checkpoint` is not a checkpoint, or is damaged.
 
@@ -118,6 +124,11 @@ def integrate(
     A trajectory that cannot go on (psi is not finite, steps below round-off, a clock that does not run, an implicit
     step without a solution, `max_steps`) ends with status -1 and what was computed up to there; the others of an
     ensemble go on, and `statuses` and `message` say which ended and when.
+
+    With ``compile`` the step is traced once, with everything that derives it, and becomes machine code, which is kept
+    on disk. It makes the plain steps; the first one, the last one, those that pass a time of `t_eval` and those of a
+    trajectory that fails are made as without it. The results agree to round-off, and psi must be the same
+    function all the time: it is called while the step is traced, not in the steps.
 
     Examples
     --------
@@ -161,6 +172,8 @@ def integrate(
     # what is not finite is noticed, and ends a trajectory with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
+        if compile is not None:
+            run.ahead = compiled_steps(run, compile)
         return run.execute(progress, path)
 
 

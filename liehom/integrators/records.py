@@ -1,4 +1,4 @@
-"""What a run keeps: points at every step or at requested times, events, and the corrector's account.
+"""What a run keeps besides its path: points at requested times, events, and the corrector's account.
 
 Each has its state as named arrays, for checkpoints.
 Imports conservation_account, solution, correctors.
@@ -20,67 +20,6 @@ from liehom.integrators.conservation_account import ConservationAccount
 from liehom.integrators.solution import Report
 
 NO_RANK = int(np.iinfo(np.int64).max)
-
-
-@final
-class Path:
-    """The points after every step, of one trajectory or an ensemble of which not all move in every step.
-
-    Parameters
-    ----------
-    t : array of shape (...,)
-    m : array of shape (..., N)
-
-    Examples
-    --------
-    >>> path = Path(np.zeros(2), np.zeros((2, 3)))
-    >>> path.add(np.array([0.0, 0.5]), np.ones((2, 3)), np.array([0.0, 0.5]), np.array([False, True]))
-    >>> times, points, sizes = path.compact()
-    >>> times.tolist(), points.shape, sizes.tolist()
-    ([[0.0, 0.0], [nan, 0.5]], (2, 2, 3), [[0.0, 0.5]])
-    """
-
-    def __init__(self, t: Any, m: Any) -> None:
-        self.times, self.points, self.sizes = [t], [m], [np.zeros_like(t)]
-        self.moved = [np.ones(t.shape, dtype=bool)]
-
-    def __len__(self) -> int:
-        return len(self.times)
-
-    def add(self, t: Any, m: Any, h: Any, moved: Any) -> None:
-        """A step of sizes h to (t, m), where trajectories moved."""
-        self.times.append(t)
-        self.points.append(m)
-        self.sizes.append(h)
-        self.moved.append(moved)
-
-    def cut(self, length: int) -> None:
-        """Forget what was added after the first `length` entries."""
-        del self.times[length:], self.points[length:], self.sizes[length:], self.moved[length:]
-
-    def compact(self) -> tuple[Any, Any, Any]:
-        """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...), each trajectory from its start without gaps.
-
-        Filled up with NaN (sizes with 0) to the largest number of steps.
-        """
-        times, points, sizes = np.stack(self.times), np.stack(self.points), np.stack(self.sizes)
-        moved = np.stack(self.moved)
-        if not bool(moved.all()):
-            order = np.argsort(~moved, axis=0, kind="stable")[: int(moved.sum(axis=0).max(initial=1))]
-            moved = np.take_along_axis(moved, order, axis=0)
-            times = np.where(moved, np.take_along_axis(times, order, axis=0), np.nan)
-            sizes = np.where(moved, np.take_along_axis(sizes, order, axis=0), 0)
-            points = np.where(moved[..., None], np.take_along_axis(points, order[..., None], axis=0), np.nan)
-        return times, points, sizes[1:]
-
-    def arrays(self) -> dict[str, Any]:
-        """The state, for a checkpoint."""
-        return {name: np.stack(getattr(self, name)) for name in ("times", "points", "sizes", "moved")}
-
-    def restore(self, arrays: dict[str, Any]) -> None:
-        """Take a state back."""
-        for name in ("times", "points", "sizes", "moved"):
-            setattr(self, name, list(arrays[name]))
 
 
 @final
@@ -141,6 +80,22 @@ class Account:
             self._note_where(np.where(lower, singular, np.inf), t, m)
             seen["singular"] = np.where(lower, singular, seen["singular"])
         self._seen = seen
+
+    def add_compiled(self, lanes: Any, extra: Any) -> None:
+        """Take in what compiled steps summed up, for some lanes of the flattened ensemble.
+
+        Parameters
+        ----------
+        lanes : array of int
+        extra : array of shape (4, L)
+            The largest residual and number of orders missed, and how many steps missed the order or were at equilibria.
+        """
+        seen = {name: np.array(x).reshape(-1) for name, x in self._seen.items()}
+        seen["residual"][lanes] = np.maximum(seen["residual"][lanes], extra[0])
+        seen["reached"][lanes] = np.minimum(seen["reached"][lanes], self._wanted - extra[1].astype(int))
+        seen["failed"][lanes] += extra[2].astype(int)
+        seen["equilibria"][lanes] += extra[3].astype(int)
+        self._seen = {name: x.reshape(np.shape(self._seen[name])) for name, x in seen.items()}
 
     def _note_where(self, lowest: Any, t: Any, m: Any) -> None:
         """Where the smallest singular value of all trajectories was met."""

@@ -2,7 +2,8 @@
 
 All trajectories are stepped together, each with its own time, clock and step size.  One that has ended takes steps of
 size 0 from its start, where psi is known to be finite.
-Imports checkpoint, clock, control, dense, events, options, progress, records, solution, state, correctors,
+With compiled code, runs of plain steps are made ahead by it, and the steps between them here.
+Imports checkpoint, clock, control, dense, events, options, path, progress, records, solution, state, correctors,
 series, errors.
 """
 
@@ -50,8 +51,9 @@ from liehom.integrators.options import (
     TOO_SMALL,
     Options,
 )
+from liehom.integrators.path import Path
 from liehom.integrators.progress import Progress
-from liehom.integrators.records import Account, Found, Path, Samples
+from liehom.integrators.records import Account, Found, Samples
 from liehom.integrators.solution import Solution
 from liehom.series.jet import Jet
 
@@ -116,6 +118,7 @@ class Run:
             self.samples = Samples(options.t_eval, start.shape, self.dtype, float(self.direction))
             self.samples.start(span[0], start)
         self.path = Path(self.t, self.m)
+        self.ahead: Callable[[Run], None] | None = None
         self.keeps = options.t_eval is None or options.dense_output
 
     def _counted(self, field: GeneratorField) -> GeneratorField:
@@ -141,6 +144,8 @@ class Run:
             if path is None:
                 while self.active.any():
                     self.advance()
+                    if self.ahead is not None:
+                        self.ahead(self)
                     progress.update(self._fraction)
             else:
                 self._execute_with_checkpoints(progress, path)
@@ -159,6 +164,9 @@ class Run:
             while self.active.any():
                 mark = state.mark(self)
                 self.advance()
+                if self.ahead is not None:
+                    mark = state.mark(self)
+                    self.ahead(self)
                 progress.update(self._fraction)
                 if wall.monotonic() >= due:
                     begin = wall.monotonic()

@@ -2,7 +2,8 @@
 
 `namespace` gives the module whose functions fit an array, `elementary` applies a function such as ``exp`` to the
 values of an array: numerically, or exactly to objects (sympy expressions; field elements where the value is in
-the field), and says so where it cannot.  JAX is never imported, only recognised.  Imports errors.
+the field), and says so where it cannot.  JAX is never imported, only recognised; traced arrays are of `liehom.tracing`
+and are handled by numpy's own functions.  Imports tracing, errors.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import flint
 import numpy as np
 
 from liehom.errors import FieldError, SeriesError, SingularError
+from liehom.tracing.array import Traced
 
 # the values at 0 that stay in every field; at other arguments these functions leave QQ
 _AT_ZERO = {
@@ -39,8 +41,20 @@ def is_jax(x: Any) -> bool:
     return module.startswith(("jax", "jaxlib"))
 
 
+def is_lazy(x: Any) -> bool:
+    """Whether x is an array whose values may not be looked at: of JAX, or traced to be compiled.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> is_lazy(np.zeros(2))
+    False
+    """
+    return type(x) is Traced or is_jax(x)
+
+
 def is_traced(x: Any) -> bool:
-    """Whether x stands for a value that is not known yet, inside ``jax.jit`` or ``jax.grad``.
+    """Whether x stands for a value that is not known yet, inside ``jax.jit``, ``jax.grad`` or a trace of our own.
 
     Examples
     --------
@@ -48,7 +62,7 @@ def is_traced(x: Any) -> bool:
     >>> is_traced(np.zeros(2))
     False
     """
-    return is_jax(x) and isinstance(x, sys.modules["jax"].core.Tracer)
+    return type(x) is Traced or (is_jax(x) and isinstance(x, sys.modules["jax"].core.Tracer))
 
 
 def is_exact(x: Any) -> bool:
@@ -90,7 +104,7 @@ def as_values(x: Any) -> Any:
     >>> as_values([1, 2]).dtype, as_values([Fraction(1, 2), 3])[1]
     (dtype('float64'), Fraction(3, 1))
     """
-    if is_jax(x):
+    if is_lazy(x):
         return x if x.dtype.kind not in "iub" else x.astype(float)
     array = np.asarray(x)
     if array.dtype.kind in "fc":
@@ -141,7 +155,7 @@ def beside(like: Any, value: Any) -> Any:
     >>> beside(np.ones(2, dtype=np.float32), 0.5).dtype
     dtype('float32')
     """
-    if is_jax(value):
+    if is_lazy(value):
         return as_values(value)
     dtype = getattr(like, "dtype", np.dtype(object))
     if dtype.kind == "O":
@@ -182,7 +196,7 @@ def zeros(like: Any, shape: tuple[int, ...]) -> Any:
     >>> zeros(np.ones(2, dtype=np.float32), (1,)).dtype
     dtype('float32')
     """
-    if is_jax(like):
+    if is_lazy(like):
         return namespace(like).zeros(shape, dtype=like.dtype)
     dtype = np.asarray(like).dtype
     if dtype.kind != "O":
@@ -207,7 +221,7 @@ def elementary(name: str, x: Any) -> Any:
     >>> elementary("exp", np.zeros(2))
     array([1., 1.])
     """
-    if is_jax(x):
+    if is_lazy(x):
         return getattr(namespace(x), name)(x)
     array = np.asarray(x)
     if array.dtype.kind != "O":
@@ -297,7 +311,7 @@ def solve(a: Any, b: Any) -> Any:
     >>> solve(np.array([[Fraction(2)]]), np.array([[Fraction(1)]]))
     array([[Fraction(1, 2)]], dtype=object)
     """
-    if is_jax(a) or is_jax(b):
+    if is_lazy(a) or is_lazy(b):
         return namespace(a, b).linalg.solve(a, b)
     dtype = np.result_type(a, b)
     if dtype.char not in "gGO":

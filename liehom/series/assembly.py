@@ -13,7 +13,7 @@ import numpy as np
 
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import beside, is_exact, is_jax, namespace
+from liehom.series.arrays import beside, is_exact, is_lazy, namespace
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 
@@ -99,7 +99,7 @@ def _array(parts: list[Any], shape: tuple[int, ...]) -> Any:
 
 def _plain(x: Any) -> Any:
     """An array; numpy must not look into the values of JAX arrays in a list."""
-    if isinstance(x, list | tuple) and any(is_jax(entry) for entry in x):
+    if isinstance(x, list | tuple) and any(is_lazy(entry) for entry in x):
         return namespace(*x).stack([namespace(*x).asarray(entry) for entry in x])
     return x
 
@@ -130,7 +130,7 @@ def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
         return found
     order = min(node.order for node in found)
     kind = found[0].value if like is None else like.node.value
-    kind = next((node.value for node in found if is_exact(np.asarray(node.value))), kind) if not is_jax(kind) else kind
+    kind = next((node.value for node in found if is_exact(np.asarray(node.value))), kind) if not is_lazy(kind) else kind
     return [x.node if type(x) is Jet else recurrences.constant(beside(kind, x), order) for x in made]
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
-from liehom.series.arrays import is_jax, namespace, solve, zeros
+from liehom.series.arrays import is_lazy, namespace, solve, zeros
 from liehom.series.assembly import as_jet, holds_jets, nodes
 from liehom.series.jet import Jet
 from liehom.series.jet_ufuncs import bilinear, fresh, refused, twin
@@ -337,7 +337,7 @@ def _full_like(a: Any, fill_value: Any, dtype: Any = None, **options: Any) -> Je
 def _where(condition: Any, x: Any = None, y: Any = None) -> Jet:
     if holds_jets(condition):
         raise refused("np.where with a condition on a series")
-    mask = condition if is_jax(condition) else np.array(condition)
+    mask = condition if is_lazy(condition) else np.array(condition)
     return fresh(recurrences.linear(lambda a, b: namespace(mask, a, b).where(mask, a, b), nodes(x, y)))
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
-from liehom.series.arrays import is_jax, namespace
+from liehom.series.arrays import is_jax, is_lazy, namespace
 from liehom.series.node import Node
 
 
@@ -123,6 +123,10 @@ def _replaced(whole: Any, key: Any, part: Any) -> Any:
     if is_jax(whole) or is_jax(part):
         xp = namespace(whole, part)
         return xp.asarray(whole, dtype=xp.result_type(whole, part)).at[key].set(part)
+    if is_lazy(whole) or is_lazy(part):
+        made = (whole + 0.0 * part if is_lazy(part) and not is_lazy(whole) else whole).copy()
+        made[key] = part
+        return made
     out = np.array(whole, dtype=np.result_type(whole, part))
     out[key] = part
     return out

@@ -1,0 +1,218 @@
+"""Runs of plain steps made ahead by compiled code; what is not plain is left to the run itself.
+
+The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
+before a time of t_eval, and before a step that fails in any way.  Imports options, run, traced_step, tracing, errors.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from liehom.errors import InputError
+from liehom.integrators.traced_step import traced_step
+from liehom.tracing import Kernel, StepGraph, padded
+
+if TYPE_CHECKING:
+    from liehom.integrators.run import Run
+
+BACKENDS = ("numba",)
+WIDTH, NARROW = 16, 8
+PATH_BYTES = 64_000_000
+BREATH = 20_000_000
+"""Steps of lanes between two looks at progress, checkpoints and interruptions."""
+SHARED = 50_000
+"""From so many steps of lanes on, threads share the blocks."""
+
+
+def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
+    """What makes the plain steps of a run ahead.
+
+    Parameters
+    ----------
+    run : Run
+    backend : str
+
+    Raises
+    ------
+    InputError
+        If the backend is unknown, or the run has something that is not compiled.
+    TraceError
+        If the step is not compiled.
+    """
+    if backend not in BACKENDS:
+        raise InputError(f"compile is {backend!r}, expected one of {', '.join(map(repr, BACKENDS))}, or None")
+    if run.options.dt is None:
+        raise InputError(f"compile={backend!r} takes fixed steps: give dt, or integrate without compile=")
+    if run.events is not None:
+        raise InputError(f"compile={backend!r} does not look for events: integrate without compile=")
+    if run.dtype != np.float64:
+        raise InputError(f"compile={backend!r} computes in float64, the start is of type {run.dtype}")
+    dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
+    points = run.start.reshape(-1, run.start.shape[-1])
+    groups = []
+    for d in np.unique(dimensions):
+        lanes = np.flatnonzero(dimensions == d)
+        graph = traced_step(run.action, run.field, run.step, points[lanes], int(d), nominal=run.options.nominal)
+        groups.append(Group(graph, lanes))
+    return Compiled(groups)
+
+
+@final
+class Group:
+    """The lanes with orbits of one dimension, and their kernel.
+
+    Parameters
+    ----------
+    graph : StepGraph
+    lanes : array of int
+        Places in the flattened ensemble.
+    """
+
+    def __init__(self, graph: StepGraph, lanes: Any) -> None:
+        self.graph, self.lanes = graph, lanes
+        self.width = 1 if len(lanes) < NARROW // 2 else NARROW if len(lanes) < 4 * WIDTH else WIDTH
+        self.kernel = Kernel(graph, self.width)
+        self.blocks = padded(len(lanes), self.width) // self.width
+
+    def packed(self, values: Any, fill: float = 0.0) -> Any:
+        """Values (..., L of the ensemble) of these lanes, in whole blocks."""
+        count = self.blocks * self.width
+        if len(self.lanes) == values.shape[-1] == count:
+            return np.array(values, dtype=np.float64, order="C")
+        out = np.full((*values.shape[:-1], count), fill)
+        out[..., : len(self.lanes)] = values[..., self.lanes]
+        return out
+
+    def run(self, arrays: list[Any], steps: int, origin: float, direction: float) -> None:
+        """Step all blocks, in threads where that is worth while."""
+        count = self.blocks * self.width
+        workers = min(_cores(), self.blocks) if count * steps >= SHARED else 1
+        if workers == 1:
+            self.kernel(arrays, count, (0, self.blocks), steps, (origin, direction))
+            return
+        cuts = np.linspace(0, self.blocks, 4 * workers + 1 if self.blocks >= 8 * workers else workers + 1).astype(int)
+        with ThreadPoolExecutor(workers) as pool:
+            jobs = [
+                pool.submit(self.kernel, arrays, count, (int(a), int(b)), steps, (origin, direction))
+                for a, b in pairwise(cuts)
+                if b > a
+            ]
+            for job in jobs:
+                job.result()
+
+
+@final
+class Compiled:
+    """The plain steps of a run, made ahead after every step of its own.
+
+    Parameters
+    ----------
+    groups : list of Group
+    """
+
+    def __init__(self, groups: list[Group]) -> None:
+        self.groups = groups
+        self._calls: int | None = None
+
+    def __call__(self, run: Run) -> None:
+        """Make plain steps until every trajectory rests, or for a while."""
+        if self._calls is None:  # of psi, in the step that the run has made
+            self._calls = run.calls
+        lanes = int(np.prod(run.shape, dtype=int))
+        steps = min(int(run.options.max_steps) - 1 - int(np.max(run.taken)), max(1, BREATH // lanes))
+        if run.keeps:
+            steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 1))))
+        if steps < 1 or not run.active.any():
+            return
+        state = _State(run)
+        for group in self.groups:
+            state.step(group, steps)
+        state.hand_back(self._calls)
+
+
+class _State:
+    """The lanes of a run as rows, while kernels change them."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        size = run.start.shape[-1]
+        self.m = run.m.reshape(-1, size).T.astype(np.float64, order="C", copy=True)
+        self.t = np.array(run.t, dtype=np.float64).reshape(-1)
+        self.h = (run.direction * np.broadcast_to(run.options.dt, run.shape)).reshape(-1)
+        self.limit = np.full(self.t.shape, float(run.end))
+        if run.samples is not None and len(run.samples.times):
+            done, times = run.samples.done.reshape(-1), run.samples.times
+            ahead = times[np.minimum(done, len(times) - 1)]
+            self.limit = np.where(done < len(times), ahead, self.limit)
+        self.alive = run.active.reshape(-1).astype(np.float64)
+        self.before = run.taken.reshape(-1).astype(np.float64)
+        self.count = self.before.copy()
+        self.paths: list[tuple[Any, Any, Any]] = []
+        self.accounts: list[tuple[Any, Any]] = []
+
+    def step(self, group: Group, steps: int) -> None:
+        """Let a kernel step its lanes."""
+        run, graph, lanes = self.run, group.graph, group.lanes
+        m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
+        fixed = [group.packed(x) for x in (self.h, self.limit)]
+        alive = group.packed(self.alive)
+        extra = np.zeros((max(1, len(graph.largest) + len(graph.summed)), m.shape[-1]))
+        path = path_t = None
+        if run.keeps:
+            path, path_t = np.empty((steps, *m.shape)), np.empty((steps, m.shape[-1]))
+        group.run([m, t, *fixed, count, alive, extra, path, path_t], steps, float(run.span[0]), float(run.direction))
+        used = slice(0, len(lanes))
+        self.m[:, lanes], self.t[lanes], self.count[lanes] = m[:, used], t[used], count[used]
+        if path is not None and path_t is not None:
+            made = int((self.count[lanes] - self.before[lanes]).max(initial=0))
+            self.paths.append((lanes, path[:made, :, used], path_t[:made, used]))
+        if graph.largest:
+            self.accounts.append((lanes, extra[:, used]))
+
+    def hand_back(self, calls: int) -> None:
+        """The new state of the run."""
+        run, shape = self.run, self.run.shape
+        new = (self.count - self.before).astype(int)
+        most = int(new.max(initial=0))
+        if most == 0:
+            return
+        run.m = self.m.T.copy().reshape(run.start.shape)
+        run.t = self.t.reshape(shape) if shape else np.asarray(self.t[0])
+        run.taken = run.taken + new.reshape(shape)
+        run.calls += calls * most
+        for lanes, extra in self.accounts:
+            run.account.add_compiled(lanes, extra)
+        if run.keeps:
+            self._keep(new, most)
+
+    def _keep(self, new: Any, most: int) -> None:
+        run, shape = self.run, self.run.shape
+        moved = np.arange(most)[:, None] < new
+        if len(self.paths) == 1 and len(self.paths[0][0]) == len(new):
+            points, times = np.swapaxes(self.paths[0][1], 1, 2), self.paths[0][2]
+        else:
+            points, times = np.zeros((most, len(new), run.start.shape[-1])), np.zeros((most, len(new)))
+            for lanes, path, path_t in self.paths:
+                points[: len(path), lanes] = np.swapaxes(path, 1, 2)
+                times[: len(path_t), lanes] = path_t
+        sizes = np.where(moved, self.h, 0.0)
+        run.path.extend(
+            times.reshape(most, *shape),
+            points.reshape(most, *run.start.shape),
+            sizes.reshape(most, *shape),
+            moved.reshape(most, *shape),
+        )
+
+
+def _cores() -> int:
+    """How many threads may run at once."""
+    given = os.environ.get("LIEHOM_NUM_THREADS")
+    if given and given.isdigit() and int(given) > 0:
+        return int(given)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

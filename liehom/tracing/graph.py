@@ -1,0 +1,417 @@
+"""A graph of scalar operations, recorded as numbers are computed: equal ones are one, constants are folded.
+
+An `Expr` stands for a number that is not known yet; arithmetic on it appends to its `Tape`.  What is recorded is
+simplified as it is recorded: products with 0 and 1, terms that cancel in a sum, quotients by the same divisor.
+Imports errors.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, final
+
+from liehom.errors import TraceError
+
+COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
+LONGEST = 10
+"""Sums of so many terms at most are searched for terms that cancel."""
+NEAR = 4e-16
+
+FOLDED: dict[str, Callable[..., float]] = {
+    "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log,
+    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh, "arcsin": math.asin, "arccos": math.acos,
+    "arctan": math.atan, "arcsinh": math.asinh, "arccosh": math.acosh, "arctanh": math.atanh, "expm1": math.expm1,
+    "log1p": math.log1p, "log2": math.log2, "log10": math.log10, "exp2": math.exp2, "cbrt": math.cbrt,
+    "arctan2": math.atan2, "pow": math.pow, "abs": abs,
+    "sinq": lambda q: (cmath.sin(cmath.sqrt(q)) / cmath.sqrt(q)).real if q else 1.0,
+    "cosq": lambda q: cmath.cos(cmath.sqrt(q)).real,
+}  # fmt: skip
+BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not"])
+
+
+@final
+class Expr:
+    """A number, or a truth value, on a tape.
+
+    Attributes
+    ----------
+    tape : Tape
+    op : str
+        "const", "input", "add", ..., "get" for one of the results of a block.
+    args : tuple of Expr
+    value : float, int, str or None
+        Of a constant; the index of an input or result; the block of a result.
+    place : int
+        Its number on the tape; arguments have smaller ones.
+    """
+
+    __slots__ = ("args", "op", "place", "tape", "terms", "value")
+
+    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Any, place: int) -> None:
+        self.tape, self.op, self.args, self.value, self.place = tape, op, args, value, place
+        self.terms: Any = None
+
+    @property
+    def constant(self) -> bool:
+        """Whether the number is known."""
+        return self.op == "const"
+
+    @property
+    def boolean(self) -> bool:
+        """Whether it is a truth value."""
+        return self.op in BOOLEAN or (self.constant and isinstance(self.value, bool))
+
+    def __add__(self, other: Any) -> Expr:
+        return self.tape.add(self, self.tape.of(other))
+
+    def __sub__(self, other: Any) -> Expr:
+        return self.tape.sub(self, self.tape.of(other))
+
+    def __mul__(self, other: Any) -> Expr:
+        return self.tape.mul(self, self.tape.of(other))
+
+    def __truediv__(self, other: Any) -> Expr:
+        return self.tape.div(self, self.tape.of(other))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __rsub__(self, other: Any) -> Expr:
+        return self.tape.sub(self.tape.of(other), self)
+
+    def __rtruediv__(self, other: Any) -> Expr:
+        return self.tape.div(self.tape.of(other), self)
+
+    def __neg__(self) -> Expr:
+        return self.tape.neg(self)
+
+    def __pos__(self) -> Expr:
+        return self
+
+    def __pow__(self, other: Any) -> Expr:
+        return self.tape.power(self, self.tape.of(other))
+
+    def __rpow__(self, other: Any) -> Expr:
+        return self.tape.power(self.tape.of(other), self)
+
+    def conjugate(self) -> Expr:
+        """Itself: numbers are real."""
+        return self
+
+    def __bool__(self) -> bool:
+        if self.constant:
+            return bool(self.value)
+        raise TraceError(
+            "the step branches on the value of a number (`if`, `while`, `and`, a comparison used as an index), which "
+            "compiled code does not know: write np.where, or integrate without compile="
+        )
+
+    def __float__(self) -> float:
+        if self.constant:
+            return float(self.value)
+        raise TraceError(
+            "the step makes a plain float of a number that compiled code does not know yet (math.sin, float(), an "
+            "entry of a float array): use numpy's functions and np.stack, or integrate without compile="
+        )
+
+    __int__ = __index__ = __complex__ = __float__
+
+    def __repr__(self) -> str:
+        return repr(self.value) if self.constant else f"<{self.op} {self.place}>"
+
+
+@final
+class Tape:
+    """The numbers of one trace, in the order in which they were made.
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, y = tape.input(0), tape.input(1)
+    >>> (x * y + 0.0) is (y * x), ((x + y) - y) is x, tape.of(2.0) * 3.0
+    (True, True, 6.0)
+    """
+
+    def __init__(self) -> None:
+        self.made: list[Expr] = []
+        self._known: dict[tuple[Any, ...], Expr] = {}
+        self.zero, self.one = self.constant(0.0), self.constant(1.0)
+        self.false, self.true = self.constant(False), self.constant(True)
+
+    # -- making numbers ----------------------------------------------------------------------------------
+    def constant(self, value: float) -> Expr:
+        """A known number or truth value."""
+        return self._make("const", (), value, (type(value), value, math.copysign(1.0, value)))
+
+    def input(self, index: int) -> Expr:
+        """A number that is given when the code runs."""
+        return self._make("input", (), index)
+
+    def of(self, x: Any) -> Expr:
+        """A number as an Expr.
+
+        Raises
+        ------
+        TraceError
+            If it is no real number.
+        """
+        if isinstance(x, Expr):
+            return x
+        if isinstance(x, bool) or type(x).__name__ in ("bool", "bool_"):
+            return self.true if x else self.false
+        try:
+            return self.constant(float(x))
+        except (TypeError, ValueError):
+            raise TraceError(f"compiled code works on real numbers, got {x!r} in the step") from None
+
+    def _make(self, op: str, args: tuple[Expr, ...], value: Any = None, extra: Any = None) -> Expr:
+        if op in COMMUTATIVE and args[0].place > args[1].place:
+            args = args[1], args[0]
+        key = (op, *[a.place for a in args], value if extra is None else extra)
+        found = self._known.get(key)
+        if found is None:
+            found = self._known[key] = Expr(self, op, args, value, len(self.made))
+            self.made.append(found)
+        return found
+
+    # -- arithmetic --------------------------------------------------------------------------------------
+    def add(self, a: Expr, b: Expr) -> Expr:
+        """a + b."""
+        if a.constant and b.constant:
+            return self.constant(a.value + b.value)
+        if a is self.zero or (a.constant and a.value == 0):
+            return b
+        if b.constant and b.value == 0:
+            return a
+        if a is b:
+            return self.mul(self.constant(2.0), a)
+        found = self._cancelled(a, b, 1.0)
+        return self._sum(a, b) if found is None else found
+
+    def _sum(self, a: Expr, b: Expr) -> Expr:
+        if b.op == "neg":
+            return self._make("sub", (a, b.args[0]))
+        if a.op == "neg":
+            return self._make("sub", (b, a.args[0]))
+        return self._make("add", (a, b))
+
+    def sub(self, a: Expr, b: Expr) -> Expr:
+        """a - b."""
+        if a.constant and b.constant:
+            return self.constant(a.value - b.value)
+        if b.constant and b.value == 0:
+            return a
+        if a.constant and a.value == 0:
+            return self.neg(b)
+        if a is b:
+            return self.zero
+        found = self._cancelled(a, b, -1.0)
+        if found is not None:
+            return found
+        return self._sum(a, b.args[0]) if b.op == "neg" else self._make("sub", (a, b))
+
+    def neg(self, a: Expr) -> Expr:
+        """-a."""
+        if a.constant:
+            return self.constant(-a.value)
+        if a.op == "neg":
+            return a.args[0]
+        if a.op == "sub":
+            return self._make("sub", (a.args[1], a.args[0]))
+        if a.op == "mul" and a.args[0].constant:
+            return self.mul(self.constant(-a.args[0].value), a.args[1])
+        return self._make("neg", (a,))
+
+    def mul(self, a: Expr, b: Expr) -> Expr:
+        """a b."""
+        if b.constant:
+            a, b = b, a
+        if a.constant:
+            if b.constant:
+                return self.constant(a.value * b.value)
+            if a.value == 0:
+                return self.zero
+            if a.value == 1:
+                return b
+            if a.value == -1:
+                return self.neg(b)
+            if b.op == "neg":
+                return self.mul(self.constant(-a.value), b.args[0])
+            if b.op == "mul" and b.args[0].constant:
+                return self.mul(self.constant(a.value * b.args[0].value), b.args[1])
+            return self._make("mul", (a, b))
+        if a.op == "neg" and b.op == "neg":
+            return self.mul(a.args[0], b.args[0])
+        for x, y in ((a, b), (b, a)):
+            if x.op == "neg":
+                return self.neg(self.mul(x.args[0], y))
+            if x.op == "mul" and x.args[0].constant:
+                return self.mul(x.args[0], self.mul(x.args[1], y))
+        return self._make("mul", (a, b))
+
+    def div(self, a: Expr, b: Expr) -> Expr:
+        """a / b, as a product with 1 / b, which is computed once for all quotients by b."""
+        if b.constant:
+            if b.value == 0:
+                return self._make("div", (a, b))
+            return self.constant(a.value / b.value) if a.constant else self.mul(self.constant(1.0 / b.value), a)
+        if a.constant and a.value == 0:
+            return self.zero
+        if a is b:
+            return self.one
+        if b.op == "neg":
+            return self.neg(self.div(a, b.args[0]))
+        if b.op == "mul" and b.args[0].constant:
+            return self.mul(self.constant(1.0 / b.args[0].value), self.div(a, b.args[1]))
+        return self.mul(a, self._make("div", (self.one, b)))
+
+    def power(self, a: Expr, b: Expr) -> Expr:
+        """a ** b; by products where b is a small whole number, by roots where it is a half."""
+        if b.constant:
+            p = b.value
+            if p == 0:
+                return self.one
+            if float(2 * p).is_integer() and abs(p) <= 32:
+                whole = int(abs(p))
+                made = self.one if abs(p) == whole else self.call("sqrt", a)
+                while whole:
+                    made = self.mul(made, a) if whole & 1 else made
+                    whole >>= 1
+                    a = self.mul(a, a) if whole else a
+                return made if p > 0 else self.div(self.one, made)
+        return self.call("pow", a, b)
+
+    def call(self, name: str, *args: Expr) -> Expr:
+        """An elementary function."""
+        if all(a.constant for a in args) and name in FOLDED:
+            try:
+                return self.constant(float(FOLDED[name](*[float(a.value) for a in args])))
+            except (ValueError, OverflowError):
+                return self.constant(math.nan)
+        if name == "abs" and args[0].op in ("neg", "abs"):
+            return self.call("abs", args[0].args[0])
+        return self._make(name, args)
+
+    def largest(self, a: Expr, b: Expr, *, least: bool = False) -> Expr:
+        """The larger of two numbers, or the smaller."""
+        if a is b:
+            return a
+        if a.constant and b.constant:
+            return self.constant(min(a.value, b.value) if least else max(a.value, b.value))
+        return self.select(self.compare("lt", a, b) if least else self.compare("lt", b, a), a, b)
+
+    # -- truth values ------------------------------------------------------------------------------------
+    def compare(self, op: str, a: Expr, b: Expr) -> Expr:
+        """a < b, a <= b, a == b or a != b, for "lt", "le", "eq", "ne"."""
+        if a.constant and b.constant:
+            x, y = a.value, b.value
+            return self.of({"lt": x < y, "le": x <= y, "eq": x == y, "ne": x != y}[op])
+        if a is b and op in ("lt", "ne"):
+            return self.false
+        return self._make(op, (a, b))
+
+    def both(self, a: Expr, b: Expr) -> Expr:
+        """a and b."""
+        if a.constant:
+            return b if a.value else self.false
+        if b.constant:
+            return a if b.value else self.false
+        return a if a is b else self._make("and", (a, b))
+
+    def either(self, a: Expr, b: Expr) -> Expr:
+        """a or b."""
+        return self.negated(self.both(self.negated(a), self.negated(b)))
+
+    def negated(self, a: Expr) -> Expr:
+        """not a."""
+        if a.constant:
+            return self.of(not a.value)
+        return a.args[0] if a.op == "not" else self._make("not", (a,))
+
+    def select(self, where: Expr, a: Expr, b: Expr) -> Expr:
+        """a where a condition holds, else b."""
+        if where.constant:
+            return a if where.value else b
+        if a is b:
+            return a
+        if where.op == "not":
+            return self.select(where.args[0], b, a)
+        return self._make("select", (where, a, b))
+
+    # -- blocks ------------------------------------------------------------------------------------------
+    def block(self, name: str, args: Sequence[Expr], count: int, data: Any) -> list[Expr]:
+        """The `count` results of an operation with loops of its own, such as "expv"."""
+        whole = self._make(name, tuple(args), data)
+        return [self._make("get", (whole,), i) for i in range(count)]
+
+    # -- sums in which terms cancel ----------------------------------------------------------------------
+    def _cancelled(self, a: Expr, b: Expr, sign: float) -> Expr | None:
+        """a + sign b where terms of both cancel, else None."""
+        first, second = self._terms(a), self._terms(b)
+        if first is None or second is None or not any(x in first for x in second):
+            return None
+        merged, gone = dict(first), 0
+        for x, c in second.items():
+            total = merged.get(x, 0.0) + sign * c
+            if abs(total) <= NEAR * abs(c):
+                del merged[x]
+                gone += 1
+            else:
+                merged[x] = total
+        return self._combination(merged) if gone else None
+
+    def _combination(self, terms: dict[Expr, float]) -> Expr:
+        total = self.zero
+        for x, c in sorted(terms.items(), key=lambda item: (item[1] < 0, item[0].place)):
+            term = self.mul(self.constant(abs(c)), x)
+            if total is self.zero:
+                total = term if c > 0 else self.neg(term)
+            else:
+                total = self._make("add" if c > 0 else "sub", (total, term))
+        return total
+
+    def _terms(self, x: Expr) -> dict[Expr, float] | None:
+        """x as a sum of multiples of other numbers; None if it has too many terms."""
+        if x.terms is None:
+            found = self._expanded(x)
+            x.terms = found if found is not None and len(found) <= LONGEST else False
+        return x.terms or None
+
+    def _expanded(self, x: Expr) -> dict[Expr, float] | None:
+        if x.op in ("add", "sub"):
+            parts = [(x.args[0], 1.0), (x.args[1], 1.0 if x.op == "add" else -1.0)]
+        elif x.op == "neg":
+            parts = [(x.args[0], -1.0)]
+        elif x.op == "mul" and x.args[0].constant:
+            parts = [(x.args[1], x.args[0].value)]
+        else:
+            return {x: 1.0}
+        made: dict[Expr, float] = {}
+        for part, factor in parts:
+            terms = self._terms(part)
+            if terms is None:
+                return None
+            for y, c in terms.items():
+                made[y] = made.get(y, 0.0) + factor * c
+        return made
+
+
+def needed(outputs: Sequence[Expr]) -> list[Expr]:
+    """Everything that outputs depend on, in the order of the tape.
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, unused = tape.input(0), tape.input(1)
+    >>> [e.op for e in needed([x * x + 1.0])]
+    ['const', 'input', 'mul', 'add']
+    """
+    found: dict[int, Expr] = {}
+    stack = list(outputs)
+    while stack:
+        x = stack.pop()
+        if x.place not in found:
+            found[x.place] = x
+            stack.extend(x.args)
+    return [found[place] for place in sorted(found)]

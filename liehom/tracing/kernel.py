@@ -1,0 +1,311 @@
+"""The loop over steps and lanes around a traced step, in LLVM assembly; and machine code of it, kept on disk.
+
+Lanes are trajectories; W of them are stepped together, block by block, all steps of a block before the next block.
+A lane rests as soon as its next step would not be a plain one: the last before a limit, one that is not finite, one
+over which the clock does not run.  Imports graph, llvm_text, errors; llvmlite where it is used.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, final
+
+from liehom.errors import TraceError
+from liehom.tracing.graph import Expr, needed
+from liehom.tracing.llvm_text import LIBM, Body, Writer
+
+SLACK = 1e-9
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class StepGraph:
+    """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size.
+
+    Attributes
+    ----------
+    point : list of Expr
+        After the step.
+    passed : Expr or None
+        The time that passes; None if it is the step size.
+    runs : Expr or None
+        Whether the clock certainly runs over the step; None without a clock.
+    largest, summed : tuple of Expr
+        Numbers of which the run keeps the largest, or the sum, of the steps that are made.
+    timed : bool
+        Whether the time is an input.
+    """
+
+    point: list[Expr]
+    passed: Expr | None
+    runs: Expr | None
+    largest: tuple[Expr, ...]
+    summed: tuple[Expr, ...]
+
+    @property
+    def size(self) -> int:
+        """N."""
+        return len(self.point)
+
+    @property
+    def outputs(self) -> list[Expr]:
+        """All results."""
+        extra = [x for x in (self.passed, self.runs) if x is not None]
+        return [*self.point, *extra, *self.largest, *self.summed]
+
+
+def assembly(graph: StepGraph, width: int) -> str:
+    """The module with the function `run` for blocks of so many lanes."""
+    w = Writer(width)
+    v, n = w.vector, graph.size
+    _head(w, n)
+    kept = _loop_head(w, graph)
+    body = Body(w, {**{i: f"%x{i}" for i in range(n)}, n: "%t", n + 1: "%h"})
+    body.write(needed(graph.outputs))
+    _loop_end(w, graph, body)
+    w.lines.append("block.end:")
+    for name, place in kept:
+        w.lines.append(f"  store {v} %{name}.next, ptr {place}, align 8")
+    w.lines += [
+        "  %block.next = add i64 %block, 1",
+        "  %again = icmp slt i64 %block.next, %last",
+        "  br i1 %again, label %next, label %done",
+        "done:",
+        "  ret void",
+        "}",
+    ]
+    attributes = "\n".join(
+        [
+            'attributes #0 = { nounwind "prefer-vector-width"="512" }',
+            '!0 = !{!"branch_weights", i32 1, i32 1000}',
+            '!1 = !{!"branch_weights", i32 1000, i32 1}',
+            "",
+        ]
+    )
+    parts = ["\n".join(dict.fromkeys(w.declared.values())), *w.functions.values(), "\n".join(w.lines), attributes]
+    return "\n\n".join(parts)
+
+
+def _head(w: Writer, n: int) -> None:
+    w.lines += [
+        "define void @run(ptr noalias %m, ptr noalias %t.in, ptr noalias %h.in, ptr noalias %limit.in,"
+        " ptr noalias %count.in, ptr noalias %alive.in, ptr noalias %extra, ptr noalias %path, ptr noalias %path.t,"
+        " i64 %lanes, i64 %first, i64 %last, i64 %steps, double %origin, double %direction) #0 {",
+        "entry:",
+        "  %stored = icmp ne ptr %path, null",
+        "  br label %next",
+        "next:",
+        "  %block = phi i64 [%first, %entry], [%block.next, %block.end]",
+        f"  %lane = mul i64 %block, {w.width}",
+    ]
+
+
+def _pointer(w: Writer, base: str, row: str | int) -> str:
+    offset = w.emit(f"mul i64 %lanes, {row}")
+    place = w.emit(f"add i64 {offset}, %lane")
+    return w.emit(f"getelementptr double, ptr {base}, i64 {place}")
+
+
+def _loop_head(w: Writer, graph: StepGraph) -> list[tuple[str, str]]:
+    """Load the state of a block and begin the loop over steps; the names and places of what is kept."""
+    v, n = w.vector, graph.size
+    kept = [(f"x{i}", _pointer(w, "%m", i)) for i in range(n)]
+    kept += [("t", _pointer(w, "%t.in", 0)), ("count", _pointer(w, "%count.in", 0))]
+    kept += [("alive", _pointer(w, "%alive.in", 0))]
+    kept += [(f"e{i}", _pointer(w, "%extra", i)) for i in range(len(graph.largest) + len(graph.summed))]
+    for name, place in kept:
+        w.lines.append(f"  %{name}.start = load {v}, ptr {place}, align 8")
+    for name, base in (("h", "%h.in"), ("limit", "%limit.in")):
+        w.lines.append(f"  %{name} = load {v}, ptr {_pointer(w, base, 0)}, align 8")
+    size = w.intrinsic("fabs", "%h")
+    w.lines.append(f"  %slack = fmul {v} {size}, {w.splat(SLACK)}")
+    w.lines.append(f"  %dir = fadd {v} {w.spread('%direction')}, {w.splat(-0.0)}")
+    w.lines.append(f"  %zero.time = fadd {v} {w.spread('%origin')}, {w.splat(-0.0)}")
+    w.lines += ["  br label %step", "step:"]
+    w.lines.append("  %k = phi i64 [0, %next], [%k.next, %step.end]")
+    for name, _ in kept:
+        w.lines.append(f"  %{name} = phi {v} [%{name}.start, %next], [%{name}.next, %step.end]")
+    return kept
+
+
+def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
+    """Decide where the step is made, keep what is new, store it, and go on."""
+    v = w.vector
+    more = w.emit(f"fadd {v} %count, {w.splat(1.0)}")
+    if graph.passed is None:  # by counting, so that round-off does not add up
+        after = w.emit(f"fadd {v} %zero.time, {w.emit(f'fmul {v} {more}, %h')}")
+    else:
+        after = w.emit(f"fadd {v} %t, {body.name(graph.passed)}")
+    left = w.emit(f"fmul {v} %dir, {w.emit(f'fsub {v} %limit, {after}')}")
+    go = w.emit(f"fcmp ogt {v} {left}, %slack")
+    total = body.name(graph.point[0])
+    for x in graph.point[1:]:
+        total = w.emit(f"fadd {v} {total}, {body.name(x)}")
+    finite = w.emit(f"fcmp oeq {v} {w.emit(f'fsub {v} {total}, {total}')}, {w.splat(0.0)}")
+    go = w.emit(f"and {w.mask} {go}, {finite}")
+    if graph.runs is not None:
+        go = w.emit(f"and {w.mask} {go}, {body.name(graph.runs)}")
+    go = w.emit(f"and {w.mask} {go}, {w.emit(f'fcmp ogt {v} %alive, {w.splat(0.0)}')}")
+    new = {f"x{i}": body.name(x) for i, x in enumerate(graph.point)}
+    new |= {"t": after, "count": more}
+    for i, x in enumerate((*graph.largest, *graph.summed)):
+        combined = (
+            w.intrinsic("maxnum", f"%e{i}", body.name(x))
+            if i < len(graph.largest)
+            else w.emit(f"fadd {v} %e{i}, {body.name(x)}")
+        )
+        new[f"e{i}"] = combined
+    # a branch that is foreseen costs nothing, selections would stand in the chain from step to step
+    w.lines += [f"  br i1 {w.all(go)}, label %made, label %mixed, !prof !1", "mixed:"]
+    for name, value in new.items():
+        w.lines.append(f"  %{name}.mixed = select {w.mask} {go}, {v} {value}, {v} %{name}")
+    w.lines.append(f"  %alive.mixed = select {w.mask} {go}, {v} {w.splat(1.0)}, {v} {w.splat(0.0)}")
+    going = w.any(go)
+    w.lines += ["  br label %made", "made:"]
+    for name, value in {**new, "alive": "%alive"}.items():
+        w.lines.append(f"  %{name}.next = phi {v} [{value}, %step], [%{name}.mixed, %mixed]")
+    w.lines.append(f"  %going = phi i1 [true, %step], [{going}, %mixed]")
+    _store_path(w, graph)
+    w.lines += ["step.end:", "  %k.next = add i64 %k, 1"]
+    fewer = w.emit("icmp slt i64 %k.next, %steps")
+    w.lines.append(f"  br i1 {w.emit(f'and i1 %going, {fewer}')}, label %step, label %block.end")
+
+
+def _store_path(w: Writer, graph: StepGraph) -> None:
+    v, n = w.vector, graph.size
+    w.lines += ["  br i1 %stored, label %store, label %step.end", "store:"]
+    for i in range(n):
+        row = w.emit(f"add i64 {w.emit(f'mul i64 %k, {n}')}, {i}")
+        w.lines.append(f"  store {v} %x{i}.next, ptr {_pointer(w, '%path', row)}, align 8")
+    w.lines.append(f"  store {v} %t.next, ptr {_pointer(w, '%path.t', '%k')}, align 8")
+    w.lines.append("  br label %step.end")
+
+
+# -- machine code ------------------------------------------------------------------------------------------
+@final
+class Kernel:
+    """Machine code of a traced step for blocks of a width.
+
+    Parameters
+    ----------
+    graph : StepGraph
+    width : int
+
+    Attributes
+    ----------
+    cached : bool
+        Whether the code was found on disk.
+    """
+
+    def __init__(self, graph: StepGraph, width: int) -> None:
+        self.graph, self.width = graph, width
+        self.text = assembly(graph, width)
+        self._engine, self.cached = _engine(self.text)
+        arguments = [ctypes.c_void_p] * 9 + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
+        self._run = ctypes.CFUNCTYPE(None, *arguments)(self._engine.get_function_address("run"))
+
+    def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:
+        """Step the blocks first..last-1 at most so many times; `arrays` are changed in place, None is no path."""
+        places = [None if a is None else a.ctypes.data for a in arrays]
+        self._run(*places, lanes, *blocks, steps, *time)
+
+
+_ENGINES: dict[str, Any] = {}
+
+
+def cache_directory() -> Path | None:
+    """Where machine code is kept: LIEHOM_CACHE_DIR, else a folder of the user's cache; None if that is empty."""
+    given = os.environ.get("LIEHOM_CACHE_DIR")
+    if given is not None:
+        return Path(given) if given else None
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return Path(home) / "liehom"
+
+
+def _engine(text: str) -> tuple[Any, bool]:
+    """The engine with the code of a module, and whether it was made before."""
+    try:
+        import llvmlite.binding as llvm
+    except ImportError:
+        raise TraceError('compile="numba" needs the extra: pip install "liehom[numba]"') from None
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, jit=True
+    )
+    stamp = f"{llvm.llvm_version_info}{llvm.get_host_cpu_name()}{machine.triple}"
+    key = hashlib.sha256((stamp + text).encode()).hexdigest()
+    if key in _ENGINES:
+        return _ENGINES[key], True
+    _add_symbols(llvm)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    code = _read(key)
+    found = code is not None
+    if code is None:
+        code = _compiled(llvm, machine, text)
+        _write(key, code)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    _ENGINES[key] = engine
+    return engine, found
+
+
+def _compiled(llvm: Any, machine: Any, text: str) -> bytes:
+    module = llvm.parse_assembly(text)
+    module.verify()
+    options = llvm.PipelineTuningOptions(2)
+    options.slp_vectorization = options.loop_vectorization = options.loop_interleaving = options.loop_unrolling = False
+    builder = llvm.create_pass_builder(machine, options)
+    builder.getModulePassManager().run(module, builder)
+    return bytes(machine.emit_object(module))
+
+
+def _add_symbols(llvm: Any) -> None:
+    library = ctypes.CDLL(None)
+    for name in {*LIBM.values(), "memset", "memcpy"}:
+        address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value
+        llvm.add_symbol(name, address)
+
+
+def _read(key: str) -> bytes | None:
+    folder = cache_directory()
+    if folder is None:
+        return None
+    try:
+        whole = (folder / f"{key}.o").read_bytes()
+    except OSError:
+        return None
+    digest, code = whole[:32], whole[32:]
+    return code if hashlib.sha256(code).digest() == digest else None
+
+
+def _write(key: str, code: bytes) -> None:
+    """Keep the code, in one move; where that is not possible it is compiled again next time."""
+    folder = cache_directory()
+    if folder is None:
+        return
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=folder)
+        with os.fdopen(handle, "wb") as file:
+            file.write(hashlib.sha256(code).digest() + code)
+        os.replace(name, folder / f"{key}.o")
+    except OSError:
+        return
+
+
+def padded(count: int, width: int) -> int:
+    """The number of lanes in whole blocks.
+
+    Examples
+    --------
+    >>> padded(10, 8)
+    16
+    """
+    return -(-count // width) * width
