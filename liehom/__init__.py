@@ -14,6 +14,7 @@ The layers, in reading order; each imports only those above it in this list:
 `instances`        the paper's systems: spheres, the rigid body, isospectral flows, Landau-Lifshitz spins
 `fullness`         is a pair full? the decision, its certificates, the independent checker
 `catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
+`atlas`            sweeps over families of pairs, every entry decided
 `io`               JSON files in and out
 `paper`            the figures of the paper, done again
 `plotting`         pictures of trajectories and of measured orders
@@ -170,6 +171,7 @@ __version__ = "0.1.0"
 # say the same to type checkers, and a test holds the two together.
 _LAYERS = (
     "algebra",
+    "atlas",
     "catalog",
     "correctors",
     "fullness",

@@ -1,0 +1,205 @@
+"""Entry: what was decided of one pair, with its proof as JSON; Atlas: a table of entries.
+
+Imports catalog, fullness, errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, final
+
+from liehom.catalog import pair as named_pair
+from liehom.errors import InputError
+from liehom.fullness import Certificate, verify_certificate
+from liehom.representations import Pair
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One pair of a sweep, and its verdict.
+
+    Attributes
+    ----------
+    name : str
+        The catalogue name in canonical form, or the name of the pair that was given.
+    dimension, subalgebra_dimension : int or None
+        Of g and h; None where there is no verdict.
+    verdict : mapping
+        What ``verdict.to_json()`` gave; empty where there is no verdict.
+    verified : bool
+        Whether the independent checker has accepted the certificate.
+    failure : str
+        Why there is no verdict; empty where there is one.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> entry = lh.atlas.sweep(["so(4)/so(3)"])[0]
+    >>> entry.full, entry.proved, entry.verified, entry.verify()
+    (True, True, True, True)
+    """
+
+    name: str
+    dimension: int | None
+    subalgebra_dimension: int | None
+    verdict: Mapping[str, Any]
+    verified: bool
+    failure: str = ""
+
+    @property
+    def full(self) -> bool | None:
+        """Whether the pair is full; None where there is no verdict."""
+        return self.verdict.get("full")
+
+    @property
+    def proved(self) -> bool:
+        """Whether the verdict is proved, rather than numerical."""
+        return bool(self.verdict.get("proved"))
+
+    @property
+    def reason(self) -> str:
+        """One sentence."""
+        return str(self.verdict.get("reason", self.failure))
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The certificate; None for a numerical verdict or none."""
+        data = self.verdict.get("certificate")
+        return None if data is None else Certificate.from_json(data)
+
+    def verify(self, pair: Pair | None = None) -> bool:
+        """Run the independent checker again.
+
+        Parameters
+        ----------
+        pair : Pair, optional
+            By default the one with this name in the catalogue.
+
+        Raises
+        ------
+        InputError
+            If there is no certificate.
+        CatalogError
+            If `pair` is not given and the name is not in the catalogue.
+        CertificateError
+            If a check fails.
+        """
+        certificate = self.certificate
+        if certificate is None:
+            raise InputError(f"there is no certificate for {self.name}: {self.reason}")
+        return verify_certificate(named_pair(self.name) if pair is None else pair, certificate)
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self._answer()}: {self.reason}"
+
+    def _answer(self) -> str:
+        if self.full is None:
+            return "no verdict"
+        return ("full" if self.full else "not full") + ("" if self.proved else " (numerical)")
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class Atlas:
+    """The entries of a sweep, in the order in which the pairs were given; what `sweep` returns.
+
+    Attributes
+    ----------
+    entries : tuple of Entry
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> atlas = lh.atlas.sweep(["so(4)/so(3)", "so(3,1)/so(2,1)"])
+    >>> len(atlas), [entry.name for entry in atlas.full], [entry.name for entry in atlas.not_full]
+    (2, ['so(4)/so(3)'], ['so(3,1)/so(2,1)'])
+    >>> print(atlas)
+    pair             dim g  dim h  full  certificate
+    so(4)/so(3)          6      3  yes   full
+    so(3,1)/so(2,1)      6      3  no    witness
+    """
+
+    entries: tuple[Entry, ...]
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    def __iter__(self) -> Iterator[Entry]:
+        return iter(self.entries)
+
+    def __getitem__(self, index: int) -> Entry:
+        return self.entries[index]
+
+    @property
+    def full(self) -> tuple[Entry, ...]:
+        """The pairs that are full, numerical verdicts included."""
+        return tuple(entry for entry in self.entries if entry.full is True)
+
+    @property
+    def not_full(self) -> tuple[Entry, ...]:
+        """The pairs that are not full, numerical verdicts included."""
+        return tuple(entry for entry in self.entries if entry.full is False)
+
+    @property
+    def failures(self) -> tuple[Entry, ...]:
+        """The pairs without a verdict."""
+        return tuple(entry for entry in self.entries if entry.full is None)
+
+    def to_json(self) -> dict[str, Any]:
+        """The table as a JSON object, certificates included."""
+        return {
+            "pairs": [
+                {
+                    "name": entry.name,
+                    "dimension": entry.dimension,
+                    "subalgebra_dimension": entry.subalgebra_dimension,
+                    "verified": entry.verified,
+                    **({"failure": entry.failure} if entry.failure else {}),
+                    **entry.verdict,
+                }
+                for entry in self.entries
+            ]
+        }
+
+    def to_markdown(self) -> str:
+        """The table in Markdown.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.atlas.sweep(["so(3)/so(2)"]).to_markdown())
+        | pair | dim g | dim h | full | certificate |
+        | --- | ---: | ---: | --- | --- |
+        | so(3)/so(2) | 3 | 1 | yes | full |
+        """
+        head, *body = self._cells()
+        lines = [head, ["---", "---:", "---:", "---", "---"], *body]
+        return "\n".join("| " + " | ".join(row) + " |" for row in lines)
+
+    def __str__(self) -> str:
+        cells = self._cells()
+        widths = [max(len(row[c]) for row in cells) for c in range(5)]
+        lines = []
+        for row in cells:
+            sides = [
+                f"{x:>{w}}" if c in (1, 2) else f"{x:<{w}}" for c, (x, w) in enumerate(zip(row, widths, strict=True))
+            ]
+            lines.append("  ".join(sides).rstrip())
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        full, not_full, rest = len(self.full), len(self.not_full), len(self.failures)
+        return f"<atlas of {len(self)} pairs, {full} full, {not_full} not, {rest} undecided>"
+
+    def _cells(self) -> list[list[str]]:
+        return [["pair", "dim g", "dim h", "full", "certificate"], *(_cells_of(entry) for entry in self.entries)]
+
+
+def _cells_of(entry: Entry) -> list[str]:
+    if entry.full is None:
+        return [entry.name, "", "", "?", f"none: {entry.failure}"]
+    answer = "yes" if entry.full else "no"
+    kind = entry.verdict["certificate"]["kind"] if entry.proved else "none, numerical"
+    return [entry.name, str(entry.dimension), str(entry.subalgebra_dimension), answer, kind]
