@@ -5,7 +5,7 @@ polynomial f.  I (x) R is the sum of ideals I_v, one for each real root of f (ab
 dim I / deg f) and one for each pair of complex roots (a complex simple algebra seen as a real one).  With kappa the
 Killing form, kappa((theta - c) x, y) is (theta_v - c) kappa_v on a real I_v and has signature 0 on a complex one: its
 signature drops by twice that of kappa_v where c passes theta_v, so exact signatures over the base field give them all.
-Imports centroid, commuting_maps, subalgebra, scalars, errors.
+Imports centroid, commuting_maps, lie_algebra, structure_constants, subalgebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -19,12 +19,15 @@ from typing import Any, Literal, final
 from liehom.algebra.centroid import centroid
 from liehom.algebra.commuting_maps import combinations, minimal_polynomial
 from liehom.algebra.lie_algebra import LieAlgebra
+from liehom.algebra.structure_constants import StructureConstants
 from liehom.algebra.subalgebra import Subalgebra
-from liehom.errors import InputError, InternalError
+from liehom.errors import FieldError, InputError, InternalError
 from liehom.scalars import QQ, Polynomial
+from liehom.scalars.extension import RealFactor, real_factors
 
 CANDIDATES = 12
 FACTORED_BITS = 160
+LARGEST_DEGREE = 36
 
 
 @final
@@ -212,6 +215,82 @@ def real_root_intervals(f: Polynomial) -> list[tuple[Any, Any]]:
         left = count(low, middle)
         rest += [(middle, high, inside - left), (low, middle, left)]
     return found
+
+
+def real_ideals(ideal: Subalgebra) -> list[Subalgebra]:
+    """The simple ideals over the reals of an algebra that is simple over its field, each over a field that has it.
+
+    Parameters
+    ----------
+    ideal : Subalgebra
+        Simple over its exact field F.
+
+    Returns
+    -------
+    list of Subalgebra
+        In the order of `places`. Each is an ideal of the given one, in the algebra around read over its own real
+        number field: F(theta_v) for a real root theta_v of the polynomial f of the centroid, the field of the
+        coefficients of the quadratic factor of f for a pair of complex roots.
+
+    Raises
+    ------
+    InputError
+        If the subalgebra is not simple over its field.
+    FieldError
+        Over float64, or where the degree of such a field could exceed `LARGEST_DEGREE`; `places` needs no field.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.so(3, 1)
+    >>> real_ideals(g.subalgebra(g.whole().basis))
+    [<subalgebra of dimension 6 in so(3,1) over QQ>]
+    """
+    centre = centroid_field(ideal)
+    f, m = centre.polynomial, centre.degree
+    complex_pairs = (m - f.count_real_roots()) // 2
+    if m == 1 or (m == 2 and complex_pairs):
+        return [ideal]
+    bound = (m * (m - 1) // 2 if complex_pairs else m) * f.field.degree
+    if bound > LARGEST_DEGREE:
+        raise FieldError(
+            f"a simple ideal over the reals may need a number field of degree {bound}, more than {LARGEST_DEGREE}; "
+            "places() tells the ideals and their Killing signatures without it"
+        )
+    krylov = _krylov(centre)
+    return [_real_ideal(ideal, factor, f, krylov) for factor in real_factors(f)]
+
+
+def _krylov(centre: CentroidField) -> list[Any]:
+    """For a basis b_1, b_2, ... over the centroid the matrices (m, n) with rows b_i, theta b_i, theta^2 b_i, ..."""
+    field, n, m = centre.algebra.field, centre.algebra.dimension, centre.degree
+    blocks: list[Any] = []
+    for i in range(n):
+        rows = [field.unit(n, i)]
+        while len(rows) < m:
+            rows.append(rows[-1] @ centre.generator.T)
+        grown = field.stack_rows([*blocks, *rows], n)
+        if grown.rank() == grown.nrows:
+            blocks.append(field.stack_rows(rows, n))
+        if len(blocks) * m == n:
+            break
+    return blocks
+
+
+def _real_ideal(ideal: Subalgebra, factor: RealFactor, f: Polynomial, krylov: list[Any]) -> Subalgebra:
+    """The kernel of q(theta) for a factor q of f over a larger field: the image of (f / q)(theta)."""
+    up, q = factor.extension, factor.polynomial
+    field = up.field
+    cofactor = list((up.polynomial(f) // q).coefficients)
+    shifts = [[field.zero] * k + cofactor + [field.zero] * (q.degree - 1 - k) for k in range(q.degree)]
+    weights = field.matrix(shifts)
+    rows = [weights @ up.matrix(block) for block in krylov]
+    around = ideal.algebra
+    entries = [(i, j, k, up.embed(v)) for i, j, k, v in around.table]
+    table = StructureConstants(field, around.dimension, entries)
+    larger = LieAlgebra(table, basis=around.basis_names, name=around.name, check=False)  # same identities
+    basis = field.stack_rows(rows, rows[0].ncols) @ up.matrix(ideal.basis)
+    return Subalgebra(larger, basis.primitive(), check=False)  # the kernel of a map that commutes with the bracket
 
 
 # -- helpers ---------------------------------------------------------------------------------------------

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.algebra.real_splitting import centroid_field, places, real_root_intervals
+from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition
+from liehom.algebra.real_splitting import centroid_field, places, real_ideals, real_root_intervals
 from liehom.errors import FieldError, InputError
 from liehom.scalars import QQ, Polynomial
 from liehom.testing import random_unimodular
@@ -137,6 +138,57 @@ def test_an_algebra_that_is_not_simple_is_refused() -> None:
         places(lh.so(3).subalgebra([]))
     with pytest.raises(FieldError, match="exact"):
         places(whole(lh.so(3).over(lh.RR)))
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_real_ideals_have_the_signatures_of_their_places(name: str) -> None:
+    """Each ideal is closed and an ideal over its own field, where its Killing form can be looked at directly."""
+    data, _ = CASES[name]
+    ideal = whole(scrambled(restricted(*data), 1))
+    found_ideals = real_ideals(ideal)
+    assert len(found_ideals) == len(places(ideal))
+    for part, place in zip(found_ideals, places(ideal), strict=True):
+        assert part.dimension == place.dimension
+        if part.algebra.field.degree <= 5:
+            closed = lh.Subalgebra(part.algebra, part.basis)
+            assert closed.is_ideal() and closed.as_algebra().killing_signature() == (*place.killing_signature, 0)
+
+
+def test_a_real_ideal_of_a_part_of_an_algebra() -> None:
+    """An ideal of a larger algebra: the rows are in the coordinates of the algebra around."""
+    algebra = scrambled(lh.direct_sum(lh.sl(2), restricted([1], [1], [0, 1], SQRT2)), 4)
+    large = next(h for h in direct_sum_decomposition(algebra) if h.dimension == 6)
+    parts = real_ideals(large)
+    assert [h.algebra.field for h in parts] == [lh.number_field("sqrt(2)")] * 2
+    rows = lh.QQ.stack_rows([large.basis], 9)
+    for h in parts:
+        inside = h.algebra.field.stack_rows([h.algebra.field.read(rows), h.basis], 9)
+        assert h.is_ideal() and inside.rank() == 6
+
+
+def test_real_ideals_over_a_real_number_field() -> None:
+    """Over QQ(sqrt 3) the ideals need QQ(sqrt 2, sqrt 3), of degree 4."""
+    doubled = scrambled(restricted([1], [1], [0, 1], SQRT2).over(lh.number_field("sqrt(3)")), 2)
+    parts = real_ideals(whole(doubled))
+    assert [h.algebra.field.degree for h in parts] == [4, 4]
+    assert all(lh.Subalgebra(h.algebra, h.basis).is_ideal() for h in parts)
+    assert sorted(h.as_algebra().killing_signature() for h in parts) == [(0, 3, 0), (2, 1, 0)]
+
+
+def test_what_does_not_split_is_returned_as_it_is() -> None:
+    """so(4) splits over QQ already; so(3, 1) is simple over R."""
+    compact = [real_ideals(h) for h in direct_sum_decomposition(scrambled(lh.so(4), 1))]
+    assert [[(p.dimension, p.algebra.field) for p in parts] for parts in compact] == [[(3, lh.QQ)], [(3, lh.QQ)]]
+    lorentz = whole(scrambled(lh.so(3, 1), 1))
+    assert real_ideals(lorentz) == [lorentz]
+
+
+def test_a_field_of_too_large_a_degree_is_refused() -> None:
+    """t^10 - 2 has complex roots: sums of two of its ten roots may have degree 45; places are found still."""
+    ideal = whole(restricted([1], [1], [1], [-2, *[0] * 9, 1]))
+    with pytest.raises(FieldError, match="degree 45"):
+        real_ideals(ideal)
+    assert Counter(p.kind for p in places(ideal)) == Counter(real=2, complex=4)
 
 
 def test_intervals_hold_one_root_each() -> None:
