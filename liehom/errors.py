@@ -189,7 +189,7 @@ class WorkerLostError(LiehomError, RuntimeError):
 
 
 class UndecidedError(LiehomError, TypeError):
-    """A verdict that is not proved was used as a truth value."""
+    """A verdict that is not proved was used as a truth value, or the invariants at hand do not decide."""
 
 
 class InternalError(LiehomError, RuntimeError):

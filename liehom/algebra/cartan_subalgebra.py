@@ -35,8 +35,9 @@ def cartan_subalgebra(algebra: LieAlgebra) -> Subalgebra:
     if not field.exact:
         raise FieldError("a Cartan subalgebra is computed exactly: build the algebra over QQ or a number field")
     rows = field.identity(n)
-    while True:
-        smaller = _smaller(algebra, rows)
+    tried: set[tuple[Any, ...]] = set()
+    while not _is_abelian(algebra, rows):
+        smaller = _smaller(algebra, rows, tried)
         if smaller is None:
             break
         rows = smaller
@@ -53,9 +54,20 @@ def _is_nilpotent(subalgebra: Subalgebra) -> bool:
     return inner.is_abelian() or lower_central_series(inner)[-1].dimension == 0
 
 
-def _smaller(algebra: LieAlgebra, rows: Any) -> Any:
-    """The null component, in the span of the rows, of the first candidate for which it is smaller; or None."""
+def _is_abelian(algebra: LieAlgebra, rows: Any) -> bool:
+    return algebra.table.first_nonzero(rows, rows, algebra.field.identity(algebra.dimension)) is None
+
+
+def _smaller(algebra: LieAlgebra, rows: Any, tried: set[tuple[Any, ...]]) -> Any:
+    """The null component, in the span of the rows, of the first candidate for which it is smaller; or None.
+
+    What acts nilpotently on a subalgebra does so on its subalgebras, and x does on g_0(x): `tried` is not tried again.
+    """
     for candidate in _candidates(rows):
+        key = tuple(x for part in candidate.parts for x in part.entries())
+        if key in tried:
+            continue
+        tried.add(key)
         action = algebra.ad(candidate).T
         image, places = rows.modulo(), rows.nrows
         step = action.modulo()

@@ -20,7 +20,7 @@ from liehom.algebra.radical import radical
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.algebra.subalgebra import Subalgebra, products
 from liehom.errors import FieldError, InternalError, SingularError
-from liehom.scalars.modular import pivot_columns
+from liehom.scalars.modular import pivot_columns, stacked_residues
 from liehom.scalars.quotient import echelon_quotient
 
 Word = tuple[int, int]  # (generator, index of the word it acts on); the generators are words 0 and 1
@@ -123,7 +123,7 @@ def _plan(algebra: LieAlgebra) -> _Plan:
 
 def _spanning_words(algebra: LieAlgebra, pair: list[Any]) -> list[Word] | None:
     """Words that with the pair are a basis, chosen modulo a prime; None if the pair does not generate."""
-    field, n = algebra.field, algebra.dimension
+    n = algebra.dimension
     actions = [algebra.ad(x).T.modulo() for x in pair]
     words = [x.modulo() for x in pair]
     steps: list[Word] = []
@@ -131,19 +131,12 @@ def _spanning_words(algebra: LieAlgebra, pair: list[Any]) -> list[Word] | None:
     while len(words) < n and frontier:
         options = [(g, p) for p in frontier for g in (0, 1)]
         images = [words[p] * actions[g] for g, p in options]
-        stacked = _stack([*words, *images], n)
+        stacked = stacked_residues([*words, *images])
         kept = [i - len(words) for i in pivot_columns(stacked.transpose()) if i >= len(words)]
         frontier = list(range(len(words), len(words) + len(kept)))
         steps += [options[i] for i in kept]
         words += [images[i] for i in kept]
-    return steps if len(words) == n and int(_stack(words, n).rank()) == n else None
-
-
-def _stack(rows: list[Any], n: int) -> Any:
-    import flint
-
-    entries = [int(x) for row in rows for x in row.entries()]
-    return flint.nmod_mat(len(rows), n, entries, rows[0].modulus())
+    return steps if len(words) == n and int(stacked_residues(words).rank()) == n else None
 
 
 def _relations(algebra: LieAlgebra, plan: _Plan) -> tuple[tuple[int, int, Any], ...]:

@@ -39,7 +39,7 @@ _KNOWN = (
 
 
 def canonical_real_form(name: str) -> str:
-    """The canonical name of a semisimple real Lie algebra, its simple ideals sorted and joined by ' + '.
+    """The canonical name of a semisimple real Lie algebra, its simple ideals joined by ' + ' (`join_real_forms`).
 
     Parameters
     ----------
@@ -64,14 +64,31 @@ def canonical_real_form(name: str) -> str:
 
 
 def join_real_forms(names: Iterable[str]) -> str:
-    """Canonical names as one sum, sorted; '0' if there is none.
+    """Canonical names as one sum; '0' if there is none.
+
+    They are sorted by dimension; of one dimension the compact ones come first, the others by name.
 
     Examples
     --------
-    >>> join_real_forms(["so(3)", "sl(2,R)"])
-    'sl(2,R) + so(3)'
+    >>> join_real_forms(["so(4,1)", "sl(2,R)", "so(3)"])
+    'so(3) + sl(2,R) + so(4,1)'
     """
-    return " + ".join(sorted(names)) or "0"
+    return " + ".join(sorted(names, key=_rank_in_sums)) or "0"
+
+
+def _rank_in_sums(name: str) -> tuple[int, bool, str]:
+    kind, numbers, letter = parse_name(name)
+    n = sum(numbers)
+    if kind in EXCEPTIONAL:
+        dimension = {"g2": 14, "f4": 52, "e6": 78, "e7": 133, "e8": 248}[kind]
+        compact = numbers == EXCEPTIONAL[kind][-1:]
+    else:
+        size = {"so": n * (n - 1) // 2, "so*": n * (n - 1) // 2, "su": n * n - 1, "sl": n * n - 1}
+        quaternionic = 4 * n * n - 1 if kind == "sl" else n * (2 * n + 1)
+        symplectic = kind == "sp" and letter
+        dimension = n * (n + 1) // 2 if symplectic else size.get(kind, quaternionic) if letter != "H" else quaternionic
+        compact = kind in ("so", "su", "sp") and not letter and not any(numbers[1:])
+    return dimension * (2 if letter == "C" else 1), not compact, name
 
 
 def canonical_ideals(name: str) -> list[str]:

@@ -174,7 +174,22 @@ class StructureConstants:
         n = self.dimension
         if self.is_dense():
             return (x @ self.flat()).reshape(n, n).T
-        return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
+        if self.field.degree > 1:
+            return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
+        return self._adjoint_sparse(x)
+
+    def _adjoint_sparse(self, x: Any) -> Any:
+        n, weights = self.dimension, [int(w) for w in x.parts[0].entries()]
+        places = [i for i, w in enumerate(weights) if w]
+        chosen = np.flatnonzero(np.isin(self.i, places) | np.isin(self.j, places))
+        out = [0] * (n * n)
+        values = self.parts[0]
+        for t, i, j, k in zip(
+            *(a.tolist() for a in (chosen, self.i[chosen], self.j[chosen], self.k[chosen])), strict=True
+        ):
+            out[k * n + j] += weights[i] * values[t]
+            out[k * n + i] -= weights[j] * values[t]
+        return self.field.from_integers(out, n, n, self.den * x.den)  # type: ignore[attr-defined]
 
     def contract(self, left: Any, right: Any, out: Any) -> list[Any]:
         """For each row a of `left`, the matrix with rows [left_a, right_b] @ out.

@@ -7,11 +7,13 @@ describe, and the constructions of extensions, derivation_algebra, cohomology.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from liehom.algebra.lie_algebra import LieAlgebra
     from liehom.algebra.levi import LeviDecomposition
+    from liehom.algebra.lie_algebra import LieAlgebra
+    from liehom.algebra.real_form import RealForm
+    from liehom.algebra.root_system import RootSystem
     from liehom.algebra.subalgebra import Subalgebra
 
 
@@ -112,3 +114,118 @@ class StructureVerbs:
         from liehom.algebra.cartan_subalgebra import cartan_subalgebra
 
         return cartan_subalgebra(self)
+
+    def root_system(self: LieAlgebra) -> RootSystem:  # type: ignore[misc]
+        """The root system of the complexification; `InputError` if the algebra is not semisimple.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(3).root_system().type, lh.so(4).root_system().weyl_group_order()
+        ('A1', 4)
+        """
+        from liehom.algebra.identification import root_system
+
+        return root_system(self)
+
+    def semisimple_type(self: LieAlgebra) -> str:  # type: ignore[misc]
+        """The type of the complexification of the algebra or of its Levi factor, such as 'A1 + B2'; '0' for none.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(4).semisimple_type(), lh.gl(3).semisimple_type()
+        ('A1 + A1', 'A2')
+        """
+        from liehom.algebra.identification import semisimple_type
+
+        return semisimple_type(self)
+
+    def real_form(self: LieAlgebra) -> str:  # type: ignore[misc]
+        """The name, over the reals, of the algebra or of its Levi factor: 'so(4,1)', 'so(3) + sl(2,R)'; '0' for none.
+
+        Raises
+        ------
+        FieldError
+            Over float64.
+        UndecidedError
+            For the few pairs of forms, of dimension at least 153, that type and Killing signature do not tell apart.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(1, 4).real_form(), lh.su(2).real_form(), lh.so(2, 2).real_form()
+        ('so(4,1)', 'so(3)', 'sl(2,R) + sl(2,R)')
+        """
+        from liehom.algebra.identification import real_form
+
+        return real_form(self)
+
+    def real_forms(self: LieAlgebra) -> list[RealForm]:  # type: ignore[misc]
+        """The real forms of the simple ideals over the reals of the algebra or its Levi factor.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [form.satake.black for form in lh.so(4, 1).real_forms()]
+        [(1,)]
+        """
+        from liehom.algebra.identification import real_forms_of
+
+        return real_forms_of(self)
+
+    def is_simple(self: LieAlgebra) -> bool:  # type: ignore[misc]
+        """Whether the algebra is simple over the reals: so(3,1) is, so(4) is not.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(3, 1).is_simple(), lh.so(4).is_simple(), lh.abelian(1).is_simple()
+        (True, False, False)
+        """
+        from liehom.algebra.identification import simple_parts
+
+        if self.dimension == 0 or not self.is_semisimple():
+            return False
+        return sum(len(part.places) for part in simple_parts(self)) == 1
+
+    def real_rank(self: LieAlgebra) -> int:  # type: ignore[misc]
+        """The real rank of the algebra or of its Levi factor: the dimension of a maximal split abelian subspace of p.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(4, 1).real_rank(), lh.so(5).real_rank(), lh.sl(3).real_rank()
+        (1, 0, 2)
+        """
+        return sum(form.real_rank for form in self.real_forms())
+
+    def is_isomorphic(self: LieAlgebra, other: LieAlgebra) -> bool:  # type: ignore[misc]
+        """Whether two semisimple algebras are isomorphic over the reals; `InputError` if one has a radical.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(4, 2).is_isomorphic(lh.su(2, 2))
+        True
+        """
+        from liehom.algebra.identification import is_isomorphic
+
+        return is_isomorphic(self, other)
+
+    def describe(self: LieAlgebra) -> str:  # type: ignore[misc]
+        """A card with what a mathematician would ask first.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.euclidean(2).describe())
+        e(2), dimension 3 over QQ
+          solvable, not nilpotent
+          nilradical of dimension 2, centre of dimension 0
+          derived series 3 > 2 > 0, lower central series 3 > 2
+          Killing form of signature (0, 1, 2) (positive, negative, zero)
+        """
+        from liehom.algebra.describe import describe
+
+        return describe(self)

@@ -84,6 +84,10 @@ class ExactMatrix(Matrix):
             return self._rearranged(places, len(rows), n)
         rows = range(self.nrows) if rows is None else rows
         columns = range(n) if columns is None else columns
+        if 8 * len(rows) * len(columns) < self.nrows * n:
+            parts = ([a[i, j] for i in rows for j in columns] for a in self.parts)
+            made = tuple(flint.fmpz_mat(len(rows), len(columns), part) for part in parts)
+            return ExactMatrix(self._field, made, self.den)
         return self._rearranged([i * n + j for i in rows for j in columns], len(rows), len(columns))
 
     def reshape(self, nrows: int, ncols: int) -> ExactMatrix:

@@ -39,7 +39,7 @@ def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
     before = -1
     while before < rank < n:
         before = rank
-        current, rank = _row_basis(_stacked([current, *[current * image for image in images]]))
+        current, rank = _row_basis(stacked_residues([current, *[current * image for image in images]]))
     return rank
 
 
@@ -155,7 +155,8 @@ def _row_basis(image: Any) -> tuple[Any, int]:
     return flint.nmod_mat(rank, n, [int(x) for x in reduced.entries()[: rank * n]], image.modulus()), rank
 
 
-def _stacked(blocks: list[Any]) -> Any:
+def stacked_residues(blocks: Sequence[Any]) -> Any:
+    """Matrices modulo one prime (``flint.nmod_mat``) with the same number of columns, one below the other."""
     rows = sum(b.nrows() for b in blocks)
     entries = [int(x) for b in blocks for x in b.entries()]
     return flint.nmod_mat(rows, blocks[0].ncols(), entries, blocks[0].modulus())

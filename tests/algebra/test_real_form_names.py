@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.algebra.real_form import RealForm, complex_form, real_forms
-from liehom.algebra.real_form_names import canonical_real_form
+from liehom.algebra.real_form_names import _rank_in_sums, canonical_real_form
 
 COINCIDENCES = {
     "so(3)": "so(3) | su(2) | sp(1) | sl(1,H) | spin(3) | su*(2)",
@@ -14,7 +14,7 @@ COINCIDENCES = {
     "sl(2,C)": "so(3,C) | sp(2,C) | so(3,1) | so(1,3) | sl(2, C)",
     "so(3) + so(3)": "so(4) | so(0,4) | su(2) + sp(1)",
     "sl(2,R) + sl(2,R)": "so(2,2) | su(1,1)+sl(2)",
-    "sl(2,R) + so(3)": "so*(4) | su(2)+su(1,1)",
+    "so(3) + sl(2,R)": "so*(4) | su(2)+su(1,1)",
     "sl(2,C) + sl(2,C)": "so(4,C) | so(3,1) + so(3,C)",
     "so(5)": "sp(2) | so(5) | so(0,5)",
     "so(4,1)": "sp(1,1) | so(1,4)",
@@ -48,7 +48,7 @@ def test_coincidences(canonical, name):
 
 
 def test_sums_are_sorted():
-    assert canonical_real_form("su(3)+ e6(2) + so(2,2)") == "e6(2) + sl(2,R) + sl(2,R) + su(3)"
+    assert canonical_real_form("su(3)+ e6(2) + so(2,2)") == "sl(2,R) + sl(2,R) + su(3) + e6(2)"
 
 
 @pytest.mark.parametrize(
@@ -133,3 +133,14 @@ def test_what_is_no_name(name):
 
 def test_large_names_cost_nothing():
     assert canonical_real_form("so(1000,2000)") == "so(2000,1000)"
+
+
+@pytest.mark.parametrize("type_name", ["A1", "A2", "A3", "B2", "B3", "C3", "C4", "D4", "D5", "G2", "F4", "E6", "E7", "E8"])
+def test_sums_are_sorted_by_the_dimension_of_the_real_form(type_name: str) -> None:
+    forms = [*real_forms(type_name), complex_form(type_name)]
+    for form in forms:
+        assert _rank_in_sums(form.name)[:2] == (form.dimension, not form.is_compact)
+
+
+def test_compact_ideals_come_first() -> None:
+    assert canonical_real_form("so(4,1)+sl(2,R)+so(3)") == "so(3) + sl(2,R) + so(4,1)"
