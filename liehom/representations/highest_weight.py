@@ -2,7 +2,8 @@
 
 The generators e_i, f_i act on the admissible lattice by integer matrices (`admissible_lattice`), the simple coroots by
 the weights; the other root vectors are commutators, rho(e_(a+b)) = [rho(e_a), rho(e_b)] / N_ab with the constants
-[e_a, e_b] = N_ab e_(a+b) of the algebra.  Imports admissible_lattice, weights, representation, algebra, scalars.
+[e_a, e_b] = N_ab e_(a+b) of the algebra.
+Imports admissible_lattice, characters, generator_proof, weights, representation, algebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -14,14 +15,16 @@ from typing import Any, final
 from liehom.algebra import LieAlgebra, StructureConstants
 from liehom.algebra.chevalley import chevalley, chevalley_constants
 from liehom.algebra.root_system import RootSystem
-from liehom.errors import RepresentationError
+from liehom.errors import InputError, RepresentationError
 from liehom.representations.admissible_lattice import AdmissibleLattice, Vector, lattice_of
+from liehom.representations.characters import weyl_dimension
 from liehom.representations.generator_proof import SparseStack, failing_generator_pair
 from liehom.representations.representation import Representation
 from liehom.representations.weights import Weight, checked_weight, root_system_of, weight_space
 from liehom.scalars import QQ
 
 Columns = Sequence[Vector]
+MAX_ENTRIES = 1 << 28
 
 
 @final
@@ -101,7 +104,8 @@ def highest_weight_module(
     Raises
     ------
     ShapeError, InputError
-        If the weight does not have one integer, not negative, per simple root.
+        If the weight does not have one integer, not negative, per simple root, or if the dense matrices would take more
+        than 2 GB.
     CatalogError
         If there is no such type.
 
@@ -125,6 +129,7 @@ def highest_weight_module(
     roots = root_system_of(system)
     space = weight_space(roots)
     top = checked_weight(space, weight)
+    require_room(roots, weyl_dimension(roots, top))
     lattice = lattice_of(space, top)
     # The constants of a Chevalley basis are those of a Lie algebra.
     algebra = (
@@ -140,6 +145,22 @@ def highest_weight_module(
     name = f"V({', '.join(map(str, top))})"
     rho = Representation(algebra, [sparse_matrix(c, size) for c in columns], size=size, name=name, check=False)
     return HighestWeightModule(roots, top, lattice.weights, rho)
+
+
+def require_room(roots: RootSystem, size: int) -> None:
+    """Refuse modules whose dense matrices would not fit.
+
+    Raises
+    ------
+    InputError
+        If there are more than 2^28 entries.
+    """
+    count = roots.rank + roots.number_of_roots
+    if count * size**2 > MAX_ENTRIES:
+        raise InputError(
+            f"{count} dense matrices of size {size} are {count * size**2 * 8 / 1e9:.3g} GB; "
+            "liehom.representations.admissible_lattice gives the generators sparsely, liehom.character the weights"
+        )
 
 
 def chevalley_matrices(roots: RootSystem, lattice: AdmissibleLattice) -> list[Columns]:

@@ -18,8 +18,9 @@ from liehom.algebra.root_system import RootSystem
 from liehom.algebra.vogan import VoganDiagram
 from liehom.errors import InputError, RepresentationError
 from liehom.representations.admissible_lattice import AdmissibleLattice, Vector, lattice_of
+from liehom.representations.characters import weyl_dimension
 from liehom.representations.generator_proof import SparseStack, failing_generator_pair
-from liehom.representations.highest_weight import Columns, chevalley_matrices, sparse_matrix
+from liehom.representations.highest_weight import Columns, chevalley_matrices, require_room, sparse_matrix
 from liehom.representations.real_structure import Operator, RealBasis, commutant_letter
 from liehom.representations.representation import Representation
 from liehom.representations.weights import Weight, checked_weight, weight_space
@@ -121,7 +122,7 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If it is not a dominant integral weight, or if the dense matrices would take more than 2 GB.
     CatalogError
         If there is no such real form.
 
@@ -148,8 +149,9 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     roots = vogan.root_system()
     space = weight_space(roots)
     top = checked_weight(space, weight)
-    lattice = lattice_of(space, top)
     kind = commutant_letter(vogan, top)
+    require_room(roots, weyl_dimension(roots, top) * (1 if kind == "R" else 2))
+    lattice = lattice_of(space, top)
     operators, generators = _operators(vogan, roots, lattice)
     if kind == "R":
         matrices = RealBasis(vogan, lattice).matrices(operators)

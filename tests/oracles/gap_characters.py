@@ -78,11 +78,13 @@ def main() -> None:
     version, *answers = run_gap(["GAPInfo.Version", *questions])
     n = len(CHARACTERS)
     oracle = {
-        "tool": "GAP",
-        "version": version,
-        "script": "tests/oracles/gap_characters.py",
-        "date": datetime.date.today().isoformat(),
-        "licence": "computed facts; GAP itself is GPL-2.0-or-later",
+        "provenance": {
+            "tool": "GAP",
+            "tool_version": version,
+            "script": "tests/oracles/gap_characters.py",
+            "date": datetime.date.today().isoformat(),
+            "licence": "GAP is under GPL-2.0-or-later; the numbers are facts that it computed",
+        },
         "characters": [
             {"type": t, "weight": w, "dimension": int(dimension), "dominant": weights(t, character)}
             for (t, w), character, dimension in zip(CHARACTERS, answers[:n], answers[n : 2 * n], strict=True)

@@ -13,7 +13,6 @@ import liehom as lh
 from liehom.algebra.root_system import RootSystem
 from liehom.errors import CatalogError, InputError, RepresentationError, ShapeError
 from liehom.representations import admissible_lattice
-from liehom.representations import highest_weight as module_under_test
 from liehom.representations.bracket_proof import failing_pair
 from liehom.representations.generator_proof import SparseStack, failing_generator_pair
 from liehom.scalars import QQ
@@ -183,7 +182,8 @@ def test_the_proof_by_generators_sees_a_wrong_entry_in_any_matrix() -> None:
 
 
 def test_a_program_that_computes_wrong_matrices_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = module_under_test.lattice_of
+    names = lh.highest_weight_module.__globals__
+    right = names["lattice_of"]
 
     def wrong(space: Any, top: Any) -> Any:
         lattice = right(space, top)
@@ -191,7 +191,7 @@ def test_a_program_that_computes_wrong_matrices_is_found_out(monkeypatch: pytest
         raising[0][-1] = {0: 1}
         return type(lattice)(lattice.weights, tuple(map(tuple, raising)), lattice.lowering, lattice.recipes)
 
-    monkeypatch.setattr(module_under_test, "lattice_of", wrong)
+    monkeypatch.setitem(names, "lattice_of", wrong)
     with pytest.raises(RepresentationError, match="not a representation"):
         lh.highest_weight_module("A2", [1, 0])
 
@@ -207,3 +207,8 @@ def test_what_is_no_dominant_weight_is_refused() -> None:
         lh.highest_weight_module("G3", [1, 0, 0])
     with pytest.raises(InputError, match="root system"):
         admissible_lattice(lh.so(3), [1])  # type: ignore[arg-type]
+
+
+def test_matrices_that_would_not_fit_are_refused_at_once() -> None:
+    with pytest.raises(InputError, match=r"GB; .*admissible_lattice"):
+        lh.highest_weight_module("E8", [1, 0, 0, 0, 0, 0, 0, 0])

@@ -12,7 +12,6 @@ import liehom as lh
 from liehom.algebra.compact_form import real_form_of
 from liehom.algebra.real_form import RealForm, complex_form
 from liehom.errors import CatalogError, InputError, RepresentationError, ShapeError
-from liehom.representations import real_form_module as module_under_test
 from liehom.representations import real_structure
 from liehom.representations.admissible_lattice import admissible_lattice
 from liehom.representations.bracket_proof import failing_pair
@@ -184,14 +183,15 @@ def test_the_adjoint_module_of_e8(name: str) -> None:
 
 
 def test_a_program_that_computes_wrong_matrices_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = module_under_test.chevalley_matrices
+    names = lh.real_module.__globals__
+    right = names["chevalley_matrices"]
 
     def wrong(roots: Any, lattice: Any) -> Any:
         made = [list(columns) for columns in right(roots, lattice)]
         made[-1][0] = {0: 1}
         return made
 
-    monkeypatch.setattr(module_under_test, "chevalley_matrices", wrong)
+    monkeypatch.setitem(names, "chevalley_matrices", wrong)
     with pytest.raises(RepresentationError, match="not respected"):
         lh.real_module("su(2,1)", [1, 0])
 
@@ -205,3 +205,8 @@ def test_what_is_no_form_or_no_weight_is_refused() -> None:
         lh.real_module("sl(2,C)", [1])
     with pytest.raises(InputError, match="not dominant"):
         lh.real_module_type("g2", [-1, 0])
+
+
+def test_matrices_that_would_not_fit_are_refused_at_once() -> None:
+    with pytest.raises(InputError, match=r"GB; .*admissible_lattice"):
+        lh.real_module("e7(-5)", [1, 1, 1, 1, 1, 1, 1])
