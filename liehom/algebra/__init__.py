@@ -1,5 +1,6 @@
 """Lie algebras by structure constants: the algebra, its subalgebras, and how they are made."""
 
+from liehom.algebra.centroid import centroid as centroid
 from liehom.algebra.chevalley import chevalley as chevalley
 from liehom.algebra.closure import Closure as Closure
 from liehom.algebra.closure import lie_closure as lie_closure
@@ -16,6 +17,7 @@ from liehom.algebra.constructions import so as so
 from liehom.algebra.constructions import sp as sp
 from liehom.algebra.constructions import su as su
 from liehom.algebra.constructions import u as u
+from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition as direct_sum_decomposition
 from liehom.algebra.dynkin import cartan_matrix as cartan_matrix
 from liehom.algebra.dynkin import dynkin_diagram as dynkin_diagram
 from liehom.algebra.extensions import ComplexLieAlgebra as ComplexLieAlgebra
@@ -42,6 +44,9 @@ from liehom.algebra.real_form import complex_form as complex_form
 from liehom.algebra.real_form import real_forms as real_forms
 from liehom.algebra.real_form import real_forms_with as real_forms_with
 from liehom.algebra.real_form_names import canonical_real_form as canonical_real_form
+from liehom.algebra.real_splitting import Place as Place
+from liehom.algebra.real_splitting import places as places
+from liehom.algebra.real_splitting import real_ideals as real_ideals
 from liehom.algebra.root_system import RootSystem as RootSystem
 from liehom.algebra.root_system import root_system as root_system
 from liehom.algebra.satake import SatakeDiagram as SatakeDiagram
