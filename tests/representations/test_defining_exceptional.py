@@ -26,8 +26,12 @@ def test_every_exceptional_form_has_a_defining_representation(kind: str, name: s
     assert rho.size == DIMENSIONS[kind][name]
 
 
-def test_a_name_alone_and_a_larger_field_are_understood() -> None:
+def test_a_name_alone_is_understood() -> None:
     assert lh.defining("e7(-25)").size == 56
+
+
+@pytest.mark.slow
+def test_a_larger_field_is_understood() -> None:
     over = lh.defining(lh.simple("E6", "e6(2)").over(lh.number_field("sqrt(2)")))
     assert over.field.name == "QQ(sqrt(2))"
 
