@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from liehom.algebra import chevalley as chevalley
     from liehom.algebra import complexification as complexification
     from liehom.algebra import conformal as conformal
+    from liehom.algebra import derivations as derivations
     from liehom.algebra import direct_sum as direct_sum
     from liehom.algebra import direct_sum_decomposition as direct_sum_decomposition
     from liehom.algebra import dynkin_diagram as dynkin_diagram
@@ -192,11 +193,11 @@ _LAYERS = (
 _NAMES = {
     "liehom.algebra": (
         "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
-        "bargmann bianchi canonical_real_form cartan_matrix central_extension centroid chevalley complexification "
-        "conformal direct_sum direct_sum_decomposition dynkin_diagram euclidean filiform free_nilpotent galilei gl "
-        "heisenberg oscillator parabolic_subalgebra poincare quotient real_forms realification root_system "
-        "semidirect_sum simple sl so so_form so_star sp sp_form strictly_upper_triangular su u "
-        "upper_triangular"
+        "bargmann bianchi canonical_real_form cartan_matrix central_extension centroid chevalley "
+        "complexification conformal derivations direct_sum direct_sum_decomposition dynkin_diagram euclidean "
+        "filiform free_nilpotent galilei gl heisenberg oscillator parabolic_subalgebra poincare quotient "
+        "real_forms realification root_system semidirect_sum simple sl so so_form so_star sp sp_form "
+        "strictly_upper_triangular su u upper_triangular"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (

@@ -17,6 +17,8 @@ from liehom.algebra.constructions import so as so
 from liehom.algebra.constructions import sp as sp
 from liehom.algebra.constructions import su as su
 from liehom.algebra.constructions import u as u
+from liehom.algebra.derivation_algebra import Derivations as Derivations
+from liehom.algebra.derivation_algebra import derivations as derivations
 from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition as direct_sum_decomposition
 from liehom.algebra.dynkin import cartan_matrix as cartan_matrix
 from liehom.algebra.dynkin import dynkin_diagram as dynkin_diagram

@@ -172,6 +172,23 @@ def rational_lifts(make: Callable[[int], Any], field: Any) -> Iterator[ExactMatr
         modulus *= p
 
 
+def lifted(values: Residues, modulus: int, field: Any) -> ExactMatrix | None:
+    """The matrix of small fractions that a matrix modulo one prime proposes, or None if an entry proposes none.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> print(lifted(np.array([[99.0, 51.0], [0.0, 3.0]]), 101, QQ))
+    [-2, 1/2]
+    [0, 3]
+    """
+    found = _lifted([int(x) for x in values.ravel()], modulus)
+    if found is None:
+        return None
+    entries = [field.convert(flint.fmpq(a, b)) for a, b in found]
+    return field.from_entries(entries, *values.shape)  # type: ignore[no-any-return]
+
+
 def _residue(matrix: ExactMatrix, attempt: int) -> Any:
     p = prime(attempt)
     return matrix.modulo(attempt) * pow(matrix.den, -1, p)
