@@ -47,7 +47,9 @@ class BracketSeeds:
         self.n = algebra.dimension
         self.rng = random.Random(self.n)
         table = algebra.table
-        self._flat = table.dense().reshape(self.n, self.n**2) if table.is_dense() else None
+        # clearing denominators multiplies the bracket by a number, which changes no statement about it
+        self._flat = table.dense().cleared().reshape(self.n, self.n**2) if table.is_dense() else None
+        self.attempt = 0 if self._flat is None else self._best_prime()
         self._narrow: Any = None
         self._inverse: Any = None
         self._generating: list[Any] | None = None
@@ -55,6 +57,17 @@ class BracketSeeds:
         self.tables: list[Any] = []
         self._grow()
         self._complete()
+
+    def _best_prime(self) -> int:
+        """The first prime, unless brackets are more independent modulo the second: then it divides their numbers."""
+        flat: Any = self._flat
+        tall = flat.reshape(self.n**2, self.n)
+        ranks = [int(tall.modulo(a).rank()) + int(flat.modulo(a).rank()) for a in (0, 1)]
+        return int(ranks[1] > ranks[0])
+
+    def pivots(self, rows: Any) -> list[int]:
+        """Indices of rows that are independent modulo a prime."""
+        return pivot_columns(rows.modulo(self.attempt).transpose())
 
     # -- brackets ----------------------------------------------------------------------------------------
     def brackets(self, left: Any, right: Any) -> list[Any]:
@@ -68,7 +81,7 @@ class BracketSeeds:
         if self._flat is None or NARROW * self.spanned > self.n or not self.tables:
             return self.brackets(left, right)
         if self._narrow is None:
-            columns = pivot_columns(self.field.stack_rows(self.tables, self.n).modulo())
+            columns = self.pivots(self.field.stack_rows(self.tables, self.n).T)
             dense = self.algebra.table.dense().select(columns=columns)
             self._narrow = dense.reshape(self.n, self.n * len(columns))
         return [right @ block for block in (left @ self._narrow).split_rows(self.n, self.spanned)]
@@ -90,7 +103,7 @@ class BracketSeeds:
         while rank < self.n and idle < IDLE:
             v = self.random_rows(1)
             grown = [*self.tables, self.ads(v)[0]]
-            found = int(self.field.stack_rows(grown, self.n).modulo().rank())
+            found = int(self.field.stack_rows(grown, self.n).modulo(self.attempt).rank())
             if found == rank:
                 idle += 1  # [v, g] of random v adds nothing: [g, g] is spanned
                 continue
@@ -101,7 +114,7 @@ class BracketSeeds:
         """Take unit vectors in as seeds where they are missing, and choose a basis among all rows."""
         n = self.n
         extended = self.field.stack_rows([*self.tables, *self.seeds, self.field.identity(n)], n)
-        chosen = pivot_columns(extended.modulo().transpose())
+        chosen = self.pivots(extended)
         first = len(self.tables) * n
         first_unit = first + len(self.seeds)
         units = [x - first_unit for x in chosen if x >= first_unit]
@@ -154,6 +167,6 @@ class BracketSeeds:
         if self.n == 0:
             return self.field.zeros(0, 0)
         wide = self.field.stack_columns(self.generating(), self.n)
-        if int(wide.modulo().rank()) == self.n:
+        if int(wide.modulo(self.attempt).rank()) == self.n:
             return self.field.zeros(0, self.n)
         return wide.left_null_space()

@@ -16,9 +16,9 @@ from liehom.algebra.commuting_maps import are_independent
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.errors import FieldError, InternalError
 from liehom.scalars.integral_basis import integral_basis
-from liehom.scalars.modular import pivot_columns
 
 ROUNDS = 16
+MODULAR_ROUNDS = 8
 REDUCED = 60
 
 
@@ -77,8 +77,9 @@ def centroid_of(seeds: BracketSeeds, center: Any) -> tuple[Any, ...]:
     problem = _Problem(seeds, center)
     conditions, solved = field.zeros(0, problem.size), False
     count = problem.size // (2 * max(seeds.spanned, 1)) + 1
-    for _ in range(ROUNDS):
-        before, conditions = conditions.nrows, _chosen([conditions, problem.conditions(count, solved)])
+    for attempt in range(ROUNDS):
+        blocks = [conditions, problem.conditions(count, solved)]
+        before, conditions = conditions.nrows, problem.chosen(blocks, exact=attempt > MODULAR_ROUNDS)
         if conditions.nrows == problem.size - 1:
             return (field.identity(n),)  # the identity is a solution, and nothing else is left
         if conditions.nrows > before:
@@ -91,12 +92,6 @@ def centroid_of(seeds: BracketSeeds, center: Any) -> tuple[Any, ...]:
     raise InternalError("centroid: the equations did not settle")
 
 
-def _chosen(blocks: list[Any]) -> Any:
-    """As many rows as the rank modulo a prime: every row is a necessary condition, so leaving some out is no error."""
-    whole = blocks[0].field.stack_rows(blocks, blocks[0].ncols)
-    return whole.select(rows=pivot_columns(whole.modulo().transpose()))
-
-
 @final
 class _Problem:
     """The values of phi on the seeds as unknowns."""
@@ -107,8 +102,16 @@ class _Problem:
         self.n = seeds.n
         self.values = [self._allowed(i, v) for i, v in enumerate(seeds.seeds)]
         for i in seeds.free if center is not None and center.nrows else []:
-            self.values[i] = _complement(center, self.values[i])
+            self.values[i] = self._complement(center, self.values[i])
         self.size = sum(u.nrows for u in self.values)
+
+    def chosen(self, blocks: list[Any], exact: bool = False) -> Any:
+        """A basis of the rows, or as many of them as the rank modulo a prime.
+
+        Every row is a necessary condition, so leaving some out is no error.
+        """
+        whole = self.field.stack_rows(blocks, blocks[0].ncols)
+        return whole.row_space() if exact else whole.select(rows=self.seeds.pivots(whole))
 
     # -- unknowns ----------------------------------------------------------------------------------------
     def _allowed(self, place: int, v: Any) -> Any:
@@ -128,11 +131,18 @@ class _Problem:
             weights = [[self.seeds.rng.choice((-1, 1)) for _ in range(k)] for _ in range(count)]
             elements = (self.field.matrix(weights, (count, k)) @ whole).primitive()
             images = [m.T for m in self.seeds.narrow_brackets(elements, space)]
-            conditions = _chosen(images)
+            conditions = self.chosen(images)
             if conditions.nrows == 0:
                 break
             space, count = conditions.null_space() @ space, 2 * count
         return space
+
+    def _complement(self, center: Any, space: Any) -> Any:
+        """Rows of a space that are a complement of the centre in it; all rows where a prime does not show them."""
+        k = center.nrows
+        stacked = self.field.stack_rows([center, space], self.n)
+        chosen = [x - k for x in self.seeds.pivots(stacked) if x >= k]
+        return space.select(rows=chosen) if len(chosen) == space.nrows - k else space
 
     # -- equations ---------------------------------------------------------------------------------------
     def images(self, rows: Any) -> tuple[int, list[Any]]:
@@ -234,11 +244,3 @@ class _Problem:
             if not all((phi @ adjoint - adjoint @ phi).is_zero() for phi in maps):
                 return False
         return True
-
-
-def _complement(center: Any, space: Any) -> Any:
-    """Rows of a space that are a complement of the centre in it; all rows where a prime does not show them."""
-    k = center.nrows
-    stacked = center.field.stack_rows([center, space], center.ncols)
-    chosen = [x - k for x in pivot_columns(stacked.modulo().transpose()) if x >= k]
-    return space.select(rows=chosen) if len(chosen) == space.nrows - k else space

@@ -93,6 +93,15 @@ def test_a_complex_heisenberg_algebra_is_one_piece_over_the_rationals() -> None:
         assert dimensions(scrambled(lh.LieAlgebra(table, dimension=6), random.Random(2))) == expected
 
 
+@pytest.mark.parametrize("places", [(0,), (0, 3, 5), tuple(range(9))], ids=["one", "three", "all"])
+def test_numbers_that_a_prime_divides(places: tuple[int, ...]) -> None:
+    """Basis elements multiplied by the prime that residues are taken of first: no rank modulo it is then right."""
+    algebra = lh.direct_sum(lh.so(4), lh.heisenberg(1))
+    for factor in (lh.QQ.convert(2**61 - 1), 1 / lh.QQ.convert(2**61 - 1), lh.QQ.convert("2/3")):
+        rows = [[(factor if i in places else 1) if i == j else 0 for j in range(9)] for i in range(9)]
+        assert dimensions(algebra.change_of_basis(rows)) == [3, 3, 3]
+
+
 def test_dimension_zero_and_floats() -> None:
     assert direct_sum_decomposition(lh.abelian(0)) == []
     with pytest.raises(FieldError):
