@@ -33,7 +33,7 @@ class IsotropyAlgebra:
         That basis of L0.
     """
 
-    __slots__ = ("field", "matrices", "members", "pair", "quotient", "size", "traceless")
+    __slots__ = ("_columns", "field", "matrices", "members", "pair", "quotient", "size", "traceless")
 
     def __init__(self, pair: Pair) -> None:
         if not isinstance(pair.field, ExactField):
@@ -48,6 +48,7 @@ class IsotropyAlgebra:
         flat = self.field.stack_rows([a.reshape(1, square) for a in reduced], square)
         self.members = independent_rows(flat) if reduced else []
         self.traceless = [reduced[i] for i in self.members]
+        self._columns: dict[int, Any] = {}
 
     def _traceless(self, matrix: Any) -> Any:
         trace = matrix.trace()
@@ -75,8 +76,19 @@ class IsotropyAlgebra:
     # -- ranks -------------------------------------------------------------------------------------------
     def action_rows(self, x: Any, indices: Sequence[int] | None = None) -> Any:
         """Rows x, rho(z_1) x, ... (as rows of V) for the given indices, all by default."""
-        chosen = range(len(self.matrices)) if indices is None else indices
-        return self.field.stack_rows([x.T, *[(self.matrices[i] @ x).T for i in chosen]], self.size)
+        chosen = list(range(len(self.matrices))) if indices is None else list(indices)
+        if not chosen:
+            return x.T
+        moved = (self._on_columns(chosen) @ x).reshape(len(chosen), self.size)
+        return self.field.stack_rows([x.T, moved], self.size)
+
+    def _on_columns(self, indices: list[int]) -> Any:
+        """The matrices below each other, so that one product moves a point by all; kept for each batch."""
+        count = len(indices)
+        if count not in self._columns or self._columns[count][0] != indices:
+            stacked = self.field.stack_rows([self.matrices[i] for i in indices], self.size)
+            self._columns[count] = indices, stacked
+        return self._columns[count][1]
 
     def rank_at(self, x: Any) -> int:
         """The exact rank of [rho(h) x, x]; stops as soon as d is reached modulo a prime, which proves d."""
