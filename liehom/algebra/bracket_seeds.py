@@ -13,7 +13,7 @@ from typing import Any, final
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.scalars.modular import invariant_hull_rank, pivot_columns
 
-WEIGHT = 1
+SUPPORT = 16
 IDLE = 2
 NARROW = 2
 FEW_GENERATORS = 12
@@ -93,8 +93,12 @@ class BracketSeeds:
         return (left @ self._flat).split_rows(self.n, self.n)  # type: ignore[no-any-return]
 
     def random_rows(self, count: int) -> Any:
-        """Random rows with entries -1, 0, 1."""
-        rows = [[self.rng.randint(-WEIGHT, WEIGHT) for _ in range(self.n)] for _ in range(count)]
+        """Random rows with entries -1, 0, 1; few are not 0 where the table is sparse, so that numbers remain small."""
+        if self._flat is None:
+            chosen = [self.rng.sample(range(self.n), SUPPORT) for _ in range(count)]
+            rows = [[self.rng.choice((-1, 1)) if j in places else 0 for j in range(self.n)] for places in chosen]
+        else:
+            rows = [[self.rng.randint(-1, 1) for _ in range(self.n)] for _ in range(count)]
         return self.field.matrix(rows, (count, self.n))
 
     # -- seeds -------------------------------------------------------------------------------------------

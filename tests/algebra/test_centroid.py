@@ -118,6 +118,15 @@ def test_over_a_number_field() -> None:
     assert len(maps) == 4 and all(respects(algebra, phi, random.Random(1)) for phi in maps)
 
 
+def test_large_sparse_tables() -> None:
+    """so(12) over the rationals, and sl(6, C), whose centroid is QQ(i), in the sparse tables of their own bases."""
+    assert not lh.so(12).table.is_dense() and len(centroid(lh.so(12))) == 1
+    algebra = lh.sl(6, "C")
+    maps = centroid(algebra)
+    assert not algebra.table.is_dense() and len(maps) == 2
+    assert all(respects(algebra, phi, random.Random(2)) for phi in maps)
+
+
 def test_floats_are_refused() -> None:
     with pytest.raises(FieldError, match="exact"):
         centroid(lh.so(3).over(lh.RR))
