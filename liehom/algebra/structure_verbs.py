@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from liehom.algebra.cartan_decomposition import CartanDecomposition
     from liehom.algebra.levi import LeviDecomposition
     from liehom.algebra.lie_algebra import LieAlgebra
     from liehom.algebra.real_form import RealForm
@@ -199,6 +200,39 @@ class StructureVerbs:
         (1, 0, 2)
         """
         return sum(form.real_rank for form in self.real_forms())
+
+    def cartan_decomposition(self: LieAlgebra) -> CartanDecomposition:  # type: ignore[misc]
+        """g = k + p for a Cartan involution that is proved; unpacks as ``k, p``, and has ``.theta``.
+
+        Raises
+        ------
+        InputError
+            If the algebra is not semisimple.
+        UndecidedError
+            If no Cartan involution with small rational entries was found (there may be none); over ``lh.RR`` it is
+            found numerically.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> k, p = lh.sl(3).cartan_decomposition()
+        >>> k.dimension, p.dimension
+        (3, 5)
+        """
+        from liehom.algebra.cartan_decomposition import cartan_decomposition
+
+        return cartan_decomposition(self)
+
+    def maximal_compact_subalgebra(self: LieAlgebra) -> Subalgebra:  # type: ignore[misc]
+        """The fixed points of a Cartan involution (`cartan_decomposition`).
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(4, 1).maximal_compact_subalgebra().as_algebra().real_form()
+        'so(3) + so(3)'
+        """
+        return self.cartan_decomposition().k
 
     def is_isomorphic(self: LieAlgebra, other: LieAlgebra) -> bool:  # type: ignore[misc]
         """Whether two semisimple algebras are isomorphic over the reals; `InputError` if one has a radical.
