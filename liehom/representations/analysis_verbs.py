@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from liehom.errors import FieldError
+from liehom.representations.generating_matrices import generating_matrices
 from liehom.representations.intertwiners import InvariantForms, commutant, invariant_forms, invariant_vectors
 from liehom.representations.irreducibility import is_irreducible
 from liehom.scalars import Subspace
@@ -40,7 +41,7 @@ class AnalysisVerbs:
         >>> len(lh.defining(lh.su(2)).commutant())
         4
         """
-        return commutant(exact(self).matrices, self.size, self.field)
+        return commutant(generating_matrices(exact(self)), self.size, self.field)
 
     def commutant_type(self: Representation) -> Type:  # type: ignore[misc]
         """'R', 'C' or 'H': what commutes, over the reals, with an irreducible representation.
@@ -60,7 +61,7 @@ class AnalysisVerbs:
         """
         from liehom.representations.commutant_type import commutant_type
 
-        return commutant_type(exact(self).matrices, self.size, self.field)
+        return commutant_type(exact(self).matrices, self.size, self.field, generating_matrices(self))
 
     def invariant_forms(self: Representation) -> InvariantForms:  # type: ignore[misc]
         """The bilinear forms P with rho(x)^T P + P rho(x) = 0 for all x, symmetric and skew ones apart.
@@ -72,7 +73,7 @@ class AnalysisVerbs:
         >>> len(forms.symmetric), len(forms.skew), forms.symmetric[0].signature()
         (1, 0, (3, 1, 0))
         """
-        return invariant_forms(exact(self).matrices, self.size, self.field)
+        return invariant_forms(generating_matrices(exact(self)), self.size, self.field)
 
     def hermitian_forms(self: Representation, structure: Any = None) -> HermitianForms:  # type: ignore[misc]
         """The invariant Hermitian forms for a complex structure J, or for the commutant of an irreducible one.
@@ -103,7 +104,7 @@ class AnalysisVerbs:
         >>> lh.adjoint(lh.gl(2)).invariant_vectors().dimension
         1
         """
-        return invariant_vectors(exact(self).matrices, self.size, self.field)
+        return invariant_vectors(generating_matrices(exact(self)), self.size, self.field)
 
     # -- irreducible parts -------------------------------------------------------------------------------
     def is_irreducible(self: Representation) -> bool:  # type: ignore[misc]
@@ -122,7 +123,7 @@ class AnalysisVerbs:
         >>> lh.Representation.from_matrices([[[0, 2], [1, 0]]]).is_irreducible()
         False
         """
-        return is_irreducible(exact(self).matrices, self.size, self.field)
+        return is_irreducible(exact(self).matrices, self.size, self.field, generating_matrices(self))
 
     def is_completely_reducible(self: Representation) -> bool:  # type: ignore[misc]
         """Whether every invariant subspace has an invariant complement.

@@ -19,8 +19,8 @@ from liehom.scalars.forms import orthogonal_basis
 KINDS: dict[int, Type] = {1: "R", 2: "C", 4: "H"}
 
 
-def commutant_type(matrices: Sequence[Any], size: int, over: Field) -> Type:
-    """The type of an irreducible action of a linear Lie algebra on R^N.
+def commutant_type(matrices: Sequence[Any], size: int, over: Field, generating: Sequence[Any] | None = None) -> Type:
+    """The type of an irreducible action of a linear Lie algebra on R^N; the arguments are those of `reduction`.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def commutant_type(matrices: Sequence[Any], size: int, over: Field) -> Type:
     >>> commutant_type([QQ.matrix([[0, -2], [1, 0]])], 2, QQ)
     'C'
     """
-    found = None if size == 0 else reduction(matrices, size, over)
+    found = None if size == 0 else reduction(matrices, size, over, generating)
     if size == 0 or found is not None:
         how = {
             "kernel": "the kernel of a matrix is an invariant subspace",
@@ -45,7 +45,7 @@ def commutant_type(matrices: Sequence[Any], size: int, over: Field) -> Type:
             f"the type R, C or H belongs to an irreducible representation, and this one is reducible over the reals "
             f"({why}): use decomposition(), whose components have types"
         )
-    return KINDS[len(commutant(matrices, size, over))]
+    return KINDS[len(commutant(matrices if generating is None else generating, size, over))]
 
 
 def complex_structure(matrices: Sequence[Any], size: int, over: Field) -> tuple[Any, Any]:

@@ -19,6 +19,7 @@ from liehom.algebra import LieAlgebra
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.errors import CertificateError, NotCompletelyReducibleError
 from liehom.representations.complete_reducibility import socle
+from liehom.representations.generating_matrices import generating_matrices
 from liehom.representations.intertwiners import commutant, intertwiners
 from liehom.representations.irreducibility import is_irreducible
 from liehom.representations.isotypic import Type, isotypic_pieces
@@ -217,9 +218,10 @@ class Decomposition:
         over = [component.extension.matrix(a) for a in self.representation.matrices]
         if restricted(over, component.subspace.basis) != list(matrices):
             raise CertificateError("restriction", f"component {number} is not the restriction to its subspace")
-        if not is_irreducible(matrices, dimension, field):
+        generating = generating_matrices(component.representation)
+        if not is_irreducible(matrices, dimension, field, generating):
             raise CertificateError("irreducible", f"component {number} is reducible")
-        if len(commutant(matrices, dimension, field)) != {"R": 1, "C": 2, "H": 4}[component.type]:
+        if len(commutant(generating, dimension, field)) != {"R": 1, "C": 2, "H": 4}[component.type]:
             raise CertificateError("type", f"component {number} is not of type {component.type}")
         first = self.components[self.isotypic[component.isotypic].components[0]]
         if matrices and first.field == field:
@@ -297,8 +299,10 @@ def _groups(rho: Representation) -> Iterator[_Group]:
         yield _Group("R", fixed, base, single, (base,) * len(single))
     if fixed.nrows == size:
         return
-    moved = field.stack_rows([a.T for a in rho.matrices], size).row_space() if fixed.nrows else field.identity(size)
-    inside = restricted(rho.matrices, moved)
+    # [x, y] V lies in x V + y V: gV is the sum over generators
+    generating = generating_matrices(rho)
+    moved = field.stack_rows([a.T for a in generating], size).row_space() if fixed.nrows else field.identity(size)
+    inside = restricted(generating, moved)
     for group in isotypic_pieces(field, moved.nrows, commutant(inside, moved.nrows, field)):
         pieces = irreducible_pieces(group)
         whole = group.piece.rows @ group.piece.extension.matrix(moved)
@@ -317,7 +321,8 @@ class _Restrictions:
         from liehom.representations.representation import Representation
 
         algebra, matrices = self._over(extension)
-        made = restricted(matrices, subspace.basis)
+        # kernels of commuting matrices are invariant
+        made = restricted(matrices, subspace.basis, check=False)
         # The restriction of a homomorphism to an invariant subspace.
         return Representation(algebra, made, size=subspace.dimension, check=False)
 

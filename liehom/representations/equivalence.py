@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from liehom.errors import FieldError, InputError, UndecidedError
 from liehom.representations.complete_reducibility import is_completely_reducible
+from liehom.representations.generating_matrices import generating_matrices
 from liehom.representations.intertwiners import commutant, intertwiners
 
 if TYPE_CHECKING:
@@ -51,7 +52,9 @@ def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
             for i in range(sigma.size)
             for j in range(rho.size)
         ]
-    return intertwiners(rho.matrices, sigma.matrices, (sigma.size, rho.size), rho.field)
+    size = max(rho.size, sigma.size)
+    left, right = generating_matrices(rho, size), generating_matrices(sigma, size)
+    return intertwiners(left, right, (sigma.size, rho.size), rho.field)
 
 
 def equivalence(rho: Representation, sigma: Representation) -> Any:
@@ -101,7 +104,7 @@ def equivalence(rho: Representation, sigma: Representation) -> Any:
 
 
 def _endomorphisms(rho: Representation) -> list[Any]:
-    return commutant(rho.matrices, rho.size, rho.field)
+    return commutant(generating_matrices(rho), rho.size, rho.field)
 
 
 def _generates(rho: Representation, t: Any, dimension: int) -> bool:

@@ -3,7 +3,8 @@
 A map that intertwines is fixed by its values on vectors that generate the space under the A_i.  Spinning a
 random vector gives a basis v_j = (word in A) x, and T v_j = (same word in B) T x: the unknown is T x alone,
 of dimension e instead of d e.  Candidates are verified exactly against every A_i, so nothing rests on the
-random choices.  Imports scalars.
+random choices.  Large spaces over QQ are found modulo a prime, where they are at least as large, and lifted.
+Imports scalars.
 """
 
 from __future__ import annotations
@@ -11,13 +12,19 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, final
 
 from liehom.errors import InternalError, ShapeError
 from liehom.scalars import Field, Subspace
 from liehom.scalars.modular import pivot_columns, primitive_residues
+from liehom.scalars.modular_maps import intertwining_residues
+from liehom.scalars.modular_span import rational_lifts
 
 BATCH = 8
+LIFTED_SIZE = 150
+MIXED = 3
+ROUNDS = 4
 
 
 def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> list[Any]:
@@ -47,6 +54,12 @@ def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int,
         raise ShapeError(f"{len(source)} and {len(target)} matrices to intertwine")
     if e == 0 or d == 0:
         return []
+    if all(a.is_zero() for a in (*source, *target)):
+        return [_elementary(over, (e, d), i, j) for i in range(e) for j in range(d)]
+    if over.degree == 1 and e * d >= LIFTED_SIZE:
+        lifted = _lifted(source, target, shape, over)
+        if lifted is not None:
+            return lifted
     spun = _spin(source, target, shape, over)
     conditions: list[Any] = []
     rng = random.Random(7)
@@ -62,6 +75,40 @@ def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int,
         # Each round uses a generator that some candidate violates, at several vectors.
         conditions += [spun.condition(source[failing], target[failing], rng) for _ in range(2)]
     raise InternalError("intertwiners: the conditions did not settle")
+
+
+def _lifted(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> list[Any] | None:
+    """The intertwiners from their residues; None where there is no small kernel, or the numbers are too large.
+
+    Their dimension modulo a prime is an upper bound, also where only some combinations of the A_i are used.
+    """
+    rng = random.Random(11)
+    pairs = list(zip(source, target, strict=True))
+    used = pairs if len(pairs) <= MIXED else [_mixed(source, target, rng) for _ in range(MIXED)]
+    for _ in range(ROUNDS):
+        left, right = [a for a, _ in used], [b for _, b in used]
+        first = intertwining_residues(left, right)
+        if first is None:
+            return None
+        if first.nrows() == 0:
+            return []
+        failing: int | None = None
+        for rows in rational_lifts(partial(_residues_again, left, right, first), over):
+            candidates = rows.split_rows(*shape)
+            failing = _first_failing(candidates, source, target)
+            if failing is None:
+                return candidates
+            if _first_failing(candidates, left, right) is None:
+                break  # the combinations do not generate: one that is violated is used next
+        else:
+            return None
+        if failing is not None:
+            used.append(pairs[failing])
+    return None
+
+
+def _residues_again(left: Sequence[Any], right: Sequence[Any], first: Any, attempt: int) -> Any:
+    return intertwining_residues(left, right, attempt) if attempt else first
 
 
 def _first_failing(candidates: Sequence[Any], source: Sequence[Any], target: Sequence[Any]) -> int | None:
@@ -206,13 +253,11 @@ def commutant(matrices: Sequence[Any], size: int, over: Field) -> list[Any]:
     >>> len(commutant([QQ.matrix([[0, -1], [1, 0]])], 2, QQ))
     2
     """
-    if not matrices:
-        return [_elementary(over, size, i, j) for i in range(size) for j in range(size)]
     return intertwiners(matrices, matrices, (size, size), over)
 
 
-def _elementary(over: Field, size: int, i: int, j: int) -> Any:
-    return over.unit(size, i).T @ over.unit(size, j)
+def _elementary(over: Field, shape: tuple[int, int], i: int, j: int) -> Any:
+    return over.unit(shape[0], i).T @ over.unit(shape[1], j)
 
 
 @final
@@ -240,10 +285,7 @@ def invariant_forms(matrices: Sequence[Any], size: int, over: Field) -> Invarian
     >>> len(forms.symmetric), len(forms.skew)
     (1, 1)
     """
-    if matrices:
-        found = intertwiners(matrices, [-a.T for a in matrices], (size, size), over)
-    else:
-        found = [_elementary(over, size, i, j) for i in range(size) for j in range(size)]
+    found = intertwiners(matrices, [-a.T for a in matrices], (size, size), over)
     return InvariantForms(
         _independent(over, [t + t.T for t in found], size), _independent(over, [t - t.T for t in found], size)
     )

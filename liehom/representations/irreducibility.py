@@ -43,7 +43,9 @@ class Reduction:
     cut: Any = None
 
 
-def reduction(matrices: Sequence[Any], size: int, over: Field) -> Reduction | None:
+def reduction(
+    matrices: Sequence[Any], size: int, over: Field, generating: Sequence[Any] | None = None
+) -> Reduction | None:
     """What splits the action of a linear Lie algebra on R^N, or None: it is irreducible over the reals.
 
     Parameters
@@ -52,6 +54,9 @@ def reduction(matrices: Sequence[Any], size: int, over: Field) -> Reduction | No
         A basis of a Lie algebra of matrices (N, N) over an exact field.
     size : int
         N, at least 1.
+    over : Field
+    generating : sequence of Matrix, optional
+        Matrices that generate the Lie algebra (default: the basis).
 
     Examples
     --------
@@ -64,11 +69,14 @@ def reduction(matrices: Sequence[Any], size: int, over: Field) -> Reduction | No
     nilpotent = nilpotent_ideal_rows(matrices, size, over)
     if nilpotent.nrows:
         return Reduction("kernel", nilpotent)
-    return split_by_commutant(traceless(commutant(matrices, size, over), size, over), size, over)
+    commuting = commutant(matrices if generating is None else generating, size, over)
+    return split_by_commutant(traceless(commuting, size, over), size, over)
 
 
-def is_irreducible(matrices: Sequence[Any], size: int, over: Field) -> bool:
+def is_irreducible(matrices: Sequence[Any], size: int, over: Field, generating: Sequence[Any] | None = None) -> bool:
     """Whether a linear Lie algebra acts irreducibly on R^N (N >= 1; the zero space is not irreducible).
+
+    The arguments are those of `reduction`.
 
     Examples
     --------
@@ -76,7 +84,7 @@ def is_irreducible(matrices: Sequence[Any], size: int, over: Field) -> bool:
     >>> is_irreducible([QQ.matrix([[0, -1], [1, 0]])], 2, QQ)
     True
     """
-    return size > 0 and reduction(matrices, size, over) is None
+    return size > 0 and reduction(matrices, size, over, generating) is None
 
 
 def trace_form(matrices: Sequence[Any]) -> Any:

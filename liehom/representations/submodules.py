@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from liehom.errors import DependentRowsError, NotCompletelyReducibleError, NotInvariantError, ShapeError, SingularError
+from liehom.representations.generating_matrices import generating_matrices
 from liehom.representations.intertwiners import intertwiners
 from liehom.scalars import Subspace
 from liehom.scalars.modular import independent_rows
@@ -28,7 +29,7 @@ def generated_submodule(rho: Representation, rows: Any) -> Subspace:
     3
     """
     span, before = _rows(rho, rows).row_space(), -1
-    turned = [a.T for a in rho.matrices]
+    turned = [a.T for a in generating_matrices(rho)]
     while before < span.nrows < rho.size:
         before = span.nrows
         span = rho.field.stack_rows([span, *(span @ a for a in turned)], rho.size).row_space()
@@ -106,8 +107,8 @@ def invariant_complement(rho: Representation, rows: Any) -> Subspace:
     k = basis.nrows
     if not rho.matrices or k in (0, size):
         return Subspace(field, basis, size).complement()
-    inside = restricted(rho.matrices, basis)
-    maps = intertwiners(rho.matrices, inside, (k, size), field)
+    generating = generating_matrices(rho)
+    maps = intertwiners(generating, restricted(generating, basis), (k, size), field)
     flat = field.stack_rows([(t @ basis.T).reshape(1, k * k) for t in maps], k * k)
     try:
         weights = flat.T.solve(field.identity(k).reshape(k * k, 1))
@@ -120,8 +121,10 @@ def invariant_complement(rho: Representation, rows: Any) -> Subspace:
     return Subspace(field, total.null_space(), size)
 
 
-def restricted(matrices: Sequence[Any], basis: Any) -> list[Any]:
+def restricted(matrices: Sequence[Any], basis: Any, *, check: bool = True) -> list[Any]:
     """The matrices (k, k) by which maps act on the invariant span of independent rows (k, N), on columns.
+
+    With ``check=False`` the invariance is the caller's knowledge.
 
     Raises
     ------
@@ -132,13 +135,14 @@ def restricted(matrices: Sequence[Any], basis: Any) -> list[Any]:
     if k == 0:
         return [field.zeros(0, 0) for _ in matrices]
     places = basis.echelon()[1]
-    inverse = basis.select(columns=places).inverse()
+    # basis @ reading = 1
+    reading = field.identity(basis.ncols).select(columns=places) @ basis.select(columns=places).inverse()
     found = []
     for i, a in enumerate(matrices):
         moved = basis @ a.T
-        inside = moved.select(columns=places) @ inverse
-        defect = moved - inside @ basis
-        if not defect.is_zero():
+        inside = moved @ reading
+        defect = moved - inside @ basis if check else None
+        if defect is not None and not defect.is_zero():
             raise _not_invariant(basis, i, defect)
         found.append(inside.T)
     return found

@@ -163,9 +163,9 @@ def rational_lifts(make: Callable[[int], Any], field: Any) -> Iterator[ExactMatr
         if lifted is not None:
             yield field.from_entries([flint.fmpq(a, b) for a, b in lifted], *shape)
         further = make(attempt)
-        p = int(further.modulus())
-        if (further.nrows(), further.ncols()) != shape:
+        if further is None or (further.nrows(), further.ncols()) != shape:
             return
+        p = int(further.modulus())
         inverse = pow(modulus, -1, p)
         residues = [int(x) for x in further.entries()]
         values = [v + modulus * ((r - v) * inverse % p) for v, r in zip(values, residues, strict=True)]

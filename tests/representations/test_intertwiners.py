@@ -12,8 +12,11 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.errors import ShapeError
+from liehom.representations import intertwiners as module
+from liehom.representations.generating_matrices import generating_matrices
 from liehom.representations.intertwiners import commutant, intertwiners, invariant_forms, invariant_vectors
 from liehom.scalars import QQ, NumberField, rational
+from liehom.testing import random_unimodular
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 MERSENNE = 2**61 - 1
@@ -108,3 +111,59 @@ def test_borders() -> None:
     assert invariant_vectors([QQ.identity(2)], 2, QQ).dimension == 0
     with pytest.raises(ShapeError):
         intertwiners([QQ.identity(2)], [], (2, 2), QQ)
+
+
+# -- large spaces, by residues ---------------------------------------------------------------------------------
+def same_span(first: list[Any], second: list[Any], size: int) -> bool:
+    rows = [QQ.stack_rows([t.reshape(1, size) for t in found], size).row_space() for found in (first, second) if found]
+    return len(first) == len(second) and (not first or rows[0] == rows[1])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_residues_and_words_find_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sums of small modules with multiplicities and summands that no eigenvalue of the others sees, scrambled."""
+    rng = random.Random(seed)
+    g = lh.so(3)
+    known = [lh.defining(g), lh.trivial(g), lh.sym_conjugation(3, g), lh.defining(g).tensor(lh.defining(g))]
+    rho = known[rng.randrange(4)]
+    while rho.size < 14:
+        rho = rho.direct_sum(known[rng.randrange(4)])
+    change = QQ.matrix(random_unimodular(rho.size, rng))
+    moved = [(change @ a @ change.inverse()).scale(f"1/{1 + rng.randrange(3)}") for a in rho.matrices]
+    n = rho.size
+    fast = commutant(moved, n, QQ)
+    forms = invariant_forms(moved, n, QQ)
+    monkeypatch.setattr(module, "LIFTED_SIZE", 10**9)
+    assert same_span(fast, commutant(moved, n, QQ), n * n)
+    slow = invariant_forms(moved, n, QQ)
+    assert same_span(list(forms.symmetric), list(slow.symmetric), n * n)
+
+
+def test_combinations_that_do_not_generate_are_completed() -> None:
+    """Many commuting matrices: three random combinations show less than all of them."""
+    n = 14
+    diagonals = [QQ.matrix([[int(i == j == k) for j in range(n)] for i in range(n)]) for k in range(n)]
+    assert len(commutant(diagonals, n, QQ)) == n
+    blocks = [QQ.matrix([[int((i, j) == (k, k + 1)) for j in range(n)] for i in range(n)]) for k in range(n - 1)]
+    assert len(commutant(blocks, n, QQ)) == 2  # scalars, and the corner
+    assert len(commutant([QQ.zeros(n, n)] * 2, n, QQ)) == n * n
+
+
+def test_between_different_modules() -> None:
+    g = lh.so(4)
+    v = lh.defining(g)
+    square = v.tensor(v)
+    assert len(square.intertwiners(v.exterior_power(2))) == 2
+    assert len(square.intertwiners(v)) == 0
+    assert len(v.tensor(square).intertwiners(v)) == 4
+
+
+def test_generating_matrices_have_the_same_commutant() -> None:
+    rho = lh.sym_conjugation(8)
+    few = generating_matrices(rho)
+    assert len(few) == 2 < len(rho.matrices)
+    assert same_span(commutant(few, rho.size, QQ), commutant(rho.matrices, rho.size, QQ), rho.size**2)
+    abelian = lh.Representation.from_matrices(
+        [[[int(i == j == k) for j in range(60)] for i in range(60)] for k in range(6)]
+    )
+    assert generating_matrices(abelian) is abelian.matrices
