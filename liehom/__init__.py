@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from liehom.algebra import central_extension as central_extension
     from liehom.algebra import centroid as centroid
     from liehom.algebra import chevalley as chevalley
+    from liehom.algebra import cohomology as cohomology
     from liehom.algebra import complexification as complexification
     from liehom.algebra import conformal as conformal
     from liehom.algebra import derivations as derivations
@@ -193,7 +194,7 @@ _LAYERS = (
 _NAMES = {
     "liehom.algebra": (
         "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
-        "bargmann bianchi canonical_real_form cartan_matrix central_extension centroid chevalley "
+        "bargmann bianchi canonical_real_form cartan_matrix central_extension centroid chevalley cohomology "
         "complexification conformal derivations direct_sum direct_sum_decomposition dynkin_diagram euclidean "
         "filiform free_nilpotent galilei gl heisenberg oscillator parabolic_subalgebra poincare quotient "
         "real_forms realification root_system semidirect_sum simple sl so so_form so_star sp sp_form "

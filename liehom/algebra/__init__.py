@@ -4,6 +4,8 @@ from liehom.algebra.centroid import centroid as centroid
 from liehom.algebra.chevalley import chevalley as chevalley
 from liehom.algebra.closure import Closure as Closure
 from liehom.algebra.closure import lie_closure as lie_closure
+from liehom.algebra.cohomology import Cohomology as Cohomology
+from liehom.algebra.cohomology import cohomology as cohomology
 from liehom.algebra.compact_form import compact_form as compact_form
 from liehom.algebra.compact_form import real_form_of as real_form_of
 from liehom.algebra.constructions import abelian as abelian
