@@ -7,10 +7,13 @@ describe, and the constructions of extensions, derivation_algebra, cohomology.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from liehom.algebra.cartan_decomposition import CartanDecomposition
+    from liehom.algebra.cohomology import Cohomology
+    from liehom.algebra.derivation_algebra import Derivations
+    from liehom.algebra.extensions import ComplexLieAlgebra
     from liehom.algebra.levi import LeviDecomposition
     from liehom.algebra.lie_algebra import LieAlgebra
     from liehom.algebra.real_form import RealForm
@@ -101,6 +104,102 @@ class StructureVerbs:
         from liehom.algebra.radical import is_nilpotent
 
         return is_nilpotent(self)
+
+    # -- ideals ------------------------------------------------------------------------------------------
+    def direct_sum_decomposition(self: LieAlgebra) -> list[Subalgebra]:  # type: ignore[misc]
+        """Indecomposable ideals, over the field of the algebra, whose direct sum is the algebra.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [h.dimension for h in lh.gl(3).direct_sum_decomposition()]
+        [1, 8]
+        """
+        from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition
+
+        return direct_sum_decomposition(self)
+
+    def simple_ideals(self: LieAlgebra) -> list[Subalgebra]:  # type: ignore[misc]
+        """The simple ideals over the reals; where they need an irrational number they live in ``g.over(field)``.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(4).simple_ideals()
+        [<subalgebra of dimension 3 in so(4) over QQ>, <subalgebra of dimension 3 in so(4) over QQ>]
+        >>> [h.dimension for h in lh.so(3, 1).simple_ideals()]
+        [6]
+        """
+        from liehom.algebra.simple_ideals import simple_ideals
+
+        return simple_ideals(self)
+
+    def centroid(self: LieAlgebra) -> tuple[Any, ...]:  # type: ignore[misc]
+        """A basis of the matrices (n, n), on columns, with phi [x, y] = [phi x, y].
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> len(lh.so(3, 1).centroid()), len(lh.sl(3).centroid())
+        (2, 1)
+        """
+        from liehom.algebra.centroid import centroid
+
+        return centroid(self)
+
+    def quotient(self: LieAlgebra, ideal: Any, *, name: str | None = None) -> LieAlgebra:  # type: ignore[misc]
+        """The quotient by an ideal (a `Subalgebra` or rows); `NotAnIdealError` if it is none.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> g = lh.heisenberg(1)
+        >>> g.quotient(g.center()).is_abelian()
+        True
+        """
+        from liehom.algebra.extensions import quotient
+
+        return quotient(self, ideal, name=name)
+
+    def complexification(self: LieAlgebra, *, name: str | None = None) -> ComplexLieAlgebra:  # type: ignore[misc]
+        """g (x) C as a real algebra of twice the dimension (``.algebra``) with its complex structure.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(3).complexification().algebra.real_form()
+        'sl(2,C)'
+        """
+        from liehom.algebra.extensions import complexification
+
+        return complexification(self, name=name)
+
+    # -- derivations and cohomology ----------------------------------------------------------------------
+    def derivations(self: LieAlgebra) -> Derivations:  # type: ignore[misc]
+        """The derivations: their matrices, the inner ones, and the Lie algebra that they form.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.heisenberg(1).derivations().dimension
+        6
+        """
+        from liehom.algebra.derivation_algebra import derivations
+
+        return derivations(self)
+
+    def cohomology(self: LieAlgebra, degree: int, matrices: Any = None) -> Cohomology:  # type: ignore[misc]
+        """Chevalley-Eilenberg cohomology in a degree, with trivial coefficients or those of a module by its matrices.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.heisenberg(1).cohomology(k).dimension for k in range(4)]
+        [1, 2, 2, 1]
+        """
+        from liehom.algebra.cohomology import cohomology
+
+        return cohomology(self, degree, matrices)
 
     # -- semisimple structure ----------------------------------------------------------------------------
     def cartan_subalgebra(self: LieAlgebra) -> Subalgebra:  # type: ignore[misc]
