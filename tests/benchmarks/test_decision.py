@@ -11,6 +11,7 @@ import json
 import random
 import statistics
 import time
+from collections.abc import Callable
 from typing import Any
 
 import flint
@@ -29,6 +30,13 @@ def text_of(name: str, scrambled: bool) -> str:
     if scrambled and n > 1:
         pair = pair.change_of_basis(random_unimodular(n, random.Random(n), 4 * n))
     return json.dumps(lh.to_json(pair))
+
+
+def seconds(action: Callable[[], Any]) -> float:
+    """What one call takes."""
+    start = time.perf_counter()
+    action()
+    return time.perf_counter() - start
 
 
 def decided(text: str) -> Any:
@@ -70,6 +78,36 @@ def test_pair(benchmark: Any, name: str, scrambled: bool) -> None:
 def test_so40(benchmark: Any) -> None:
     text = text_of("so(40)/so(39)", False)
     assert benchmark.pedantic(decided, args=(text,), rounds=1).full
+
+
+@pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
+def test_construction(benchmark: Any) -> None:
+    """Pairs by name: matrices, brackets, subalgebra."""
+    names = SMALL[::4]
+
+    def median() -> float:
+        return statistics.median(seconds(lambda name=name: lh.pair(name)) for name in names)
+
+    benchmark.extra_info["median_milliseconds"] = 1000 * benchmark.pedantic(median, rounds=3)
+    assert benchmark.extra_info["median_milliseconds"] < 1000
+
+
+@pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
+def test_isotropy_of_a_point(benchmark: Any) -> None:
+    named = sorted({name.split("/")[0] for name in SMALL if name.startswith(("so(", "sl(", "su(", "sp("))})
+    representations = [lh.catalog.representation(name) for name in named]
+    points = [list(range(1, rho.size + 1)) for rho in representations]
+
+    def median() -> float:
+        pairs = zip(representations, points, strict=True)
+        return statistics.median(seconds(lambda rho=rho, m=m: rho.isotropy(m)) for rho, m in pairs)
+
+    benchmark.extra_info["median_milliseconds"] = 1000 * benchmark.pedantic(median, rounds=3)
+    assert benchmark.extra_info["median_milliseconds"] < 1000
+    assert all(
+        rho.orbit_dimension(m) + rho.isotropy(m).dimension == rho.algebra.dimension
+        for rho, m in zip(representations, points, strict=True)
+    )
 
 
 @pytest.mark.benchmark(group="floor")
