@@ -69,7 +69,7 @@ class _Pool:
     """The executor of the moment."""
 
     def __init__(self, source: Executor | Callable[[], Executor]) -> None:
-        given = callable(getattr(source, "submit", None))
+        given = not isinstance(source, type) and callable(getattr(source, "submit", None))
         if not given and not callable(source):
             raise InputError(
                 f"executor is {source!r}, expected a concurrent.futures.Executor, or a function that makes one"

@@ -63,6 +63,10 @@ def test_an_executor_is_used_and_left_open() -> None:
     assert (pool.calls, pool.ended) == (4, False)
 
 
+def test_a_class_makes_executors() -> None:
+    assert sorted(completed(work.square, [2, 3], Immediate)) == [(0, 4), (1, 9)]
+
+
 def test_one_that_was_made_is_shut_down() -> None:
     made: list[Immediate] = []
 
