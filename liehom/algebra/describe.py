@@ -86,9 +86,7 @@ def _with_radical(algebra: LieAlgebra) -> list[str]:
     else:
         kind = "reductive" if center.dimension == radical.dimension else "neither solvable nor semisimple"
         levi = found.levi.as_algebra()
-        lines.append(
-            f"{kind}: a Levi factor of dimension {levi.dimension} and the radical of dimension {radical.dimension}"
-        )
+        lines.append(f"{kind}: Levi factor of dimension {levi.dimension}, radical of dimension {radical.dimension}")
         lines.append(f"Levi factor: {semisimple_lines(levi)[0]}")
     lines.append(f"nilradical of dimension {nilradical.dimension}, centre of dimension {center.dimension}")
     return lines + _series(algebra)
