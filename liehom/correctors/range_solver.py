@@ -7,7 +7,7 @@ solutions that of least |c| and then of least |zeta|, or that of least |zeta|^2 
 
 In an orthonormal basis of the tangent space the unknowns are split: with M = e rho(g_m) u, u = w_l / |w_l|, and
 p = u - M M^+ u the part of u that isotropy does not reach, c is determined by r if p is not 0 and free if it is;
-then zeta = M^+ (r + l c u).  Imports homogeneous, series.
+then zeta = M^+ (r + l c u).  Imports homogeneous, series, errors.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any, final
 
 import numpy as np
 
+from liehom.errors import InternalError
 from liehom.homogeneous import Action, IsotropyFrame
 from liehom.homogeneous.lazy_frame import decomposed
 from liehom.series.arrays import namespace
@@ -148,7 +149,7 @@ class EvenRangeSolver:
     """The same map where the orbits are even (`liehom.homogeneous.lazy_frame`): it always has a solution.
 
     With w = w_l and mu of the evenness: c = -<w, r> / (l <w, w>), and zeta is the part in g_m of
-    G^-1 R^T (r + l c w) / (e mu <w, w>), R = [rho(e_1) w, ...].
+    G^-1 R^T r / (e mu <w, w>), R = [rho(e_1) w, ...].
 
     Parameters
     ----------
@@ -159,6 +160,8 @@ class EvenRangeSolver:
     velocity : array of shape (N,)
     leading : int
     factor : float
+    moving : truth value, optional
+        Where it does not hold, zeta and c are 0; by default where w is 0.
 
     Examples
     --------
@@ -175,23 +178,34 @@ class EvenRangeSolver:
     """
 
     def __init__(
-        self, action: Action, m: Any, frame: IsotropyFrame, velocity: Any, leading: int, factor: float
+        self,
+        action: Action,
+        m: Any,
+        frame: IsotropyFrame,
+        velocity: Any,
+        leading: int,
+        factor: float,
+        moving: Any = None,
     ) -> None:
         xp = namespace(velocity)
         square = xp.sum(velocity * velocity, axis=-1)
-        self._over = xp.where(square > 0, 1.0 / xp.where(square > 0, square, 1.0), 0.0)
+        self._over = xp.where(square > 0 if moving is None else moving, 1.0 / square, 0.0)
         self._action, self._m, self._frame, self._velocity = action, m, frame, velocity
         self._leading, self._factor = leading, factor
 
     def solve(self, right: Any) -> tuple[Any, Any, None]:
         """zeta (dim g,), c and None for no residual."""
         action, even, w = self._action, self._action.even, self._velocity
+        if even is None:
+            raise InternalError("the orbits of an EvenRangeSolver are not known to be even")
         xp = namespace(right)
         share = xp.sum(w * right, axis=-1) * self._over
-        across = right - share * w
-        turned = xp.swapaxes(action.infinitesimal.right(w), -1, -2) @ across
-        y = even.inverse @ turned * (self._over / (self._factor * even.isotropy))  # type: ignore[union-attr]
-        return y - self._frame.lift @ action.infinitesimal(y, self._m), -share / self._leading, None
+        # r in place of r + l c w: R^T w has no part in g_m
+        turned = xp.swapaxes(action.infinitesimal.right(w), -1, -2) @ right
+        y = (even.inverse / (self._factor * even.isotropy)) @ turned * self._over
+        if not even.symmetric:
+            y = y - self._frame.lift @ action.infinitesimal(y, self._m)
+        return y, -share / self._leading, None
 
 
 def _polished(basis: Any, gram: Any) -> Any:

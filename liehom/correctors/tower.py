@@ -97,7 +97,6 @@ class Tower:
         self.frame: IsotropyFrame = action.isotropy_frame(m, orbit_dimension)
         # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
         self.leading = np.ones(self.shape, dtype=int) if is_lazy(m) else leading_order(self.flow, total)
-        self.parts = self._split(0.5 if one_exponential else 1.0, weight)
         # None is all of them, which spares masks
         self.active: Any = None
         self.moving: Any = None
@@ -106,6 +105,7 @@ class Tower:
             self.active = self.moving = ~still
         elif not field.time_dependent and not bool(np.all(self.leading)):
             self.active = self.leading > 0
+        self.parts = self._split(0.5 if one_exponential else 1.0, weight)
         self.levels = 0 * self.xp.asarray(self.leading)
         self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
         self.defects: list[tuple[int, Any]] = []
@@ -128,7 +128,7 @@ class Tower:
             velocity = _masked(self.xp, here, self.flow.point(l))
             solver: RangeSolver | EvenRangeSolver
             if self.action.even is not None and type(self.m) is Traced:
-                solver = EvenRangeSolver(self.action, self.m, self.frame, velocity, l, factor)
+                solver = EvenRangeSolver(self.action, self.m, self.frame, velocity, l, factor, self.moving)
             else:
                 solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
             share = isotropic_share(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
@@ -150,6 +150,8 @@ class Tower:
                 continue
             own = difference if part.share is None else part.share[..., None] * difference
             zeta, c, residual = part.solver.solve(own)
+            if residual is None:  # it is 0 where nothing moves
+                here = None
             _add(changed, n - part.leading, _masked(self.xp, here, zeta))
             self.clock.set(n - part.leading + 1, c if here is None else self.xp.where(here, c, 0.0))
             if part.share is not None:

@@ -17,7 +17,7 @@ from liehom.homogeneous.exponential import Exponential, SeriesExponential
 from liehom.homogeneous.maps import FieldMap, FieldMatrix, action_map
 from liehom.homogeneous.matrix_functions import cayley_logarithm, identity, norms, solve
 from liehom.representations import Representation, defining
-from liehom.series.arrays import is_exact, is_jax
+from liehom.series.arrays import is_exact, is_lazy
 from liehom.series.jet import Jet
 from liehom.series.lie_series import cayley_magnus, dcayley_inverse, without_constant
 
@@ -121,7 +121,7 @@ class Cayley(Exponential):
 def _increment(matrix: Any, m: Any) -> Any:
     """cay(A) m - m = (1 - A/2)^-1 A m."""
     right = matrix @ m[..., None]
-    if not is_jax(right) and right.dtype != np.longdouble:
+    if not is_lazy(right) and right.dtype != np.longdouble:
         large = float(np.max(norms(matrix), initial=0.0)) > REFINED_NORM
         if large:
             wide = matrix.astype(np.longdouble)

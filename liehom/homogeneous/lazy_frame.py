@@ -9,6 +9,7 @@ Imports series.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -124,11 +125,17 @@ class Evenness(NamedTuple):
         g_m, Pi that on the tangent space.
     inverse : array of shape (dim, dim)
         Of the Gram matrix of the inner product on g.
+    symmetric : bool
+        Whether R^T r is in g_m for all tangent r and u, so that nothing has to be projected.
+    over : traced number or None
+        rank / tr(A A^T), where it is given: it is constant along orbits if the inner product is invariant.
     """
 
     trace: Any
     isotropy: float
     inverse: Any
+    symmetric: bool
+    over: Any = None
 
 
 def evenness(action: Any, points: Any, rank: int, seed: int = 0) -> Evenness | None:
@@ -175,8 +182,15 @@ def evenness(action: Any, points: Any, rank: int, seed: int = 0) -> Evenness | N
     mu = float(np.trace(made[0]) / (rank - 1))
     if not (mu > EVEN_RTOL and float(np.abs(made - mu * normal).max()) <= EVEN_RTOL * max(mu, 1.0)):
         return None
-    corners = action.infinitesimal.right(np.eye(points.shape[-1])) @ basis
-    return Evenness(np.einsum("pij,qij->pq", corners, corners), mu, basis @ basis.T)
+    r = (tangent @ rng.normal(size=(len(some), points.shape[-1], 1)))[..., 0]
+    turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
+    outside = np.abs(turned - kernel @ turned).max()
+    symmetric = bool(outside <= EVEN_RTOL * max(1.0, float(np.abs(turned).max())))
+    inverse = np.linalg.inv(action.inner_product.matrix)
+    corners = action.infinitesimal.right(np.eye(points.shape[-1]))
+    trace = np.einsum("pia,ab,qib->pq", corners, inverse, corners)
+    near = float(Fraction(mu).limit_denominator(256))
+    return Evenness(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
 
 
 def is_even(matrix: Any, rank: int) -> Any:

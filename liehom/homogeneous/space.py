@@ -146,7 +146,7 @@ class Action:
         xp = namespace(m)
         columns = self.infinitesimal.right(m)
         if self.even is not None:
-            over = rank / (m @ (self.even.trace @ m))
+            over = rank / (m @ (self.even.trace @ m)) if self.even.over is None else self.even.over
             lift = self.even.inverse @ xp.swapaxes(columns, -1, -2) * over
             return IsotropyFrame(np.eye(self.dimension) - lift @ columns, np.eye(m.shape[-1]), lift, np.asarray(rank))
         columns = columns @ xp.asarray(self._basis)

@@ -1,7 +1,8 @@
 """Runs of plain steps made ahead by compiled code; what is not plain is left to the run itself.
 
 The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
-before a time of t_eval, and before a step that fails in any way.  Imports options, run, traced_step, tracing, errors.
+before a time of t_eval, and before a step that fails in any way.
+Imports clock, jax_kernel, run, traced_step, tracing, errors.
 """
 
 from __future__ import annotations
@@ -15,13 +16,15 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 
 from liehom.errors import InputError
+from liehom.integrators.clock import SLACK
+from liehom.integrators.jax_kernel import JaxKernel
 from liehom.integrators.traced_step import traced_step
 from liehom.tracing import Kernel, StepGraph, padded
 
 if TYPE_CHECKING:
     from liehom.integrators.run import Run
 
-BACKENDS = ("numba",)
+BACKENDS = ("numba", "jax")
 WIDTH, NARROW = 16, 8
 PATH_BYTES = 64_000_000
 BREATH = 20_000_000
@@ -59,7 +62,7 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
     for d in np.unique(dimensions):
         lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(run.action, run.field, run.step, points[lanes], int(d), nominal=run.options.nominal)
-        groups.append(Group(graph, lanes))
+        groups.append(Group(graph, lanes, backend, points[lanes]))
     return Compiled(groups)
 
 
@@ -72,13 +75,28 @@ class Group:
     graph : StepGraph
     lanes : array of int
         Places in the flattened ensemble.
+    backend : str
+    points : array of shape (L, N)
+        Their starts.
     """
 
-    def __init__(self, graph: StepGraph, lanes: Any) -> None:
+    def __init__(self, graph: StepGraph, lanes: Any, backend: str, points: Any) -> None:
         self.graph, self.lanes = graph, lanes
+        self.kernel: Kernel | JaxKernel
         self.width = 1 if len(lanes) < NARROW // 2 else NARROW if len(lanes) < 4 * WIDTH else WIDTH
-        self.kernel = Kernel(graph, self.width)
+        if backend == "jax":
+            self.width, self.kernel = 1, JaxKernel(graph)
+        else:
+            self.kernel = Kernel(graph, self.width)
         self.blocks = padded(len(lanes), self.width) // self.width
+        rows = [self.padded_row(x) for x in graph.constants(points)]
+        self.constants = np.array(rows) if rows else None
+
+    def padded_row(self, values: Any) -> Any:
+        """Values of these lanes, in whole blocks."""
+        out = np.ones(self.blocks * self.width)
+        out[: len(values)] = values
+        return out
 
     def packed(self, values: Any, fill: float = 0.0) -> Any:
         """Values (..., L of the ensemble) of these lanes, in whole blocks."""
@@ -92,7 +110,8 @@ class Group:
     def run(self, arrays: list[Any], steps: int, origin: float, direction: float) -> None:
         """Step all blocks, in threads where that is worth while."""
         count = self.blocks * self.width
-        workers = min(_cores(), self.blocks) if count * steps >= SHARED else 1
+        shared = count * steps >= SHARED and isinstance(self.kernel, Kernel)
+        workers = min(_cores(), self.blocks) if shared else 1
         if workers == 1:
             self.kernel(arrays, count, (0, self.blocks), steps, (origin, direction))
             return
@@ -160,20 +179,30 @@ class _State:
         """Let a kernel step its lanes."""
         run, graph, lanes = self.run, group.graph, group.lanes
         m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
-        fixed = [group.packed(x) for x in (self.h, self.limit)]
+        limit = self.limit
+        if graph.passed is None:  # so many steps end before it
+            whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
+            limit = np.ceil(whole - SLACK) - 1
+        fixed = [group.packed(x) for x in (self.h, limit)]
         alive = group.packed(self.alive)
         extra = np.zeros((max(1, len(graph.largest) + len(graph.summed)), m.shape[-1]))
         path = path_t = None
         if run.keeps:
             path, path_t = np.empty((steps, *m.shape)), np.empty((steps, m.shape[-1]))
-        group.run([m, t, *fixed, count, alive, extra, path, path_t], steps, float(run.span[0]), float(run.direction))
+        group.run(
+            [m, t, *fixed, count, alive, extra, group.constants, path, path_t],
+            steps,
+            float(run.span[0]),
+            float(run.direction),
+        )
         used = slice(0, len(lanes))
         self.m[:, lanes], self.t[lanes], self.count[lanes] = m[:, used], t[used], count[used]
         if path is not None and path_t is not None:
             made = int((self.count[lanes] - self.before[lanes]).max(initial=0))
             self.paths.append((lanes, path[:made, :, used], path_t[:made, used]))
-        if graph.largest:
-            self.accounts.append((lanes, extra[:, used]))
+        if graph.summed:
+            zeros = np.zeros((2 - len(graph.largest), m.shape[-1]))
+            self.accounts.append((lanes, np.concatenate([zeros, extra])[:4, used]))
 
     def hand_back(self, calls: int) -> None:
         """The new state of the run."""

@@ -1,7 +1,8 @@
 """integrate: trajectories of a generator field, in the manner of scipy's solve_ivp.
 
 The door checks what comes in; the work is in `run.py`.
-Imports checkpoint, compiled, options, run, solution, steps, correctors, homogeneous, errors.
+Imports checkpoint, compiled, jax_integration, options, run, solution, steps, correctors, homogeneous, series,
+errors.
 """
 
 from __future__ import annotations
@@ -18,11 +19,13 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.field import check_point
 from liehom.integrators.checkpoint import checked_path
 from liehom.integrators.compiled import compiled_steps
+from liehom.integrators.jax_integration import integrate_on_jax
 from liehom.integrators.options import Options
 from liehom.integrators.points import points_of
 from liehom.integrators.run import Run
 from liehom.integrators.solution import Solution
 from liehom.integrators.steps import LieTaylor
+from liehom.series.arrays import is_jax
 
 CLOCKS = ("corrected", "nominal")
 
@@ -93,8 +96,8 @@ def integrate(
         error ends the run; a run that finds it continues from it, bit for bit, and deletes it when it is done.
     checkpoint_every : float
         Seconds between two checkpoints.
-    compile : "numba", optional
-        Compile the step (extra ``numba``): see Notes. Fixed steps only.
+    compile : "numba" or "jax", optional
+        Compile the step (extra ``numba`` or ``jax``): see Notes. Fixed steps only.
 
     Returns
     -------
@@ -130,6 +133,9 @@ def integrate(
     trajectory that fails are made as without it. The results agree to round-off, and psi must be the same
     function all the time: it is called while the step is traced, not in the steps.
 
+    With ``compile="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default start and end), and
+    jax.jit, jax.grad and jax.vmap pass through; `report` then only says what was asked for.
+
     Examples
     --------
     The free rigid body on the sphere, Euler's step corrected to order 4:
@@ -146,6 +152,10 @@ def integrate(
     step = LieTaylor(6) if step is None else step
     if not isinstance(step, Step):
         raise InputError(f"step is {step!r}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
+    if compile == "jax" and is_jax(y0):
+        if events is not None or dense_output or checkpoint is not None or dt is None:
+            raise InputError("integrate on JAX arrays takes dt, and no events, dense output or checkpoints")
+        return _on_jax(field, t_span, y0, step, float(dt), t_eval, exponential, clock)
     start = points_of(y0)
     orbit_dimension = check_point(field.representation, start)
     span = _span(t_span, start.dtype)
@@ -175,6 +185,20 @@ def integrate(
         if compile is not None:
             run.ahead = compiled_steps(run, compile)
         return run.execute(progress, path)
+
+
+def _on_jax(
+    field: GeneratorField, t_span: Any, y0: Any, step: Step, dt: float, t_eval: Any, exponential: Any, clock: str
+) -> Solution:
+    """Checked arguments for `integrate_on_jax`; without t_eval the points at start and end."""
+    span = _span(t_span, np.dtype(np.float64))
+    if clock not in CLOCKS:
+        raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
+    if not (np.isfinite(dt) and dt > 0):
+        raise InputError(f"dt is {dt!r}, expected a positive step size (the direction is that of t_span)")
+    times = np.unique(span)[:: 1 if span[1] >= span[0] else -1] if t_eval is None else _times(t_eval, span)
+    action = Action(field.representation, exponential)
+    return integrate_on_jax(action, field, step, span, y0, dt, times, nominal=clock == "nominal")
 
 
 def _span(t_span: Any, dtype: Any) -> tuple[Any, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from liehom.correctors.conserving import Conserving
 from liehom.correctors.corrected import CorrectedStep
+from liehom.correctors.range_solver import EvenRangeSolver
 from liehom.correctors.step import Generator, Step, apply_factors
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
@@ -69,21 +70,30 @@ def _traced(
     action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool
 ) -> StepGraph:
     tape, n = Tape(), field.representation.size
-    action = action.on_even_orbits(evenness(action, points, orbit_dimension))
+    even = evenness(action, points, orbit_dimension)
+    forms: tuple[tuple[int, Any], ...] = ()
+    if even is not None and action.inner_product.invariant:
+        forms = ((orbit_dimension, even.trace),)
+        even = even._replace(over=Traced(tape, tape.input(n + 2)))
+    action = action.on_even_orbits(even)
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
     local = step.at(action, Generator(field, orbit_dimension), m, t[..., None])
     made = apply_factors(action, local.factors(h[..., None]), m)
-    passed, runs = None, None
+    passed, runs, clock = None, None, ()
     if has_clock(local) and not nominal:
         passed = _number(tape, local.time(h))
-        runs = _runs(tape, local, h)
+        runs, clock = _runs(tape, local, h), _coefficients(tape, local)
     worst, summed = _account(tape, local, step) if isinstance(local, CorrectedStep) else ((), ())
-    return StepGraph([_number(tape, made[i]) for i in range(n)], passed, runs, worst, summed)
+    return StepGraph([_number(tape, made[i]) for i in range(n)], passed, runs, worst, summed, forms, clock)
 
 
 def _number(tape: Tape, x: Any) -> Expr:
     made: Expr = Traced(tape, x).entries[()]
     return made
+
+
+def _coefficients(tape: Tape, local: Any) -> tuple[tuple[int, Expr], ...]:
+    return tuple((k, _number(tape, c)) for k, c in enumerate(local.correction.clock) if k > 1 and c is not None)
 
 
 def _runs(tape: Tape, local: Any, h: Any) -> Expr | None:
@@ -104,6 +114,9 @@ def _runs(tape: Tape, local: Any, h: Any) -> Expr | None:
 def _account(tape: Tape, local: CorrectedStep, step: Step) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
     """(residual, orders missed) and (steps that missed the order, steps at equilibria)."""
     found = local.correction
+    if all(isinstance(part.solver, EvenRangeSolver) for part in found.parts):
+        rest = _number(tape, np.where(Traced(tape, found.leading) == 0, 1.0, 0.0))
+        return (), (tape.zero, rest)
     missed = step.order - np.where(Traced(tape, found.leading) == 0, step.order, Traced(tape, found.reached))
     worst = _number(tape, found.residual), _number(tape, missed)
     summed = np.where(missed > 0, 1.0, 0.0), np.where(Traced(tape, found.leading) == 0, 1.0, 0.0)

@@ -406,10 +406,10 @@ def _eliminated(tape: Tape, a: Any, b: Any) -> Any:
                 rows[i, k], rows[j, k] = tape.select(better, q, p), tape.select(better, p, q)
         rows[i, i + 1 :] = rows[i, i + 1 :] / rows[i, i]
         for j in range(i + 1, n):
-            rows[j, i + 1 :] = rows[j, i + 1 :] - rows[j, i] * rows[i, i + 1 :]
+            rows[j, i + 1 :] = rows[j, i + 1 :] - rows[i, i + 1 :] * rows[j, i]
     for i in range(n - 1, 0, -1):
         for j in range(i):
-            rows[j, n:] = rows[j, n:] - rows[j, i] * rows[i, n:]
+            rows[j, n:] = rows[j, n:] - rows[i, n:] * rows[j, i]
     return rows[:, n:]
 
 

@@ -246,8 +246,8 @@ class Tape:
         for x, y in ((a, b), (b, a)):
             if x.op == "neg":
                 return self.neg(self.mul(x.args[0], y))
-            if x.op == "mul" and x.args[0].constant:
-                return self.mul(x.args[0], self.mul(x.args[1], y))
+            if x.op == "mul" and x.args[0].constant and y.op == "mul" and y.args[0].constant:
+                return self.mul(x.args[0], self.mul(y.args[0], self.mul(x.args[1], y.args[1])))
         return self._make("mul", (a, b))
 
     def div(self, a: Expr, b: Expr) -> Expr:

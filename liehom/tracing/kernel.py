@@ -26,7 +26,7 @@ SLACK = 1e-9
 @final
 @dataclass(frozen=True, slots=True)
 class StepGraph:
-    """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size.
+    """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, the others constants.
 
     Attributes
     ----------
@@ -38,8 +38,10 @@ class StepGraph:
         Whether the clock certainly runs over the step; None without a clock.
     largest, summed : tuple of Expr
         Numbers of which the run keeps the largest, or the sum, of the steps that are made.
-    timed : bool
-        Whether the time is an input.
+    forms : tuple of (int, array of shape (N, N))
+        Inputs N + 2, ...: the numbers r / <m, F m> of the trajectories, which do not change.
+    clock : tuple of (int, Expr)
+        k and c_k: in a step of size h the time h + c_2 h^2 + ... passes.
     """
 
     point: list[Expr]
@@ -47,11 +49,17 @@ class StepGraph:
     runs: Expr | None
     largest: tuple[Expr, ...]
     summed: tuple[Expr, ...]
+    forms: tuple[tuple[int, Any], ...] = ()
+    clock: tuple[tuple[int, Expr], ...] = ()
 
     @property
     def size(self) -> int:
         """N."""
         return len(self.point)
+
+    def constants(self, points: Any) -> Any:
+        """The further inputs, (count, L), for points (L, N)."""
+        return [r / ((points @ form) * points).sum(axis=-1) for r, form in self.forms]
 
     @property
     def outputs(self) -> list[Expr]:
@@ -66,7 +74,8 @@ def assembly(graph: StepGraph, width: int) -> str:
     v, n = w.vector, graph.size
     _head(w, n)
     kept = _loop_head(w, graph)
-    body = Body(w, {**{i: f"%x{i}" for i in range(n)}, n: "%t", n + 1: "%h"})
+    constants = {n + 2 + i: f"%c{i}" for i in range(len(graph.forms))}
+    body = Body(w, {**{i: f"%x{i}" for i in range(n)}, n: "%t", n + 1: "%h", **constants})
     body.write(needed(graph.outputs))
     _loop_end(w, graph, body)
     w.lines.append("block.end:")
@@ -95,8 +104,8 @@ def assembly(graph: StepGraph, width: int) -> str:
 def _head(w: Writer, n: int) -> None:
     w.lines += [
         "define void @run(ptr noalias %m, ptr noalias %t.in, ptr noalias %h.in, ptr noalias %limit.in,"
-        " ptr noalias %count.in, ptr noalias %alive.in, ptr noalias %extra, ptr noalias %path, ptr noalias %path.t,"
-        " i64 %lanes, i64 %first, i64 %last, i64 %steps, double %origin, double %direction) #0 {",
+        " ptr noalias %count.in, ptr noalias %alive.in, ptr noalias %extra, ptr noalias %constants, ptr noalias %path,"
+        " ptr noalias %path.t, i64 %lanes, i64 %first, i64 %last, i64 %steps, double %origin, double %direction) #0 {",
         "entry:",
         "  %stored = icmp ne ptr %path, null",
         "  br label %next",
@@ -123,6 +132,8 @@ def _loop_head(w: Writer, graph: StepGraph) -> list[tuple[str, str]]:
         w.lines.append(f"  %{name}.start = load {v}, ptr {place}, align 8")
     for name, base in (("h", "%h.in"), ("limit", "%limit.in")):
         w.lines.append(f"  %{name} = load {v}, ptr {_pointer(w, base, 0)}, align 8")
+    for i in range(len(graph.forms)):
+        w.lines.append(f"  %c{i} = load {v}, ptr {_pointer(w, '%constants', i)}, align 8")
     size = w.intrinsic("fabs", "%h")
     w.lines.append(f"  %slack = fmul {v} {size}, {w.splat(SLACK)}")
     w.lines.append(f"  %dir = fadd {v} {w.spread('%direction')}, {w.splat(-0.0)}")
@@ -138,12 +149,13 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
     """Decide where the step is made, keep what is new, store it, and go on."""
     v = w.vector
     more = w.emit(f"fadd {v} %count, {w.splat(1.0)}")
-    if graph.passed is None:  # by counting, so that round-off does not add up
+    if graph.passed is None:  # by counting, so that round-off does not add up; the limit is a number of steps
         after = w.emit(f"fadd {v} %zero.time, {w.emit(f'fmul {v} {more}, %h')}")
+        go = w.emit(f"fcmp ole {v} {more}, %limit")
     else:
         after = w.emit(f"fadd {v} %t, {body.name(graph.passed)}")
-    left = w.emit(f"fmul {v} %dir, {w.emit(f'fsub {v} %limit, {after}')}")
-    go = w.emit(f"fcmp ogt {v} {left}, %slack")
+        left = w.emit(f"fmul {v} %dir, {w.emit(f'fsub {v} %limit, {after}')}")
+        go = w.emit(f"fcmp ogt {v} {left}, %slack")
     total = body.name(graph.point[0])
     for x in graph.point[1:]:
         total = w.emit(f"fadd {v} {total}, {body.name(x)}")
@@ -155,12 +167,11 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
     new = {f"x{i}": body.name(x) for i, x in enumerate(graph.point)}
     new |= {"t": after, "count": more}
     for i, x in enumerate((*graph.largest, *graph.summed)):
-        combined = (
-            w.intrinsic("maxnum", f"%e{i}", body.name(x))
-            if i < len(graph.largest)
-            else w.emit(f"fadd {v} %e{i}, {body.name(x)}")
-        )
-        new[f"e{i}"] = combined
+        if i < len(graph.largest):
+            new[f"e{i}"] = w.intrinsic("maxnum", f"%e{i}", body.name(x))
+        else:
+            zero = x.constant and x.value == 0
+            new[f"e{i}"] = f"%e{i}" if zero else w.emit(f"fadd {v} %e{i}, {body.name(x)}")
     # a branch that is foreseen costs nothing, selections would stand in the chain from step to step
     w.lines += [f"  br i1 {w.all(go)}, label %made, label %mixed, !prof !1", "mixed:"]
     for name, value in new.items():
@@ -207,7 +218,7 @@ class Kernel:
         self.graph, self.width = graph, width
         self.text = assembly(graph, width)
         self._engine, self.cached = _engine(self.text)
-        arguments = [ctypes.c_void_p] * 9 + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
+        arguments = [ctypes.c_void_p] * 10 + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
         self._run = ctypes.CFUNCTYPE(None, *arguments)(self._engine.get_function_address("run"))
 
     def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:

@@ -1,0 +1,124 @@
+"""A graph as a function on JAX arrays, to be compiled by jax.jit; it can be differentiated and vmapped.
+
+Imports graph, llvm_text, errors; jax where it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from liehom.errors import TraceError
+from liehom.tracing.graph import Expr, needed
+from liehom.tracing.llvm_text import SHORT, rotation_series
+
+SUBSTEPS, TERMS = 4, 18
+"""exp(A) m is summed in so many substeps and terms, which serves |A| up to 4; beyond that it gives nan."""
+
+
+def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
+    """The outputs of a graph, computed by jax.numpy.
+
+    Parameters
+    ----------
+    outputs : sequence of Expr
+    inputs : dict
+        Arrays, of shapes that broadcast, by the index of the input.
+
+    Raises
+    ------
+    TraceError
+        If JAX is not installed, or an operation is not known.
+
+    Examples
+    --------
+    >>> from liehom.tracing import Tape
+    >>> tape = Tape()
+    >>> float(evaluated([tape.input(0) * 2.0 + 1.0], {0: 3.0})[0])
+    7.0
+    """
+    try:
+        import jax.numpy as jnp
+    except ImportError:
+        raise TraceError('compile="jax" needs the extra: pip install "liehom[jax]"') from None
+    values: dict[int, Any] = {}
+    for x in needed(outputs):
+        values[x.place] = _value(jnp, x, [values[a.place] for a in x.args], inputs)
+    return [values[x.place] for x in outputs]
+
+
+def _value(jnp: Any, x: Expr, args: list[Any], inputs: Mapping[int, Any]) -> Any:
+    if x.constant:
+        return x.value
+    if x.op == "input":
+        return inputs[x.value]
+    if x.op == "get":
+        return args[0][x.value]
+    if x.op == "expv":
+        return _exponential(jnp, x.value, args)
+    if x.op in _OPERATIONS:
+        return _OPERATIONS[x.op](jnp, *args)
+    function = getattr(jnp, x.op, None)
+    if function is None:
+        raise TraceError(f"the operation {x.op} is not known to JAX")
+    return function(*args)
+
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    "add": lambda jnp, a, b: a + b,
+    "sub": lambda jnp, a, b: a - b,
+    "mul": lambda jnp, a, b: a * b,
+    "div": lambda jnp, a, b: a / b,
+    "neg": lambda jnp, a: -a,
+    "lt": lambda jnp, a, b: a < b,
+    "le": lambda jnp, a, b: a <= b,
+    "eq": lambda jnp, a, b: a == b,
+    "ne": lambda jnp, a, b: a != b,
+    "and": lambda jnp, a, b: jnp.logical_and(a, b),
+    "not": lambda jnp, a: jnp.logical_not(a),
+    "select": lambda jnp, where, a, b: jnp.where(where, a, b),
+    "pow": lambda jnp, a, b: a**b,
+    "sinq": lambda jnp, q: _rotation(jnp, q, 1),
+    "cosq": lambda jnp, q: _rotation(jnp, q, 0),
+}
+
+
+def _rotation(jnp: Any, q: Any, first: int) -> Any:
+    """sin(r)/r or cos(r) with r^2 = q; of the branch that is not taken not even the derivative overflows."""
+    near = jnp.abs(q) < SHORT
+    total: Any = 0.0
+    for c in reversed(rotation_series(SHORT, first)):
+        total = total * q + c
+    safe = jnp.where(near, 1.0, q)
+    r = jnp.sqrt(jnp.abs(safe))
+    grown = jnp.where(safe > 0, 0.0, r)
+    if first:
+        far = jnp.where(safe > 0, jnp.sin(r), jnp.sinh(grown)) / r
+    else:
+        far = jnp.where(safe > 0, jnp.cos(r), jnp.cosh(grown))
+    return jnp.where(near, total, far)
+
+
+def _exponential(jnp: Any, places: tuple[tuple[int, int], ...], args: list[Any]) -> list[Any]:
+    from jax import lax
+
+    shape = jnp.broadcast_shapes(*[jnp.shape(a) for a in args])
+    args = [jnp.broadcast_to(jnp.asarray(a, dtype=float), shape) for a in args]
+    entries, m = args[: len(places)], jnp.stack(args[len(places) :])
+    n = len(m)
+    rows = [[jnp.zeros(shape) for _ in range(n)] for _ in range(n)]
+    for (i, j), a in zip(places, entries, strict=True):
+        rows[i][j] = a
+    matrix = jnp.stack([jnp.stack(row) for row in rows])
+    size = sum(a * a for a in entries)
+
+    def term(j: Any, state: Any) -> Any:
+        last, total = state
+        last = jnp.einsum("ij...,j...->i...", matrix, last) / (SUBSTEPS * (j + 1.0))
+        return last, total + last
+
+    def substep(_: Any, v: Any) -> Any:
+        return v + lax.fori_loop(0, TERMS, term, (v, jnp.zeros_like(v)))[1]
+
+    moved = lax.fori_loop(0, SUBSTEPS, substep, m)
+    return list(jnp.where(size <= SUBSTEPS**2, moved, jnp.nan))
