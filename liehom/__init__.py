@@ -102,10 +102,14 @@ if TYPE_CHECKING:
     from liehom.homogeneous import Cayley as Cayley
     from liehom.homogeneous import Exponential as Exponential
     from liehom.homogeneous import GeneratorField as GeneratorField
+    from liehom.homogeneous import adjoint_strata as adjoint_strata
     from liehom.homogeneous import failure_cone as failure_cone
+    from liehom.homogeneous import hermitian_strata as hermitian_strata
     from liehom.homogeneous import orbit_types as orbit_types
     from liehom.homogeneous import range_condition as range_condition
     from liehom.homogeneous import relative_invariant as relative_invariant
+    from liehom.homogeneous import structure_name as structure_name
+    from liehom.homogeneous import symmetric_strata as symmetric_strata
     from liehom.instances import LandauLifshitz as LandauLifshitz
     from liehom.instances import RigidBody as RigidBody
     from liehom.instances import Sphere as Sphere
@@ -150,6 +154,7 @@ if TYPE_CHECKING:
     from liehom.representations import dominant_character as dominant_character
     from liehom.representations import dual_weight as dual_weight
     from liehom.representations import frobenius_schur_indicator as frobenius_schur_indicator
+    from liehom.representations import hermitian_conjugation as hermitian_conjugation
     from liehom.representations import highest_weight_module as highest_weight_module
     from liehom.representations import real_module as real_module
     from liehom.representations import real_module_type as real_module_type
@@ -209,7 +214,8 @@ _NAMES = {
         "NumericallyNotFull verify_certificate"
     ),
     "liehom.homogeneous": (
-        "Action Cayley Exponential GeneratorField failure_cone orbit_types range_condition relative_invariant"
+        "Action Cayley Exponential GeneratorField adjoint_strata failure_cone hermitian_strata orbit_types "
+        "range_condition relative_invariant structure_name symmetric_strata"
     ),
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau "
@@ -221,7 +227,7 @@ _NAMES = {
     ),
     "liehom.representations": (
         "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
-        "dual_weight frobenius_schur_indicator HermitianForms highest_weight_module HighestWeightModule Pair "
+        "dual_weight frobenius_schur_indicator hermitian_conjugation HermitianForms highest_weight_module HighestWeightModule Pair "
         "real_module real_module_type RealModule Representation spin_representation spinor_type "
         "sym_conjugation symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),

@@ -21,3 +21,8 @@ from liehom.homogeneous.relative_invariant import relative_invariant as relative
 from liehom.homogeneous.rodrigues import Rodrigues as Rodrigues
 from liehom.homogeneous.space import Action as Action
 from liehom.homogeneous.space import IsotropyFrame as IsotropyFrame
+from liehom.homogeneous.strata import Stratum as Stratum
+from liehom.homogeneous.strata import adjoint_strata as adjoint_strata
+from liehom.homogeneous.strata import hermitian_strata as hermitian_strata
+from liehom.homogeneous.strata import symmetric_strata as symmetric_strata
+from liehom.homogeneous.structure_name import structure_name as structure_name

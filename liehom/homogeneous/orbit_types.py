@@ -1,6 +1,6 @@
 """Orbit types: points of a representation sorted by the isotropy they have.
 
-Imports representations.
+Imports structure_name, representations.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.algebra import Subalgebra
+from liehom.homogeneous.structure_name import structure_name
 from liehom.representations import Representation
 
 Key = tuple[int, int, tuple[int, ...], tuple[int, int, int]]
@@ -31,6 +32,13 @@ class OrbitType:
         Which of the given points.
     isotropy : Subalgebra
         That of the first of them.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> light = orbit_types(lh.defining(lh.so(3, 1)), [[1, 0, 0, 1]])[0]
+    >>> light.isotropy_dimension, light.structure()
+    (3, 'solvable(3)')
     """
 
     orbit_dimension: int
@@ -39,6 +47,10 @@ class OrbitType:
     killing: tuple[int, int, int]
     points: tuple[int, ...]
     isotropy: Subalgebra
+
+    def structure(self) -> str:
+        """The structure of the isotropy by name, 'so(3) + R' or 'so(3) ⋉ R^3'; see `structure_name`."""
+        return structure_name(self.isotropy)
 
 
 def orbit_types(rho: Representation, points: Iterable[Any]) -> list[OrbitType]:
@@ -53,7 +65,9 @@ def orbit_types(rho: Representation, points: Iterable[Any]) -> list[OrbitType]:
     -------
     list of OrbitType
         Points of one type have isotropy subalgebras of equal dimension, derived series and Killing signature;
-        these are necessary for the subalgebras to be conjugate, not sufficient.
+        these are necessary for the subalgebras to be conjugate, not sufficient. For symmetric and Hermitian matrices
+        and for adjoint representations of compact algebras `symmetric_strata`, `hermitian_strata` and `adjoint_strata`
+        list all strata.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from liehom.algebra.closure import lie_closure
 from liehom.algebra.simple import exceptional_matrices, simple
 from liehom.errors import InputError, RepresentationError, ShapeError
 from liehom.representations.highest_weight import highest_weight_module
-from liehom.representations.induced import congruence_map, monomials
+from liehom.representations.induced import congruence_map, hermitian_map, monomials
 from liehom.representations.real_form_module import real_module
 from liehom.representations.representation import Representation
 from liehom.scalars import QQ, ExactField, Field
@@ -225,6 +225,38 @@ def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation
         raise InputError(f"conjugation on Sym({k}) needs so({k}) by skew matrices")
     made = [induced(a) for a in rho.matrices]
     return Representation(rho.algebra, made, size=induced.target, name=f"conjugation on Sym({k})", check=False)
+
+
+def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation:
+    """su(k) on the Hermitian k x k matrices by H -> A H - H A.
+
+    Parameters
+    ----------
+    k : int
+        Size of the matrices, at least 1.
+    algebra : LieAlgebra, optional
+        A copy of su(k) in its standard basis (default: a new one named 'su(k)').
+
+    Returns
+    -------
+    Representation
+        On K^(k^2); coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
+
+    Examples
+    --------
+    The isotropy of diag(1, 0, 0) is u(2):
+
+    >>> hermitian_conjugation(3).isotropy([1, 0, 0, 0, 0, 0, 0, 0, 0]).dimension
+    4
+    """
+    rho = defining(f"su({k})" if algebra is None else algebra)
+    induced = hermitian_map(k)
+    if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.size != 2 * k:
+        raise InputError(f"conjugation of Hermitian {k} x {k} matrices needs su({k}) by skew-Hermitian matrices")
+    made = [induced(a) for a in rho.matrices]
+    # [A, B] H - H [A, B] by the Jacobi identity for commutators.
+    title = f"conjugation of Hermitian {k} x {k} matrices"
+    return Representation(rho.algebra, made, size=induced.target, name=title, check=False)
 
 
 def symmetric_to_vector(matrix: Any) -> list[Any]:

@@ -139,6 +139,36 @@ def congruence_map(n: int) -> EntryMap:
     return EntryMap(n, len(places), terms)
 
 
+def hermitian_map(k: int) -> EntryMap:
+    """A -> (H -> A H - H A) on Hermitian k x k matrices; A and H as real (2k, 2k) matrices with blocks [x, -y; y, x].
+
+    Coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
+    """
+    places = [(i, j, part) for i in range(k) for j in range(i, k) for part in range(1 + (i < j))]
+    terms: list[Term] = []
+    for column, (i, j, part) in enumerate(places):
+        for s, t, v in _hermitian_entries(i, j, part):
+            for row, (a, b, half) in enumerate(places):
+                # the coordinate is the entry (2a + half, 2b) of A H - H A
+                if t == 2 * b:
+                    terms.append(((row, column), (2 * a + half, s), v))
+                if s == 2 * a + half:
+                    terms.append(((row, column), (t, 2 * b), -v))
+    return EntryMap(2 * k, len(places), terms)
+
+
+def _hermitian_entries(i: int, j: int, part: int) -> list[tuple[int, int, int]]:
+    """The entries (row, column, value) of the real matrix of a basis element: E_ij + E_ji, or i E_ij - i E_ji."""
+    if i == j:
+        return [(2 * i, 2 * i, 1), (2 * i + 1, 2 * i + 1, 1)]
+    found = []
+    for (p, q), sign in (((i, j), 1), ((j, i), -1 if part else 1)):
+        # x + i y has the block [x, -y; y, x]
+        block = [(1, 0, sign), (0, 1, -sign)] if part else [(0, 0, 1), (1, 1, 1)]
+        found += [(2 * p + r, 2 * q + c, v) for r, c, v in block]
+    return found
+
+
 def _derivation(n: int, words: Sequence[tuple[int, ...]], *, alternating: bool) -> EntryMap:
     """Letter after letter is replaced, e_i by sum_j A[j, i] e_j."""
     position = {word: index for index, word in enumerate(words)}
