@@ -228,8 +228,8 @@ _NAMES = {
     "liehom.representations": (
         "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
         "dual_weight frobenius_schur_indicator hermitian_conjugation HermitianForms highest_weight_module "
-        "HighestWeightModule Pair real_module real_module_type RealModule Representation spin_representation spinor_type "
-        "sym_conjugation symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
+        "HighestWeightModule Pair real_module real_module_type RealModule Representation spin_representation "
+        "spinor_type sym_conjugation symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",
