@@ -21,6 +21,8 @@ from liehom.scalars import Field, FloatField, Scalar, Subspace
 if TYPE_CHECKING:
     from liehom.algebra.subalgebra import Subalgebra
 
+SHOWN_TERMS = 8
+
 
 @final
 class LieAlgebra(StructureVerbs):
@@ -324,11 +326,17 @@ class LieAlgebra(StructureVerbs):
             text = self.field.format(v)
             factor = "" if text == "1" else "-" if text == "-1" else f"({text})*" if " " in text else f"{text}*"
             brackets.setdefault((i, j), []).append(f"{factor}{names[k]}")
-        lines = [f"  [{names[i]}, {names[j]}] = " + " + ".join(terms) for (i, j), terms in list(brackets.items())[:8]]
+        lines = [f"  [{names[i]}, {names[j]}] = {_sum(terms)}" for (i, j), terms in list(brackets.items())[:8]]
         if len(brackets) > 8:
             lines.append(f"  ... and {len(brackets) - 8} further non-zero brackets")
         head = f"Lie algebra {self.name or ''} over {self.field.name}, dimension {self.dimension}".replace("  ", " ")
         return "\n".join([head, f"  basis {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}", *lines])
+
+
+def _sum(terms: list[str]) -> str:
+    """The first terms of a sum with their signs."""
+    shown = terms[0] + "".join(f" - {t[1:]}" if t.startswith("-") else f" + {t}" for t in terms[1:SHOWN_TERMS])
+    return shown + (f" + ... ({len(terms)} terms)" if len(terms) > SHOWN_TERMS else "")
 
 
 def _checked_names(basis: Sequence[str], n: int) -> tuple[str, ...]:
