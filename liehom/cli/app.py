@@ -1,6 +1,6 @@
 """The commands of ``liehom``: each gathers its input, calls one function of the library, and prints.
 
-Imports guard, numerical, reproduce; inputs, show and the library inside the commands.
+Imports describe, guard, numerical, reproduce; inputs, show and the library inside the commands.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from liehom.cli import numerical, reproduce
+from liehom.cli import describe, numerical, reproduce
 from liehom.cli.guard import NO, NUMERICAL, YES, guarded
 
 if TYPE_CHECKING:
@@ -275,6 +275,7 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     return code
 
 
+app.command()(describe.describe)
 app.command()(numerical.integrate)
 app.command()(numerical.order)
 app.command()(reproduce.reproduce)

@@ -1,4 +1,4 @@
-"""From the words of a command to files, pairs, points, rows and numbers. Imports io, catalog."""
+"""From the words of a command to files, algebras, pairs, points, rows and numbers. Imports io, catalog, algebra."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ import re
 from pathlib import Path
 from typing import Any
 
-from liehom.errors import FormatError
-from liehom.io import load_pair
+from liehom.algebra import LieAlgebra
+from liehom.errors import CatalogError, FormatError
+from liehom.io import from_gap, from_sage, load, load_pair
 from liehom.io.json_text import parse_object
 from liehom.io.values import vector
 from liehom.representations import Pair, Representation
 from liehom.scalars import RR, common_field
 
 EXAMPLES = "examples/"
+_TYPE = re.compile(r"[A-G][0-9]{1,2}", re.ASCII)
 _DECIMAL = re.compile(r"\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*", re.ASCII)
 
 
@@ -65,6 +67,57 @@ def pair_argument(text: str) -> Pair:
     from liehom.catalog import pair
 
     return pair(text)
+
+
+def thing_argument(text: str) -> LieAlgebra | Pair | Representation:
+    """What a file or a name stands for.
+
+    A file that ends in .g or .gap is read as GAP's, one in .sage as Sage's. A name is that of an algebra or pair of the
+    catalogue, a real form such as 'e8(-24)', or a type such as 'E8', for the split form in its Chevalley basis.
+
+    Raises
+    ------
+    FormatError, CatalogError
+
+    Examples
+    --------
+    >>> thing_argument("so(4)/so(3)"), thing_argument("so(4,1)"), thing_argument("G2")
+    (pair('so(4)/so(3)'), <Lie algebra so(4,1) of dimension 10 over QQ>, <Lie algebra G2 of dimension 14 over QQ>)
+    """
+    kind = os.path.splitext(text)[1]
+    if kind in READERS:
+        return READERS[kind](_text_of(file_argument(text)))
+    return load(file_argument(text)) if is_file(text) else _named(text)
+
+
+READERS = {".g": from_gap, ".gap": from_gap, ".sage": from_sage}
+
+
+def _text_of(path: str) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise FormatError(f"{path!r} is not a text in UTF-8 (byte {error.start})") from None
+    except (OSError, ValueError) as error:
+        raise FormatError(f"{path!r} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def _named(text: str) -> LieAlgebra | Pair:
+    from liehom.algebra import RealForm, chevalley, simple
+    from liehom.catalog import algebra, pair
+
+    if "/" in text or ";" in text:
+        return pair(text)
+    try:
+        return algebra(text)
+    except CatalogError as unknown:
+        try:
+            if _TYPE.fullmatch(text):
+                return chevalley(text)
+            form = RealForm.of_name(text)
+            return simple(form.type, form.name)
+        except CatalogError:
+            raise unknown from None
 
 
 def row_values(text: str, what: str) -> list[Any]:

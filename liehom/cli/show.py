@@ -53,6 +53,19 @@ def show_answer(sentence: str, rows: Sequence[tuple[str, str]], code: int = 0) -
     Console().print(Panel(body, border_style=style, expand=False))
 
 
+def show_card(lines: Sequence[str]) -> None:
+    """Lines, the first of which is the title."""
+    if not sys.stdout.isatty():
+        print("\n".join(lines))
+        return
+    from rich.console import Console, Group
+    from rich.panel import Panel
+    from rich.text import Text
+
+    body = Group(Text(lines[0], style="bold green"), *(Text(line) for line in lines[1:]))
+    Console().print(Panel(body, border_style="green", expand=False))
+
+
 def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header: bool = True) -> None:
     """A table; aligned plain lines in a pipe."""
     if not sys.stdout.isatty():
