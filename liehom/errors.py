@@ -30,6 +30,17 @@ def _again(kind: type[LiehomError], args: tuple[Any, ...], attributes: dict[str,
     return error
 
 
+def shown(value: str) -> str:
+    """A value in a message: the beginning and the end of a number that fills pages.
+
+    Examples
+    --------
+    >>> shown("1" * 1000)
+    '1111111111111111111111111111111111111111...1111111111 (1000 characters)'
+    """
+    return value if len(value) <= 200 else f"{value[:40]}...{value[-10:]} ({len(value)} characters)"
+
+
 class InputError(LiehomError, ValueError):
     """An argument has a wrong value: a parameter out of range, a shape that does not fit, a bad option."""
 
@@ -80,7 +91,7 @@ class JacobiError(StructureError):
     def __init__(self, indices: tuple[int, int, int], value: dict[int, str], names: tuple[str, str, str]) -> None:
         self.indices = indices
         self.value = value
-        terms = " + ".join(f"({v})*e{k}" for k, v in sorted(value.items()))
+        terms = " + ".join(f"({shown(v)})*e{k}" for k, v in sorted(value.items()))
         super().__init__(
             f"the Jacobi identity fails for (i, j, k) = {indices}, that is for {', '.join(names)}: "
             f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0"
@@ -95,7 +106,7 @@ class CocycleError(StructureError):
         self.value = value
         super().__init__(
             f"the form is no cocycle for (i, j, k) = {indices}, that is for {', '.join(names)}: "
-            f"w([i,j],k) + w([j,k],i) + w([k,i],j) = {value}, expected 0"
+            f"w([i,j],k) + w([j,k],i) + w([k,i],j) = {shown(value)}, expected 0"
         )
 
 

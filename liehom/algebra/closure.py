@@ -20,6 +20,7 @@ from liehom.algebra.structure_constants import StructureConstants
 from liehom.algebra.tables import field_of_values
 from liehom.errors import DependentRowsError, FieldError, InputError, NotClosedError, ShapeError
 from liehom.scalars import QQ, ExactField, Field
+from liehom.scalars.field import rows_of
 
 LARGEST_COORDINATES = 3000
 Completion = Literal["auto", "commutators", "reduced"]
@@ -58,6 +59,8 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
     FieldError
         If matrices are over another field than the one asked for, or than the first.
     """
+    if not hasattr(matrices, "__iter__") or isinstance(matrices, str):
+        raise InputError(f"a list of square matrices was expected, got {matrices!r}")
     given = list(matrices)
     if given and all(hasattr(a, "nrows") for a in given):
         over = field if field is not None else given[0].field
@@ -69,12 +72,11 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
         over = QQ if field is None else field
         made = [over.from_integers(a.ravel().tolist(), len(a), len(a)) for a in given]
     else:
-        tables = [a.tolist() if hasattr(a, "tolist") else [list(row) for row in a] for a in given]
+        tables = [a.to_rows() if hasattr(a, "nrows") else rows_of(a) for a in given]
         if field is None:
-            field = field_of_values(x for table in tables for row in table for x in _listed(row))
+            field = field_of_values(x for table in tables for row in table for x in row)
         made = []
-        for i, table in enumerate(tables):
-            rows = [_listed(row) for row in table]
+        for i, rows in enumerate(tables):
             if any(len(row) != len(rows) for row in rows):
                 raise ShapeError(f"matrix {i} is not square: {len(rows)} rows of lengths {[len(r) for r in rows]}")
             made.append(field.matrix(rows, (len(rows), len(rows))))
@@ -86,12 +88,6 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
 
 def _is_integer_square(a: Any) -> bool:
     return isinstance(a, np.ndarray) and a.dtype.kind == "i" and a.ndim == 2 and a.shape[0] == a.shape[1]
-
-
-def _listed(row: Any) -> list[Any]:
-    if isinstance(row, (str, int, float)) or not hasattr(row, "__iter__"):
-        raise ShapeError(f"a matrix is a list of rows, got the entry {row!r} where a row was expected")
-    return list(row)
 
 
 def lie_closure(

@@ -19,7 +19,7 @@ from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.algebra.subalgebra import Subalgebra
 from liehom.algebra.tables import constants_from, field_of_values
-from liehom.errors import CocycleError, InputError, ShapeError, StructureError
+from liehom.errors import CocycleError, InputError, ShapeError, StructureError, shown
 from liehom.scalars import Field, FloatField
 
 
@@ -351,10 +351,8 @@ def _prove_cocycle(algebra: LieAlgebra, form: Any) -> None:
     symmetric = form + form.T
     for i, j in itertools.combinations_with_replacement(range(n), 2):
         if _exceeds(symmetric[i, j], bound):
-            shown = [field.format(form[x]) for x in ((i, j), (j, i))]
-            raise StructureError(
-                f"a cocycle is antisymmetric, but w[{i}, {j}] = {shown[0]} and w[{j}, {i}] = {shown[1]}"
-            )
+            there, back = (shown(field.format(form[x])) for x in ((i, j), (j, i)))
+            raise StructureError(f"a cocycle is antisymmetric, but w[{i}, {j}] = {there} and w[{j}, {i}] = {back}")
     one = field.identity(n)
     blocks = [block.to_rows() for block in algebra.table.contract(one, one, form)]  # [i][j][k] = w([e_i, e_j], e_k)
     if bound:

@@ -10,8 +10,9 @@ from typing import Any, final
 
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.structure_constants import StructureConstants
-from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError
+from liehom.errors import DependentRowsError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
 from liehom.scalars import Scalar, Subspace
+from liehom.scalars.field import rows_of
 from liehom.scalars.quotient import Quotient, echelon_quotient, quotient
 
 
@@ -63,8 +64,8 @@ class Subalgebra:
         if failure is not None:
             a, b = failure
             bracket = self.algebra.bracket(self.basis.row(a), self.basis.row(b))
-            shown = ", ".join(self.algebra.field.format(x) for x in bracket)
-            raise NotASubalgebraError((a, b), f"({shown})")
+            values = ", ".join(shown(self.algebra.field.format(x)) for x in bracket)
+            raise NotASubalgebraError((a, b), f"({values})")
 
     # -- properties --------------------------------------------------------------------------------------
     @property
@@ -163,9 +164,7 @@ class Subalgebra:
 def _matrix(algebra: LieAlgebra, rows: Any) -> Any:
     if hasattr(rows, "nrows"):
         return algebra.field.read(rows)
-    if not hasattr(rows, "__iter__") or isinstance(rows, str):
-        raise InputError(f"a subalgebra is given by rows of coefficients, got {rows!r}")
-    table = [list(row) for row in rows]
+    table = rows_of(rows)
     for i, row in enumerate(table):
         if len(row) != algebra.dimension:
             raise ShapeError(f"row {i} of the subalgebra has length {len(row)}, expected {algebra.dimension}")

@@ -6,12 +6,13 @@ Imports structure_constants, scalars, errors.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 
 from liehom.algebra.structure_constants import StructureConstants
-from liehom.errors import FieldError, ParseError, ShapeError, StructureError
+from liehom.errors import FieldError, ParseError, ShapeError, StructureError, shown
 from liehom.scalars import QQ, RR, AlgebraicNumber, Field, common_field, grammar, number_field
 
 
@@ -26,7 +27,7 @@ def field_of_values(values: Iterable[Any]) -> Field:
     texts: list[str] = []
     others: dict[str, Any] = {}
     for value in values:
-        if isinstance(value, (float, np.floating)):
+        if isinstance(value, (float, np.floating)) or getattr(value, "is_Float", False):
             return RR
         if isinstance(value, AlgebraicNumber):
             return value.field
@@ -56,8 +57,8 @@ def field_of_constants(constants: Any) -> Field:
         return field_of_values(v for row in constants.values() if isinstance(row, Mapping) for v in row.values())
     if hasattr(constants, "tocoo"):
         return field_of_values(constants.data[:1])
-    array = np.asarray(constants)
-    if array.dtype.kind in "iu":
+    array = _array(constants)
+    if array.dtype.kind in "iu" or (array.size == 0 and not isinstance(constants, np.ndarray)):
         return QQ
     return RR if array.dtype.kind == "f" else field_of_values(array.ravel().tolist())
 
@@ -88,11 +89,11 @@ def _from_mapping(constants: Any, field: Field, dimension: int | None) -> tuple[
     for pair, row in constants.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
             raise StructureError(f"{pair!r}: {row!r} is no bracket; write {{(i, j): {{k: value}}}}")
-        if not all(isinstance(x, (int, np.integer)) for x in (*pair, *row)):
+        if not all(isinstance(x, (int, np.integer, Integral)) for x in (*pair, *row)):  # the first two: quickly
             raise StructureError(f"the indices of {pair!r}: {dict(row)!r} are not all integers")
     largest = max((int(x) for (i, j), row in constants.items() for x in (i, j, *row)), default=-1)
-    n = largest + 1 if dimension is None else dimension
-    if not isinstance(n, (int, np.integer)) or n < 0:
+    n: Any = largest + 1 if dimension is None else dimension
+    if not isinstance(n, Integral) or n < 0:
         raise ShapeError(f"the dimension is {n!r}, expected an integer that is not negative")
     n = int(n)
     given: Given = {}
@@ -122,10 +123,10 @@ def _from_sparse(constants: Any, field: Field) -> tuple[int, Given]:
 
 
 def _from_array(constants: Any, field: Field) -> tuple[int, Given]:
-    array = np.asarray(constants)
-    if array.size == 0:
-        return 0, {}
+    array = _array(constants)
     n = array.shape[0]
+    if array.shape == (0,):
+        return 0, {}
     if array.shape != (n, n, n):
         raise ShapeError(f"structure constants have shape (n, n, n), got {array.shape}")
     if array.dtype.kind == "f" and not np.isfinite(array).all():
@@ -140,15 +141,28 @@ def _from_array(constants: Any, field: Field) -> tuple[int, Given]:
     return n, given
 
 
+def _array(constants: Any) -> Any:
+    """Nested lists, or an array of numpy or sympy, as a numpy array that is no number."""
+    try:
+        array = np.asarray(constants)
+    except ValueError:
+        raise ShapeError("structure constants have shape (n, n, n); these lists are not of equal lengths") from None
+    if array.ndim == 0:
+        raise StructureError(
+            f"{constants!r} are no structure constants; write {{(i, j): {{k: value}}}} or an array of shape (n, n, n)"
+        )
+    return array
+
+
 def _antisymmetric(given: Given, field: Field) -> Iterator[tuple[int, int, int, Any]]:
     bound = getattr(field, "rtol", 0.0) * max((abs(v) for v in given.values()), default=0.0) if not field.exact else 0
     for (i, j, k), value in given.items():
         defect = value + given.get((j, i, k), field.zero)
         if (defect != 0) if field.exact else (abs(defect) > bound):
-            other = field.format(given.get((j, i, k), field.zero))
+            other = shown(field.format(given.get((j, i, k), field.zero)))
             raise StructureError(
-                f"the bracket is not antisymmetric: c[{i}, {j}, {k}] = {field.format(value)} but "
-                f"c[{j}, {i}, {k}] = {other}, expected {field.format(-value) if i != j else '0'}"
+                f"the bracket is not antisymmetric: c[{i}, {j}, {k}] = {shown(field.format(value))} but "
+                f"c[{j}, {i}, {k}] = {other}, expected {shown(field.format(-value)) if i != j else '0'}"
             )
         if i < j and value != 0:
             yield i, j, k, value

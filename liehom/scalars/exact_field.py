@@ -15,7 +15,7 @@ import flint
 
 from liehom.errors import ShapeError
 from liehom.scalars.exact_matrix import ExactMatrix
-from liehom.scalars.field import Field, Scalar
+from liehom.scalars.field import Field, Scalar, rows_of
 
 
 class ExactField(Field):
@@ -53,7 +53,7 @@ class ExactField(Field):
         """A prime p and the image of the integral generator in F_p; other `attempt`, other prime."""
 
     def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> ExactMatrix:
-        table = [[self.convert(x) for x in row] for row in rows]
+        table = [[self.convert(x) for x in row] for row in rows_of(rows)]
         nrows, ncols = shape if shape is not None else (len(table), len(table[0]) if table else 0)
         if len(table) != nrows or any(len(row) != ncols for row in table):
             lengths = sorted({len(row) for row in table})

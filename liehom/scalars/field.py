@@ -14,8 +14,36 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liehom.errors import ShapeError
+
 Scalar = Any
 """An element of a field: ``flint.fmpq`` over QQ, `AlgebraicNumber` over QQ(a), ``float`` over float64."""
+
+
+def rows_of(rows: Any) -> list[list[Any]]:
+    """Rows of numbers as lists: from nested sequences, from arrays and matrices of numpy, scipy and sympy.
+
+    Raises
+    ------
+    ShapeError
+        If this is no sequence of rows; names the row.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rows_of(np.eye(2, dtype=int)), rows_of([(1, "1/2")])
+    ([[1, 0], [0, 1]], [[1, '1/2']])
+    """
+    for convert in ("toarray", "to_Matrix", "tolist"):  # scipy's sparse arrays, sympy's DomainMatrix, then all arrays
+        rows = getattr(rows, convert)() if hasattr(rows, convert) else rows
+    if isinstance(rows, str) or not hasattr(rows, "__iter__"):
+        raise ShapeError(f"a matrix is given by its rows, got {rows!r}")
+    table = []
+    for i, row in enumerate(rows):
+        if isinstance(row, str) or not (hasattr(row, "__iter__") or hasattr(row, "__len__")):  # sympy's have a length
+            raise ShapeError(f"row {i} is {row!r}, expected a sequence of numbers")
+        table.append(list(row))
+    return table
 
 
 class Matrix(ABC):

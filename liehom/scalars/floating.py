@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import FieldError, ShapeError, SingularError
-from liehom.scalars.field import Field, Matrix
+from liehom.scalars.field import Field, Matrix, rows_of
 
 Array = npt.NDArray[np.float64]
 
@@ -107,7 +107,7 @@ class FloatField(Field):
         return float(value)
 
     def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> FloatMatrix:
-        table = [[self.convert(x) for x in row] for row in rows]
+        table = [[self.convert(x) for x in row] for row in rows_of(rows)]
         nrows, ncols = shape if shape is not None else (len(table), len(table[0]) if table else 0)
         if len(table) != nrows or any(len(row) != ncols for row in table):
             lengths = sorted({len(row) for row in table})

@@ -9,6 +9,7 @@ import functools
 import numbers
 import re
 from collections.abc import Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, final
 
@@ -56,8 +57,8 @@ def rational_from_text(text: str) -> Any:
 
 def refused(value: Any, field: Field) -> FieldError:
     """The error for a value that is not in an exact field; a float is shown as the fraction to write."""
-    if isinstance(value, (float, np.floating)):
-        shown = Fraction(float(value)).limit_denominator(1000) if np.isfinite(value) else "p/q"
+    if isinstance(value, (float, np.floating, Decimal)) or getattr(value, "is_Float", False):
+        shown = Fraction(float(value)).limit_denominator(1000) if np.isfinite(float(value)) else "p/q"
         return FieldError(
             f"{float(value)!r} is a float, and {field.name} is exact: write a fraction such as '{shown}', "
             "or work numerically, over float64: .over(liehom.RR)"

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Any, final
 
 from liehom.errors import ShapeError
-from liehom.scalars.field import Field, Scalar
+from liehom.scalars.field import Field, Scalar, rows_of
 
 
 @final
@@ -128,7 +128,7 @@ class Subspace:
 
 
 def _as_matrix(field: Field, rows: Iterable[Iterable[Any]], ambient: int) -> Any:
-    table = [list(row) for row in rows]
+    table = rows_of(rows)
     for i, row in enumerate(table):
         if len(row) != ambient:
             raise ShapeError(f"row {i} has length {len(row)}, expected {ambient}")

@@ -1,0 +1,420 @@
+"""What users give: tables that are none, numbers of every kind, no dimension at all, fractions of a million digits."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy
+from scipy import sparse
+
+import liehom as lh
+from liehom.errors import (
+    CocycleError,
+    DependentRowsError,
+    FieldError,
+    InputError,
+    JacobiError,
+    LiehomError,
+    NotASubalgebraError,
+    ParseError,
+    RepresentationError,
+    ShapeError,
+    StructureError,
+)
+
+half = sympy.Rational(1, 2)
+
+
+def table_of(g: lh.LieAlgebra) -> Any:
+    """The dense integer table of an algebra."""
+    table = np.zeros((g.dimension,) * 3, dtype=int)
+    for i, j, k, v in g.structure_constants():
+        table[i, j, k], table[j, i, k] = int(v), -int(v)
+    return table
+
+
+SO3 = table_of(lh.so(3))
+
+
+# -- tables that define no Lie algebra -----------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("constants", "indices", "value"),
+    [
+        ({(0, 1): {0: 1}, (0, 2): {1: 1}}, (0, 1, 2), {1: "1"}),
+        ({(1, 2): {3: half}, (3, 4): {0: sympy.Rational(2, 3)}}, (1, 2, 4), {0: "1/3"}),
+        ({(0, 1): {0: "sqrt(2)"}, (0, 2): {1: 1}}, (0, 1, 2), {1: "sqrt(2)"}),
+    ],
+    ids=["integers", "fractions", "square roots"],
+)
+def test_a_jacobi_failure_names_the_triple_and_the_value(constants: Any, indices: Any, value: Any) -> None:
+    with pytest.raises(JacobiError, match="expected 0") as caught:
+        lh.LieAlgebra(constants, dimension=5)
+    assert (caught.value.indices, caught.value.value) == (indices, value)
+    assert str(indices) in str(caught.value)
+
+
+def test_a_jacobi_failure_in_a_large_dense_table() -> None:
+    """The proof by generators finds it too, and names a triple that fails."""
+    g = lh.sl(4)
+    n = g.dimension
+    change = lh.QQ.matrix([[1 if i == j else (i + 2 * j) % 3 - 1 if i < j else 0 for j in range(n)] for i in range(n)])
+    table = table_of(g.change_of_basis(change))
+    table[2, 5, 7] += 1
+    table[5, 2, 7] -= 1
+    with pytest.raises(JacobiError) as caught:
+        lh.LieAlgebra(table)
+    i, j, k = caught.value.indices
+    total = np.zeros(n, dtype=int)
+    for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
+        total += table[a, b] @ table[:, c]
+    assert {x: str(v) for x, v in enumerate(total) if v} == caught.value.value
+
+
+def test_a_jacobi_failure_over_floats() -> None:
+    with pytest.raises(JacobiError):
+        lh.LieAlgebra({(0, 1): {0: 1.0}, (0, 2): {1: 1.0}}, dimension=3)
+
+
+def test_a_table_that_is_not_antisymmetric() -> None:
+    with pytest.raises(StructureError, match=r"c\[0, 1, 1\] = 1 but c\[1, 0, 1\] = 1, expected -1"):
+        lh.LieAlgebra({(0, 1): {1: 1}, (1, 0): {1: 1}})
+    with pytest.raises(StructureError, match=r"c\[1, 1, 0\] = 1/2.*expected 0"):
+        lh.LieAlgebra({(1, 1): {0: half}})
+    with pytest.raises(StructureError, match="not antisymmetric"):
+        lh.LieAlgebra(np.abs(SO3))
+    with pytest.raises(StructureError, match="not antisymmetric"):
+        lh.LieAlgebra(sparse.coo_array(np.abs(SO3).reshape(9, 3)))
+    with pytest.raises(StructureError, match="not antisymmetric"):
+        lh.LieAlgebra(np.abs(SO3) * 0.5)
+
+
+@pytest.mark.parametrize(
+    ("constants", "error"),
+    [
+        ([[[0, 1], [2]], [[0]]], ShapeError),
+        ([[0, 1], [1, 0]], ShapeError),
+        (np.zeros((0, 3, 3)), ShapeError),
+        (np.zeros((2, 2, 3)), ShapeError),
+        (3, StructureError),
+        (None, StructureError),
+        ("so(3)", StructureError),
+        (sparse.coo_array(np.eye(3, dtype=int)), ShapeError),
+        (np.full((2, 2, 2), np.nan), StructureError),
+    ],
+    ids=["jagged", "matrix", "0 x 3 x 3", "2 x 2 x 3", "number", "none", "name", "sparse", "nan"],
+)
+def test_what_is_no_table(constants: Any, error: type[LiehomError]) -> None:
+    with pytest.raises(error):
+        lh.LieAlgebra(constants)
+
+
+# -- numbers -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    "value",
+    [0.5, np.float64(0.5), np.float32(0.5), Decimal("0.5"), sympy.Float("0.5")],
+    ids=["float", "float64", "float32", "decimal", "sympy"],
+)
+def test_a_float_where_exactness_was_asked_for(value: Any) -> None:
+    g = lh.so(3)
+    calls: list[Callable[[], Any]] = [
+        lambda: lh.LieAlgebra({(0, 1): {1: value}}, lh.QQ),
+        lambda: lh.LieAlgebra([[[0, 0], [0, value]], [[0, -value], [0, 0]]], lh.QQ),
+        lambda: g.subalgebra([[0, 0, value]]),
+        lambda: g.bracket([value, 0, 0], [0, 1, 0]),
+        lambda: g.ad([value, 0, 0]),
+        lambda: g.change_of_basis([[value, 0, 0], [0, 1, 0], [0, 0, 1]]),
+        lambda: g.centralizer([[value, 0, 0]]),
+        lambda: lh.Representation(lh.so(2), [[[0, value], [-value, 0]]]),
+        lambda: lh.catalog.representation("so(3)").isotropy([value, 0, 0]),
+        lambda: lh.central_extension(lh.abelian(2), [[0, value], [-value, 0]]),
+        lambda: lh.cohomology(lh.so(2), 1, [[[0, value], [-value, 0]]]),
+        lambda: lh.semidirect_sum(lh.so(2), [[[0, value], [-value, 0]]]),
+        lambda: lh.Homomorphism(g, g, [[value, 0, 0], [0, 1, 0], [0, 0, 1]]),
+    ]
+    for call in calls:
+        with pytest.raises(FieldError, match="write a fraction such as '1/2'"):
+            call()
+
+
+def test_floats_alone_call_for_float64() -> None:
+    assert lh.LieAlgebra(SO3 * 0.5).field == lh.RR
+    assert lh.LieAlgebra({(0, 1): {1: 0.5}, (0, 2): {2: half}}).field == lh.RR
+    assert lh.LieAlgebra({(0, 1): {1: sympy.Float("0.5")}}).field == lh.RR
+
+
+@pytest.mark.parametrize(
+    ("value", "error"),
+    [
+        (sympy.Symbol("a"), FieldError),
+        (sympy.pi, FieldError),
+        (sympy.I, FieldError),
+        (sympy.nan, FieldError),
+        (sympy.zoo, FieldError),
+        (float("nan"), FieldError),
+        (float("inf"), FieldError),
+        (1j, FieldError),
+        (None, FieldError),
+        (True, FieldError),
+        ("0.5", ParseError),
+        ("1/0", InputError),
+        ("x", ParseError),
+        ("", ParseError),
+    ],
+    ids=str,
+)
+def test_what_is_no_number(value: Any, error: type[LiehomError]) -> None:
+    with pytest.raises(error):
+        lh.LieAlgebra({(0, 1): {1: value}})
+    with pytest.raises(InputError):
+        lh.so(3).bracket([value, 0, 0], [0, 1, 0])
+
+
+# -- sympy, numpy, fractions, everywhere ---------------------------------------------------------------------
+def test_tables_in_every_form() -> None:
+    nested = SO3.tolist()
+    tables = [
+        nested,
+        tuple(tuple(tuple(row) for row in block) for block in nested),
+        SO3,
+        SO3.astype(object),
+        [[[sympy.Integer(x) for x in row] for row in block] for block in nested],
+        [[[Fraction(x) for x in row] for row in block] for block in nested],
+        [[[str(x) for x in row] for row in block] for block in nested],
+        sympy.Array(nested),
+        sympy.ImmutableDenseNDimArray(nested),
+        sympy.MutableSparseNDimArray(nested),
+        [sympy.Matrix(block) for block in nested],
+        sparse.coo_array(SO3.reshape(9, 3)),
+        sparse.csr_array(SO3.reshape(9, 3)),
+        {(sympy.Integer(0), 1): {2: 1}, (0, np.int64(2)): {1: -1}, (1, 2): {np.int8(0): sympy.Integer(1)}},
+    ]
+    for table in tables:
+        assert lh.LieAlgebra(table) == lh.so(3)
+    scaled = lh.LieAlgebra(sympy.Array(nested) * half)
+    assert scaled.bracket([1, 0, 0], [0, 1, 0])[2] == lh.QQ.convert("1/2")
+    assert lh.LieAlgebra(sympy.Array(nested) * sympy.sqrt(2)).field.name == "QQ(sqrt(2))"
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        sympy.Matrix([[0, 0, half]]),
+        sympy.ImmutableMatrix([[0, 0, half]]),
+        sympy.SparseMatrix([[0, 0, half]]),
+        sympy.Matrix([[0, 0, half]]).to_DM(),
+        sympy.Array([[0, 0, half]]),
+        [sympy.Matrix([0, 0, half])],
+        [sympy.Matrix([[0, 0, half]])],
+        [sympy.Array([0, 0, half])],
+        [(0, 0, Fraction(1, 2))],
+        np.array([[0, 0, half]]),
+        np.array([[0, 0, 1]]),
+        sparse.csr_array(np.array([[0, 0, 1]])),
+        lh.QQ.matrix([[0, 0, "1/2"]]),
+    ],
+    ids=lambda rows: type(rows).__name__ + ("" if not isinstance(rows, list) else f" of {type(rows[0]).__name__}"),
+)
+def test_rows_in_every_form(rows: Any) -> None:
+    g = lh.so(3)
+    h = g.subalgebra([[0, 0, 1]])
+    assert g.subalgebra(rows) == h
+    assert g.subalgebra_generated_by(rows) == h
+    assert g.centralizer(rows) == h
+    assert lh.Pair(g, rows).dimension == 2
+    assert lh.Subspace(lh.QQ, rows, 3) == h.subspace
+    assert lh.quotient(lh.heisenberg(1), rows).is_abelian()
+
+
+@pytest.mark.parametrize(
+    "x",
+    [
+        [0, half, 0],
+        (0, Fraction(1, 2), 0),
+        sympy.Matrix([0, half, 0]),
+        sympy.Matrix([[0, half, 0]]),
+        sympy.Array([0, half, 0]),
+        np.array([0, half, 0]),
+        ["0", "1/2", 0],
+    ],
+    ids=["list", "tuple", "column", "row", "Array", "numpy", "texts"],
+)
+def test_elements_and_points_in_every_form(x: Any) -> None:
+    g = lh.so(3)
+    assert list(g.bracket([1, 0, 0], x)) == [0, 0, lh.QQ.convert("1/2")]
+    assert g.ad(x) == g.ad([0, "1/2", 0])
+    assert x in g.subalgebra([[0, 1, 0]])
+    rep = lh.catalog.representation("so(3)")
+    assert rep.isotropy(x) == rep.isotropy([0, 1, 0])
+    assert rep.orbit_dimension(x) == 2
+
+
+def test_matrices_in_every_form() -> None:
+    rows = [[[0, 1], [0, 0]], [[0, 0], [half, 0]]]
+    forms = [
+        rows,
+        [sympy.Matrix(m) for m in rows],
+        [sympy.ImmutableSparseMatrix(m) for m in rows],
+        [sympy.Matrix(m).to_DM() for m in rows],
+        sympy.Array(rows),
+        np.array(rows),
+        [lh.QQ.matrix(rows[0]), rows[1]],
+        [sparse.coo_array(np.array(rows[0])), rows[1]],
+    ]
+    expected = lh.LieAlgebra.from_matrices([[["0", 1], [0, 0]], [[0, 0], ["1/2", 0]]])
+    for matrices in forms:
+        assert lh.LieAlgebra.from_matrices(matrices) == expected
+    rotation = sympy.Matrix([[0, -1], [1, 0]])
+    assert lh.Representation(lh.so(2), [rotation]).size == 2
+    assert lh.semidirect_sum(lh.so(2), [rotation]) == lh.euclidean(2)
+    assert lh.affine_of([rotation]) == lh.euclidean(2)
+    assert lh.almost_abelian(rotation) == lh.euclidean(2)
+    assert lh.cohomology(lh.so(2), 0, [rotation]).dimension == 0
+    assert lh.Homomorphism(lh.so(3), lh.so(3), sympy.eye(3)).is_isomorphism()
+    assert lh.so(3).change_of_basis(sympy.eye(3)) == lh.so(3)
+    surd = lh.LieAlgebra.from_matrices([sympy.Matrix([[0, sympy.sqrt(2)], [0, 0]]), sympy.Matrix([[0, 0], [1, 0]])])
+    assert surd.field.name == "QQ(sqrt(2))"
+
+
+# -- rows, matrices and maps that are not what they should be ------------------------------------------------
+def test_subalgebras_that_are_none() -> None:
+    g = lh.so(3)
+    with pytest.raises(DependentRowsError) as dependent:
+        g.subalgebra([[0, 0, 1], [0, 0, half], [1, 0, 0]])
+    assert dependent.value.dependent == [1]
+    with pytest.raises(NotASubalgebraError, match=r"rows 0 and 1 is \(0, 0, 1/2\)") as leaving:
+        g.subalgebra([[1, 0, 0], [0, half, 0]])
+    assert leaving.value.pair == (0, 1)
+    with pytest.raises(DependentRowsError):
+        g.subalgebra([[0, 0, 0]])
+
+
+@pytest.mark.parametrize("rows", [[[1, 0]], [1, 0, 0], 3, "abc", ["abc"], [[1, 0, 0], [1]], [[[1], 0, 0]], None])
+def test_what_is_no_list_of_rows(rows: Any) -> None:
+    g = lh.so(3)
+    for call in (g.subalgebra, g.subalgebra_generated_by, g.centralizer, lambda rows: lh.quotient(g, rows)):
+        with pytest.raises(InputError):
+            call(rows)
+
+
+@pytest.mark.parametrize("x", [[1, 0], [1, 0, 0, 0], 3, "abc", None, [[1, 0, 0]]])
+def test_what_is_no_element(x: Any) -> None:
+    g = lh.so(3)
+    for call in (g.ad, lambda x: g.bracket(x, [1, 0, 0]), lambda x: g.bracket([1, 0, 0], x)):
+        with pytest.raises(InputError):
+            call(x)
+
+
+@pytest.mark.parametrize("matrices", [3, "abc", None, [], [3], [[1, 2]], [[[1, 2]]], [[[1], [2, 3]]], [[["x"]]]])
+def test_what_is_no_list_of_square_matrices(matrices: Any) -> None:
+    with pytest.raises(InputError):
+        lh.LieAlgebra.from_matrices(matrices)
+
+
+def test_representations_and_maps_that_are_none() -> None:
+    with pytest.raises(RepresentationError) as caught:
+        lh.Representation(lh.so(3), [sympy.eye(2)] * 3)
+    assert caught.value.pair == (0, 1)
+    with pytest.raises(InputError):
+        lh.Homomorphism(lh.so(3), lh.so(3), sympy.eye(3) * 2)
+    with pytest.raises(ShapeError):
+        lh.so(3).change_of_basis(sympy.eye(2))
+    with pytest.raises(CocycleError):
+        lh.central_extension(lh.heisenberg(2), sympy.Matrix(5, 5, lambda i, j: {(0, 4): 1, (4, 0): -1}.get((i, j), 0)))
+
+
+# -- dimension zero ------------------------------------------------------------------------------------------
+ZERO = {
+    "QQ": lh.abelian(0),
+    "a number field": lh.abelian(0).over(lh.number_field("sqrt(2)")),
+    "float64": lh.abelian(0).over(lh.RR),
+}
+ARGUMENTS: dict[str, Any] = {"x": [], "y": [], "rows": [], "ideal": [], "degree": 1}
+
+
+def verbs() -> list[str]:
+    """The public methods of LieAlgebra for which `ARGUMENTS` has what they need."""
+    found = []
+    for name, method in inspect.getmembers(lh.LieAlgebra, inspect.isfunction):
+        needed = [p.name for p in inspect.signature(method).parameters.values() if p.default is p.empty][1:]
+        if not name.startswith("_") and all(x in (*ARGUMENTS, "subalgebra", "other", "field") for x in needed):
+            found.append(name)
+    return found
+
+
+def test_the_methods_were_found() -> None:
+    assert {"ad", "bracket", "cohomology", "derivations", "killing_form", "normalizer", "quotient"} <= set(verbs())
+
+
+@pytest.mark.parametrize("name", verbs())
+@pytest.mark.parametrize("field", ZERO)
+def test_every_method_is_legal_in_dimension_zero(field: str, name: str) -> None:
+    g = ZERO[field]
+    arguments = {**ARGUMENTS, "subalgebra": g.center(), "other": g, "field": g.field}
+    needed = [p.name for p in inspect.signature(getattr(g, name)).parameters.values() if p.default is p.empty]
+    try:
+        getattr(g, name)(*(arguments[x] for x in needed))
+    except FieldError as error:
+        assert not g.field.exact, error  # some questions are for exact fields only, and say so
+
+
+def test_answers_in_dimension_zero() -> None:
+    g = lh.LieAlgebra({})
+    assert g == lh.LieAlgebra([]) == lh.LieAlgebra(np.zeros((0, 0, 0), dtype=int)) == lh.abelian(0)
+    assert (g.dimension, g.is_abelian(), g.killing_signature()) == (0, True, (0, 0, 0))
+    assert [s.dimension for s in g.derived_series()] == [s.dimension for s in g.lower_central_series()] == [0]
+    assert g.center().dimension == lh.derivations(g).dimension == 0
+    assert [lh.cohomology(g, k).dimension for k in range(3)] == [1, 0, 0]
+    assert g.subalgebra([]) == g.center()
+    assert [] in g.center()
+    assert g.center().quotient_algebra() == g.center().as_algebra() == g
+    assert lh.direct_sum(g, lh.so(3)) == lh.so(3)
+    assert lh.complexification(g).complex_dimension == 0
+    assert lh.Homomorphism(g, g, []).is_isomorphism()
+    assert lh.Homomorphism(lh.so(3), g, []).kernel().dimension == 3
+    assert lh.Homomorphism(g, lh.so(3), [[], [], []]).image().dimension == 0
+    assert lh.Representation(g, [], size=2).size == 2
+    assert lh.adjoint(g).size == 0
+    assert lh.Pair(g, []).dimension == 0
+    assert lh.from_json(lh.to_json(g)) == g
+    assert str(g).startswith("Lie algebra over QQ, dimension 0")
+
+
+# -- fractions that fill a book ------------------------------------------------------------------------------
+def long_fraction(digits: int) -> str:
+    return f"1{'0' * (digits - 2)}1/1{'0' * (digits - 2)}3"
+
+
+def check_long_fractions(digits: int) -> None:
+    q = lh.QQ.convert(long_fraction(digits))
+    assert q == lh.QQ.convert(Fraction(10 ** (digits - 1) + 1, 10 ** (digits - 1) + 3))
+    g = lh.LieAlgebra({(0, 1): {1: long_fraction(digits)}})
+    assert g.bracket([q, 0], [0, 1])[1] == q * q
+    assert g.killing_form()[0, 0] == q * q
+    assert (g.center().dimension, lh.derivations(g).dimension) == (0, 2)
+    so3 = lh.LieAlgebra({(0, 1): {2: q}, (1, 2): {0: 1}, (0, 2): {1: -1}})
+    assert so3.killing_signature() == (0, 3, 0)
+    with pytest.raises(JacobiError) as caught:
+        lh.LieAlgebra({(0, 1): {0: q}, (0, 2): {1: 1}}, dimension=3)
+    assert caught.value.value == {1: str(q)}
+    assert len(str(caught.value)) < 400  # the message does not fill a book
+    with pytest.raises(StructureError) as wrong:
+        lh.LieAlgebra({(0, 1): {0: q}, (1, 0): {0: q}})
+    assert len(str(wrong.value)) < 800
+    with pytest.raises(NotASubalgebraError) as leaving:
+        so3.subalgebra([[q, 0, 0], [0, 1, 0]])
+    assert len(str(leaving.value)) < 800
+
+
+def test_fractions_of_ten_thousand_digits() -> None:
+    check_long_fractions(10**4)
+
+
+@pytest.mark.slow
+def test_fractions_of_a_million_digits() -> None:
+    check_long_fractions(10**6)
