@@ -137,6 +137,17 @@ def dimension_of_type(name: str) -> int:
 
 @every
 @each_family
+def test_indecomposable_ideals_over_the_rationals(family: str, stride: int) -> None:
+    wrong = []
+    for index, (label, _, gap) in list(enumerate(algebras(family)))[::stride]:
+        found = sorted(dimensions(levi_factor(family, index).direct_sum_decomposition()))
+        if found != gap.get("simple_ideals_over_QQ", [] if gap["radical"] == gap["dimension"] else found):
+            wrong.append(f"{family} {index} ({label}): {found}, GAP says {gap['simple_ideals_over_QQ']}")
+    assert not wrong
+
+
+@every
+@each_family
 def test_simple_ideals(family: str, stride: int) -> None:
     """An ideal that is simple over QQ is a sum of ideals that are simple over the reals."""
     wrong = []
