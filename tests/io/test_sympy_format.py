@@ -64,9 +64,17 @@ def test_sympy_goes_in_everywhere() -> None:
     half = sympy.Matrix([[sympy.Rational(1, 2), 0], [0, sympy.Rational(-1, 2)]])
     algebra = lh.LieAlgebra.from_matrices([x, half])
     assert algebra.dimension == 3
-    rows = sympy.Array([[1, 0, 0], [0, sympy.Rational(1, 2), 0], [0, 0, 1]])
-    assert algebra.change_of_basis(rows).change_of_basis(sympy.Matrix(rows).inv().tolist()) == algebra
+    for rows in (sympy.diag(1, sympy.Rational(1, 2), 1), sympy.SparseMatrix(sympy.diag(1, sympy.Rational(1, 2), 1))):
+        assert algebra.change_of_basis(rows).change_of_basis(rows.inv()) == algebra
+        assert algebra.change_of_basis(sympy.Array(rows)) == algebra.change_of_basis(rows)
+        assert algebra.subalgebra_generated_by(rows).dimension == 3
+        assert lh.QQ.matrix(rows).determinant() == lh.QQ.convert("1/2")
+        assert lh.RR.matrix(rows).rank() == 3
+    line = sympy.Matrix([[1, 0, 0]])
+    assert algebra.subalgebra(line).dimension == algebra.centralizer(line).dimension == 1
+    assert lh.Pair(algebra, line).subalgebra.dimension == lh.Subspace(lh.QQ, line, 3).dimension == 1
     assert list(algebra.bracket(sympy.Matrix([1, 0, 0]), sympy.Array([1, 0, 0]))) == [0, 0, 0]
+    assert lh.Homomorphism(algebra, algebra, sympy.eye(3)).is_isomorphism()
     rho = lh.Representation(lh.abelian(1), [x])
     assert rho.isotropy(sympy.Matrix([1, 0])).dimension == 0
     assert lh.Representation.from_matrices([sympy.ImmutableMatrix(x)]) == rho
