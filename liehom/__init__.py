@@ -7,6 +7,7 @@ The layers, in reading order; each imports only those above it in this list:
 `scalars`          QQ, real number fields, float64, and linear algebra over them
 `algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
 `representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners
+`tracing`          a computation recorded as a graph, and machine code of it
 `series`           truncated Taylor series on which numpy code runs, series in Lie algebras
 `homogeneous`      actions with an exponential, generator fields; the range condition, orbit types
 `correctors`       expansions of flow and step; the order-n isotropy corrector and its clock

@@ -276,18 +276,21 @@ def at_rest(action: Action, flow: Flow) -> Any:
     True
     """
     w, m = flow.point(1), flow.point(0)
-    xp = namespace(w)
     bound = (NOISE * float(np.finfo(w.dtype).eps) * action.size) ** 2
-    speed, size = xp.sum(w * w, axis=-1), xp.sum(m * m, axis=-1)
-    gram = xp.asarray(action.inner_product.matrix)
+    speed, size = _square(w), _square(m)
+    root = np.linalg.cholesky(action.inner_product.matrix)
 
     def square(x: Any) -> Any:
-        return xp.sum((x @ gram) * x, axis=-1)
+        return _square(x @ root)
 
     still = speed <= bound * square(flow.psi(0)) * size
     if flow.generator.order < 1:
         return still
     return still | (speed * speed <= bound * square(flow.psi(1)) * size * size)
+
+
+def _square(x: Any) -> Any:
+    return np.einsum("...i,...i->...", x, x) if isinstance(x, np.ndarray) else namespace(x).sum(x * x, axis=-1)
 
 
 def _moved(xp: Any, flow: Flow, x: Any, m: Any) -> Any:

@@ -155,9 +155,9 @@ class EvenRangeSolver:
     ----------
     action : Action
         With its `even` set.
-    m : array of shape (N,)
-    frame : IsotropyFrame
-    velocity : array of shape (N,)
+    m : array of shape (..., N)
+    orbit_dimension : int or array
+    velocity : array of shape (..., N)
     leading : int
     factor : float
     moving : truth value, optional
@@ -172,7 +172,7 @@ class EvenRangeSolver:
     >>> action = action.on_even_orbits(evenness(action, np.eye(3), 2))
     >>> tape = Tape()
     >>> m, w, r = (Traced(tape, x) for x in ([0, 0, 1.0], [1.0, 0, 0], [0.25, 0.5, 0]))
-    >>> zeta, c, _ = EvenRangeSolver(action, m, action.isotropy_frame(m, 2), w, 1, 0.5).solve(r)
+    >>> zeta, c, _ = EvenRangeSolver(action, m, 2, w, 1, 0.5).solve(r)
     >>> float(c), [round(abs(float(x)), 12) for x in zeta]
     (-0.25, [1.0, 0.0, 0.0])
     """
@@ -181,31 +181,53 @@ class EvenRangeSolver:
         self,
         action: Action,
         m: Any,
-        frame: IsotropyFrame,
+        orbit_dimension: Any,
         velocity: Any,
         leading: int,
         factor: float,
         moving: Any = None,
     ) -> None:
-        xp = namespace(velocity)
-        square = xp.sum(velocity * velocity, axis=-1)
-        self._over = xp.where(square > 0 if moving is None else moving, 1.0 / square, 0.0)
-        self._action, self._m, self._frame, self._velocity = action, m, frame, velocity
+        square = inner(velocity, velocity)
+        moves = square > 0 if moving is None else moving
+        self._over = np.where(moves, 1.0 / (square if type(square) is Traced else np.where(moves, square, 1.0)), 0.0)
+        self._action, self._m, self._dimension, self._velocity = action, m, orbit_dimension, velocity
         self._leading, self._factor = leading, factor
 
     def solve(self, right: Any) -> tuple[Any, Any, None]:
-        """zeta (dim g,), c and None for no residual."""
+        """zeta (..., dim g), c (...,) and None for no residual."""
         action, even, w = self._action, self._action.even, self._velocity
         if even is None:
             raise InternalError("the orbits of an EvenRangeSolver are not known to be even")
-        xp = namespace(right)
-        share = xp.sum(w * right, axis=-1) * self._over
+        share = inner(w, right) * self._over
         # r in place of r + l c w: R^T w has no part in g_m
-        turned = xp.swapaxes(action.infinitesimal.right(w), -1, -2) @ right
-        y = (even.inverse / (self._factor * even.isotropy)) @ turned * self._over
+        turned = _apply(np.swapaxes(action.infinitesimal.right(w), -1, -2), right)
+        y = turned @ (even.inverse / (self._factor * even.isotropy)) * self._over[..., None]
         if not even.symmetric:
-            y = y - self._frame.lift @ action.infinitesimal(y, self._m)
+            lift = action.isotropy_frame(self._m, self._dimension).lift
+            y = y - _apply(lift, action.infinitesimal(y, self._m))
         return y, -share / self._leading, None
+
+    @property
+    def singular_value(self) -> Any:
+        """As of a `RangeSolver`: the least of e mu^(1/2), d - 1 times, and 1."""
+        isotropy = self._action.even.isotropy if self._action.even is not None else 0.0
+        return np.full(np.shape(self._over), min(self._factor * isotropy**0.5, 1.0))
+
+    @property
+    def rank(self) -> Any:
+        """The dimension of the orbit."""
+        return np.broadcast_to(self._dimension, np.shape(self._over))
+
+
+def inner(a: Any, b: Any) -> Any:
+    """The inner products of (..., N), arrays of numpy or traced ones.
+
+    Examples
+    --------
+    >>> inner(np.ones((2, 3)), np.ones((2, 3))).tolist()
+    [3.0, 3.0]
+    """
+    return np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
 
 
 def _polished(basis: Any, gram: Any) -> Any:

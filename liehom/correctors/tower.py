@@ -8,6 +8,7 @@ Imports completion, expansion, range_solver, step, homogeneous, series.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, final
 
 import numpy as np
@@ -17,7 +18,7 @@ from liehom.correctors.expansion import Clock, Flow, at_rest, flow_series, leadi
 from liehom.correctors.range_solver import EvenRangeSolver, RangeSolver
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
-from liehom.series.arrays import is_lazy, namespace
+from liehom.series.arrays import is_jax, is_lazy, namespace
 from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
 
@@ -94,9 +95,14 @@ class Tower:
         self._factors = with_correction(local.factors(step_variable(total, m)), self.zeta, one_exponential)
         self.step: Jet = apply_factors(action, self._factors, m)
         self.clock = Clock(self.flow, total, self.shape)
-        self.frame: IsotropyFrame = action.isotropy_frame(m, orbit_dimension)
+        self._orbit_dimension = orbit_dimension
         # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
-        self.leading = np.ones(self.shape, dtype=int) if is_lazy(m) else leading_order(self.flow, total)
+        if is_lazy(m):
+            self.leading = np.ones(self.shape, dtype=int)
+        elif action.even is not None and not field.time_dependent:
+            self.leading = np.where(at_rest(action, self.flow), 0, 1)
+        else:
+            self.leading = leading_order(self.flow, total)
         # None is all of them, which spares masks
         self.active: Any = None
         self.moving: Any = None
@@ -109,6 +115,11 @@ class Tower:
         self.levels = 0 * self.xp.asarray(self.leading)
         self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
         self.defects: list[tuple[int, Any]] = []
+
+    @cached_property
+    def frame(self) -> IsotropyFrame:
+        """At m, when it is first asked for: on even orbits mostly never."""
+        return self.action.isotropy_frame(self.m, self._orbit_dimension)
 
     def _no_correction(self) -> Jet:
         zero = self.xp.zeros((*self.shape, self.action.dimension), dtype=self.m.dtype)
@@ -127,8 +138,8 @@ class Tower:
                 continue
             velocity = _masked(self.xp, here, self.flow.point(l))
             solver: RangeSolver | EvenRangeSolver
-            if self.action.even is not None and type(self.m) is Traced:
-                solver = EvenRangeSolver(self.action, self.m, self.frame, velocity, l, factor, self.moving)
+            if self.action.even is not None and not is_jax(self.m):
+                solver = EvenRangeSolver(self.action, self.m, self._orbit_dimension, velocity, l, factor, self.moving)
             else:
                 solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
             share = isotropic_share(self.action, self.flow, l, self.total) if self.flow.time_dependent else None

@@ -19,7 +19,7 @@ from liehom.homogeneous.lazy_frame import Evenness, decomposed
 from liehom.homogeneous.maps import action_map, bracket_map
 from liehom.homogeneous.own_exponential import exponential_of
 from liehom.representations import Representation
-from liehom.series.arrays import namespace
+from liehom.series.arrays import is_jax, namespace
 from liehom.tracing.array import Traced
 
 
@@ -115,6 +115,8 @@ class Action:
         >>> lh.Action(lh.defining(lh.so(3))).isotropy_frame(np.array([0, 0, 1.0]), 2).basis.shape
         (3, 1)
         """
+        if self.even is not None and not is_jax(m):
+            return self._even_frame(self.even, m, orbit_dimension)
         if type(m) is Traced:
             return self._lazy_frame(m, int(np.max(orbit_dimension)))
         xp = namespace(m)
@@ -136,19 +138,25 @@ class Action:
         return IsotropyFrame(self._basis @ kernel, tangent, self._basis @ lift, rank)
 
     def on_even_orbits(self, even: Evenness | None) -> Action:
-        """This action, where lazy arrays of points are known to be on orbits with these properties."""
+        """This action, where points (not of JAX) are known to be on orbits with these properties.
+
+        Isotropy frames are then without a basis of g_m, and their tangent vectors those of V.
+        """
         made = copy(self)
         made.even = even
         return made
+
+    def _even_frame(self, even: Evenness, m: Any, orbit_dimension: Any) -> IsotropyFrame:
+        columns = self.infinitesimal.right(m)
+        rank = np.asarray(orbit_dimension)
+        over = np.max(rank) / np.sum((m @ even.trace) * m, axis=-1) if even.over is None else even.over
+        lift = even.inverse @ np.swapaxes(columns, -1, -2) * over[..., None, None]
+        return IsotropyFrame(None, np.eye(m.shape[-1]), lift, rank)
 
     def _lazy_frame(self, m: Any, rank: int) -> IsotropyFrame:
         """The projector on g_m in place of a basis, of which only the range matters."""
         xp = namespace(m)
         columns = self.infinitesimal.right(m)
-        if self.even is not None:
-            over = rank / (m @ (self.even.trace @ m)) if self.even.over is None else self.even.over
-            lift = self.even.inverse @ xp.swapaxes(columns, -1, -2) * over
-            return IsotropyFrame(np.eye(self.dimension) - lift @ columns, np.eye(m.shape[-1]), lift, np.asarray(rank))
         columns = columns @ xp.asarray(self._basis)
         found = decomposed(columns, rank)
         kernel = np.eye(self.dimension) - found.rows @ xp.swapaxes(found.rows, -1, -2)
@@ -165,9 +173,9 @@ class IsotropyFrame:
 
     Attributes
     ----------
-    basis : array of shape (..., dim, s)
+    basis : array of shape (..., dim, s), or None
         Columns span g_m, orthonormal in the inner product of the action (zero columns fill up where the orbits of an
-        ensemble have different dimensions).
+        ensemble have different dimensions). None on even orbits, where no basis is needed.
     tangent : array of shape (..., N, d)
         Columns span T_m M, orthonormal (zero columns fill up).
     lift : array of shape (..., dim, d)

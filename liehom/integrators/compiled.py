@@ -141,13 +141,15 @@ class Compiled:
 
     def __call__(self, run: Run) -> None:
         """Make plain steps until every trajectory rests, or for a while."""
+        if not run.active.any():
+            return
         if self._calls is None:  # of psi, in the step that the run has made
             self._calls = run.calls
         lanes = int(np.prod(run.shape, dtype=int))
         steps = min(int(run.options.max_steps) - 1 - int(np.max(run.taken)), max(1, BREATH // lanes))
         if run.keeps:
             steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 1))))
-        if steps < 1 or not run.active.any():
+        if steps < 1:
             return
         state = _State(run)
         for group in self.groups:

@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from liehom.correctors.corrected import Corrected
 from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.field import check_point
+from liehom.homogeneous.lazy_frame import evenness
 from liehom.integrators.checkpoint import checked_path
 from liehom.integrators.compiled import compiled_steps
 from liehom.integrators.jax_integration import integrate_on_jax
@@ -179,12 +181,22 @@ def integrate(
     if options.dt is None and options.rtol == 0 and options.atol == 0:
         raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
     path = None if checkpoint is None else checked_path(checkpoint)
+    if isinstance(step, Corrected) and start.dtype == np.float64:
+        action = _on_even_orbits(action, start, orbit_dimension)
     # what is not finite is noticed, and ends a trajectory with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
         if compile is not None:
             run.ahead = compiled_steps(run, compile)
         return run.execute(progress, path)
+
+
+def _on_even_orbits(action: Action, start: Any, orbit_dimension: Any) -> Action:
+    """The action that knows what is special about the orbits, if all are of one dimension."""
+    dimensions = np.unique(orbit_dimension)
+    if len(dimensions) != 1:
+        return action
+    return action.on_even_orbits(evenness(action, start.reshape(-1, start.shape[-1]), int(dimensions[0])))
 
 
 def _on_jax(

@@ -79,7 +79,8 @@ def _traced(
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
     local = step.at(action, Generator(field, orbit_dimension), m, t[..., None])
     made = apply_factors(action, local.factors(h[..., None]), m)
-    passed, runs, clock = None, None, ()
+    passed, runs = None, None
+    clock: tuple[tuple[int, Expr], ...] = ()
     if has_clock(local) and not nominal:
         passed = _number(tape, local.time(h))
         runs, clock = _runs(tape, local, h), _coefficients(tape, local)
