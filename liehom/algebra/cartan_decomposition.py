@@ -11,31 +11,27 @@ Imports cartan_involution, cartan_subalgebra, lie_algebra, subalgebra, scalars, 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.cartan_involution import (
-    cartan_involution_of_constants,
-    kicked,
-    nearest_cartan_involution,
-)
+from liehom.algebra.cartan_involution import cartan_involution_of_constants, nearest_cartan_involution
 from liehom.algebra.cartan_subalgebra import cartan_subalgebra
+from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition
 from liehom.algebra.lie_algebra import LieAlgebra
+from liehom.algebra.lie_order import lie_order
+from liehom.algebra.rational_involution import DENOMINATOR, rational_involution
 from liehom.algebra.subalgebra import Subalgebra
 from liehom.errors import ConvergenceError, InputError, UndecidedError
 from liehom.scalars import RR, FloatField, Subspace
-from liehom.scalars.lattice import integral_preimage, reduced_basis
+from liehom.scalars.forms import orthogonal_basis
 
 ROUNDS = 60
 FEW_ROUNDS = 8
-SMALL = 24
+SMALL = 12
+SEARCHES = 2
 LATTICE_DIMENSION = 40
-LATTICE_STEPS = 12
 SEEDS = 4
-DENOMINATOR = 24
-CLOSE = 1e-4
 
 
 @final
@@ -87,7 +83,7 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
     killing = algebra.killing_form()
     if killing.rank() < n:
         raise InputError("a Cartan decomposition is that of a semisimple algebra; take the Levi factor")
-    if isinstance(field, FloatField):
+    if n and isinstance(field, FloatField):
         return _decomposed(algebra, field.from_entries(_numerical(algebra).T.ravel().tolist(), n, n))
     theta = field.identity(n) if killing.signature()[0] == 0 else _rational(algebra, killing)
     if theta is None:
@@ -154,65 +150,83 @@ def _found(constants: Any, killing: Any, rank: int) -> Any:
 
 def _rational(algebra: LieAlgebra, killing: Any) -> Any:
     """A Cartan involution over the field, on columns, or None."""
-    field, n = algebra.field, algebra.dimension
+    n = algebra.dimension
+
+    def proved(theta: Any) -> bool:
+        return is_cartan_involution(algebra, theta)
+
     rank = cartan_subalgebra(algebra).dimension
-    rng = np.random.default_rng(n)
-    theta = None
-    for start in (field.identity(n), _larger_lattice(algebra)):
-        if start is None:
-            continue
-        basis, current = start, algebra if start == field.identity(n) else algebra.change_of_basis(start)
-        theta = None
-        for _ in range(ROUNDS if n <= SMALL else FEW_ROUNDS):
-            constants = current.over(RR).table.dense().array.reshape(n, n, n)
-            form = current.killing_form().to_numpy()
-            try:
-                theta = _found(constants, form, rank) if theta is None else theta
-                theta = nearest_cartan_involution(constants, form, theta)
-            except (ConvergenceError, np.linalg.LinAlgError):
-                break
-            candidate = _recognised(field, theta)
-            if candidate is not None and is_cartan_involution(current, candidate):
-                return basis.T @ candidate @ basis.T.inverse()
-            rows = _reduced(field, form, theta)
-            if rows == field.identity(n):  # a local minimum: leave it by a random inner automorphism
-                theta = kicked(constants, form, theta, rng)
-                rows = _reduced(field, form, theta)
-            as_floats = rows.to_numpy()
-            theta = as_floats @ theta @ np.linalg.inv(as_floats)
-            basis, current = rows @ basis, current.change_of_basis(rows)
+    theta = _approximate(algebra, killing, rank)
+    found = None if theta is None else rational_involution(algebra, theta, proved, 1)
+    if found is not None:
+        return found
+    if n == 3:
+        return _about_an_axis(algebra, killing)
+    ideals = direct_sum_decomposition(algebra)
+    if len(ideals) > 1:
+        return _of_ideals(algebra, ideals)
+    return _in_a_suitable_lattice(algebra, killing, rank, theta)
+
+
+def _approximate(algebra: LieAlgebra, killing: Any, rank: int) -> Any:
+    """Theta on rows in floating point, or None."""
+    n = algebra.dimension
+    try:
+        return _found(algebra.over(RR).table.dense().array.reshape(n, n, n), killing.to_numpy(), rank)
+    except (ConvergenceError, np.linalg.LinAlgError):
+        return None
+
+
+def _about_an_axis(algebra: LieAlgebra, killing: Any) -> Any:
+    """Dimension 3: 1 on some x with K(x, x) < 0, -1 where K(x, y) = 0: half a turn, as minus a reflection is."""
+    field = algebra.field
+    rows, values = orthogonal_basis(killing)
+    axis, value = next((r, v) for r, v in zip(rows, values, strict=True) if field.sign(v) < 0)
+    return (axis.T @ (axis @ killing)).scale(2 / value) - field.identity(3)
+
+
+def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Any:
+    """Theta from those of the ideals, or None."""
+    field, n = algebra.field, algebra.dimension
+    basis = field.stack_rows([ideal.basis for ideal in ideals], n)
+    blocks = []
+    for ideal in ideals:
+        inner = ideal.as_algebra()
+        killing = inner.killing_form()
+        one = field.identity(ideal.dimension)
+        theta = one if killing.signature()[0] == 0 else _rational(inner, killing)
+        if theta is None:
+            return None
+        blocks.append(ideal.basis.T @ theta)
+    return field.stack_columns(blocks, n) @ basis.T.inverse()
+
+
+def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: Any) -> Any:
+    field, n = algebra.field, algebra.dimension
+    basis = field.identity(n)
+    if field.degree == 1 and n <= LATTICE_DIMENSION:
+        frame = np.eye(n) if theta is None else _factor(-killing.to_numpy() @ theta.T)
+        basis = lie_order(algebra, frame)
+    current = algebra.change_of_basis(basis)
+    form = current.killing_form()
+    if theta is None:
+        theta = _approximate(current, form, rank)
+        if theta is None:
+            return None
+    else:
+        rows = basis.to_numpy()
+        theta = rows @ theta @ np.linalg.inv(rows)
+    rounds = max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2)
+
+    def proved(candidate: Any) -> bool:
+        return is_cartan_involution(current, candidate)
+
+    for seed in range(SEARCHES):
+        found = rational_involution(current, theta, proved, rounds, seed)
+        if found is not None:
+            return basis.T @ found @ basis.T.inverse()
     return None
 
 
-def _reduced(field: Any, killing: Any, theta: Any) -> Any:
-    n = len(killing)
-    return field.from_integers(reduced_basis(-killing @ theta.T).parts[0].entries(), n, n)
-
-
-def _larger_lattice(algebra: LieAlgebra) -> Any:
-    """A basis of a larger lattice than Z^n that depends less on the basis: normalizers of lattices, repeatedly; or None.
-
-    The normalizer of L is {x : [x, L] in L}; it is closed under brackets, and contains every closed lattice that it is
-    the normalizer of.
-    """
-    field, n = algebra.field, algebra.dimension
-    if field.degree > 1 or n > LATTICE_DIMENSION:
-        return None
-    basis, current = field.identity(n), algebra
-    for _ in range(LATTICE_STEPS):
-        rows = integral_preimage(current.table.flat())
-        if abs(rows.determinant()) == 1:
-            break
-        basis, current = rows @ basis, current.change_of_basis(rows)
-    return None if basis == field.identity(n) else basis
-
-
-def _recognised(field: Any, theta: Any) -> Any:
-    """Nearby fractions of small denominators as a matrix on columns, or None if some entry has none nearby."""
-    values = []
-    for x in theta.T.ravel().tolist():
-        guess = Fraction(x).limit_denominator(DENOMINATOR)
-        if abs(float(guess) - x) > CLOSE:
-            return None
-        values.append(field.convert(guess))
-    return field.from_entries(values, *theta.shape)
+def _factor(form: Any) -> Any:
+    return np.linalg.cholesky((form + form.T) / 2)

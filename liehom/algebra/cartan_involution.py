@@ -62,13 +62,19 @@ def cartan_involution_of_constants(constants: Array, killing: Array, rank: int, 
     return np.ascontiguousarray(theta.real)
 
 
-def nearest_cartan_involution(constants: Array, killing: Array, theta: Array, steps: int = 60) -> Array:
+def nearest_cartan_involution(
+    constants: Array, killing: Array, theta: Array, steps: int = 60, gram: Array | None = None
+) -> Array:
     """The Cartan involution with the least trace of -K(x, theta y), from a given one.
 
     Parameters
     ----------
     constants, killing, theta
         As in `cartan_involution_of_constants`; theta approximately a Cartan involution.
+    steps : int
+        Of Newton's method, at most.
+    gram : (n, n) float array, optional
+        The sum of v^T v over rows v: then the sum of -K(v, theta v) is minimised, in place of that over the basis.
 
     Examples
     --------
@@ -94,7 +100,7 @@ def nearest_cartan_involution(constants: Array, killing: Array, theta: Array, st
             return theta
         actions = np.einsum("ai,ijk->ajk", p, constants)  # rows y: y @ actions[a] = [p_a, y]
         framed_actions = inverse @ actions @ factor  # symmetric in the orthonormal frame
-        weight = factor.T @ factor
+        weight = factor.T @ factor if gram is None else factor.T @ gram @ factor
         gradient = -2 * np.einsum("aij,ji->a", framed_actions, weight)
         moved = framed_actions @ weight
         hessian = 4 * np.einsum("aij,bji->ab", moved, framed_actions)
