@@ -1,7 +1,8 @@
 """AnalysisVerbs: the analysis of a representation as methods, each a line into the file that does the work.
 
-intertwiners, irreducibility, commutant_type, hermitian_forms, complete_reducibility, decomposition, equivalence,
-submodules.  `Representation` inherits it; nothing else should.  Imports intertwiners, irreducibility.
+intertwiners, irreducibility, commutant_type, hermitian_forms, complete_reducibility, decomposition,
+weight_multiplicities, equivalence, submodules.  `Representation` inherits it; nothing else should.
+Imports generating_matrices, intertwiners, irreducibility.
 """
 
 from __future__ import annotations
@@ -177,6 +178,47 @@ class AnalysisVerbs:
         from liehom.representations.decomposition import decomposition
 
         return decomposition(exact(self))
+
+    # -- over the complex numbers ------------------------------------------------------------------------
+    def weights(self: Representation) -> dict[tuple[int, ...], int]:  # type: ignore[misc]
+        """The weights with their multiplicities, for a semisimple algebra in any basis.
+
+        Returns
+        -------
+        dict
+            {weight: multiplicity} in fundamental coordinates, in Bourbaki's numbering of
+            ``algebra.semisimple_type()``; up to the symmetries of the Dynkin diagram.
+
+        Raises
+        ------
+        InputError
+            If the algebra is not semisimple.
+        FieldError
+            Over float64.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining(lh.so(3)).weights()
+        {(2,): 1, (0,): 1, (-2,): 1}
+        """
+        from liehom.representations.weight_multiplicities import weight_multiplicities
+
+        return weight_multiplicities(exact(self))
+
+    def highest_weights(self: Representation) -> dict[tuple[int, ...], int]:  # type: ignore[misc]
+        """The irreducible parts of the complexification: {highest weight: how often}, numbered as in `weights`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> rho = lh.defining(lh.so(3))
+        >>> rho.tensor(rho).highest_weights(), lh.defining(lh.so(3, 1)).highest_weights()
+        ({(4,): 1, (2,): 1, (0,): 1}, {(1, 1): 1})
+        """
+        from liehom.representations.weight_multiplicities import highest_weights
+
+        return highest_weights(exact(self))
 
     # -- maps to other representations -------------------------------------------------------------------
     def intertwiners(self: Representation, other: Representation) -> list[Any]:  # type: ignore[misc]
