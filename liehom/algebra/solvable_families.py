@@ -130,7 +130,7 @@ def oscillator(n: int = 1, frequencies: Sequence[Any] | None = None) -> LieAlgeb
         brackets |= {(0, x): {y: w}, (0, y): {x: -w}, (x, y): {2 * n + 1: 1}}
     names = ["t", *(f"{letter}{i + 1}" for letter in "xy" for i in range(n)), "z"]
     shown = ",".join(map(field.format, values))
-    name = f"oscillator({n})" if frequencies is None else f"oscillator({n}; {shown})"
+    name = f"oscillator({n})" if frequencies is None else f"oscillator({n};{shown})"
     return LieAlgebra(brackets, field, dimension=2 * n + 2, basis=names, name=name)
 
 
@@ -210,7 +210,7 @@ def bianchi(kind: str, a: Any = None) -> LieAlgebra:
     --------
     >>> import liehom as lh
     >>> print(lh.bianchi("VII", "1/2"))
-    Lie algebra bianchi(VII; 1/2) over QQ, dimension 3
+    Lie algebra bianchi(VII;1/2) over QQ, dimension 3
       basis e1, e2, e3
       [e1, e2] = 1/2*e2 + e3
       [e1, e3] = -e2 + 1/2*e3
@@ -226,7 +226,7 @@ def bianchi(kind: str, a: Any = None) -> LieAlgebra:
     value = field.convert(given)
     if field.sign(value) < 0:
         raise InputError(f"the parameter of Bianchi's type {wanted} is not negative, got {field.format(value)}")
-    name = f"bianchi({wanted})" if a is None else f"bianchi({wanted}; {field.format(value)})"
+    name = f"bianchi({wanted})" if a is None else f"bianchi({wanted};{field.format(value)})"
     brackets = {(1, 2): {0: n1}, (0, 2): {1: -n2, 2: value}, (0, 1): {1: value, 2: n3}}
     return LieAlgebra(brackets, field, dimension=3, basis=["e1", "e2", "e3"], name=name)
 

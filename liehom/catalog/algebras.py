@@ -1,6 +1,6 @@
 """Lie algebras and representations by name.
 
-Imports names, linear, algebra, representations.
+Imports families, names, linear, algebra, representations.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from liehom.algebra import LieAlgebra, abelian, direct_sum, euclidean, heisenber
 from liehom.algebra.classical import linear_algebra
 from liehom.algebra.closure import lie_closure
 from liehom.algebra.matrix_basis import IntegerArray
+from liehom.catalog.families import family_algebra, is_family
 from liehom.catalog.linear import is_linear, linear_matrices
 from liehom.catalog.names import Expression, Sum, Term, parse_expression, unknown
 from liehom.errors import CatalogError
@@ -45,6 +46,14 @@ EXAMPLES = (
     "R^2",
     "aff(1)",
     "affine(so(3))",
+    "iso(3,1)",
+    "galilei(3)",
+    "bargmann(3)",
+    "conformal(3,1)",
+    "filiform(5)",
+    "oscillator(1)",
+    "free_nilpotent(2,3)",
+    "bianchi(VII)",
     "so(3)+sl(2)",
 )
 
@@ -107,8 +116,8 @@ def algebra_of(tree: Expression) -> LieAlgebra:
         return euclidean(_single(tree))
     if tree.head == "heisenberg":
         return heisenberg(_single(tree))
-    if tree == Term("aff", (1,)):
-        return affine_algebra(linear_matrices(Term("gl", (1,))), "aff(1)")
+    if is_family(tree):
+        return family_algebra(tree)
     if tree.head == "affine" and len(tree.items) == 1 and not isinstance(tree.items[0], int):
         return affine_algebra(linear_matrices(tree.items[0]), str(tree))
     if tree.head == "sym" and not tree.after:

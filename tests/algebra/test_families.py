@@ -31,7 +31,7 @@ from liehom.algebra.solvable_families import (
     strictly_upper_triangular,
     upper_triangular,
 )
-from liehom.errors import DependentRowsError, InputError, NotClosedError, ShapeError
+from liehom.errors import CatalogError, DependentRowsError, InputError, NotClosedError, ShapeError
 
 Build = Callable[[], lh.LieAlgebra]
 
@@ -66,9 +66,9 @@ CLAIMS: list[tuple[str, Build, int, list[int], list[int], tuple[int, int, int]]]
     ("bianchi(III)", lambda: bianchi("III"), 1, [3, 1, 0], [3, 1], (1, 0, 2)),
     ("bianchi(IV)", lambda: bianchi("IV"), 0, [3, 2, 0], [3, 2], (1, 0, 2)),
     ("bianchi(V)", lambda: bianchi("V"), 0, [3, 2, 0], [3, 2], (1, 0, 2)),
-    ("bianchi(VI; 2)", lambda: bianchi("VI", 2), 0, [3, 2, 0], [3, 2], (1, 0, 2)),
+    ("bianchi(VI;2)", lambda: bianchi("VI", 2), 0, [3, 2, 0], [3, 2], (1, 0, 2)),
     ("bianchi(VII)", lambda: bianchi("vii"), 0, [3, 2, 0], [3, 2], (0, 1, 2)),
-    ("bianchi(VII; 1)", lambda: bianchi("VII", 1), 0, [3, 2, 0], [3, 2], (0, 0, 3)),
+    ("bianchi(VII;1)", lambda: bianchi("VII", 1), 0, [3, 2, 0], [3, 2], (0, 0, 3)),
     ("bianchi(VIII)", lambda: bianchi("VIII"), 0, [3], [3], (2, 1, 0)),
     ("bianchi(IX)", lambda: bianchi("IX"), 0, [3], [3], (0, 3, 0)),
 ]
@@ -372,3 +372,21 @@ def test_free_nilpotent_algebras_are_free(coefficients: list[int]) -> None:
 def test_bad_parameters_are_refused(call: Callable[[], object]) -> None:
     with pytest.raises(InputError):
         call()
+
+
+@pytest.mark.parametrize("name", [c[0] for c in CLAIMS])
+def test_the_catalogue_reads_the_names(name: str) -> None:
+    build = next(c[1] for c in CLAIMS if c[0] == name)
+    assert lh.catalog.algebra(name) == build()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("iso(3)", "iso(3,x)", "galilei(0)", "galilei(2,1)", "galilei(100)", "conformal(1,2,3)", "filiform(2)"),
+        *("free_nilpotent(2,40)", "free_nilpotent(2)", "bianchi(X)", "bianchi(3)", "bianchi(I;1)", "aff(1;2)"),
+    ],
+)
+def test_the_catalogue_refuses_parameters_that_are_none(name: str) -> None:
+    with pytest.raises(CatalogError):
+        lh.catalog.algebra(name)

@@ -1,0 +1,90 @@
+"""Names of families of Lie algebras that come from no matrices: kinematical, conformal, solvable, free nilpotent.
+
+iso(p,q)                poincare(p, q)
+galilei(n), bargmann(n) with and without mass
+conformal(p), conformal(p,q), aff(n), filiform(n), oscillator(n), free_nilpotent(g,k)
+bianchi(I), ..., bianchi(VI;a), bianchi(VII;a)
+
+Imports names, algebra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from liehom.algebra import (
+    LieAlgebra,
+    affine,
+    bargmann,
+    bianchi,
+    conformal,
+    filiform,
+    free_nilpotent,
+    galilei,
+    oscillator,
+    poincare,
+)
+from liehom.catalog.names import Term
+from liehom.errors import CatalogError, InputError
+
+MAX_PARAMETER = 64
+MAX_FREE_LENGTH = 3000
+
+
+def is_family(term: Term) -> bool:
+    """Whether the head of a name is that of a family."""
+    return term.head in _FAMILIES
+
+
+def family_algebra(term: Term) -> LieAlgebra:
+    """The Lie algebra with the name of a family.
+
+    Raises
+    ------
+    CatalogError
+        If the parameters are none of the family, or too large for a name.
+
+    Examples
+    --------
+    >>> family_algebra(Term("iso", (3, 1)))
+    <Lie algebra iso(3,1) of dimension 10 over QQ>
+    """
+    if term.head == "bianchi":
+        return _bianchi(term)
+    build, least, most = _FAMILIES[term.head]
+    values = term.integers()
+    if term.after or not least <= len(values) <= most:
+        wanted = f"{least}" if least == most else f"{least} or {most}"
+        raise CatalogError(f"{term.head} takes {wanted} integer(s), got {term}")
+    too_many = term.head == "free_nilpotent" and max(values[0], 2) ** values[1] > MAX_FREE_LENGTH
+    if max(values) > MAX_PARAMETER or too_many:
+        raise CatalogError(f"{term} is larger than what the catalogue builds; call liehom's function of that family")
+    try:
+        return build(*values)
+    except CatalogError:
+        raise
+    except InputError as error:
+        raise CatalogError(f"{term}: {error}") from None
+
+
+def _bianchi(term: Term) -> LieAlgebra:
+    kind = term.items[0] if len(term.items) == 1 else None
+    if not isinstance(kind, Term) or kind.items or len(term.after) > 1:
+        raise CatalogError(f"bianchi takes a Roman number, and perhaps a parameter as in bianchi(VII;2); got {term}")
+    try:
+        return bianchi(kind.head, *term.after)
+    except InputError as error:
+        raise CatalogError(f"{term}: {error}") from None
+
+
+_FAMILIES: dict[str, tuple[Callable[..., LieAlgebra], int, int]] = {
+    "iso": (poincare, 2, 2),
+    "galilei": (galilei, 1, 1),
+    "bargmann": (bargmann, 1, 1),
+    "conformal": (conformal, 1, 2),
+    "aff": (affine, 1, 1),
+    "filiform": (filiform, 1, 1),
+    "oscillator": (oscillator, 1, 1),
+    "free_nilpotent": (free_nilpotent, 2, 2),
+    "bianchi": (bianchi, 1, 1),
+}
