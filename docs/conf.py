@@ -79,7 +79,7 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
                 part
                 if part.startswith("`")
                 else re.sub(
-                    r"\||\*\*(?=\w)|(?<![\w*])\*(?=\w+(?:[^\w*]|$))",
+                    r"\||\*\*(?=\w)|(?<![\w*])\*(?=\w+(?:[^\w*]|$))(?!\S[^*]*\S\*(?!\w))",
                     lambda bar: "".join(f"\\{c}" for c in bar[0]),
                     part,
                 )
