@@ -89,5 +89,5 @@ def highest_weights(rho: Representation) -> dict[Weight, int]:
     weights = weight_multiplicities(rho)
     if not weights:
         return {}
-    counted: dict[Sequence[int], int] = {**weights}
+    counted: dict[Sequence[int], int] = dict(weights.items())
     return decompose_character(rho.algebra.semisimple_type(), counted)
