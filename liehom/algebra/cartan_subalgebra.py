@@ -4,17 +4,19 @@ For x in g let g_0(x) be the null component of ad x, {y : (ad x)^k y = 0 for som
 normalizer.  While the subalgebra at hand is not nilpotent, some element of its basis or some sum of two has a
 smaller null component in it (de Graaf, Lie Algebras: Theory and Algorithms, 3.2); the basis of g is tried first,
 so that a basis of root vectors gives the split Cartan subalgebra that it shows.
-Imports lie_algebra, subalgebra, errors.
+Imports lie_algebra, subalgebra, scalars, errors.
 """
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterator
 from typing import Any
 
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.subalgebra import Subalgebra, lower_central_series
 from liehom.errors import FieldError, InternalError
+from liehom.scalars.quotient import echelon_quotient
 
 
 def cartan_subalgebra(algebra: LieAlgebra) -> Subalgebra:
@@ -41,12 +43,33 @@ def cartan_subalgebra(algebra: LieAlgebra) -> Subalgebra:
         if smaller is None:
             break
         rows = smaller
-    found = Subalgebra(algebra, rows.primitive() if rows.nrows else rows)
+    basis = rows.primitive() if rows.nrows else rows
+    found = Subalgebra(algebra, basis, check=not _is_abelian(algebra, basis))
     if not _is_nilpotent(found):
         raise InternalError("no element has a smaller null component, but the subalgebra is not nilpotent")
-    if algebra.normalizer(found).dimension != found.dimension:
+    if not is_self_normalizing(found):
         raise InternalError("a null component is not its own normalizer")
     return found
+
+
+def is_self_normalizing(subalgebra: Subalgebra) -> bool:
+    """Whether N(h) = h.  It is enough that some element of h acts on g/h without a kernel, shown modulo a prime.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> is_self_normalizing(lh.sl(2).subalgebra([[0, 0, 1]])), is_self_normalizing(lh.sl(2).subalgebra([[1, 0, 0]]))
+    (True, False)
+    """
+    algebra, basis = subalgebra.algebra, subalgebra.basis
+    if 0 < basis.nrows < algebra.dimension:
+        rng = random.Random(basis.nrows)
+        x = algebra.field.matrix([[rng.randint(-9, 9) for _ in range(basis.nrows)]]) @ basis
+        coordinates = echelon_quotient(basis)
+        action = coordinates.lift @ algebra.ad(x).T @ coordinates.projection
+        if int(action.modulo().rank()) == action.nrows:
+            return True
+    return algebra.normalizer(subalgebra).dimension == subalgebra.dimension
 
 
 def _is_nilpotent(subalgebra: Subalgebra) -> bool:
@@ -55,6 +78,11 @@ def _is_nilpotent(subalgebra: Subalgebra) -> bool:
 
 
 def _is_abelian(algebra: LieAlgebra, rows: Any) -> bool:
+    if rows.nrows > 2:
+        weights = [[i + 1 for i in range(rows.nrows)], [(i + 1) ** 2 % 17 - 8 for i in range(rows.nrows)]]
+        pair = algebra.field.matrix(weights) @ rows
+        if not (pair.select(rows=[0]) @ algebra.ad(pair.select(rows=[1])).T).is_zero():
+            return False
     return algebra.table.first_nonzero(rows, rows, algebra.field.identity(algebra.dimension)) is None
 
 

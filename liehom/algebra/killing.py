@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from liehom.algebra.structure_constants import StructureConstants
 from liehom.scalars.sparse import SparseInteger
+
+EXACT_FLOAT = 1 << 53
 
 
 def killing_form(table: StructureConstants) -> Any:
@@ -20,6 +24,10 @@ def killing_form(table: StructureConstants) -> Any:
     n = table.dimension
     if n == 0 or not len(table):
         return table.field.zeros(n, n)
+    if table.field.exact and table.field.degree == 1 and table.is_dense():
+        found = _in_words(table)
+        if found is not None:
+            return found
     if table.is_dense() or table.field.degree > 1:
         flat = table.flat()
         swapped = flat.select(columns=[j * n + k for k in range(n) for j in range(n)])
@@ -28,3 +36,16 @@ def killing_form(table: StructureConstants) -> Any:
     j, k = flat_sparse.columns // n, flat_sparse.columns % n
     swapped_t = SparseInteger(k * n + j, flat_sparse.rows, flat_sparse.values, (n * n, n), flat_sparse.den)
     return (flat_sparse @ swapped_t).dense_blocks(table.field, 1, n, n)[0]  # type: ignore[arg-type]
+
+
+def _in_words(table: StructureConstants) -> Any:
+    """The same where no sum leaves the integers that float64 holds exactly, else None."""
+    n, values = table.dimension, table.parts[0]
+    largest = max(max(values), -min(values))
+    if largest * largest * n * n >= EXACT_FLOAT:
+        return None
+    c = np.zeros((n, n, n))
+    c[table.i, table.j, table.k] = values
+    c[table.j, table.i, table.k] = [-v for v in values]
+    form = c.reshape(n, n * n) @ c.transpose(0, 2, 1).reshape(n, n * n).T
+    return table.field.from_integers(form.astype(np.int64).ravel().tolist(), n, n, table.den**2)  # type: ignore[attr-defined]

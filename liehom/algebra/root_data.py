@@ -16,7 +16,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.cartan_subalgebra import cartan_subalgebra
+from liehom.algebra.cartan_subalgebra import cartan_subalgebra, is_self_normalizing
 from liehom.algebra.dynkin import CartanMatrix
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.root_system import RootSystem
@@ -114,7 +114,7 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
 
 def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[Any]:
     """The matrices of ad h_j on g/h, acting on rows."""
-    if algebra.normalizer(h).dimension != h.dimension or not h.as_algebra().is_abelian():
+    if not is_self_normalizing(h) or not h.as_algebra().is_abelian():
         raise InputError("a Cartan subalgebra of a semisimple algebra is abelian and its own normalizer")
     coordinates = echelon_quotient(h.basis)
     blocks = algebra.table.contract(h.basis, coordinates.lift, coordinates.projection)

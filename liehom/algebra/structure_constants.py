@@ -11,10 +11,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
 from typing import Any, final
 
+import flint
 import numpy as np
 import numpy.typing as npt
 
 from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Scalar
+from liehom.scalars.exact_matrix import ExactMatrix
 from liehom.scalars.sparse import SparseInteger
 
 IntArray = npt.NDArray[np.int64]
@@ -142,22 +144,24 @@ class StructureConstants:
     def dense(self) -> Any:
         """The matrix (n*n, n) with row i*n + j the coefficients of [e_i, e_j]."""
         if self._dense is None:
-            n = self.dimension
-            forward = (self.i * n + self.j) * n + self.k
-            backward = (self.j * n + self.i) * n + self.k
-            if isinstance(self.field, FloatField):
-                array = np.zeros(n**3)
-                array[forward], array[backward] = self.parts[0], -np.array(self.parts[0])
-                self._dense = FloatMatrix(self.field, array.reshape(n * n, n))
-            else:
-                self._dense = _dense_exact(self.field, n, forward.tolist(), backward.tolist(), self.parts, self.den)
+            self._dense = self._filled(self.dimension**2, self.dimension)
         return self._dense
+
+    def _filled(self, nrows: int, ncols: int) -> Any:
+        """All c[i, j, k] in lexicographic order of (i, j, k), as a matrix of a shape."""
+        n = self.dimension
+        forward = (self.i * n + self.j) * n + self.k
+        backward = (self.j * n + self.i) * n + self.k
+        if isinstance(self.field, FloatField):
+            array = np.zeros(n**3)
+            array[forward], array[backward] = self.parts[0], -np.array(self.parts[0])
+            return FloatMatrix(self.field, array.reshape(nrows, ncols))
+        return _dense_exact(self.field, (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den)
 
     def flat(self) -> Any:
         """The matrix (n, n*n) with row i the matrix c[i, :, :] row after row (cached: x flat() is ad x transposed)."""
         if self._flat is None:
-            n = self.dimension
-            self._flat = self.dense().reshape(n, n * n)
+            self._flat = self._filled(self.dimension, self.dimension**2)
         return self._flat
 
     def sparse(self) -> SparseInteger:
@@ -210,6 +214,8 @@ class StructureConstants:
         if p == 0 or q == 0 or r == 0 or n == 0:
             return [self.field.zeros(q, r) for _ in range(p)]
         if self.is_dense() or self.field.degree > 1:
+            if self.field.exact and self.field.degree == 1:
+                return self._contract_rational(left, right, out)
             one = self.field.identity(n)
             blocks = (self.flat() if left == one else left @ self.flat()).split_rows(n, n)
             if right != one:
@@ -217,6 +223,21 @@ class StructureConstants:
             return blocks if out == one else [block @ out for block in blocks]
         product = self._contract_sparse(left, right, out)
         return product.dense_blocks(self.field, p, q, r)  # type: ignore[arg-type]
+
+    def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
+        """The same for a dense table over QQ: numerators are multiplied, denominators reduced once."""
+        n, field = self.dimension, self.field
+        one = field.identity(n)
+        flat: Any = self.flat()
+        integers = flat.parts[0] if left == one else left.parts[0] * flat.parts[0]
+        den = flat.den * left.den * right.den * out.den
+        blocks = ExactMatrix(field, (integers,), 1).split_rows(n, n)  # type: ignore[arg-type]
+        made = []
+        for block in blocks:
+            inner = block.parts[0] if right == one else right.parts[0] * block.parts[0]
+            inner = inner if out == one else inner * out.parts[0]
+            made.append(ExactMatrix(field, (inner,), den).normalized())  # type: ignore[arg-type]
+        return made
 
     def first_nonzero(self, left: Any, right: Any, out: Any) -> tuple[int, int] | None:
         """The first (a, b) with [left_a, right_b] @ out not zero, or None: a proof that all vanish."""
@@ -272,12 +293,14 @@ def _integers(field: Field, values: Sequence[Any]) -> tuple[tuple[Any, ...], int
     return tuple(list(part) for part in zip(*integral, strict=True)) or ([],) * field.degree, den
 
 
-def _dense_exact(field: Any, n: int, forward: list[int], backward: list[int], parts: Any, den: int) -> Any:
+def _dense_exact(
+    field: Any, shape: tuple[int, int], forward: list[int], backward: list[int], parts: Any, den: int
+) -> ExactMatrix:
     made = []
     for part in parts:
-        out = [0] * n**3
+        out = [0] * (shape[0] * shape[1])
         for f, b, v in zip(forward, backward, part, strict=True):
             out[f] = v
             out[b] = -v
-        made.append(out)
-    return field.from_parts(made, n * n, n, den)
+        made.append(flint.fmpz_mat(*shape, out))
+    return ExactMatrix(field, tuple(made), den)  # the table has the least denominator

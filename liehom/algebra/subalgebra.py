@@ -6,6 +6,7 @@ Imports lie_algebra, scalars, errors.
 
 from __future__ import annotations
 
+import random
 from typing import Any, final
 
 from liehom.algebra.lie_algebra import LieAlgebra
@@ -14,6 +15,8 @@ from liehom.errors import DependentRowsError, NotAnIdealError, NotASubalgebraErr
 from liehom.scalars import Scalar, Subspace
 from liehom.scalars.field import rows_of
 from liehom.scalars.quotient import Quotient, echelon_quotient, quotient
+
+SAMPLES = 3
 
 
 @final
@@ -187,9 +190,30 @@ def _span(algebra: LieAlgebra, rows: Any) -> Any:
 
 def products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
     """A basis of the span of [left, right]."""
+    n, field = algebra.dimension, algebra.field
+    if field.exact and left.nrows > SAMPLES:
+        found = _sampled_products(algebra, left, right)
+        if found is not None:
+            return found
+    return field.stack_rows(algebra.table.contract(left, right, field.identity(n)), n).row_space()
+
+
+def _sampled_products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
+    """The span of [x, right] for a few combinations x of `left`, if all of [left, right] is in it; else None."""
     n = algebra.dimension
-    blocks = algebra.table.contract(left, right, algebra.field.identity(n))
-    return algebra.field.stack_rows(blocks, n).row_space()
+    rows = [right @ algebra.ad(x).T for x in _samples(left)]
+    span = algebra.field.stack_rows(rows, n).row_space()
+    if span.nrows == n or algebra.table.first_nonzero(left, right, echelon_quotient(span).projection) is None:
+        return span
+    return None
+
+
+def _samples(rows: Any) -> list[Any]:
+    """Random combinations of rows, each (1, n)."""
+    rng = random.Random(rows.nrows)
+    weights = [[rng.randint(-9, 9) for _ in range(rows.nrows)] for _ in range(SAMPLES)]
+    combined = rows.field.matrix(weights) @ rows
+    return [combined.select(rows=[i]) for i in range(SAMPLES)]
 
 
 def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
@@ -236,10 +260,15 @@ def centralizer(algebra: LieAlgebra, rows: Any) -> Subalgebra:
     >>> centralizer(lh.so(3), [[1, 0, 0]]).dimension
     1
     """
-    n = algebra.dimension
+    n, field = algebra.dimension, algebra.field
     span = _span(algebra, rows)
-    blocks = algebra.table.contract(span, algebra.field.identity(n), algebra.field.identity(n))
-    conditions = algebra.field.stack_columns(blocks, n) if blocks else algebra.field.zeros(n, 0)
+    if field.exact and span.nrows > SAMPLES:
+        # what commutes with a few combinations: the centralizer, if it commutes with all
+        found = field.stack_rows([algebra.ad(x) for x in _samples(span)], n).null_space()
+        if algebra.table.first_nonzero(found, span, field.identity(n)) is None:
+            return Subalgebra(algebra, found, check=False)
+    blocks = algebra.table.contract(span, field.identity(n), field.identity(n))
+    conditions = field.stack_columns(blocks, n) if blocks else field.zeros(n, 0)
     return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
 
 

@@ -8,7 +8,9 @@ finds pivots modulo primes and verifies the lifted result exactly.  Imports fiel
 
 from __future__ import annotations
 
+import functools
 import itertools
+import random
 from collections.abc import Sequence
 from math import gcd, lcm
 from typing import TYPE_CHECKING, Any, final
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 FIRST_PRIME = (1 << 61) - 1
 TALL = 2
 GUESSED_INVERSE = 40
+SMALL_MATRIX = 64
 
 
 @final
@@ -116,10 +119,9 @@ class ExactMatrix(Matrix):
             return self
         common = flint.fmpz(self.den)
         for a in self.parts:
-            for x in a.entries():
-                common = common.gcd(x)
-                if common == 1:
-                    return self
+            common = _common_factor(common, a)
+            if common == 1:
+                return self
         integers = tuple((flint.fmpq_mat(a) / common).numer_denom()[0] for a in self.parts)
         return ExactMatrix(self._field, integers, self.den // int(common))
 
@@ -386,6 +388,36 @@ class ExactMatrix(Matrix):
         zero = next(i for i, s in enumerate(signs) if s)
         positive = _sign_changes(signs)
         return positive, self.nrows - zero - positive, zero
+
+
+def _common_factor(number: Any, matrix: Any) -> Any:
+    """gcd(number, all entries of an integer matrix).
+
+    It divides the gcd with the entries of one combination of rows, and nearly always is it; a quotient shows it.
+    """
+    nrows, ncols = matrix.nrows(), matrix.ncols()
+    if nrows * ncols <= SMALL_MATRIX:
+        return _gcd_of(number, matrix.entries())
+    one_row = matrix * _weights(ncols).transpose() if nrows < ncols else _weights(nrows) * matrix
+    bound = _gcd_of(number, one_row.entries())
+    if bound == 1 or (flint.fmpq_mat(matrix) / bound).numer_denom()[1] == 1:
+        return bound
+    return _gcd_of(bound, matrix.entries())
+
+
+def _gcd_of(number: Any, entries: Sequence[Any]) -> Any:
+    for x in entries:
+        number = number.gcd(x)
+        if number == 1:
+            break
+    return number
+
+
+@functools.cache
+def _weights(n: int) -> Any:
+    """A row of n fixed integers without pattern."""
+    rng = random.Random(n)
+    return flint.fmpz_mat(1, n, [rng.randint(1, 1 << 20) for _ in range(n)])
 
 
 def _sign_changes(signs: Sequence[int]) -> int:
