@@ -8,6 +8,9 @@ from liehom.algebra.cohomology import Cohomology as Cohomology
 from liehom.algebra.cohomology import cohomology as cohomology
 from liehom.algebra.compact_form import compact_form as compact_form
 from liehom.algebra.compact_form import real_form_of as real_form_of
+from liehom.algebra.complex_algebra import ComplexLieAlgebra as ComplexLieAlgebra
+from liehom.algebra.complex_algebra import complexification as complexification
+from liehom.algebra.complex_algebra import realification as realification
 from liehom.algebra.constructions import abelian as abelian
 from liehom.algebra.constructions import direct_sum as direct_sum
 from liehom.algebra.constructions import euclidean as euclidean
@@ -24,12 +27,9 @@ from liehom.algebra.derivation_algebra import derivations as derivations
 from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition as direct_sum_decomposition
 from liehom.algebra.dynkin import cartan_matrix as cartan_matrix
 from liehom.algebra.dynkin import dynkin_diagram as dynkin_diagram
-from liehom.algebra.extensions import ComplexLieAlgebra as ComplexLieAlgebra
 from liehom.algebra.extensions import central_extension as central_extension
-from liehom.algebra.extensions import complexification as complexification
 from liehom.algebra.extensions import quotient as quotient
 from liehom.algebra.extensions import quotient_map as quotient_map
-from liehom.algebra.extensions import realification as realification
 from liehom.algebra.families import affine as affine
 from liehom.algebra.families import affine_of as affine_of
 from liehom.algebra.families import bargmann as bargmann

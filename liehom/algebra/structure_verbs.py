@@ -1,7 +1,7 @@
 """StructureVerbs: the structure theory of a Lie algebra as methods, each a line into the file that does the work.
 
 radical, levi, cartan_subalgebra, direct_sum_decomposition, root_data, identification, cartan_decomposition,
-describe, and the constructions of extensions, derivation_algebra, cohomology.
+describe, and the constructions of extensions, complex_algebra, derivation_algebra, cohomology.
 `LieAlgebra` inherits it; nothing else should.  Imports nothing of liehom before a method is called.
 """
 
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from liehom.algebra.cartan_decomposition import CartanDecomposition
     from liehom.algebra.cohomology import Cohomology
+    from liehom.algebra.complex_algebra import ComplexLieAlgebra
     from liehom.algebra.derivation_algebra import Derivations
-    from liehom.algebra.extensions import ComplexLieAlgebra
     from liehom.algebra.levi import LeviDecomposition
     from liehom.algebra.lie_algebra import LieAlgebra
     from liehom.algebra.real_form import RealForm
@@ -170,7 +170,7 @@ class StructureVerbs:
         >>> lh.so(3).complexification().algebra.real_form()
         'sl(2,C)'
         """
-        from liehom.algebra.extensions import complexification
+        from liehom.algebra.complex_algebra import complexification
 
         return complexification(self, name=name)
 

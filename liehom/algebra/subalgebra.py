@@ -132,13 +132,21 @@ class Subalgebra:
 
     def is_ideal(self) -> bool:
         """Whether [g, h] lies in h."""
+        return self._leaving() is None
+
+    def _leaving(self) -> tuple[int, int] | None:
+        """A row a of the basis and b with [row a, e_b] not in h, or None."""
         whole = self.algebra.field.identity(self.algebra.dimension)
-        return self.algebra.table.first_nonzero(self.basis, whole, self._projection()) is None
+        return self.algebra.table.first_nonzero(self.basis, whole, self._projection())
 
     def quotient_algebra(self, name: str | None = None) -> LieAlgebra:
         """g/h for an ideal h, in the basis of the complement of `quotient`; `NotAnIdealError` otherwise."""
-        if not self.is_ideal():
-            raise NotAnIdealError("a quotient algebra needs an ideal: [g, h] does not lie in h")
+        leaving = self._leaving()
+        if leaving is not None:
+            other = self.algebra.basis_names[leaving[1]]
+            raise NotAnIdealError(
+                f"a quotient algebra needs an ideal, but the bracket of row {leaving[0]} with {other} is not in it"
+            )
         data = self.quotient()
         blocks = self.algebra.table.contract(data.lift, data.lift, data.projection)
         # The bracket of g descends to the quotient by an ideal.

@@ -11,14 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.algebra.extensions import (
-    ComplexLieAlgebra,
-    central_extension,
-    complexification,
-    quotient,
-    quotient_map,
-    realification,
-)
+from liehom.algebra.complex_algebra import ComplexLieAlgebra, complexification, realification
+from liehom.algebra.extensions import central_extension, quotient, quotient_map
 from liehom.algebra.jacobi import prove_jacobi
 from liehom.errors import (
     CocycleError,
@@ -62,7 +56,7 @@ def ideal_of(g: lh.LieAlgebra, x: list[int]) -> lh.Subalgebra:
 
 def test_what_is_no_ideal() -> None:
     g = lh.sl(2)
-    with pytest.raises(NotAnIdealError):
+    with pytest.raises(NotAnIdealError, match="row 0 with e1"):
         quotient(g, [[1, 0, 0]])
     with pytest.raises(NotASubalgebraError):
         quotient(g, [[1, 0, 0], [0, 1, 0]])
@@ -204,6 +198,16 @@ def test_complex_structures_are_checked() -> None:
     with pytest.raises(InputError, match="not complex linear"):
         # a complex structure of the vector space of so(3) + so(3) that is none of the algebra
         ComplexLieAlgebra(lh.direct_sum(lh.so(3), lh.so(3)), rows)
+
+
+@pytest.mark.parametrize("build", [lambda: lh.so(3), lambda: lh.so(12)], ids=["dense", "sparse"])
+def test_a_complex_structure_with_one_sign_changed_is_none(build: Any) -> None:
+    made = complexification(build())
+    n = made.complex_dimension
+    rows = made.complex_structure.to_rows()
+    rows[n][0], rows[0][n] = -rows[n][0], -rows[0][n]  # J e_0 and J (J e_0)
+    with pytest.raises(InputError, match="not complex linear"):
+        ComplexLieAlgebra(made.algebra, rows)
 
 
 def test_realification_in_every_way_of_writing() -> None:
