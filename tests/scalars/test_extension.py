@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import random
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from liehom.errors import FieldError
 from liehom.scalars import QQ, NumberField, Polynomial
-from liehom.scalars.conic import rational_zero
+from liehom.scalars.conic import legendre_zero, rational_zero
 from liehom.scalars.extension import adjoin_root, real_factors, real_roots, trivial_extension
 from liehom.scalars.real_rows import is_basis_of_reals
 
@@ -119,6 +120,24 @@ def test_zeros_of_ternary_forms(entries: list[int]) -> None:
     points = (QQ.matrix([p]) for p in itertools.product(small, repeat=3) if any(p))
     if found is None:
         assert not any((p @ form @ p.T).is_zero() for p in itertools.islice(points, 1000, None))
+
+
+def test_legendre() -> None:
+    """Against a search; sums made to have a zero; equal and common factors, negative ones, the prime 2."""
+    rng = random.Random(5)
+    squares = [x * x for x in range(25)]
+    for _ in range(300):
+        a, b, c = (rng.choice([-1, 1]) * rng.randint(1, 60) for _ in range(3))
+        found = legendre_zero((a, b, c))
+        if found is None:
+            assert not any(a * x + b * y + c * z == 0 for x in squares for y in squares for z in squares if x or y or z)
+        else:
+            assert any(found) and a * found[0] ** 2 + b * found[1] ** 2 + c * found[2] ** 2 == 0
+    for _ in range(20):
+        a, b = rng.randint(10**9, 10**12), rng.randint(-(10**12), 10**12)
+        x, y = rng.randint(1, 10**6), rng.randint(1, 10**6)
+        assert legendre_zero((a, b, -(a * x * x + b * y * y))) is not None
+    assert legendre_zero((-1, 7, 7)) is None and legendre_zero((7, 7, -1)) is None
 
 
 def test_rows_over_several_fields() -> None:
