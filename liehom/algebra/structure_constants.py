@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
 from typing import Any, final
 
-import flint
 import numpy as np
 import numpy.typing as npt
 
@@ -302,5 +301,5 @@ def _dense_exact(
         for f, b, v in zip(forward, backward, part, strict=True):
             out[f] = v
             out[b] = -v
-        made.append(flint.fmpz_mat(*shape, out))
-    return ExactMatrix(field, tuple(made), den)  # the table has the least denominator
+        made.append(out)
+    return field.from_parts(made, *shape, den)  # type: ignore[no-any-return]

@@ -19,7 +19,6 @@ from liehom.correctors.step import Step
 from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.convergence_table import MARGIN, NAN, ConvergenceTable
-from liehom.integrators.integration import integrate
 from liehom.integrators.orbit_error import orbit_distance
 from liehom.integrators.points import points_of
 from liehom.integrators.problem import Problem, all_solved

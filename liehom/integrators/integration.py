@@ -155,9 +155,8 @@ def integrate(
     if not isinstance(step, Step):
         raise InputError(f"step is {step!r}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
     if compile == "jax" and is_jax(y0):
-        if events is not None or dense_output or checkpoint is not None or dt is None:
-            raise InputError("integrate on JAX arrays takes dt, and no events, dense output or checkpoints")
-        return _on_jax(field, t_span, y0, step, float(dt), t_eval, exponential, clock)
+        plain = events is None and not dense_output and checkpoint is None
+        return _on_jax(field, t_span, y0, step, dt if plain else None, t_eval, exponential, clock)
     start = points_of(y0)
     orbit_dimension = check_point(field.representation, start)
     span = _span(t_span, start.dtype)
@@ -181,8 +180,7 @@ def integrate(
     if options.dt is None and options.rtol == 0 and options.atol == 0:
         raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
     path = None if checkpoint is None else checked_path(checkpoint)
-    if isinstance(step, Corrected) and start.dtype == np.float64:
-        action = _on_even_orbits(action, start, orbit_dimension)
+    action = _on_even_orbits(action, step, start, orbit_dimension)
     # what is not finite is noticed, and ends a trajectory with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
@@ -191,18 +189,21 @@ def integrate(
         return run.execute(progress, path)
 
 
-def _on_even_orbits(action: Action, start: Any, orbit_dimension: Any) -> Action:
-    """The action that knows what is special about the orbits, if all are of one dimension."""
+def _on_even_orbits(action: Action, step: Step, start: Any, orbit_dimension: Any) -> Action:
+    """The action that knows what a corrected step can use of the orbits, if all are of one dimension."""
     dimensions = np.unique(orbit_dimension)
-    if len(dimensions) != 1:
+    if len(dimensions) != 1 or start.dtype != np.float64 or not isinstance(step, Corrected):
         return action
     return action.on_even_orbits(evenness(action, start.reshape(-1, start.shape[-1]), int(dimensions[0])))
 
 
 def _on_jax(
-    field: GeneratorField, t_span: Any, y0: Any, step: Step, dt: float, t_eval: Any, exponential: Any, clock: str
+    field: GeneratorField, t_span: Any, y0: Any, step: Step, dt: Any, t_eval: Any, exponential: Any, clock: str
 ) -> Solution:
-    """Checked arguments for `integrate_on_jax`; without t_eval the points at start and end."""
+    """Checked arguments for `integrate_on_jax` (dt None: refused); without t_eval the points at start and end."""
+    if dt is None:
+        raise InputError("integrate on JAX arrays takes dt, and no events, dense output or checkpoints")
+    dt = float(dt)
     span = _span(t_span, np.dtype(np.float64))
     if clock not in CLOCKS:
         raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
