@@ -2,10 +2,12 @@
 
 An involution theta is a Cartan involution if it is an automorphism and -K(x, theta y) is positive definite; both are
 exact checks.  Candidates come from floating point (cartan_involution): in a basis that suits the algebra the best
-Cartan involution has small rational entries.  Another basis is first brought back: the lattice that it spans is
-LLL-reduced for -K(x, theta y), and theta is moved to suit the reduced basis, in turn.  Where no rational candidate
-passes the checks there may be none: then `UndecidedError` says so, and the decomposition over float64 is at hand.
-Imports cartan_involution, cartan_subalgebra, lie_algebra, subalgebra, scalars, errors.
+Cartan involution has small rational entries.  In another basis dimension 3 is solved directly, simple ideals are taken
+one by one, and each is first brought to a basis of a large Lie order (lie_order), where lattice reduction and random
+moves look for one (rational_involution).  Where no rational candidate passes the checks there may be none: then
+`UndecidedError` says so, and the decomposition over float64 is at hand.
+Imports cartan_involution, cartan_subalgebra, direct_sum_decomposition, lie_algebra, lie_order, rational_involution,
+subalgebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -29,9 +31,9 @@ from liehom.scalars.forms import orthogonal_basis
 ROUNDS = 60
 FEW_ROUNDS = 8
 SMALL = 12
-SEARCHES = 2
 LATTICE_DIMENSION = 40
 SEEDS = 4
+ACCURATE = 1e-11
 
 
 @final
@@ -138,14 +140,24 @@ def _numerical_rank(constants: Any) -> int:
 
 
 def _found(constants: Any, killing: Any, rank: int) -> Any:
+    """Theta on rows, from the generic element that gives the most accurate one."""
     failure: Exception | None = None
+    best, least = None, np.inf
     for seed in range(SEEDS):
         try:
             theta = cartan_involution_of_constants(constants, killing, rank, seed)
-            return nearest_cartan_involution(constants, killing, theta)
+            theta = nearest_cartan_involution(constants, killing, theta)
         except (ConvergenceError, np.linalg.LinAlgError) as error:
             failure = error
-    raise ConvergenceError(f"no Cartan involution in double precision: {failure}")
+            continue
+        size = float(np.abs(theta @ theta - np.eye(len(theta))).max())
+        if size < least:
+            best, least = theta, size
+        if size < ACCURATE:
+            break
+    if best is None:
+        raise ConvergenceError(f"no Cartan involution in double precision: {failure}")
+    return best
 
 
 def _rational(algebra: LieAlgebra, killing: Any) -> Any:
@@ -202,6 +214,7 @@ def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Any:
 
 
 def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: Any) -> Any:
+    """Theta over the field, on columns, found in the basis of a large order, or None; `theta` is numerical."""
     field, n = algebra.field, algebra.dimension
     basis = field.identity(n)
     if field.degree == 1 and n <= LATTICE_DIMENSION:
@@ -209,23 +222,17 @@ def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: 
         basis = lie_order(algebra, frame)
     current = algebra.change_of_basis(basis)
     form = current.killing_form()
+    theta = _approximate(current, form, rank)  # afresh: more accurate in this basis
     if theta is None:
-        theta = _approximate(current, form, rank)
-        if theta is None:
-            return None
-    else:
-        rows = basis.to_numpy()
-        theta = rows @ theta @ np.linalg.inv(rows)
-    rounds = max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2)
+        return None
+    # Over number fields Z^n is no canonical lattice: little hope.
+    rounds = FEW_ROUNDS if field.degree > 1 else max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2)
 
     def proved(candidate: Any) -> bool:
         return is_cartan_involution(current, candidate)
 
-    for seed in range(SEARCHES):
-        found = rational_involution(current, theta, proved, rounds, seed)
-        if found is not None:
-            return basis.T @ found @ basis.T.inverse()
-    return None
+    found = rational_involution(current, theta, proved, rounds)
+    return None if found is None else basis.T @ found @ basis.T.inverse()
 
 
 def _factor(form: Any) -> Any:

@@ -3,7 +3,8 @@
 For any lattice L the normalizer N(L) = {x : [x, L] in L} is an order.  An order M is enlarged at a number d that
 divides the discriminant of its Killing form: the normalizer of an ideal J of M contains M, and for
 J = {x in M : K(x, M) = 0 mod d} it is larger for most M that are not maximal (the idea of the round-2 algorithm for
-orders in fields and algebras); for small primes d other ideals are tried too.  With d M in J and M = N(M), N(J) lies in
+orders in fields and algebras); for primes d < 1000 other ideals are tried too: at larger ones, lattices in special
+position may stay below a maximal order.  With d M in J and M = N(M), N(J) lies in
 M/d, so that linear algebra modulo d finds it; d need not be a prime, and is split where elimination meets a divisor.
 Nothing here is proved to be maximal.  Imports ideals_modulo, lie_algebra, scalars.
 """

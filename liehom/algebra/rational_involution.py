@@ -1,8 +1,8 @@
 """The search for a rational Cartan involution of an algebra in the basis of a lattice that suits it.
 
 The lattice is LLL-reduced for -K(x, theta y), and theta is moved to where the sum of -K(v, theta v) over the reduced
-basis, or over the short vectors of the lattice, is least; in turn.  A theta that is fixed by enough automorphisms of the
-lattice is such a minimum, and often rational: its entries are recognised and it is proved.  From a minimum that is not,
+basis, or over the short vectors of the lattice, is least; in turn.  A theta that enough automorphisms of the lattice
+fix is such a minimum, and often rational: its entries are recognised and it is proved.  From a minimum that is not,
 a few random inner automorphisms lead elsewhere, and the search goes on.  All but the proof is floating point.
 Imports cartan_involution, lie_algebra, scalars, errors.
 """
@@ -23,13 +23,12 @@ from liehom.scalars import RR
 from liehom.scalars.lattice import reduced_basis
 
 Array = npt.NDArray[Any]
-DENOMINATOR = 500
-CLOSE = 1e-8
-AUTOMORPHISM = 1e-5
-SHORT = 400
+DENOMINATOR = 60
+CLOSE = 1e-6
+SHORT = 120
 SMALL = 40
 STRIDES = 5
-ACCURATE = 1e-10
+ACCURATE = 1e-9
 
 
 def rational_involution(
@@ -91,7 +90,6 @@ class _Search:
         self.integral = bool((self.constants == np.rint(self.constants)).all())
         self.theta = theta
         self.rows = algebra.field.identity(n)
-        self.reduced()
 
     def reduced(self) -> bool:
         """Whether LLL reduction changed the basis."""
