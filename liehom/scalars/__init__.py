@@ -9,6 +9,10 @@ from liehom.scalars.algebraic_number import AlgebraicNumber as AlgebraicNumber
 from liehom.scalars.exact import NumberField as NumberField
 from liehom.scalars.exact_field import ExactField as ExactField
 from liehom.scalars.exact_matrix import ExactMatrix as ExactMatrix
+from liehom.scalars.extension import Extension as Extension
+from liehom.scalars.extension import RealFactor as RealFactor
+from liehom.scalars.extension import adjoin_root as adjoin_root
+from liehom.scalars.extension import real_factors as real_factors
 from liehom.scalars.field import Field as Field
 from liehom.scalars.field import Matrix as Matrix
 from liehom.scalars.field import Scalar as Scalar
