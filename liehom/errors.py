@@ -150,7 +150,7 @@ class RepresentationError(HomomorphismError):
 
 
 class NotInvariantError(InputError):
-    """A subspace is not invariant; `vector` is the number of a row and `element` that of a basis element moving it out."""
+    """A subspace is not invariant: `vector` is the number of a row, `element` that of a basis element moving it out."""
 
     def __init__(self, vector: int, element: int, what: str) -> None:
         self.vector = vector

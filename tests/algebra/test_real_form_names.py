@@ -135,7 +135,9 @@ def test_large_names_cost_nothing():
     assert canonical_real_form("so(1000,2000)") == "so(2000,1000)"
 
 
-@pytest.mark.parametrize("type_name", ["A1", "A2", "A3", "B2", "B3", "C3", "C4", "D4", "D5", "G2", "F4", "E6", "E7", "E8"])
+@pytest.mark.parametrize(
+    "type_name", ["A1", "A2", "A3", "B2", "B3", "C3", "C4", "D4", "D5", "G2", "F4", "E6", "E7", "E8"]
+)
 def test_sums_are_sorted_by_the_dimension_of_the_real_form(type_name: str) -> None:
     forms = [*real_forms(type_name), complex_form(type_name)]
     for form in forms:
