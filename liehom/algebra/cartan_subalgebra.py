@@ -36,16 +36,17 @@ def cartan_subalgebra(algebra: LieAlgebra) -> Subalgebra:
     field, n = algebra.field, algebra.dimension
     if not field.exact:
         raise FieldError("a Cartan subalgebra is computed exactly: build the algebra over QQ or a number field")
-    rows = field.identity(n)
+    rows, pivots = field.identity(n), list(range(n))
     tried: set[tuple[Any, ...]] = set()
     while not _is_abelian(algebra, rows):
-        smaller = _smaller(algebra, rows, tried)
+        smaller = _smaller(algebra, rows, pivots, tried)
         if smaller is None:
             break
-        rows = smaller
+        rows, pivots = smaller
     basis = rows.primitive() if rows.nrows else rows
-    found = Subalgebra(algebra, basis, check=not _is_abelian(algebra, basis))
-    if not _is_nilpotent(found):
+    abelian = _is_abelian(algebra, basis)
+    found = Subalgebra(algebra, basis, check=not abelian)  # echelon rows are independent
+    if not abelian and lower_central_series(found.as_algebra())[-1].dimension:
         raise InternalError("no element has a smaller null component, but the subalgebra is not nilpotent")
     if not is_self_normalizing(found):
         raise InternalError("a null component is not its own normalizer")
@@ -72,11 +73,6 @@ def is_self_normalizing(subalgebra: Subalgebra) -> bool:
     return algebra.normalizer(subalgebra).dimension == subalgebra.dimension
 
 
-def _is_nilpotent(subalgebra: Subalgebra) -> bool:
-    inner = subalgebra.as_algebra()
-    return inner.is_abelian() or lower_central_series(inner)[-1].dimension == 0
-
-
 def _is_abelian(algebra: LieAlgebra, rows: Any) -> bool:
     if rows.nrows > 2:
         weights = [[i + 1 for i in range(rows.nrows)], [(i + 1) ** 2 % 17 - 8 for i in range(rows.nrows)]]
@@ -86,9 +82,10 @@ def _is_abelian(algebra: LieAlgebra, rows: Any) -> bool:
     return algebra.table.first_nonzero(rows, rows, algebra.field.identity(algebra.dimension)) is None
 
 
-def _smaller(algebra: LieAlgebra, rows: Any, tried: set[tuple[Any, ...]]) -> Any:
+def _smaller(algebra: LieAlgebra, rows: Any, pivots: list[int], tried: set[tuple[Any, ...]]) -> Any:
     """The null component, in the span of the rows, of the first candidate for which it is smaller; or None.
 
+    The rows are an echelon basis of a subalgebra, so that an element of it has its coordinates at the pivots.
     What acts nilpotently on a subalgebra does so on its subalgebras, and x does on g_0(x): `tried` is not tried again.
     """
     for candidate in _candidates(rows):
@@ -97,29 +94,30 @@ def _smaller(algebra: LieAlgebra, rows: Any, tried: set[tuple[Any, ...]]) -> Any
             continue
         tried.add(key)
         action = algebra.ad(candidate).T
-        image, places = rows.modulo(), rows.nrows
-        step = action.modulo()
-        # The rank of rows (ad x)^k is constant from k = number of rows on.
+        if rows.nrows < algebra.dimension:
+            action = (rows @ action).select(columns=pivots)
+        step, places = action.modulo(), rows.nrows
+        # The rank of a power is constant from the number of rows on.
         power = 1
         while power < places:
             step, power = step * step, 2 * power
-        rank = int((image * step).rank())
+        rank = int(step.rank())
         if rank:
-            return _null_component(rows, action, places - rank)
+            return (_null_component(action, places - rank) @ rows).echelon()
     return None
 
 
-def _null_component(rows: Any, action: Any, expected: int) -> Any:
-    """The combinations of rows that some power of the action kills; there are `expected` of them modulo a prime."""
-    moved = rows @ action
-    kernel = moved.left_null_space()
+def _null_component(action: Any, expected: int) -> Any:
+    """The rows that some power of the action kills; there are `expected` of them modulo a prime."""
+    power = action
+    kernel = power.left_null_space()
     while kernel.nrows < expected:
-        moved = moved @ action
-        larger = moved.left_null_space()
+        power = power @ action
+        larger = power.left_null_space()
         if larger.nrows == kernel.nrows:
             break
         kernel = larger
-    return (kernel @ rows).row_space()
+    return kernel
 
 
 def _candidates(rows: Any) -> Iterator[Any]:

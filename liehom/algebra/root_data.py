@@ -103,13 +103,19 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
     actions = _actions(algebra, h)
     form = (h.basis @ killing @ h.basis.T).inverse()
     rng = random.Random(algebra.dimension)
-    for precision in PRECISIONS:
+    for precision in _precisions(actions):
         spectrum = joint_spectrum(actions, [rng.randint(-WEIGHT, WEIGHT) for _ in actions], precision)
         pairing = None if spectrum is None else spectrum.cartan_integers(form)
         if spectrum is not None and pairing is not None:
             cartan_matrix, roots = _in_simple_roots(pairing)
             return RootData(algebra, h, RootSystem(cartan_matrix), roots, spectrum)
     raise InternalError(f"the roots could not be told apart with {PRECISIONS[-1]} bits")
+
+
+def _precisions(actions: list[Any]) -> list[int]:
+    """Bits to try: as a rule a little more than three times those of the largest entry separate the eigenvalues."""
+    bits = max(int(abs(x)).bit_length() for a in actions for part in a.parts for x in part.entries())
+    return [p for p in PRECISIONS if p >= 3 * bits] or [PRECISIONS[-1]]
 
 
 def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[Any]:

@@ -82,7 +82,7 @@ class ExactMatrix(Matrix):
 
     def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> ExactMatrix:
         n = self.ncols
-        if columns is None and rows is not None:
+        if columns is None and rows is not None and 8 * len(rows) >= self.nrows:
             places = [i * n + j for i in rows for j in range(n)]
             return self._rearranged(places, len(rows), n)
         rows = range(self.nrows) if rows is None else rows
