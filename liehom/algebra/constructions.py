@@ -210,7 +210,7 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
     Raises
     ------
     InputError
-        If there is no summand, or they are over different fields.
+        If there is no summand, one is no Lie algebra, or they are over different fields.
 
     Examples
     --------
@@ -220,9 +220,14 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
     """
     if not algebras:
         raise InputError("a direct sum needs at least one summand; abelian(0) is the zero algebra")
+    strange = [g for g in algebras if not isinstance(g, LieAlgebra)]
+    if strange:
+        hint = "; if this is a list of summands, unpack the list: direct_sum(*algebras)" if len(algebras) == 1 else ""
+        raise InputError(f"a summand must be a LieAlgebra, got {strange[0]!r}{hint}")
     field = algebras[0].field
     if any(g.field != field for g in algebras):
-        raise InputError(f"the summands are over different fields: {', '.join(g.field.name for g in algebras)}")
+        fields = ", ".join(g.field.name for g in algebras)
+        raise InputError(f"the summands are over different fields: {fields}; bring all over one field K by .over(K)")
     entries: list[Entry] = []
     shift = 0
     for g in algebras:

@@ -75,12 +75,13 @@ def cartan_matrix(name: str) -> CartanMatrix:
     return tuple(map(tuple, matrix))
 
 
-def dynkin_diagram(cartan: Sequence[Sequence[int]]) -> Any:
+def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> Any:
     """The Dynkin diagram as a networkx graph.
 
     Parameters
     ----------
-    cartan : (r, r) integers
+    cartan : (r, r) integers, or str
+        A Cartan matrix, or the name of a type as for `cartan_matrix`.
 
     Returns
     -------
@@ -89,14 +90,20 @@ def dynkin_diagram(cartan: Sequence[Sequence[int]]) -> Any:
         ``entry = -a[i][j]``. So a simple edge is a pair of edges with entry 1, and the entry is greater than 1
         on the edge from a longer root to a shorter one.
 
+    Raises
+    ------
+    CatalogError
+        If there is no such type.
+
     Examples
     --------
-    >>> diagram = dynkin_diagram(cartan_matrix("G2"))
+    >>> diagram = dynkin_diagram("G2")
     >>> sorted(diagram.edges(data="entry"))
     [(0, 1, 1), (1, 0, 3)]
     """
     import networkx
 
+    cartan = cartan_matrix(cartan) if isinstance(cartan, str) else cartan
     graph = networkx.DiGraph()
     graph.add_nodes_from(range(len(cartan)))
     for i, row in enumerate(cartan):

@@ -171,7 +171,7 @@ def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
     Raises
     ------
     InputError
-        If one of them is not semisimple.
+        If one of them is no `LieAlgebra`, or not semisimple.
     FieldError, UndecidedError
         As for `real_form`.
 
@@ -186,6 +186,9 @@ def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
     >>> is_isomorphic(lh.so(4, 2), lh.su(2, 2)), is_isomorphic(lh.so(5, 1), lh.su(2, 2))
     (True, False)
     """
+    for algebra in (first, second):
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(f"isomorphism is of two Lie algebras, such as lh.so(3); got {algebra!r}")
     if first.dimension != second.dimension:
         return False
     for algebra in (first, second):

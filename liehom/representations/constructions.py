@@ -142,14 +142,25 @@ def standard_matrices(name: str | None) -> Any:
 def adjoint(algebra: LieAlgebra) -> Representation:
     """The adjoint representation x -> ad x on g.
 
+    Raises
+    ------
+    InputError
+        If it is no `LieAlgebra`, but for example a name.
+
     Examples
     --------
     >>> import liehom as lh
     >>> lh.adjoint(lh.so(3)).size
     3
     """
+    _require_algebra(algebra)
     # ad [x, y] = [ad x, ad y] is the Jacobi identity, which the algebra has proved.
     return Representation(algebra, _adjoint_matrices(algebra), size=algebra.dimension, name="adjoint", check=False)
+
+
+def _require_algebra(algebra: LieAlgebra) -> None:
+    if not isinstance(algebra, LieAlgebra):
+        raise InputError(f"expected a LieAlgebra, such as lh.so(3) or lh.catalog.algebra('so(3)'); got {algebra!r}")
 
 
 def _adjoint_matrices(algebra: LieAlgebra) -> list[Any]:
@@ -167,6 +178,11 @@ def _adjoint_matrices(algebra: LieAlgebra) -> list[Any]:
 
 def coadjoint(algebra: LieAlgebra) -> Representation:
     """The coadjoint representation x -> -(ad x)^T on the dual of g, in the dual basis.
+
+    Raises
+    ------
+    InputError
+        As `adjoint`.
 
     Examples
     --------
@@ -189,6 +205,7 @@ def trivial(algebra: LieAlgebra, n: int = 1) -> Representation:
     """
     if isinstance(n, bool) or not isinstance(n, int) or n < 0:
         raise InputError(f"the dimension of a trivial representation is an integer at least 0, got {n!r}")
+    _require_algebra(algebra)
     zero = algebra.field.zeros(n, n)
     # All commutators and all images vanish.
     return Representation(algebra, [zero] * algebra.dimension, size=n, name="trivial", check=False)

@@ -40,6 +40,9 @@ def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
     >>> len(intertwining_maps(lh.defining(g).tensor(lh.defining(g)), lh.adjoint(g)))
     1
     """
+    for given in (rho, sigma):
+        if not hasattr(given, "algebra") or not hasattr(given, "matrices"):
+            raise InputError(f"expected a Representation of the same algebra, such as lh.adjoint(g); got {given!r}")
     if rho.algebra is not sigma.algebra and rho.field != sigma.field:
         raise FieldError(f"representations over {rho.field.name} and {sigma.field.name}: bring both over one field")
     if rho.algebra is not sigma.algebra and rho.algebra != sigma.algebra:

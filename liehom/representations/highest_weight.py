@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import log10
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra, StructureConstants
@@ -25,6 +26,7 @@ from liehom.scalars import QQ
 
 Columns = Sequence[Vector]
 MAX_ENTRIES = 1 << 28
+OTHER_WAYS = "liehom.representations.admissible_lattice gives the generators sparsely, liehom.character the weights"
 
 
 @final
@@ -129,7 +131,7 @@ def highest_weight_module(
     roots = root_system_of(system)
     space = weight_space(roots)
     top = checked_weight(space, weight)
-    require_room(roots, weyl_dimension(roots, top))
+    require_room(roots.rank + roots.number_of_roots, weyl_dimension(roots, top), OTHER_WAYS)
     lattice = lattice_of(space, top)
     # The constants of a Chevalley basis are those of a Lie algebra.
     algebra = (
@@ -147,20 +149,20 @@ def highest_weight_module(
     return HighestWeightModule(roots, top, lattice.weights, rho)
 
 
-def require_room(roots: RootSystem, size: int) -> None:
-    """Refuse modules whose dense matrices would not fit.
+def require_room(count: int, size: int, hint: str) -> None:
+    """Refuse modules whose dense matrices would not fit; `hint` says what there is instead.
 
     Raises
     ------
     InputError
         If there are more than 2^28 entries.
     """
-    count = roots.rank + roots.number_of_roots
-    if count * size**2 > MAX_ENTRIES:
-        raise InputError(
-            f"{count} dense matrices of size {size} are {count * size**2 * 8 / 1e9:.3g} GB; "
-            "liehom.representations.admissible_lattice gives the generators sparsely, liehom.character the weights"
-        )
+    entries = count * size**2
+    if entries > MAX_ENTRIES:
+        # The logarithm of an integer of any length is finite; the integer itself may be none of the floats.
+        gigabytes = f"{entries * 8 / 1e9:.3g}" if entries < 10**15 else f"about 10^{int(log10(entries)) - 8}"
+        shown = str(size) if size < 10**15 else f"about 10^{int(log10(size))}"
+        raise InputError(f"{count} dense matrices of size {shown} are {gigabytes} GB; {hint}")
 
 
 def chevalley_matrices(roots: RootSystem, lattice: AdmissibleLattice) -> list[Columns]:

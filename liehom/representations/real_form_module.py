@@ -20,7 +20,7 @@ from liehom.errors import InputError, RepresentationError
 from liehom.representations.admissible_lattice import AdmissibleLattice, Vector, lattice_of
 from liehom.representations.characters import weyl_dimension
 from liehom.representations.generator_proof import SparseStack, failing_generator_pair
-from liehom.representations.highest_weight import Columns, chevalley_matrices, require_room, sparse_matrix
+from liehom.representations.highest_weight import OTHER_WAYS, Columns, chevalley_matrices, require_room, sparse_matrix
 from liehom.representations.real_structure import Operator, RealBasis, commutant_letter
 from liehom.representations.representation import Representation
 from liehom.representations.weights import Weight, checked_weight, weight_space
@@ -150,7 +150,8 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     space = weight_space(roots)
     top = checked_weight(space, weight)
     kind = commutant_letter(vogan, top)
-    require_room(roots, weyl_dimension(roots, top) * (1 if kind == "R" else 2))
+    size = weyl_dimension(roots, top) * (1 if kind == "R" else 2)
+    require_room(roots.rank + roots.number_of_roots, size, OTHER_WAYS)
     lattice = lattice_of(space, top)
     operators, generators = _operators(vogan, roots, lattice)
     if kind == "R":

@@ -5,7 +5,7 @@ rho([x, y]) = rho(x) rho(y) - rho(y) rho(x).  Vectors are columns: rho(x) v.  Im
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
@@ -137,6 +137,10 @@ class Representation(AnalysisVerbs):
         return self.algebra.field
 
     # -- verbs -------------------------------------------------------------------------------------------
+    def __iter__(self) -> Iterator[Any]:
+        """The matrices rho(e_i), so that a representation may stand where a list of matrices is expected."""
+        return iter(self.matrices)
+
     def __call__(self, x: Any) -> Any:
         """The matrix rho(x) of a coefficient vector x."""
         row = self.algebra.row(x)
@@ -302,6 +306,8 @@ class Representation(AnalysisVerbs):
         return Representation(algebra, matrices, size=size, name=name, check=False)
 
     def _require_same_algebra(self, other: Representation) -> None:
+        if not isinstance(other, Representation):
+            raise InputError(f"expected a Representation of the same algebra, such as lh.adjoint(g); got {other!r}")
         if other.algebra is not self.algebra and other.algebra != self.algebra:
             raise InputError(f"representations of two algebras, {self.algebra!r} and {other.algebra!r}")
 

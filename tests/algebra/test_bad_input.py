@@ -15,6 +15,7 @@ from scipy import sparse
 
 import liehom as lh
 from liehom.errors import (
+    CatalogError,
     CocycleError,
     DependentRowsError,
     FieldError,
@@ -418,3 +419,30 @@ def test_fractions_of_ten_thousand_digits() -> None:
 @pytest.mark.slow
 def test_fractions_of_a_million_digits() -> None:
     check_long_fractions(10**6)
+
+
+# -- a text or a list where an object is needed ---------------------------------------------------------------
+def test_a_list_of_summands_is_to_be_unpacked() -> None:
+    with pytest.raises(InputError, match="unpack the list"):
+        lh.direct_sum([lh.so(3), lh.sl(2)])  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"\.over\(K\)"):
+        lh.direct_sum(lh.so(3), lh.sl(2).over(lh.RR))
+
+
+@pytest.mark.parametrize("build", [lh.adjoint, lh.coadjoint, lh.trivial, lh.so(3).is_isomorphic])
+def test_a_name_is_no_algebra(build: Callable[[Any], Any]) -> None:
+    with pytest.raises(InputError, match="so\\(3\\)"):
+        build("so(3)")
+
+
+@pytest.mark.parametrize("verb", ["tensor", "direct_sum", "is_equivalent", "equivalence", "intertwiners"])
+def test_a_number_is_no_representation(verb: str) -> None:
+    with pytest.raises(InputError, match="expected a Representation"):
+        getattr(lh.defining(lh.so(3)), verb)(3)
+
+
+def test_the_diagram_of_a_type() -> None:
+    drawn = lh.algebra.dynkin_diagram("G2")
+    assert sorted(drawn.edges(data="entry")) == [(0, 1, 1), (1, 0, 3)]
+    with pytest.raises(CatalogError):
+        lh.algebra.dynkin_diagram("G3")

@@ -212,3 +212,11 @@ def test_what_is_no_dominant_weight_is_refused() -> None:
 def test_matrices_that_would_not_fit_are_refused_at_once() -> None:
     with pytest.raises(InputError, match=r"GB; .*admissible_lattice"):
         lh.highest_weight_module("E8", [1, 0, 0, 0, 0, 0, 0, 0])
+
+
+def test_dimensions_beyond_all_floats_are_refused() -> None:
+    """rho of B50 has 2^2500 dimensions, that of so(100) 2^2450."""
+    with pytest.raises(InputError, match=r"size about 10\^752 are about 10\^15"):
+        lh.highest_weight_module("B50", [1] * 50)
+    with pytest.raises(InputError, match="GB"):
+        lh.real_module("so(100)", [1] * 50)

@@ -105,3 +105,9 @@ def test_what_is_no_signature_is_refused() -> None:
             lh.spinor_type(p, q)
     with pytest.raises(InputError, match="chirality"):
         lh.spin_representation(4, 0, chirality=0)
+
+
+@pytest.mark.parametrize(("p", "q"), [(30, 0), (15, 15), (64, 0), (65, 0), (10**12, 3)])
+def test_matrices_that_fill_the_memory_are_refused(p: int, q: int) -> None:
+    with pytest.raises(InputError, match=r"GB|too many"):
+        lh.spin_representation(p, q)
