@@ -153,3 +153,20 @@ def test_bad_files(suffix: str, text: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_an_exceptional_real_form() -> None:
     assert "real form e8(-24), rank 8, real rank 4, maximal compact e7+su(2)" in describe("e8(-24)").stdout
+
+
+def test_a_file_of_another_tool_is_known_by_its_suffix(tmp_path: Path) -> None:
+    text = lh.io.to_gap(lh.so(3))
+    for name in ("so3.g", "so3.gap"):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        assert "simple, real form so(3)" in describe(str(tmp_path / name)).stdout
+    (tmp_path / "so3").write_text(text, encoding="utf-8")
+    result = describe(str(tmp_path / "so3"))
+    assert result.exit_code == 2
+    assert ".g or .gap" in result.stderr
+    assert ".sage" in result.stderr
+
+
+def test_exceptional_real_forms_with_a_capital_letter() -> None:
+    assert facts("E6(-26)") == facts("e6(-26)")
+    assert facts("E6")["real_form"] == "e6(6)"

@@ -141,6 +141,11 @@ def realification(
       [y, i*x] = y
       [i*x, i*y] = -i*y
     """
+    if isinstance(constants, LieAlgebra):
+        raise InputError(
+            f"realification takes complex structure constants, got {constants!r}; complexification makes the complex "
+            "algebra, and .algebra of that is it as a real one"
+        )
     if not isinstance(constants, Mapping):
         constants, dimension = _as_mapping(constants)
     real: dict[Any, Any] = {}

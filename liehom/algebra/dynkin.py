@@ -217,7 +217,7 @@ def _parse_simple(name: str) -> tuple[str, int]:
         letter, rank = match[1], int(match[2])
         if _LEAST[letter] <= rank <= _MOST.get(letter, rank):
             return letter, rank
-    known = "A1, A2, ...; B1, ...; C1, ...; D2, ...; E6, E7, E8, F4, G2"
+    known = "A1, A2, ...; B1, ...; C1, ...; D3, ...; E6, E7, E8, F4, G2"
     raise CatalogError(f"{name!r} is not the type of a simple Lie algebra; known: {known}")
 
 

@@ -45,7 +45,7 @@ def canonical_real_form(name: str) -> str:
     ----------
     name : str
         A name as in the table of the module, or one of the others that are in use: 'so(1,4)', 'su(1,1)', 'sl(3)',
-        'so*(8)', 'su*(4)', 'sp(4,R)', 'spin(7)', 'so(3,C)', 'e6(-78)', and sums of these with '+'.
+        'so*(8)', 'su*(4)', 'sp(4,R)', 'spin(7)', 'so(3,C)', 'e6(-78)', 'E6(-26)', and sums of these with '+'.
 
     Raises
     ------
@@ -132,6 +132,8 @@ def parse_name(name: str) -> Parsed:
     (('so', (4, 1), ''), ('sp', (6,), 'R'), ('e6', (-26,), ''), ('g2', (-14,), ''))
     """
     text = name.replace(" ", "")
+    if re.match(r"[EFG][2-8]\(", text):  # with its character; E6 alone is a type, e6 the compact form
+        text = text[0].lower() + text[1:]
     if exceptional := re.fullmatch(r"(e6|e7|e8|f4|g2)(?:\((-?\d+|C)\))?", text, re.ASCII):
         kind, character = exceptional[1], exceptional[2] or str(EXCEPTIONAL[exceptional[1]][-1])
         if character == "C":

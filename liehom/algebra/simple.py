@@ -29,7 +29,7 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
     Parameters
     ----------
     type_name : str
-        'A3', 'B2', ..., 'E8', 'F4', 'G2'.
+        'A3', 'B2', ..., 'E8', 'F4', 'G2'; or the name of a real form alone, such as 'f4(-20)'.
     real_form : str, optional
         Its name, such as 'so(4,1)', 'sl(2,H)', 'so*(6)', 'f4(-20)', 'e7(-25)', 'sl(3,C)', or 'split', 'compact',
         'complex'; other names of the same algebra, such as 'e8(-248)', are understood. By default the split form.
@@ -54,7 +54,12 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
     >>> import liehom as lh
     >>> lh.simple("G2", "g2").killing_signature(), lh.simple("B2").name, lh.simple("E7", "e7(-25)").dimension
     ((0, 14, 0), 'so(3,2)', 133)
+    >>> lh.simple("f4(-20)") == lh.simple("F4", "f4(-20)")
+    True
     """
+    if real_form is None and ("(" in type_name or type_name.strip()[:1].islower()):
+        form = RealForm.of_name(type_name)
+        type_name, real_form = form.type, form.name
     forms = constructions(type_name)
     wanted = next(iter(forms)) if real_form is None else real_form.replace(" ", "")
     wanted = {"split": real_forms(type_name)[0].name, "compact": real_forms(type_name)[-1].name}.get(wanted, wanted)

@@ -15,6 +15,10 @@ from typing import Any, NoReturn
 from liehom.errors import FormatError
 
 SHOWN = 60
+OTHER_TOOLS = (
+    "`liehom describe` reads a file of GAP if it ends in .g or .gap, one of Sage if it ends in .sage; "
+    "liehom.io.from_gap and from_sage read their text"
+)
 LONGEST_INT = 4000
 """Integers of more digits are kept as texts: Python refuses to read them, the grammar of values does not."""
 
@@ -41,7 +45,12 @@ def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise FormatError(f"{str(path)!r} cannot be read: {reason}") from None
-    return parse_object(text)
+    try:
+        return parse_object(text)
+    except FormatError as error:
+        if str(error).startswith("not JSON") and not text.lstrip().startswith("{"):
+            raise FormatError(f"{error}; {OTHER_TOOLS}") from None
+        raise
 
 
 def parse_object(text: str) -> dict[str, Any]:

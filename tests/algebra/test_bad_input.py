@@ -446,3 +446,22 @@ def test_the_diagram_of_a_type() -> None:
     assert sorted(drawn.edges(data="entry")) == [(0, 1, 1), (1, 0, 3)]
     with pytest.raises(CatalogError):
         lh.algebra.dynkin_diagram("G3")
+
+
+@pytest.mark.parametrize("name", ["f4(-20)", "g2", "so(4,1)", "sl(2,C)", "E6(-26)"])
+def test_a_simple_algebra_by_the_name_of_its_real_form(name: str) -> None:
+    form = lh.RealForm.of_name(name)
+    assert lh.simple(name) == lh.simple(form.type, form.name)
+
+
+def test_the_types_that_are_listed_are_simple() -> None:
+    with pytest.raises(CatalogError, match=r"known: .*D3") as caught:
+        lh.simple("X9")
+    assert "D2" not in str(caught.value)
+    with pytest.raises(CatalogError, match="is not simple"):
+        lh.simple("so(4)")
+
+
+def test_a_real_algebra_is_complexified() -> None:
+    with pytest.raises(InputError, match="complexification"):
+        lh.realification(lh.so(3))
