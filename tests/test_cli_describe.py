@@ -168,5 +168,9 @@ def test_a_file_of_another_tool_is_known_by_its_suffix(tmp_path: Path) -> None:
 
 
 def test_exceptional_real_forms_with_a_capital_letter() -> None:
-    assert facts("E6(-26)") == facts("e6(-26)")
-    assert facts("E6")["real_form"] == "e6(6)"
+    assert facts("G2(-14)")["real_form"] == facts("g2")["real_form"] == "g2"
+    assert facts("G2")["real_form"] == "g2(2)"
+
+
+def test_a_family_with_a_parameter_is_no_pair() -> None:
+    assert "solvable" in describe("bianchi(VI;2)").stdout

@@ -106,7 +106,7 @@ def _named(text: str) -> LieAlgebra | Pair:
     from liehom.algebra import RealForm, chevalley, simple
     from liehom.catalog import algebra, pair
 
-    if "/" in text or ";" in text:
+    if "/" in text or (";" in text and not text.lstrip().startswith("bianchi")):  # sym(4;3,1), but bianchi(VI;2)
         return pair(text)
     try:
         return algebra(text)

@@ -16,14 +16,14 @@ from liehom.algebra.compact_form import real_form_of
 from liehom.algebra.real_form import RealForm
 from liehom.algebra.root_system import RootSystem
 from liehom.algebra.vogan import VoganDiagram
-from liehom.errors import InputError, RepresentationError
+from liehom.errors import InputError, RepresentationError, ShapeError
 from liehom.representations.admissible_lattice import AdmissibleLattice, Vector, lattice_of
 from liehom.representations.characters import weyl_dimension
 from liehom.representations.generator_proof import SparseStack, failing_generator_pair
 from liehom.representations.highest_weight import OTHER_WAYS, Columns, chevalley_matrices, require_room, sparse_matrix
 from liehom.representations.real_structure import Operator, RealBasis, commutant_letter
 from liehom.representations.representation import Representation
-from liehom.representations.weights import Weight, checked_weight, weight_space
+from liehom.representations.weights import Weight, WeightSpace, checked_weight, weight_space
 
 
 @final
@@ -72,8 +72,9 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
     form : RealForm or str
         Such as 'so(4,1)', 'e6(-26)', 'sl(2,C)'.
     weight : sequence of int
-        Dominant, in fundamental coordinates of the complexification, in Bourbaki's numbering for ``form.type``; for a
-        complex algebra those of its two factors, one after the other.
+        Dominant, in fundamental coordinates of the complexification, in Bourbaki's numbering for ``form.type``, the
+        type of the canonical form whatever the name given: 'sp(4,R)' is 'so(3,2)' of type B2, not C2. For a complex
+        algebra those of its two factors, one after the other.
 
     Raises
     ------
@@ -96,9 +97,8 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
     >>> lh.real_module_type("e7(-25)", [0, 0, 0, 0, 0, 0, 1]), lh.real_module_type("sl(2,C)", [1, 1])
     ('R', 'R')
     """
-    vogan = _form(form).vogan
-    space = weight_space(vogan.root_system())
-    return commutant_letter(vogan, checked_weight(space, weight))
+    made = _form(form)
+    return commutant_letter(made.vogan, _weight(made, weight_space(made.vogan.root_system()), weight))
 
 
 def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = True) -> RealModule:
@@ -109,7 +109,7 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     form : RealForm or str
         Such as 'so(4,1)', 'e6(-26)', 'e8', 'sl(2,C)'.
     weight : sequence of int
-        As for `real_module_type`.
+        As for `real_module_type`: numbered by ``RealForm.of_name(form).type``, see the examples.
     check : bool, optional
         Prove the identity of the matrices, for generators with all basis elements (default).
 
@@ -143,12 +143,19 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     27
     >>> lh.real_module("sl(2,C)", [1, 0])
     <real module of highest weight (1, 0) of sl(2,C), dimension 4 over R, commutant C>
+
+    The canonical form of sp(4,R) is so(3,2), of type B2: (1, 0) are its vectors, and (0, 1) is R^4.
+
+    >>> lh.RealForm.of_name("sp(4,R)")
+    <real form so(3,2) of type B2>
+    >>> [lh.real_module("sp(4,R)", weight).dimension for weight in ([1, 0], [0, 1])]
+    [5, 4]
     """
     made = _form(form)
     vogan = made.vogan
     roots = vogan.root_system()
     space = weight_space(roots)
-    top = checked_weight(space, weight)
+    top = _weight(made, space, weight)
     kind = commutant_letter(vogan, top)
     size = weyl_dimension(roots, top) * (1 if kind == "R" else 2)
     require_room(roots.rank + roots.number_of_roots, size, OTHER_WAYS)
@@ -175,6 +182,13 @@ def _form(form: RealForm | str) -> RealForm:
     if not isinstance(made, RealForm):
         raise InputError(f"a real form or its name, such as 'so(4,1)', is needed, got {form!r}")
     return made
+
+
+def _weight(form: RealForm, space: WeightSpace, weight: Sequence[int]) -> Weight:
+    try:
+        return checked_weight(space, weight)
+    except ShapeError as error:
+        raise ShapeError(f"{error}; weights of {form.name} are numbered by its type {form.vogan.type}") from None
 
 
 # -- the basis of the real form -------------------------------------------------------------------------------

@@ -210,3 +210,10 @@ def test_what_is_no_form_or_no_weight_is_refused() -> None:
 def test_matrices_that_would_not_fit_are_refused_at_once() -> None:
     with pytest.raises(InputError, match=r"GB; .*admissible_lattice"):
         lh.real_module("e7(-5)", [1, 1, 1, 1, 1, 1, 1])
+
+
+def test_weights_are_numbered_by_the_canonical_type() -> None:
+    assert [lh.real_module("sp(4,R)", weight).dimension for weight in ([1, 0], [0, 1])] == [5, 4]
+    for ask in (lh.real_module, lh.real_module_type):
+        with pytest.raises(ShapeError, match=r"weights of so\(3,2\) are numbered by its type B2"):
+            ask("sp(4,R)", [1, 0, 0])
