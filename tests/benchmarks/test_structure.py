@@ -1,0 +1,72 @@
+"""What the structure theory costs: every row of the table beside GAP, Sage and dgcv, and its demands.
+
+In the ordinary run each row is done once, as a test of its answer.  For figures, and for the ratios to GAP:
+
+    python -m pytest tests/benchmarks/test_structure.py -n 0 --benchmark-enable
+    python -m tests.benchmarks.structure_report
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.benchmarks.peers_gap import committed
+from tests.benchmarks.structure_report import BEGIN, END, compared
+from tests.benchmarks.structure_tasks import Task, tasks
+
+ROWS = tasks()
+ROOT = Path(__file__).resolve().parents[2]
+MEMORY = """
+import resource
+import liehom as lh
+from liehom.algebra.jacobi import prove_jacobi
+g = lh.chevalley("E8")
+prove_jacobi(g.table, g.basis_names)
+x = [7 * i % 19 - 9 for i in range(248)]
+assert (g.killing_form().rank(), g.centralizer([x]).dimension, g.center().dimension) == (248, 8, 0)
+assert (g.semisimple_type(), g.real_form()) == ("E8", "e8(8)")
+assert [h.dimension for h in g.derived_series()] == [248] and g.radical().dimension == 0
+assert lh.adjoint(g).isotropy(x).dimension == 8
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+@pytest.mark.parametrize("task", ROWS, ids=lambda task: task.name)
+def test_task(benchmark: Any, task: Task) -> None:
+    benchmark.group = re.sub(r", dim \d+", "", task.name)
+    found = benchmark.pedantic(lambda action: action(), setup=lambda: ((task.prepare(),), {}), rounds=3)
+    assert found == task.expected
+
+
+def test_every_row_has_a_committed_figure_of_gap() -> None:
+    table = committed()
+    assert set(table["seconds"]) == {task.name for task in ROWS}
+    assert table["program"].startswith("GAP 4.") and re.fullmatch(r"20\d\d-\d\d-\d\d", table["date"])
+
+
+def test_report_shows_every_row() -> None:
+    text = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+    shown = text.partition(BEGIN)[2].partition(END)[0]
+    assert [line.split("|")[1].strip() for line in shown.splitlines() if line.startswith("| ")][1:] == [
+        task.name for task in ROWS
+    ]
+
+
+@pytest.mark.parametrize(
+    ("here", "gap", "factor", "kept"), [(1.0, 0.5, 3.0, True), (1.0, 0.3, 3.0, False), (1.0, "> 60", 1 / 5, True)]
+)
+def test_a_demand_is_a_ratio(here: float, gap: float | str, factor: float, kept: bool) -> None:
+    task = Task("row", lambda: lambda: None, None, ("", "", ""), factor=factor)
+    assert compared(task, here, gap).kept is kept
+
+
+@pytest.mark.slow
+def test_e8_stays_below_one_gigabyte() -> None:
+    made = subprocess.run([sys.executable, "-c", MEMORY], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert int(made.stdout) / 1e6 < 1  # ru_maxrss counts kilobytes
