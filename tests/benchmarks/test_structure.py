@@ -53,7 +53,7 @@ def test_every_row_has_a_committed_figure_of_gap() -> None:
 def test_report_shows_every_row() -> None:
     text = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
     shown = text.partition(BEGIN)[2].partition(END)[0]
-    assert [line.split("|")[1].strip() for line in shown.splitlines() if line.startswith("| ")][1:] == [
+    assert [line.split("|")[1].strip() for line in shown.splitlines() if line.startswith("| ")][2:] == [
         task.name for task in ROWS
     ]
 
