@@ -62,7 +62,8 @@ class AnalysisVerbs:
         """
         from liehom.representations.commutant_type import commutant_type
 
-        return commutant_type(exact(self).matrices, self.size, self.field, generating_matrices(self))
+        known = _is_known_semisimple(exact(self))
+        return commutant_type(self.matrices, self.size, self.field, generating_matrices(self), semisimple=known)
 
     def invariant_forms(self: Representation) -> InvariantForms:  # type: ignore[misc]
         """The bilinear forms P with rho(x)^T P + P rho(x) = 0 for all x, symmetric and skew ones apart.
@@ -124,7 +125,8 @@ class AnalysisVerbs:
         >>> lh.Representation.from_matrices([[[0, 2], [1, 0]]]).is_irreducible()
         False
         """
-        return is_irreducible(exact(self).matrices, self.size, self.field, generating_matrices(self))
+        known = _is_known_semisimple(exact(self))
+        return is_irreducible(self.matrices, self.size, self.field, generating_matrices(self), semisimple=known)
 
     def is_completely_reducible(self: Representation) -> bool:  # type: ignore[misc]
         """Whether every invariant subspace has an invariant complement.
@@ -348,3 +350,10 @@ def exact(rho: Representation) -> Representation:
     if not rho.field.exact:
         raise FieldError("this is computed exactly: build the representation over QQ or a number field")
     return rho
+
+
+def _is_known_semisimple(rho: Representation) -> bool:
+    """Whether the algebra is semisimple, where its Killing form costs less than the trace form of the matrices."""
+    from liehom.representations.complete_reducibility import is_visibly_semisimple
+
+    return 0 < rho.algebra.dimension <= rho.size and is_visibly_semisimple(rho)

@@ -19,7 +19,14 @@ from liehom.scalars.forms import orthogonal_basis
 KINDS: dict[int, Type] = {1: "R", 2: "C", 4: "H"}
 
 
-def commutant_type(matrices: Sequence[Any], size: int, over: Field, generating: Sequence[Any] | None = None) -> Type:
+def commutant_type(
+    matrices: Sequence[Any],
+    size: int,
+    over: Field,
+    generating: Sequence[Any] | None = None,
+    *,
+    semisimple: bool = False,
+) -> Type:
     """The type of an irreducible action of a linear Lie algebra on R^N; the arguments are those of `reduction`.
 
     Raises
@@ -33,7 +40,7 @@ def commutant_type(matrices: Sequence[Any], size: int, over: Field, generating: 
     >>> commutant_type([QQ.matrix([[0, -2], [1, 0]])], 2, QQ)
     'C'
     """
-    found = None if size == 0 else reduction(matrices, size, over, generating)
+    found = None if size == 0 else reduction(matrices, size, over, generating, semisimple=semisimple)
     if size == 0 or found is not None:
         how = {
             "kernel": "the kernel of a matrix is an invariant subspace",

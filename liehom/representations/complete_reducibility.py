@@ -29,7 +29,7 @@ def socle(rho: Representation) -> Subspace:
     """
     field, size = rho.field, rho.size
     whole = field.identity(size)
-    if not rho.matrices or size == 0 or _is_visibly_semisimple(rho):
+    if not rho.matrices or size == 0 or is_visibly_semisimple(rho):
         return Subspace(field, whole, size)
     inside = nilpotent_rows(rho).null_space()
     matrices = restricted(rho.matrices, inside)
@@ -59,8 +59,15 @@ def is_completely_reducible(rho: Representation) -> bool:
     return socle(rho).dimension == rho.size
 
 
-def _is_visibly_semisimple(rho: Representation) -> bool:
-    """Weyl's theorem: everything is completely reducible where the Killing form is nondegenerate modulo a prime."""
+def is_visibly_semisimple(rho: Representation) -> bool:
+    """Whether the Killing form is nondegenerate modulo a prime: then everything is completely reducible (Weyl).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> is_visibly_semisimple(lh.defining(lh.so(3))), is_visibly_semisimple(lh.defining(lh.gl(2)))
+    (True, False)
+    """
     return int(rho.algebra.killing_form().modulo().rank()) == rho.algebra.dimension
 
 

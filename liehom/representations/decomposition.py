@@ -320,6 +320,8 @@ class _Restrictions:
     def to(self, subspace: Subspace, extension: Extension) -> Representation:
         from liehom.representations.representation import Representation
 
+        if subspace.dimension == self.rho.size and extension.is_trivial:
+            return self.rho
         algebra, matrices = self._over(extension)
         # kernels of commuting matrices are invariant
         made = restricted(matrices, subspace.basis, check=False)

@@ -44,7 +44,12 @@ class Reduction:
 
 
 def reduction(
-    matrices: Sequence[Any], size: int, over: Field, generating: Sequence[Any] | None = None
+    matrices: Sequence[Any],
+    size: int,
+    over: Field,
+    generating: Sequence[Any] | None = None,
+    *,
+    semisimple: bool = False,
 ) -> Reduction | None:
     """What splits the action of a linear Lie algebra on R^N, or None: it is irreducible over the reals.
 
@@ -57,6 +62,8 @@ def reduction(
     over : Field
     generating : sequence of Matrix, optional
         Matrices that generate the Lie algebra (default: the basis).
+    semisimple : bool
+        The caller knows that the action is completely reducible: no nilpotent ideal is looked for.
 
     Examples
     --------
@@ -66,14 +73,21 @@ def reduction(
     >>> reduction([QQ.matrix([[0, 2], [1, 0]])], 2, QQ).kind
     'eigenvalue'
     """
-    nilpotent = nilpotent_ideal_rows(matrices, size, over)
-    if nilpotent.nrows:
+    nilpotent = None if semisimple else nilpotent_ideal_rows(matrices, size, over)
+    if nilpotent is not None and nilpotent.nrows:
         return Reduction("kernel", nilpotent)
     commuting = commutant(matrices if generating is None else generating, size, over)
     return split_by_commutant(traceless(commuting, size, over), size, over)
 
 
-def is_irreducible(matrices: Sequence[Any], size: int, over: Field, generating: Sequence[Any] | None = None) -> bool:
+def is_irreducible(
+    matrices: Sequence[Any],
+    size: int,
+    over: Field,
+    generating: Sequence[Any] | None = None,
+    *,
+    semisimple: bool = False,
+) -> bool:
     """Whether a linear Lie algebra acts irreducibly on R^N (N >= 1; the zero space is not irreducible).
 
     The arguments are those of `reduction`.
@@ -84,7 +98,7 @@ def is_irreducible(matrices: Sequence[Any], size: int, over: Field, generating: 
     >>> is_irreducible([QQ.matrix([[0, -1], [1, 0]])], 2, QQ)
     True
     """
-    return size > 0 and reduction(matrices, size, over, generating) is None
+    return size > 0 and reduction(matrices, size, over, generating, semisimple=semisimple) is None
 
 
 def trace_form(matrices: Sequence[Any]) -> Any:

@@ -8,6 +8,7 @@ Imports characters, algebra.root_data, scalars, errors.
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -59,7 +60,7 @@ def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
     form = (h @ rho.algebra.killing_form() @ h.T).inverse()
     rng = random.Random(rho.size)
     for attempt in range(ATTEMPTS):
-        bound = 3 + 4 * attempt
+        bound = (3 + rho.size**2) << attempt
         found = joint_multiplicities(matrices, [rng.randint(-bound, bound) for _ in matrices])
         if found is not None:
             break
@@ -71,7 +72,9 @@ def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
         weights = coroot_pairings([v for v, _ in values], data.simple_values(), form, bits)
         if weights is not None:
             order = [i for _, nodes in identify(data.root_system.cartan) for i in nodes]
-            counted = {tuple(w[i] for i in order): m for w, (_, m) in zip(weights, values, strict=True)}
+            counted: Counter[Weight] = Counter()
+            for w, (_, m) in zip(weights, values, strict=True):
+                counted[tuple(w[i] for i in order)] += m
             return {w: counted[w] for w in sorted(counted, reverse=True)}
     raise InternalError("the weights could not be told from their neighbours")
 
@@ -89,5 +92,5 @@ def highest_weights(rho: Representation) -> dict[Weight, int]:
     weights = weight_multiplicities(rho)
     if not weights:
         return {}
-    counted: dict[Sequence[int], int] = dict(weights.items())
-    return decompose_character(rho.algebra.semisimple_type(), counted)
+    character: dict[Sequence[int], int] = dict(weights.items())
+    return decompose_character(rho.algebra.semisimple_type(), character)

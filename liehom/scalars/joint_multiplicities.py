@@ -26,15 +26,21 @@ from liehom.scalars.roots import complex_root_balls
 
 @final
 @dataclass(frozen=True, slots=True)
-class JointMultiplicities:
-    """The joint eigenvalues of commuting semisimple matrices M_1, ..., M_r.
+class _Block:
+    """A block that all matrices preserve.
 
-    Attributes
-    ----------
-    parts : tuple of (Polynomial, int)
-        Squarefree factors of the characteristic polynomial of x with their multiplicities.
-    polynomials : tuple of Polynomial
-        The p_j with M_j = p_j(x).
+    `parts`: squarefree factors of the characteristic polynomial of x with multiplicities; `polynomials`: p_j with
+    M_j = p_j(x).
+    """
+
+    parts: tuple[tuple[Polynomial, int], ...]
+    polynomials: tuple[Polynomial, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class JointMultiplicities:
+    """The joint eigenvalues of commuting semisimple matrices M_1, ..., M_r, block by block.
 
     Examples
     --------
@@ -44,17 +50,17 @@ class JointMultiplicities:
     [(1, 1), (-1, 1)]
     """
 
-    parts: tuple[tuple[Polynomial, int], ...]
-    polynomials: tuple[Polynomial, ...]
+    blocks: tuple[_Block, ...]
 
     def values(self, precision: int) -> list[tuple[tuple[Any, ...], int]]:
-        """Each joint eigenvalue as balls (``flint.acb``), with its multiplicity."""
+        """Joint eigenvalues as balls (``flint.acb``) with multiplicities; one may occur in several blocks."""
         found = []
-        for part, multiplicity in self.parts:
-            roots = complex_root_balls(part, precision)
-            with working_precision(precision):
-                polynomials = [_ball_coefficients(p, precision) for p in self.polynomials]
-                found += [(tuple(_evaluated(p, root) for p in polynomials), multiplicity) for root in roots]
+        for block in self.blocks:
+            for part, multiplicity in block.parts:
+                roots = complex_root_balls(part, precision)
+                with working_precision(precision):
+                    polynomials = [_ball_coefficients(p, precision) for p in block.polynomials]
+                    found += [(tuple(_evaluated(p, root) for p in polynomials), multiplicity) for root in roots]
         return found
 
 
@@ -66,17 +72,55 @@ def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]
     matrices : sequence of ExactMatrix
         (N, N), commuting and semisimple, at least one.
     weights : sequence of int
-        x is the sum of weights[j] M_j.
+        x is the sum of weights[j] M_j; it must separate the joint eigenvalues in each block that all M_j preserve.
 
     Examples
     --------
     >>> from liehom.scalars import QQ
-    >>> diagonal = [QQ.matrix([[1, 0, 0], [0, 2, 0], [0, 0, 1]]), QQ.matrix([[1, 0, 0], [0, 1, 0], [0, 0, 1]])]
-    >>> joint_multiplicities(diagonal, [1, 1]).parts
-    (((-3)*t**0 + (1)*t**1, 1), ((-2)*t**0 + (1)*t**1, 2))
-    >>> joint_multiplicities([diagonal[0]], [0]) is None
-    True
+    >>> turns = [QQ.matrix([[0, -1], [1, 0]]), QQ.matrix([[0, 2], [-2, 0]])]
+    >>> [m for _, m in joint_multiplicities(turns, [1, 1]).values(64)], joint_multiplicities(turns, [2, 1])
+    ([1, 1], None)
     """
+    found = []
+    for places in preserved_blocks(matrices):
+        block = _block([a.select(rows=places, columns=places) for a in matrices], weights)
+        if block is None:
+            return None
+        found.append(block)
+    return JointMultiplicities(tuple(found))
+
+
+def preserved_blocks(matrices: Sequence[ExactMatrix]) -> list[list[int]]:
+    """Indices of the finest blocks of coordinates that all matrices preserve as they stand.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> preserved_blocks([QQ.matrix([[1, 0, 2], [0, 3, 0], [0, 0, 1]])])
+    [[0, 2], [1]]
+    """
+    n = matrices[0].nrows
+    label = list(range(n))
+
+    def top(i: int) -> int:
+        while label[i] != i:
+            label[i] = label[label[i]]
+            i = label[i]
+        return i
+
+    for a in matrices:
+        for part in a.parts:
+            for place, value in enumerate(part.entries()):
+                if value:
+                    i, j = sorted((top(place // n), top(place % n)))
+                    label[j] = i
+    blocks: dict[int, list[int]] = {}
+    for i in range(n):
+        blocks.setdefault(top(i), []).append(i)
+    return list(blocks.values())
+
+
+def _block(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> _Block | None:
     field, size = matrices[0].field, matrices[0].nrows
     x = field.zeros(size, size)
     for a, w in zip(matrices, weights, strict=True):
@@ -84,18 +128,15 @@ def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]
     parts = Polynomial(field, x.characteristic_coefficients()).squarefree_parts()
     degree = sum(part.degree for part, _ in parts)
     starts, spaces = _generating_vectors(x, max(m for _, m in parts), degree)
-    whole = spaces[0]
-    polynomials = []
-    for a in matrices:
-        try:
-            solution = whole.T.solve((starts[0] @ a.T).T)
-        except SingularError:
+    images = field.stack_rows([starts[0] @ a.T for a in matrices], size)
+    try:
+        solution = spaces[0].T.solve(images.T).T
+    except SingularError:
+        return None
+    for start, space in zip(starts[1:], spaces[1:], strict=True):
+        if field.stack_rows([start @ a.T for a in matrices], size) != solution @ space:
             return None
-        for start, space in zip(starts[1:], spaces[1:], strict=True):
-            if start @ a.T != solution.T @ space:
-                return None
-        polynomials.append(Polynomial(field, solution.entries()))
-    return JointMultiplicities(tuple(parts), tuple(polynomials))
+    return _Block(tuple(parts), tuple(Polynomial(field, row) for row in solution.to_rows()))
 
 
 def _generating_vectors(x: ExactMatrix, count: int, degree: int) -> tuple[list[ExactMatrix], list[ExactMatrix]]:

@@ -10,7 +10,7 @@ import pytest
 import liehom as lh
 from liehom.errors import FieldError, InputError
 from liehom.scalars import QQ
-from liehom.scalars.joint_multiplicities import joint_multiplicities
+from liehom.scalars.joint_multiplicities import joint_multiplicities, preserved_blocks
 from liehom.testing import random_unimodular
 
 
@@ -83,11 +83,19 @@ def test_refusals() -> None:
 
 
 def test_what_one_combination_does_not_separate_is_refused() -> None:
-    a, b = QQ.matrix([[1, 0], [0, 2]]), QQ.matrix([[2, 0], [0, 1]])
+    change = QQ.matrix([[1, 1], [1, 2]])
+    a, b = (change @ QQ.matrix([[x, 0], [0, 3 - x]]) @ change.inverse() for x in (1, 2))
     assert joint_multiplicities([a, b], [1, 1]) is None
     found = joint_multiplicities([a, b], [1, 3])
     assert found is not None
-    assert sorted((int(complex(v[0]).real + 0.5), int(complex(v[1]).real + 0.5), m) for v, m in found.values(64)) == [
-        (1, 2, 1),
-        (2, 1, 1),
-    ]
+    rounded = [(round(complex(v[0]).real), round(complex(v[1]).real), m) for v, m in found.values(64)]
+    assert sorted(rounded) == [(1, 2, 1), (2, 1, 1)]
+
+
+def test_blocks() -> None:
+    """What all matrices preserve as they stand is taken block by block."""
+    rho = lh.adjoint(lh.chevalley("B2")).direct_sum(lh.trivial(lh.chevalley("B2"), 2))
+    diagonal = [rho.matrices[0], rho.matrices[1]]
+    assert preserved_blocks(diagonal) == [[i] for i in range(12)]
+    assert preserved_blocks([rho.matrices[2], rho.matrices[6]])[0] != [0]
+    assert rho.weights() == {**lh.character("B2", [0, 2]), (0, 0): 4}
