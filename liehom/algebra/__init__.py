@@ -1,5 +1,6 @@
 """Lie algebras by structure constants: the algebra, its subalgebras, and how they are made."""
 
+from liehom.algebra.cartan_decomposition import CartanDecomposition as CartanDecomposition
 from liehom.algebra.centroid import centroid as centroid
 from liehom.algebra.chevalley import chevalley as chevalley
 from liehom.algebra.closure import Closure as Closure
@@ -42,6 +43,7 @@ from liehom.algebra.form_algebras import so_star as so_star
 from liehom.algebra.form_algebras import sp_form as sp_form
 from liehom.algebra.free_nilpotent import free_nilpotent as free_nilpotent
 from liehom.algebra.homomorphism import Homomorphism as Homomorphism
+from liehom.algebra.levi import LeviDecomposition as LeviDecomposition
 from liehom.algebra.lie_algebra import LieAlgebra as LieAlgebra
 from liehom.algebra.real_form import RealForm as RealForm
 from liehom.algebra.real_form import complex_form as complex_form
@@ -51,6 +53,8 @@ from liehom.algebra.real_form_names import canonical_real_form as canonical_real
 from liehom.algebra.real_splitting import Place as Place
 from liehom.algebra.real_splitting import places as places
 from liehom.algebra.real_splitting import real_ideals as real_ideals
+from liehom.algebra.root_spaces import RootSpace as RootSpace
+from liehom.algebra.root_spaces import RootSpaceDecomposition as RootSpaceDecomposition
 from liehom.algebra.root_system import RootSystem as RootSystem
 from liehom.algebra.root_system import root_system as root_system
 from liehom.algebra.satake import SatakeDiagram as SatakeDiagram

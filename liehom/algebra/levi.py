@@ -11,7 +11,7 @@ Imports lie_algebra, radical, subalgebra, scalars, errors.
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -40,6 +40,9 @@ class LeviDecomposition:
 
     levi: Subalgebra
     radical: Subalgebra
+
+    def __iter__(self) -> Iterator[Subalgebra]:
+        return iter((self.levi, self.radical))
 
 
 def levi_decomposition(algebra: LieAlgebra) -> LeviDecomposition:

@@ -250,17 +250,58 @@ class LieAlgebra(StructureVerbs):
 
         return centralizer(self, rows)
 
-    def normalizer(self, subalgebra: Subalgebra) -> Subalgebra:
-        """The subalgebra {x : [x, h] is in h}."""
+    def normalizer(self, subalgebra: Any) -> Subalgebra:
+        """The subalgebra {x : [x, h] is in h} of a subalgebra h (a `Subalgebra` or rows)."""
         from liehom.algebra.subalgebra import normalizer
 
-        return normalizer(subalgebra)
+        return normalizer(self.own(subalgebra))
+
+    def own(self, subalgebra: Any) -> Subalgebra:
+        """A subalgebra of this algebra from its rows, or itself; `InputError` if it is that of another algebra."""
+        from liehom.algebra.subalgebra import Subalgebra
+
+        if not isinstance(subalgebra, Subalgebra):
+            return Subalgebra(self, subalgebra)
+        if subalgebra.algebra is not self and subalgebra.algebra != self:
+            raise InputError(f"{subalgebra!r} is no subalgebra of {self!r}")
+        return subalgebra
+
+    def ideal_generated_by(self, rows: Any) -> Subalgebra:
+        """The least ideal that contains the rows.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.gl(2).ideal_generated_by([[0, 1, 0, 0]]).dimension
+        3
+        """
+        from liehom.algebra.subalgebra import ideal_generated
+
+        return ideal_generated(self, rows)
 
     def derived_series(self) -> list[Subalgebra]:
         """g, [g, g], [[g, g], [g, g]], ... down to the first term that repeats (which is listed once)."""
         from liehom.algebra.subalgebra import derived_series
 
         return derived_series(self)
+
+    def derived_subalgebra(self) -> Subalgebra:
+        """The ideal [g, g].
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.gl(2).derived_subalgebra().dimension
+        3
+        """
+        terms = self.derived_series()
+        return terms[1] if len(terms) > 1 else terms[0]
+
+    def upper_central_series(self) -> list[Subalgebra]:
+        """0, the centre, the preimage of the centre of g modulo the centre, ... up to the first term that repeats."""
+        from liehom.algebra.subalgebra import upper_central_series
+
+        return upper_central_series(self)
 
     def lower_central_series(self) -> list[Subalgebra]:
         """g, [g, g], [g, [g, g]], ... down to the first term that repeats (which is listed once)."""
@@ -298,6 +339,8 @@ class LieAlgebra(StructureVerbs):
         >>> lh.so(3).over(lh.number_field("sqrt(2)"))
         <Lie algebra so(3) of dimension 3 over QQ(sqrt(2))>
         """
+        if not isinstance(field, Field):
+            raise InputError(f"expected a field such as lh.QQ, lh.RR or lh.number_field('sqrt(2)'), got {field!r}")
         if isinstance(field, FloatField):
             entries = [(i, j, k, self.field.to_float(v)) for i, j, k, v in self._constants]
         else:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from liehom.algebra.levi import LeviDecomposition
     from liehom.algebra.lie_algebra import LieAlgebra
     from liehom.algebra.real_form import RealForm
+    from liehom.algebra.root_spaces import RootSpaceDecomposition
     from liehom.algebra.root_system import RootSystem
     from liehom.algebra.subalgebra import Subalgebra
 
@@ -215,6 +216,55 @@ class StructureVerbs:
 
         return cartan_subalgebra(self)
 
+    def rank(self: LieAlgebra) -> int:  # type: ignore[misc]
+        """The rank: the dimension of the Cartan subalgebras.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(5).rank(), lh.gl(3).rank()
+        (2, 3)
+        """
+        return self.cartan_subalgebra().dimension
+
+    def is_reductive(self: LieAlgebra) -> bool:  # type: ignore[misc]
+        """Whether the radical is the centre.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.gl(3).is_reductive(), lh.euclidean(3).is_reductive()
+        (True, False)
+        """
+        return self.radical().dimension == self.center().dimension
+
+    def root_space_decomposition(  # type: ignore[misc]
+        self: LieAlgebra, cartan: Subalgebra | None = None
+    ) -> RootSpaceDecomposition:
+        """A Cartan subalgebra with the root spaces, [h, v] = alpha(h) v; conjugate irrational roots stay together.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> found = lh.sl(3).root_space_decomposition()
+        >>> found.cartan.dimension, len(found.spaces), found.spaces[0].space.dimension
+        (2, 6, 1)
+        """
+        from liehom.algebra.root_spaces import root_space_decomposition
+
+        return root_space_decomposition(self, cartan)
+
+    def restricted_roots(self: LieAlgebra) -> list[tuple[str, str, dict[str, int]]]:  # type: ignore[misc]
+        """For each simple ideal over the reals: its name, the type of the restricted roots, and their multiplicities.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.su(2, 1).restricted_roots()
+        [('su(2,1)', 'BC1', {'short': 2, 'long': 1})]
+        """
+        return [(form.name, form.restricted_type, form.multiplicities) for form in self.real_forms()]
+
     def root_system(self: LieAlgebra) -> RootSystem:  # type: ignore[misc]
         """The root system of the complexification; `InputError` if the algebra is not semisimple.
 
@@ -321,6 +371,17 @@ class StructureVerbs:
         from liehom.algebra.cartan_decomposition import cartan_decomposition
 
         return cartan_decomposition(self)
+
+    def cartan_involution(self: LieAlgebra) -> Any:  # type: ignore[misc]
+        """The matrix (n, n), on columns, of the Cartan involution of `cartan_decomposition`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(3).cartan_involution() == lh.QQ.identity(3)
+        True
+        """
+        return self.cartan_decomposition().theta
 
     def maximal_compact_subalgebra(self: LieAlgebra) -> Subalgebra:  # type: ignore[misc]
         """The fixed points of a Cartan involution (`cartan_decomposition`).

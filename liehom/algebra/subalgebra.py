@@ -11,7 +11,7 @@ from typing import Any, final
 
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.structure_constants import StructureConstants
-from liehom.errors import DependentRowsError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
+from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
 from liehom.scalars import Scalar, Subspace
 from liehom.scalars.field import rows_of
 from liehom.scalars.quotient import Quotient, echelon_quotient, quotient
@@ -113,6 +113,25 @@ class Subalgebra:
     __hash__ = None  # type: ignore[assignment]
 
     # -- verbs -------------------------------------------------------------------------------------------
+    def intersection(self, other: Subalgebra) -> Subalgebra:
+        """The intersection with another subalgebra of the same algebra.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> g = lh.gl(2)
+        >>> g.center().intersection(g.derived_series()[1]).dimension
+        0
+        """
+        _require_inside(self.algebra, other)
+        # What lies in two closed subspaces is closed.
+        return Subalgebra(self.algebra, self.subspace.intersection(other.subspace).basis, check=False)
+
+    def includes(self, other: Subalgebra) -> bool:
+        """Whether another subalgebra of the same algebra lies in this one."""
+        _require_inside(self.algebra, other)
+        return self.subspace.includes(other.subspace)
+
     def as_algebra(self, name: str | None = None) -> LieAlgebra:
         """The subalgebra as a Lie algebra in its own basis.
 
@@ -192,8 +211,15 @@ def _dependent(basis: Any) -> list[int]:
 
 
 def _span(algebra: LieAlgebra, rows: Any) -> Any:
-    matrix = _matrix(algebra, rows.basis if isinstance(rows, Subalgebra) else rows)
-    return matrix.row_space()
+    if isinstance(rows, Subalgebra):
+        _require_inside(algebra, rows)
+        rows = rows.basis
+    return _matrix(algebra, rows).row_space()
+
+
+def _require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
+    if subalgebra.algebra is not algebra and subalgebra.algebra != algebra:
+        raise InputError(f"{subalgebra!r} is no subalgebra of {algebra!r}: it belongs to {subalgebra.algebra!r}")
 
 
 def products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
@@ -294,6 +320,28 @@ def normalizer(subalgebra: Subalgebra) -> Subalgebra:
     blocks = algebra.table.contract(subalgebra.basis, algebra.field.identity(n), subalgebra._projection())
     conditions = algebra.field.stack_columns(blocks, n) if blocks else algebra.field.zeros(n, 0)
     return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
+
+
+def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
+    """0, the centre z_1, z_2 with z_2/z_1 the centre of g/z_1, ... up to the first term that repeats.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [h.dimension for h in upper_central_series(lh.heisenberg(1))]
+    [0, 1, 3]
+    """
+    n, field = algebra.dimension, algebra.field
+    terms = [Subalgebra(algebra, field.zeros(0, n), check=False)]
+    while True:
+        whole = field.identity(n)
+        blocks = algebra.table.contract(whole, whole, terms[-1]._projection())
+        # x with [e_i, x] in the last term for all i
+        conditions = field.stack_columns(blocks, n) if blocks else field.zeros(n, 0)
+        following = Subalgebra(algebra, conditions.left_null_space(), check=False)  # an ideal, as the last term is
+        if following.dimension == terms[-1].dimension:
+            return terms
+        terms.append(following)
 
 
 def derived_series(algebra: LieAlgebra) -> list[Subalgebra]:

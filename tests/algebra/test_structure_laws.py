@@ -232,3 +232,56 @@ def test_cards(name: str) -> None:
     algebra, line = CARDS[name]
     assert line in algebra.describe()
     assert line in scrambled(algebra, 5).describe()
+
+
+@few
+@given(semisimple, seeds)
+def test_root_spaces_fill_and_are_preserved(name: str, seed: int) -> None:
+    g = scrambled(SEMISIMPLE[name], seed)
+    found = g.root_space_decomposition()
+    assert sum(space.space.dimension for space in found.spaces) + found.cartan.dimension == g.dimension
+    for space in found.spaces:
+        for j, h in enumerate(found.cartan.rows()):
+            moved = space.space.basis @ g.ad(h).T
+            if space.values is None:
+                assert all(row in space.space for row in moved.to_rows())
+            else:
+                assert moved == space.space.basis.scale(space.values[j])
+
+
+def test_the_root_spaces_of_a_split_algebra_multiply() -> None:
+    g = lh.chevalley("G2")
+    found = g.root_space_decomposition()
+    assert found.is_split and len(found.spaces) == 12
+    by_values = {space.values: space.space for space in found.spaces}
+    for a, space in by_values.items():
+        for b, other in by_values.items():
+            total = tuple(x + y for x, y in zip(a, b, strict=True))
+            bracket = g.bracket(space.rows()[0], other.rows()[0])
+            if any(total) and total not in by_values:
+                assert not any(bracket)
+            elif total in by_values:
+                assert list(bracket) in by_values[total] and any(bracket)
+
+
+def test_a_subalgebra_of_another_algebra_is_refused() -> None:
+    g, foreign = lh.so(3), lh.heisenberg(1).subalgebra([[0, 0, 1]])
+    for question in (g.normalizer, g.centralizer, g.ideal_generated_by, g.subalgebra_generated_by):
+        with pytest.raises(InputError, match="is no subalgebra of"):
+            question(foreign)
+    with pytest.raises(InputError, match="belongs to"):
+        g.center().intersection(foreign)
+    assert g.normalizer([[1, 0, 0]]).dimension == 1
+
+
+def test_series_and_small_questions() -> None:
+    n = lh.strictly_upper_triangular(4)
+    assert [h.dimension for h in n.upper_central_series()] == [0, 1, 3, 6]
+    assert lh.gl(3).derived_subalgebra().dimension == 8 and lh.gl(3).rank() == 3
+    assert lh.gl(2).is_reductive() and not lh.euclidean(3).is_reductive()
+    levi, radical = lh.gl(2).levi_decomposition()
+    assert levi.intersection(radical).dimension == 0 and lh.gl(2).derived_subalgebra().includes(levi)
+    with pytest.raises(InputError, match="number_field"):
+        lh.so(3).over("sqrt(2)")  # type: ignore[arg-type]
+    assert lh.semidirect_sum(lh.so(3), lh.defining(lh.so(3))).dimension == 6
+    assert lh.so(3).cohomology(0, lh.adjoint(lh.so(3))).dimension == 0
