@@ -1,0 +1,163 @@
+"""liehom on the same problems: without compilation, and with compile="numba" and compile="jax".
+
+Points of a compiled run are those of the run on numpy arrays to round-off (which tests hold), so that errors are
+measured once.  Spins that act on each other are not compiled by `integrate`; there a step under ``jax.jit`` stands for
+it, made of the public pieces of the library.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import liehom as lh
+from liehom.correctors import Generator, apply_factors
+from liehom.instances.exact_orbit import ExactOrbit
+from tests.benchmarks.integration_peers import LADDER, Solve, Solver, sample_times
+from tests.benchmarks.integration_problems import Problem, rigid_body
+
+EULER2, EULER4, EULER6 = (lh.Corrected(lh.Euler(), n) for n in (2, 4, 6))
+STEPS: dict[str, tuple[Any, str]] = {
+    "E2": (EULER2, "exp"),
+    "E2 cay": (EULER2, "cayley"),
+    "E4": (EULER4, "exp"),
+    "E6": (EULER6, "exp"),
+    "T4": (lh.LieTaylor(4), "exp"),
+    "T8": (lh.LieTaylor(8), "exp"),
+    "T12": (lh.LieTaylor(12), "exp"),
+    "RK4": (lh.RKMK("rk4"), "exp"),
+}
+EXPLAINED = {
+    "E2": "`Corrected(Euler(), 2)`",
+    "E2 cay": "the same with the Cayley transform",
+    "E4": "`Corrected(Euler(), 4)`",
+    "E6": "`Corrected(Euler(), 6)`",
+    "T4": "`LieTaylor(4)`",
+    "T8": "`LieTaylor(8)`",
+    "T12": "`LieTaylor(12)`",
+    "RK4": '`RKMK("rk4")`',
+    "adaptive": "`LieTaylor(6)` with adapted steps, the default",
+    "exact orbit": "`ExactOrbit`, the rigid body's own step on the orbit, with the Cayley transform",
+}
+
+
+def _shaped(problem: Problem, starts: Any) -> Any:
+    """One trajectory without a leading axis, as a user would give it."""
+    points = starts.reshape(-1, *problem.shape)
+    return points[0] if len(points) == 1 else points
+
+
+def _flat(problem: Problem, y: Any, samples: int) -> Any:
+    """(..., *shape, samples) to (samples, L, n)."""
+    return np.moveaxis(np.asarray(y), -1, 0).reshape(samples, -1, problem.size)
+
+
+def integrate(name: str, compile: str | None) -> Solve:
+    """`liehom.integrate` with fixed steps."""
+
+    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+        step, exponential = STEPS[name]
+        sol = lh.integrate(
+            problem.field, (0.0, span), _shaped(problem, starts), step=step, dt=setting, exponential=exponential,
+            t_eval=sample_times(span, samples), compile=compile,
+        )  # fmt: skip
+        return _flat(problem, sol.y, samples)
+
+    return solve
+
+
+def _adaptive(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+    times = sample_times(span, samples)
+    sol = lh.integrate(problem.field, (0.0, span), _shaped(problem, starts), rtol=setting, atol=setting, t_eval=times)
+    return _flat(problem, sol.y, samples)
+
+
+def _exact_orbit(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+    body = lh.RigidBody([1, 2, 3])
+    times = sample_times(span, samples)
+    sol = lh.integrate(
+        body.field("o"), (0.0, span), _shaped(problem, starts), step=ExactOrbit(body), dt=setting,
+        exponential="cayley", t_eval=times,
+    )  # fmt: skip
+    return _flat(problem, sol.y, samples)
+
+
+# -- spins that act on each other, under jax.jit ---------------------------------------------------------------
+def jitted(field: lh.GeneratorField, step: Any, dimension: int, exponential: str = "exp") -> Any:
+    """(m, h, count): so many steps of an autonomous field on a JAX array, the time being nominal."""
+    import jax
+    import jax.numpy as jnp
+
+    action, psi = lh.Action(field.representation, exponential), Generator(field, dimension)
+
+    def one(m: Any, h: Any) -> Any:
+        lead = m.shape[:-1]
+        local = step.at(action, psi, m, jnp.zeros((*lead, 1), m.dtype))
+        return apply_factors(action, local.factors(jnp.full((*lead, 1), h, m.dtype)), m)
+
+    return jax.jit(lambda m, h, count: jax.lax.fori_loop(0, count, lambda _, x: one(x, h), m))
+
+
+@cache
+def _jitted(problem: Problem, name: str) -> Any:
+    step, exponential = STEPS[name]
+    return jitted(problem.field, step, 2, exponential)
+
+
+def under_jit(name: str) -> Solve:
+    """A step of the library under ``jax.jit``, for spins that act on each other."""
+
+    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+        from liehom.integrators.jax_kernel import enabled_x64
+
+        steps = max(1, round(span / samples / setting))
+        with enabled_x64():
+            m, made = starts.reshape(-1, *problem.shape), []
+            for _ in range(samples):
+                m = _jitted(problem, name)(m, span / samples / steps, steps)
+                made.append(np.asarray(m).reshape(len(starts), -1))
+        return np.array(made)
+
+    return solve
+
+
+# -- rows ------------------------------------------------------------------------------------------------
+FEW, MANY = ("E4", "T8", "RK4"), ("E2", "E2 cay", "E4", "E6", "T4", "T8", "T12", "RK4")
+EAGER, NUMBA, JAX = "liehom, numpy", 'liehom, compile="numba"', 'liehom, compile="jax"'
+IN_JIT = "liehom, a step under jax.jit"
+ALL, ENDS, LARGE = (1, 10, 10_000), (1, 10_000), (10_000,)
+
+
+def names_for(problem: Problem) -> list[str]:
+    """The steps that are tried: no corrections where isotropy is not full, no high orders that are long to compile."""
+    names = [n for n in MANY if problem.full or not n.startswith("E")]
+    if problem.size > 3:
+        names.remove("T12")
+    return [n for n in names if problem.size <= 3 or n not in ("E6", "E2 cay")]
+
+
+def solvers(problem: Problem) -> list[Solver]:
+    """The rows of liehom for a problem."""
+    if problem.coupled:
+        return _coupled_solvers()
+    rows = []
+    for n in names_for(problem):
+        made = Solver(NUMBA, n, integrate(n, "numba"), LADDER, "llvmlite", True, counts=ALL if n in FEW else LARGE)
+        rows.append(made)
+        if n in FEW:
+            rows.append(Solver(EAGER, n, integrate(n, None), LADDER, "numpy", True, made, counts=ENDS))
+        if n == "T4" or (n == "E4" and problem.size == 3):
+            rows.append(Solver(JAX, n, integrate(n, "jax"), LADDER, "jax", True, made, counts=ENDS))
+    rows.append(Solver(EAGER, "adaptive", _adaptive, (1e-3, 1e-6, 1e-9), counts=(1,), sample=8))
+    if problem is rigid_body():
+        rows.append(Solver(EAGER, "exact orbit", _exact_orbit, LADDER[:6], fixed=True, counts=LARGE))
+    return rows
+
+
+def _coupled_solvers() -> list[Solver]:
+    made = [Solver(IN_JIT, n, under_jit(n), LADDER, "jax", fixed=True, counts=(1, 10)) for n in ("T4", "RK4", "T8")]
+    return made + [
+        Solver(EAGER, x.label, integrate(x.label, None), LADDER, "numpy", True, x, counts=(1, 10)) for x in made
+    ]

@@ -1,0 +1,296 @@
+"""The part of docs/performance.md on integration, from the measured figures; and the work-precision plots."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tests.benchmarks.integration_methods import EXPLAINED
+from tests.benchmarks.integration_problems import Problem, problems
+from tests.benchmarks.integration_targets import TARGETS, best, curve, ratios
+
+BEGIN, END = "<!-- integration: begin -->", "<!-- integration: end -->"
+MANY, EXPONENTS = 10_000, ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
+STYLES = ("o-", "s-", "^-", "v--", "D--", "x--", "+:", "*:")
+
+
+def shown(x: float | None, digits: int = 2) -> str:
+    """So many digits, without trailing precision that is not there."""
+    if x is None or not math.isfinite(x):
+        return "-"
+    if x and not 1e-3 <= abs(x) < 1e5:
+        mantissa, power = f"{x:.{digits - 1}e}".split("e")
+        return f"{mantissa}e{int(power)}"
+    return f"{x:.{digits}g}" if abs(x) < 10**digits else f"{x:.0f}"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    """In Markdown."""
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return [*lines, *("| " + " | ".join(row) + " |" for row in rows), ""]
+
+
+def groups(methods: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Rows of one program together, in the order of the figures, liehom first."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for row in methods:
+        found.setdefault(row["group"], []).append(row)
+    return found
+
+
+# -- one problem -------------------------------------------------------------------------------------------
+def _cell(problem: Problem, rows: list[dict[str, Any]], count: int, target: float, orbit: bool) -> str:
+    """The least cost of the steps, and the label of the method if there are several."""
+    found, label = best(problem, rows, count, target, orbit=orbit, call=False)
+    several = len({row["label"] for row in rows}) > 1
+    return shown(found) + (f" {label}" if several and math.isfinite(found) else "")
+
+
+def _call(rows: list[dict[str, Any]], count: int) -> str:
+    calls = [row["costs"][str(count)].get("call") for row in rows if str(count) in row.get("costs", {})]
+    known = [c for c in calls if c is not None]
+    if not known:
+        return "in"
+    low, high = shown(min(known)), shown(max(known))
+    return low if low == high else f"{low} to {high}"
+
+
+def _has(rows: list[dict[str, Any]], count: int) -> bool:
+    return any(str(count) in row.get("costs", {}) for row in rows)
+
+
+def _missing(name: str, rows: list[dict[str, Any]], width: int) -> list[str]:
+    return [name, "not installed" if all("missing" in row for row in rows) else "not measured", *[""] * (width - 2)]
+
+
+def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
+    """The tables of a problem."""
+    found = groups(data["methods"])
+    lines = [f"### {problem.title[0].upper()}{problem.title[1:]}", ""]
+    orbit = "energy" if problem.energy is not None else "orbit"
+    span = "" if problem.span == problem.trajectory_span else f" to T = {problem.trajectory_span:.0f}"
+    wide = [f"{orbit} {x}" for x in EXPONENTS] + [f"traj. {x}" for x in EXPONENTS]
+    kinds = [(t, True) for t in TARGETS] + [(t, False) for t in TARGETS]
+    if any(_has(rows, MANY) for rows in found.values()):
+        lines += [f"N = 10⁴, µs for each trajectory to T = {problem.span:.0f}:", ""]
+        rows = [
+            [name, _call(rows, MANY), *(_cell(problem, rows, MANY, t, o) for t, o in kinds)]
+            if _has(rows, MANY)
+            else _missing(name, rows, 10)
+            for name, rows in found.items()
+            if _has(rows, MANY) or all("missing" in row for row in rows)
+        ]
+        lines += table(["method", "call", *wide], rows)
+    few = [(1e-6, True), (1e-3, False), (1e-6, False), (1e-12, False)]
+    names = [f"{orbit} 10⁻⁶", "traj. 10⁻³", "traj. 10⁻⁶", "traj. 10⁻¹²"]
+    for count in (1, 10):
+        lines += [f"N = {count}, µs for each trajectory to T = {problem.span:.0f} (trajectories{span or ' too'}):", ""]
+        rows = [
+            [name, _call(rows, count), *(_cell(problem, rows, count, t, o) for t, o in few)]
+            for name, rows in found.items()
+            if _has(rows, count)
+        ]
+        lines += table(["method", "call", *names], rows)
+    return [*lines, f"![work and precision: {problem.title}](_static/{picture_name(problem)})", ""]
+
+
+def picture_name(problem: Problem) -> str:
+    """The file of its plot."""
+    plain = problem.name.lower().translate(str.maketrans({"⁴": "4", "²": "2", "(": "", ")": "", ",": "", " ": "_"}))
+    return f"work_precision_{plain}.svg"
+
+
+def draw(problem: Problem, data: dict[str, Any], folder: Path) -> None:
+    """Error against the cost of the steps: orbits or energy on the left, trajectories on the right."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    count = MANY if any(str(MANY) in row.get("costs", {}) for row in data["methods"]) else 1
+    with matplotlib.rc_context({"svg.hashsalt": "liehom", "svg.fonttype": "none", "font.size": 8}):
+        figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True, layout="constrained")
+        for ax, orbit in zip(axes, (True, False), strict=True):
+            for i, (name, rows) in enumerate(groups(data["methods"]).items()):
+                measured = [r for r in rows if str(count) in r.get("costs", {})]
+                front = _front([p for r in measured for p in curve(problem, r, count, orbit=orbit)])
+                if front:
+                    style = STYLES[i % len(STYLES)]
+                    ax.loglog(*zip(*front, strict=True), style, color=f"C{i}", ms=3, lw=1, label=name)
+            what = ("energy" if problem.energy is not None else "distance from the orbit") if orbit else "trajectory"
+            ax.set(xlabel=f"µs for each of {count} trajectories", title=f"{problem.name}: {what}", ylim=(1e-14, 1))
+            ax.grid(alpha=0.3)
+        axes[0].set_ylabel("error")
+        figure.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=7)
+        figure.savefig(folder / picture_name(problem), metadata={"Date": None})
+        plt.close(figure)
+
+
+def _front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Those that no cheaper one is better than."""
+    kept: list[tuple[float, float]] = []
+    for cost, error in sorted(points):
+        if not kept or error < kept[-1][1]:
+            kept.append((cost, error))
+    return kept
+
+
+# -- the other parts -----------------------------------------------------------------------------------------
+def conditions_part(data: dict[str, Any]) -> list[str]:
+    """When, where, how."""
+    c = data["conditions"]
+    versions = ", ".join(f"{name} {version}" for name, version in c["versions"].items())
+    loads = [p["load"] for p in data["problems"].values()]
+    wanted = "; ".join(f"{key}: {text}" for key, text in EXPLAINED.items())
+    return [
+        f"Measured {c['date']} on one core of {c['cores']} ({c['processor']}), by `python -m tests.benchmarks.report`; "
+        f"{versions}. The machine was shared, with a load between {min(loads)} and {max(loads)}: processor time of the "
+        "process is given, not time on the clock, and it still grows by some ten per cent, at times by twice, when "
+        "others use the same caches and vector units. Ratios within a table are better than its figures.",
+        "",
+        "Errors are medians over trajectories of the largest error at five times; settings are refined until the "
+        "wanted error is reached, and costs interpolated between settings. Compilation was before. "
+        '"call" is what a call of the program costs besides its steps, for each trajectory: with `compile=` the trace '
+        "of the step and the first and the last step, which are made on numpy arrays. The other columns are the cost "
+        'of the steps; "in" is where the two are not told apart. A coarser setting than the coarsest that was tried '
+        "might do where a cost is the same for several errors. All fields are autonomous, and all trajectories of an "
+        "ensemble have the same parameters.",
+        "",
+        f"Of several methods the cheapest stands in a cell, by its letters: {wanted}. The peers: scipy's DOP853 with "
+        "all trajectories as one system; heyoka.py in batches of 8 with `fast_math`; diffrax through `vmap`, of Tsit5 "
+        "and Dopri8 the better one, on ensembles of 1000; and the classical Runge-Kutta method in numba with the field "
+        "as straight-line code, one trajectory at a time or in blocks of 16 lanes.",
+        "",
+    ]  # fmt: skip
+
+
+def targets_part(data: dict[str, Any]) -> list[str]:
+    """The targets, each with what was measured and whether it holds."""
+    k = data["targets"]
+    by_name = {p.name: p for p in problems()}
+    rows = []
+
+    def verdict(ratio: float, most: float) -> str:
+        return "holds" if ratio <= most else f"missed by a factor of {shown(ratio / most)}"
+
+    for kind in ("nominal", "corrected"):
+        if kind in k:
+            r = k[kind]
+            text = f"{shown(r['compiled'])} ns, C {shown(r['C'])} ns, ratio {shown(r['ratio'], 3)} (clock: {kind})"
+            rows.append(["a", "compiled xi_i Euler at most 2 times the kernel in C", text, verdict(r["ratio"], 2)])
+    for letter, names, orbit, need, wanted in (
+        ("b", ("rigid body", "quartic Hamiltonian"), True, 5.0, TARGETS),
+        ("c", tuple(n for n in by_name if not by_name[n].coupled), False, 1.0, TARGETS[:2]),
+    ):
+        what = "orbit: 5 times cheaper than the best of heyoka, DOP853, diffrax" if orbit else "trajectory: as heyoka"
+        for name in names:
+            if name not in data["problems"]:
+                continue
+            methods = data["problems"][name]["methods"]
+            for call in (False, True):
+                found = ratios(by_name[name], methods, MANY, orbit=orbit, call=call)[: len(wanted)]
+                text = ", ".join(f"{shown(r)} at {e}" for r, e in zip(found, EXPONENTS, strict=False))
+                kept = sum(r >= need for r in found)
+                told = "holds" if kept == len(found) else f"holds at {kept} of {len(found)}" if kept else "missed"
+                of = "whole call" if call else "steps"
+                rows.append([letter, f"{what}; {name}, {of}", f"times cheaper: {text}", told])
+    arrays = k["arrays"]["ratio"]
+    rows.append(["d", "eager on 10⁴ at most 10 times numpy by hand", f"ratio {shown(arrays)}", verdict(arrays, 10)])
+    first, again = k["compile"]["first"], k["compile"]["again"]
+    text = f"{shown(first)} s, with the code on disk {shown(again)} s"
+    rows.append(["e", "order 6 on S⁴ compiled in 5 s, and kept", text, verdict(first, 5)])
+    text = f"{shown(k['one Euler'])} ns; corrected to order 2 {shown(k['one corrected'])} ns"
+    rows.append(["f", "one trajectory: below 100 ns for an Euler step", text, verdict(k["one corrected"], 100)])
+    return ["### Targets", "", *table(["", "target", "measured", ""], rows)]
+
+
+def growth_part(data: dict[str, Any]) -> list[str]:
+    """Exponents."""
+    rows = [
+        [
+            row["what"],
+            f"{row['against']} = {', '.join(str(x) for x in row['x'])}",
+            ", ".join(shown(y) for y in row["y"]) + f" {row['unit']}",
+            f"{row['exponent']:.1f}",
+            "-" if not math.isfinite(row["last"]) else f"{row['last']:.1f}",
+        ]
+        for row in data["growth"]
+    ]
+    head = ["step", "against", "cost of a step", "exponent", "of the second half"]
+    return [
+        "### How cost grows", "",
+        "Exponents of the cost of a step by least squares of logarithms. Expansions to order n are O(n²) products of "
+        "coefficients; a generator that is affine in m on Sᵏ⁻¹ is itself O(k dim g) = O((dim g)^1.5); an ensemble is "
+        "O(N) once the arrays are longer than numpy's calls.", "",
+        *table(head, rows),
+    ]  # fmt: skip
+
+
+def long_part(data: dict[str, Any]) -> list[str]:
+    """T = 10^4, and many spins."""
+    rows = [
+        [row["problem"], row["method"], shown(row["setting"]), shown(row["T"]), "not installed", "", ""]
+        if "missing" in row
+        else [
+            row["problem"], row["method"], shown(row["setting"]), shown(row["T"]), shown(row["energy"]),
+            shown(row["norm"]), shown(row["cost"]),
+        ]
+        for row in data["long"]
+    ]  # fmt: skip
+    head = ["problem", "method", "step or tolerance", "T", "energy error", "norm error", "µs, whole call"]
+    return [
+        "### Long times, many spins", "",
+        "16 trajectories to T = 10⁴, and one closed chain of 10⁴ spins: errors at the end, median of the energy, "
+        "largest of the norm.", "", *table(head, rows),
+    ]  # fmt: skip
+
+
+def drift_part(data: dict[str, Any]) -> list[str]:
+    """What a trajectory error of 10^-6 leaves of norms and spectra."""
+    columns: list[str] = []
+    for content in data["problems"].values():
+        columns += [g for g in groups(content["methods"]) if g not in columns]
+    columns = [c for c in columns if not c.startswith("liehom")]
+    rows = []
+    for name, content in data["problems"].items():
+        found = groups(content["methods"])
+        known = {g: [r["drift"] for r in rs if r.get("drift") is not None] for g, rs in found.items()}
+        cells = [shown(max((x for g, xs in known.items() if g.startswith("liehom") for x in xs), default=math.nan))]
+        cells += [shown(min(known.get(column, []), default=math.nan)) for column in columns]
+        rows.append([name, *cells])
+    return [
+        "### What stays on the orbit", "",
+        "The largest error of the norm (Sym(6): of an eigenvalue) at the end, at the coarsest setting whose trajectory "
+        "error is at most 10⁻⁶: the worst method of liehom, the best of a peer.", "",
+        *table(["problem", "liehom", *columns], rows),
+    ]  # fmt: skip
+
+
+def page_part(data: dict[str, Any]) -> str:
+    """All of it."""
+    lines = ["## Integration beside its peers", "", *conditions_part(data)]
+    if "targets" in data:
+        lines += targets_part(data)
+    for problem in problems():
+        if problem.name in data["problems"]:
+            lines += problem_part(problem, data["problems"][problem.name])
+    lines += drift_part(data)
+    for name, part in (("growth", growth_part), ("long", long_part)):
+        if name in data:
+            lines += part(data)
+    return "\n".join(lines)
+
+
+def write(data: dict[str, Any], docs: Path) -> None:
+    """Put it between the marks of docs/performance.md, and the plots beside it."""
+    for problem in problems():
+        if problem.name in data["problems"]:
+            draw(problem, data["problems"][problem.name], docs / "_static")
+    page = docs / "performance.md"
+    text = page.read_text(encoding="utf-8")
+    if BEGIN not in text:
+        text = f"{text.rstrip()}\n\n{BEGIN}\n{END}\n"
+    before, after = text.partition(BEGIN)[0], text.partition(END)[2]
+    page.write_text(f"{before}{BEGIN}\n{page_part(data)}\n{END}{after}", encoding="utf-8")
