@@ -180,8 +180,8 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
     going = w.any(go)
     w.lines += ["  br label %made", "made:"]
     for name, value in {**new, "alive": "%alive"}.items():
-        w.lines.append(f"  %{name}.next = phi {v} [{value}, %step], [%{name}.mixed, %mixed]")
-    w.lines.append(f"  %going = phi i1 [true, %step], [{going}, %mixed]")
+        w.lines.append(f"  %{name}.next = phi {v} [{value}, %{w.label}], [%{name}.mixed, %mixed]")
+    w.lines.append(f"  %going = phi i1 [true, %{w.label}], [{going}, %mixed]")
     _store_path(w, graph)
     w.lines += ["step.end:", "  %k.next = add i64 %k, 1"]
     fewer = w.emit("icmp slt i64 %k.next, %steps")

@@ -46,10 +46,15 @@ class Writer:
     ----------
     width : int
         W; 1 for scalar code.
+
+    Attributes
+    ----------
+    label : str
+        The basic block of the traced step in which lines are written at the moment.
     """
 
     def __init__(self, width: int) -> None:
-        self.width = width
+        self.width, self.label = width, "step"
         self.vector = "double" if width == 1 else f"<{width} x double>"
         self.mask = "i1" if width == 1 else f"<{width} x i1>"
         self.suffix = "f64" if width == 1 else f"v{width}f64"
