@@ -49,7 +49,7 @@ def pace(local: LocalStep, h: Any) -> tuple[Any, Any]:
     advance = (times[1:] - times[:-1]) * np.sign(h)
     part = np.abs(h) / PARTS
     runs = ((advance > SLOWEST * part) & (advance < FASTEST * part)).all(axis=0)
-    return runs | (np.asarray(h) == 0), times[-1]
+    return runs | (h == 0), times[-1]
 
 
 def size_for(local: LocalStep, time: Any, guess: Any) -> Any:

@@ -2,7 +2,8 @@
 
 For a step with defects d_k = |[t^k](F - step)| the step size is the largest h with d_k h^k within the tolerance and
 below a share of the way |X| h that is made (so that the series is used where it converges, next to equilibria too);
-for an embedded pair the step is taken, judged, and repeated where it was too large.  Imports correctors, errors.
+for an embedded pair the step is taken, judged, and repeated where it was too large.  The rules of sizes run on arrays
+and on traced numbers.  Imports correctors, errors, homogeneous.
 """
 
 from __future__ import annotations
@@ -15,13 +16,17 @@ import numpy as np
 from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import Generator, LocalStep
 from liehom.errors import ConvergenceError
-from liehom.homogeneous import Action
+from liehom.homogeneous import Action, GeneratorField
 
 SAFETY = 0.9
 LARGEST_GROWTH = 5.0
 SMALLEST_SHRINK = 0.2
 ERROR_TERMS = 2
 SHARE = 0.1
+GROWTH = 8.0
+"""Without an embedded pair the next size is bounded by so many times the last one."""
+HOPELESS = 1e10
+"""What an error that is not finite counts as, in units of the tolerance."""
 MOST_TRIALS = 200
 FINEST = 10.0
 
@@ -45,7 +50,7 @@ class Tolerance:
 
     def norm(self, m: Any) -> Any:
         """The 2-norm of the error that is allowed at m, shape (...,)."""
-        relative = max(self.rtol, FINEST * float(np.finfo(m.dtype).eps))
+        relative = np.maximum(self.rtol, FINEST * float(np.finfo(m.dtype).eps))
         return self.atol * m.shape[-1] ** 0.5 + relative * length(m)
 
 
@@ -58,8 +63,47 @@ def length(x: Any) -> Any:
     >>> float(length(np.array([3.0, 4.0])))
     5.0
     """
-    x = np.asarray(x, dtype=np.float64)
+    x = _floats(x)
     return np.sqrt((x * x).sum(axis=-1))
+
+
+def _floats(x: Any) -> Any:
+    """In float64; traced numbers are."""
+    return x.astype(np.float64, copy=False) if hasattr(x, "astype") else np.asarray(x, dtype=np.float64)
+
+
+def largest_size(max_step: Any, left: Any) -> Any:
+    """A bound for the step sizes with the time `left` to the end; not `left`: the clock may be slow.
+
+    Examples
+    --------
+    >>> float(largest_size(np.inf, np.array(0.5)))
+    1.0
+    """
+    return np.minimum(max_step, 2 * left)
+
+
+def is_large_enough(h: Any, tiny: Any, left: Any) -> Any:
+    """Whether steps of these sizes go on: nan does not.
+
+    Examples
+    --------
+    >>> is_large_enough(np.array([1e-3, 1e-17, np.nan]), 1e-16, 1.0).tolist()
+    [True, False, False]
+    """
+    return h >= np.minimum(tiny, left)
+
+
+def time_scale(field: GeneratorField, m: Any, t: Any) -> Any:
+    """|m| / |X|, (...,).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> float(time_scale(lh.GeneratorField(lh.defining(lh.so(2)), [4]), np.array([1.0, 0.0]), np.array(0.0)))
+    0.25
+    """
+    return length(m) / length(field.vector(m, t))
 
 
 def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, speed: Any, largest: Any) -> Any:
@@ -77,9 +121,9 @@ def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, speed:
     >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0), np.array(1.0)))
     0.009000000000000001
     """
-    h = np.asarray(largest, dtype=np.float64)
+    h = _floats(largest)
     for k, size in defects:
-        size = np.asarray(size, dtype=np.float64)
+        size = _floats(size)
         some = size > 0
         safe = np.where(some, size, 1.0)
         found = (allowed / safe) ** (1 / k)
@@ -112,6 +156,20 @@ def defects_of(
     flow = flow_series(psi.field, m, total, t)
     made = step_series(action, local, m, total)
     return tuple((k, length(flow.point(k) - made.coefficient(k))) for k in range(order + 1, total + 1))
+
+
+def judged(error: Any, allowed: Any, h: Any, order: int) -> tuple[Any, Any]:
+    """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next size.
+
+    Examples
+    --------
+    >>> accepted, size = judged(np.array([3e-4, 4e-4]), np.array(1e-3), np.array(-0.1), 4)
+    >>> bool(accepted), float(size.round(4))
+    (True, 0.107)
+    """
+    ratio = length(error) / allowed
+    ratio = np.where(np.isfinite(ratio), ratio, HOPELESS)
+    return ratio <= 1, next_size(np.abs(h), ratio, order)
 
 
 def next_size(h: Any, ratio: Any, order: int) -> Any:

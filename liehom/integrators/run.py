@@ -28,12 +28,16 @@ from liehom.integrators import state
 from liehom.integrators.clock import SLACK, fitted, has_clock, size_for
 from liehom.integrators.control import (
     ERROR_TERMS,
+    GROWTH,
     SMALLEST_SHRINK,
     Tolerance,
     defects_of,
+    is_large_enough,
+    judged,
+    largest_size,
     length,
-    next_size,
     size_from_defects,
+    time_scale,
     unsolvable,
 )
 from liehom.integrators.dense import DenseSolution
@@ -55,9 +59,9 @@ from liehom.integrators.path import Path
 from liehom.integrators.progress import Progress
 from liehom.integrators.records import Account, Found, Samples
 from liehom.integrators.solution import Solution
+from liehom.series.arrays import in_lanes
 from liehom.series.jet import Jet
 
-GROWTH = 8.0
 FIRST = 0.01
 WITH_EVENTS = 0.5
 """Events are seen at the ends of steps: where there are some, a step moves a point by at most half its size."""
@@ -97,9 +101,9 @@ class Run:
         self.calls, self.psi_raised = 0, False
         self.field = psi.field
         self.psi = Generator(self._counted(psi.field), psi.orbit_dimension, start)
-        self.span, self.start, self.shape, self.dtype = span, start, start.shape[:-1], start.dtype
+        self.span, self.start, self.shape, self.dtype = span, in_lanes(start), start.shape[:-1], start.dtype
         self.end, self.direction = span[1], self.dtype.type(1 if span[1] >= span[0] else -1)
-        self.t, self.m = np.full(self.shape, span[0], dtype=self.dtype), start
+        self.t, self.m = np.full(self.shape, span[0], dtype=self.dtype), self.start
         self.active = np.full(self.shape, bool(span[0] != span[1]))
         self.code = np.zeros(self.shape, dtype=int)
         self.ended_at = self.t
@@ -206,6 +210,7 @@ class Run:
     def _proposed(self) -> Move:
         """A step of the right size, where it is accepted."""
         adaptive, self.tried = self.options.dt is None, None
+        self.m = in_lanes(self.m)
         local = self.step.at(
             self.action, self.psi, self.m, self.t[..., None], error_terms=ERROR_TERMS if adaptive else 0
         )
@@ -238,9 +243,9 @@ class Run:
     def _size(self, local: LocalStep, embedded: bool) -> Any:
         """The step size that the tolerance asks for, positive, (...,)."""
         left = np.abs(self.end - self.t)
-        bound = np.minimum(self.options.max_step, 2 * left)  # not left: the clock may be slow
+        bound = largest_size(self.options.max_step, left)
         first = embedded and bool(np.isinf(self.h).any())
-        scale = np.inf if embedded and not first and self.events is None else self._time_scale()
+        scale = np.inf if embedded and not first and self.events is None else time_scale(self.psi.field, self.m, self.t)
         if self.events is not None:
             bound = np.minimum(bound, WITH_EVENTS * scale)
         if first:
@@ -250,17 +255,12 @@ class Run:
             defects = defects_of(self.action, self.psi, local, self.m, self.t, self.step.order)
             speed = length(self.m) / scale
             h = size_from_defects(defects, self.tolerance.norm(self.m), speed, h).astype(self.dtype)
-        small = self.active & ~(h >= np.minimum(self.tiny, left))
+        small = self.active & ~is_large_enough(h, self.tiny, left)
         if small.any():
             self._fail(small & np.isnan(h), PSI)
             self._fail_by_psi(small, TOO_SMALL)
             h = np.where(self.active, h, 0)
         return h
-
-    def _time_scale(self) -> Any:
-        """|m| / |X|, (...,)."""
-        speed = length(self.psi.field.vector(self.m, self.t))
-        return length(self.m) / speed
 
     def _fitted(self, local: LocalStep, size: Any) -> tuple[Any, Any, Any]:
         """Signed step sizes that end at the end, the times after them, and which steps are the last."""
@@ -286,10 +286,8 @@ class Run:
 
     def _judged(self, error: Any, h: Any, order: int) -> Any:
         """Where an embedded pair accepts the step; adapts the next step size."""
-        ratio = length(error) / self.tolerance.norm(self.m)
-        ratio = np.where(np.isfinite(ratio), ratio, 1e10)
-        self.h = next_size(np.abs(h), ratio, order)
-        return ratio <= 1
+        accepted, self.h = judged(error, self.tolerance.norm(self.m), h, order)
+        return accepted
 
     # -- events and samples ------------------------------------------------------------------------------
     def _position(self, move: Move, s: Any) -> tuple[Any, Any]:

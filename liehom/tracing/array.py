@@ -312,7 +312,7 @@ ELEMENTS: dict[str, Callable[..., Expr]] = {
     "bitwise_or": lambda tape, a, b: tape.either(a, b),
     "logical_not": lambda tape, a: tape.negated(a),
     "invert": lambda tape, a: tape.negated(a),
-    "isfinite": lambda tape, a: tape.compare("eq", tape.mul(a, tape.constant(0.0)), tape.zero),
+    "isfinite": lambda tape, a: tape.compare("lt", tape.call("abs", a), tape.constant(np.inf)),
     "isnan": lambda tape, a: tape.compare("ne", a, a),
     "power": lambda tape, a, b: tape.power(a, b),
     "float_power": lambda tape, a, b: tape.power(a, b),
