@@ -18,6 +18,7 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import is_jax, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
+from liehom.tracing import Traced, repeated
 
 MAX_ITERATIONS = 200
 JAX_ITERATIONS = 60
@@ -221,6 +222,8 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stac
         made = function(x)
         x.node.depends((made.node, 0), rule=lambda k: made.node.known[k])
         return x
+    if isinstance(start, Traced) or isinstance(h, Traced):
+        return _solved_on_tape(function, start, h.tape if isinstance(h, Traced) else start.tape)
     if is_jax(start):
         # a loop, not sixty copies of the function, which would take minutes to compile
         return import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
@@ -245,3 +248,20 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stac
         f"an implicit step did not converge in {MAX_ITERATIONS} iterations (last change {np.max(change):.2g}): "
         "take a smaller step size"
     )
+
+
+def _solved_on_tape(function: Callable[[Any], Any], start: Any, tape: Any) -> Any:
+    """The same iteration for one trajectory in compiled code; a step whose iteration fails is not made there."""
+    eps = float(np.finfo(np.float64).eps)
+
+    def iteration(x: Any, before: Any, settled: Any) -> Any:
+        made = function(x)
+        change = np.where(settled, 0.0, np.abs(made - x).max())
+        size = np.abs(made).max()
+        kept = np.where(settled, x, made)
+        settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
+        return [kept, change, settled], ~settled & np.isfinite(change)
+
+    solved, _, settled = repeated(iteration, [start, np.inf, tape.false], tape, MAX_ITERATIONS)
+    tape.required.append(settled.entries[()])
+    return solved

@@ -5,5 +5,7 @@ from liehom.tracing.graph import Expr as Expr
 from liehom.tracing.graph import Tape as Tape
 from liehom.tracing.graph import needed as needed
 from liehom.tracing.kernel import Kernel as Kernel
+from liehom.tracing.kernel import Sizes as Sizes
 from liehom.tracing.kernel import StepGraph as StepGraph
 from liehom.tracing.kernel import padded as padded
+from liehom.tracing.loop import repeated as repeated

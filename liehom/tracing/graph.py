@@ -28,7 +28,7 @@ FOLDED: dict[str, Callable[..., float]] = {
     "sinq": lambda q: (cmath.sin(cmath.sqrt(q)) / cmath.sqrt(q)).real if q else 1.0,
     "cosq": lambda q: cmath.cos(cmath.sqrt(q)).real,
 }  # fmt: skip
-BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not"])
+BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 
 
 @final
@@ -61,6 +61,8 @@ class Expr:
     @property
     def boolean(self) -> bool:
         """Whether it is a truth value."""
+        if self.op == "get" and self.args[0].op == "loop":
+            return bool(self.args[0].args[self.value].boolean)
         return self.op in BOOLEAN or (self.constant and isinstance(self.value, bool))
 
     def __add__(self, other: Any) -> Expr:
@@ -138,6 +140,10 @@ class Tape:
         self._known: dict[tuple[Any, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
         self.false, self.true = self.constant(False), self.constant(True)
+        self.required: list[Expr] = []
+        """Truth values without which the numbers of a trajectory are not what they are to be."""
+        self.given: list[Callable[[Any], Any]] = []
+        """Numbers of the trajectories, as functions of their starts."""
 
     # -- making numbers ----------------------------------------------------------------------------------
     def constant(self, value: float) -> Expr:
@@ -147,6 +153,15 @@ class Tape:
     def input(self, index: int) -> Expr:
         """A number that is given when the code runs."""
         return self._make("input", (), index)
+
+    def given_number(self, function: Callable[[Any], Any]) -> Expr:
+        """A number that each trajectory has from its start on, as a function of the starts (L, N)."""
+        self.given.append(function)
+        return self.input(-len(self.given))
+
+    def variable(self, name: Any, *, boolean: bool = False) -> Expr:
+        """A number, or truth value, that changes in a loop."""
+        return self._make("flag" if boolean else "variable", (), name)
 
     def of(self, x: Any) -> Expr:
         """A number as an Expr.

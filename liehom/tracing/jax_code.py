@@ -16,7 +16,7 @@ SUBSTEPS, TERMS = 4, 18
 """exp(A) m is summed in so many substeps and terms, which serves |A| up to 4; beyond that it gives nan."""
 
 
-def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
+def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, differentiable: bool = False) -> list[Any]:
     """The outputs of a graph, computed by jax.numpy.
 
     Parameters
@@ -24,6 +24,8 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
     outputs : sequence of Expr
     inputs : dict
         Arrays, of shapes that broadcast, by the index of the input.
+    differentiable : bool
+        Whether loops are to be differentiated backwards: they then have their largest number of iterations.
 
     Raises
     ------
@@ -43,17 +45,24 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
         raise TraceError('compile="jax" needs the extra: pip install "liehom[jax]"') from None
     values: dict[int, Any] = {}
     for x in needed(outputs):
-        values[x.place] = _value(jnp, x, [values[a.place] for a in x.args], inputs)
+        values[x.place] = _value(jnp, x, values, inputs, differentiable)
     return [values[x.place] for x in outputs]
 
 
-def _value(jnp: Any, x: Expr, args: list[Any], inputs: Mapping[int, Any]) -> Any:
+def _known(x: Expr, values: Mapping[int, Any]) -> Any:
+    return x.value if x.constant else values[x.place]
+
+
+def _value(jnp: Any, x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any], whole: bool) -> Any:
     if x.constant:
         return x.value
     if x.op == "input":
         return inputs[x.value]
+    args = [_known(a, values) for a in x.args]
     if x.op == "get":
         return args[0][x.value]
+    if x.op == "loop":
+        return _iterated(jnp, x, values, whole)
     if x.op == "expv":
         return _exponential(jnp, x.value, args)
     if x.op in _OPERATIONS:
@@ -97,6 +106,40 @@ def _rotation(jnp: Any, q: Any, first: int) -> Any:
     else:
         far = jnp.where(safe > 0, jnp.cos(r), jnp.cosh(grown))
     return jnp.where(near, total, far)
+
+
+def _iterated(jnp: Any, x: Expr, values: Mapping[int, Any], whole: bool) -> list[Any]:
+    """The numbers after a loop."""
+    from jax import lax
+
+    loop = x.value
+    before = [jnp.asarray(_known(a, values)) for a in x.args]
+    shape = jnp.broadcast_shapes(*[a.shape for a in before])
+    start = [
+        jnp.broadcast_to(jnp.asarray(a, dtype=bool if v.boolean else float), shape)
+        for a, v in zip(before, loop.variables, strict=False)
+    ]
+
+    def body(state: list[Any]) -> tuple[list[Any], Any]:
+        known = dict(values) | {v.place: s for v, s in zip(loop.variables, state, strict=True)}
+        for y in loop.inside:
+            known[y.place] = _value(jnp, y, known, {}, whole)
+        new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
+        return new, jnp.any(_known(loop.again, known))
+
+    more = (start, jnp.asarray(True))
+    if whole:  # loops of a fixed length are differentiated
+        return list(
+            lax.fori_loop(
+                0, loop.limit, lambda _, state: lax.cond(state[1], lambda s: body(s[0]), lambda s: s, state), more
+            )[0]
+        )
+    found = lax.while_loop(
+        lambda state: (state[0] < loop.limit) & state[1][1],
+        lambda state: (state[0] + 1, body(state[1][0])),
+        (0, more),
+    )
+    return list(found[1][0])
 
 
 def _exponential(jnp: Any, places: tuple[tuple[int, int], ...], args: list[Any]) -> list[Any]:

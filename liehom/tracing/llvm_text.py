@@ -165,6 +165,7 @@ class Body:
         self.writer, self._inputs = writer, inputs
         self._names: dict[int, str] = {}
         self._pairs: dict[int, tuple[str, str]] = {}
+        self._loops: dict[int, list[str]] = {}
 
     def write(self, exprs: Sequence[Expr]) -> None:
         """Write expressions of which the arguments stand before them."""
@@ -177,9 +178,13 @@ class Body:
         return self.writer.splat(x.value) if x.constant else self._names[x.place]
 
     def _written(self, x: Expr) -> str:
-        w, args = self.writer, [self.name(a) for a in x.args]
         if x.constant:
             return ""
+        if x.op == "loop":
+            return self._iterated(x)
+        if x.op == "get" and x.args[0].op == "loop":
+            return self._loops[x.args[0].place][int(x.value)]
+        w, args = self.writer, [self.name(a) for a in x.args]
         if x.op == "input":
             return self._inputs[x.value]
         if x.op in ("add", "sub", "mul", "div"):
@@ -206,6 +211,30 @@ class Body:
         if x.op in LIBM:
             return w.library(LIBM[x.op], *args)
         raise TraceError(f"the operation {x.op} has no machine code here")
+
+    def _iterated(self, x: Expr) -> str:
+        """A loop as basic blocks of their own; it goes on as long as a lane wants it."""
+        w, loop, before = self.writer, x.value, self.writer.label
+        name = f"loop{x.place}"
+        w.lines += [f"  br label %{name}", f"{name}:"]
+        w.label, place = name, len(w.lines)  # the first lines need the names of the last
+        starts = [self.name(a) for a in x.args[: len(loop.variables)]]
+        for i, v in enumerate(loop.variables):
+            self._names[v.place] = f"%{name}.{i}"
+        self.write(loop.inside)
+        new, end = [self.name(y) for y in loop.new], w.label
+        phis = [f"  %{name}.k = phi i64 [0, %{before}], [%{name}.next, %{end}]"]
+        for i, v in enumerate(loop.variables):
+            kind = w.mask if v.boolean else w.vector
+            phis.append(f"  %{name}.{i} = phi {kind} [{starts[i]}, %{before}], [{new[i]}, %{end}]")
+        w.lines[place:place] = phis
+        w.lines.append(f"  %{name}.next = add i64 %{name}.k, 1")
+        fewer = w.emit(f"icmp slt i64 %{name}.next, {loop.limit}")
+        again = w.emit(f"and i1 {fewer}, {w.any(self.name(loop.again))}")
+        w.lines += [f"  br i1 {again}, label %{name}, label %{name}.done", f"{name}.done:"]
+        w.label = f"{name}.done"
+        self._loops[x.place] = new
+        return ""
 
     def _rotation(self, q: Expr, name: str) -> tuple[str, str]:
         """sin(r)/r and cos(r), together."""

@@ -1,0 +1,124 @@
+"""Loops in a traced step: iterations until nothing changes, for every trajectory as long as it needs.
+
+What does not depend on the numbers that change stands before the loop.  Imports array, graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.tracing.array import Traced
+from liehom.tracing.graph import Expr, Tape, needed
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Loop:
+    """A loop: from the variables to their new values, at least once, as long as it is wanted in any lane.
+
+    Attributes
+    ----------
+    variables, new : tuple of Expr
+    again : Expr
+        A truth value: whether a lane wants another iteration.
+    inside : tuple of Expr
+        What is computed in every iteration, in the order of the tape.
+    limit : int
+        The most iterations.
+    """
+
+    variables: tuple[Expr, ...]
+    new: tuple[Expr, ...]
+    again: Expr
+    inside: tuple[Expr, ...]
+    limit: int
+
+    def __repr__(self) -> str:
+        # the same for loops of the same operations
+        rows = [(x.op, *[a.place for a in x.args], x.value) for x in self.inside]
+        ends = [x.place for x in (*self.variables, *self.new, self.again)]
+        return f"Loop({ends}, {rows}, {self.limit})"
+
+
+def iterated(
+    tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int
+) -> list[Expr]:
+    """The numbers after a loop.
+
+    A lane that has what it wants goes on as long as others iterate: the body keeps its numbers by selection.
+
+    Parameters
+    ----------
+    tape : Tape
+    start : sequence of Expr
+    body : callable
+        The numbers to (their new values, whether to iterate again).
+    limit : int
+        The most iterations; there is at least one.
+
+    Examples
+    --------
+    >>> from liehom.tracing.jax_code import evaluated
+    >>> tape = Tape()
+    >>> a = tape.input(0)
+    >>> def heron(x):
+    ...     new = (x[0] + a / x[0]) * 0.5
+    ...     return [new], tape.compare("lt", tape.constant(1e-12), tape.call("abs", new - x[0]))
+    >>> root, = iterated(tape, [a], heron, 50)
+    >>> round(float(evaluated([root], {0: 2.0})[0]), 5)
+    1.41421
+    """
+    first = len(tape.made)
+    variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
+    new, again = body(list(variables))
+    changing = {x.place for x in variables}
+    inside, fixed = [], {}
+    for x in needed([*new, again]):
+        if x.place not in changing and any(a.place in changing for a in x.args):
+            changing.add(x.place)
+            inside.append(x)
+    for x in [*new, again, *[a for x in inside for a in x.args]]:
+        if x.place not in changing and not x.constant:
+            fixed[x.place] = x
+    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit)
+    return tape.block("loop", [*start, *fixed.values()], len(start), loop)
+
+
+def repeated(
+    function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int
+) -> list[Traced]:
+    """The same for arrays.
+
+    Parameters
+    ----------
+    function : callable
+        The arrays to (their new values, whether to iterate again).
+    start : sequence of arrays
+    tape : Tape
+    limit : int
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, = repeated(lambda x: ([x / 2], np.any(x > 1)), [Traced.inputs(tape, 0, 2)], tape, 10)
+    >>> x
+    <traced array of shape (2,)>
+    """
+    arrays = [Traced(tape, x) for x in start]
+    cuts = np.cumsum([x.size for x in arrays])[:-1]
+
+    def shaped(entries: Sequence[Expr]) -> list[Traced]:
+        flat = np.empty(len(entries), dtype=object)
+        flat[:] = entries
+        return [Traced(tape, e.reshape(x.shape)) for e, x in zip(np.split(flat, cuts), arrays, strict=True)]
+
+    def body(entries: list[Expr]) -> tuple[list[Expr], Expr]:
+        new, again = function(*shaped(entries))
+        flat = [e for x in new for e in Traced(tape, x).entries.flat]
+        return flat, Traced(tape, again).entries[()]
+
+    return shaped(iterated(tape, [e for x in arrays for e in x.entries.flat], body, limit))
