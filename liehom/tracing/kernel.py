@@ -25,6 +25,26 @@ SLACK = 1e-9
 
 @final
 @dataclass(frozen=True, slots=True)
+class Sizes:
+    """How the size of a traced step is adapted; input N + 1 is then the size that is proposed, without a sign.
+
+    Attributes
+    ----------
+    tried : Expr
+        The size of the step, signed.
+    accepted : Expr
+        Whether the step is made.
+    proposal : Expr
+        What is proposed next, whether it is made or not.
+    """
+
+    tried: Expr
+    accepted: Expr
+    proposal: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
 class StepGraph:
     """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, the others constants.
 
