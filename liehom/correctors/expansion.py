@@ -16,7 +16,7 @@ import numpy as np
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.series.arrays import as_values, beside, is_exact, namespace, zeros
+from liehom.series.arrays import across_lanes, as_values, beside, is_exact, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 
@@ -278,13 +278,21 @@ def at_rest(action: Action, flow: Flow) -> Any:
     w, m = flow.point(1), flow.point(0)
     bound = (NOISE * float(np.finfo(w.dtype).eps) * action.size) ** 2
     speed, size = _square(w), _square(m)
-    root = np.linalg.cholesky(action.inner_product.matrix)
+    gram, twice = action.inner_product.matrix, flow.generator.order >= 1
+    if isinstance(w, np.ndarray):  # mostly nothing is at rest, also by a larger norm
+        largest = float(np.abs(gram).sum(axis=0).max()) * bound
+        far = speed > largest * _square(flow.psi(0)) * size
+        if bool(far.all()) and (
+            not twice or bool((speed * speed > largest * _square(flow.psi(1)) * (size * size)).all())
+        ):
+            return ~far
+    root = np.linalg.cholesky(gram)
 
     def square(x: Any) -> Any:
-        return _square(x @ root)
+        return _square(across_lanes(x, root))
 
     still = speed <= bound * square(flow.psi(0)) * size
-    if flow.generator.order < 1:
+    if not twice:
         return still
     return still | (speed * speed <= bound * square(flow.psi(1)) * size * size)
 

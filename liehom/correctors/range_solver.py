@@ -19,7 +19,7 @@ import numpy as np
 from liehom.errors import InternalError
 from liehom.homogeneous import Action, IsotropyFrame
 from liehom.homogeneous.lazy_frame import decomposed
-from liehom.series.arrays import namespace
+from liehom.series.arrays import across_lanes, namespace
 from liehom.tracing.array import Traced
 
 RANK_RTOL = 1e-8
@@ -200,8 +200,8 @@ class EvenRangeSolver:
             raise InternalError("the orbits of an EvenRangeSolver are not known to be even")
         share = inner(w, right) * self._over
         # r in place of r + l c w: R^T w has no part in g_m
-        turned = _apply(np.swapaxes(action.infinitesimal.right(w), -1, -2), right)
-        y = turned @ (even.inverse / (self._factor * even.isotropy)) * self._over[..., None]
+        turned = action.infinitesimal.pulled(w, right)
+        y = across_lanes(turned, even.inverse / (self._factor * even.isotropy)) * self._over[..., None]
         if not even.symmetric:
             lift = action.isotropy_frame(self._m, self._dimension).lift
             y = y - _apply(lift, action.infinitesimal(y, self._m))

@@ -130,8 +130,10 @@ class Tower:
 
     def _split(self, factor: float, weight: float | None) -> list[Part]:
         parts = []
-        for l in [int(x) for x in np.unique(self.leading)]:
-            here = None if bool(np.all(self.leading == l)) else self.leading == l
+        some = self.leading.flat[:1]
+        alike = bool(np.all(self.leading == some))  # the common case, in which nothing has to be sorted
+        for l in [int(x) for x in (some if alike else np.unique(self.leading))]:
+            here = None if alike else self.leading == l
             if l == 0:
                 if self.flow.time_dependent:
                     parts.append(Part(self.total + 1, here, None, None))

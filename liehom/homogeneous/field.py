@@ -14,6 +14,7 @@ import numpy as np
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.generator import Components
 from liehom.homogeneous.least_norm import RANK_RTOL, TANGENCY_RTOL, LeastNorm
+from liehom.homogeneous.many_ranks import many_ranks
 from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation
 from liehom.series.arrays import as_values, is_traced, namespace, zeros
@@ -197,10 +198,9 @@ def check_point(representation: Representation, m: Any) -> Any:
     point = np.asarray(m, dtype=float)
     if not bool(np.all(np.isfinite(point))):
         raise InputError(f"the point {m} is not finite")
-    sizes = np.linalg.svd(action_map(representation).right(point), compute_uv=False)
     scale = max((float(np.abs(a.to_numpy()).max(initial=0.0)) for a in representation.matrices), default=0.0)
-    bound = RANK_RTOL * scale * np.linalg.norm(point, axis=-1)[..., None]
-    ranks = (sizes > bound).sum(axis=-1)
+    bound = RANK_RTOL * scale * np.linalg.norm(point, axis=-1)
+    ranks = many_ranks(action_map(representation).right(point), bound)
     if bool(np.any(ranks == 0)):
         index = tuple(int(i) for i in np.argwhere(ranks == 0)[0])
         where = f" (trajectory {index[0] if len(index) == 1 else index})" if index else ""

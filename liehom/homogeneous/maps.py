@@ -17,9 +17,10 @@ from liehom.errors import ShapeError
 from liehom.representations import Representation
 from liehom.scalars import Field
 from liehom.series import recurrences
-from liehom.series.arrays import is_exact, is_lazy, namespace
+from liehom.series.arrays import is_exact, is_lazy, namespace, zeros
 from liehom.series.bilinear import Bilinear
 from liehom.series.jet import Jet
+from liehom.series.node import Node
 from liehom.tracing.array import Traced
 
 Entries = Iterable[tuple[int, int, int, Any]]
@@ -54,7 +55,18 @@ class FieldMap:
     [0.0, 1.0]
     """
 
-    __slots__ = ("_entries", "_exact", "_field", "_floating", "_floats", "_rest", "_table", "_turned", "shape")
+    __slots__ = (
+        "_entries",
+        "_exact",
+        "_field",
+        "_floating",
+        "_floats",
+        "_pulled",
+        "_rest",
+        "_table",
+        "_turned",
+        "shape",
+    )
 
     def __init__(self, entries: Entries, shape: tuple[int, int, int], field: Field) -> None:
         self._entries = list(entries)
@@ -62,7 +74,8 @@ class FieldMap:
         self.shape = shape
         rounded = [field.to_float(v) for *_, v in self._entries]
         places = [entry[:3] for entry in self._entries]
-        self._floats = [(*p, v) for p, v in zip(places, rounded, strict=True)]
+        # products that are only added come first: `_by_columns` begins with them
+        self._floats = sorted(((*p, v) for p, v in zip(places, rounded, strict=True)), key=lambda entry: entry[3] != 1)
         self._floating = Bilinear(self._floats, shape)
         rests = [remainder(field, v, near) for (*_, v), near in zip(self._entries, rounded, strict=True)]
         left = [(*p, r) for p, r in zip(places, rests, strict=True) if r != 0]
@@ -71,6 +84,7 @@ class FieldMap:
         a, b, c = shape
         dense = a * b * c <= DENSE_SIZE or len(places) > DENSE_SHARE * a * b * c
         self._turned: Any = None
+        self._pulled: FieldMap | None = None
         self._table = np.ascontiguousarray(self._floating.tensor().reshape(a, b * c)) if dense else None
 
     def __call__(self, x: Any, y: Any) -> Any:
@@ -78,7 +92,7 @@ class FieldMap:
         if isinstance(x, Jet):
             if isinstance(y, Jet):
                 self._check(x.shape, y.shape)
-                return Jet.from_node(recurrences.multilinear(self._apply, [x.node, y.node]))
+                return Jet.from_node(recurrences.bilinear(self._apply, x.node, y.node, self._zero(x.node, y.node)))
             y = _array(y)
             self._check(x.shape, y.shape)
             return Jet.from_node(recurrences.linear(lambda v: self._apply(v, y), [x.node]))
@@ -89,6 +103,13 @@ class FieldMap:
         y = _array(y)
         self._check(x.shape, y.shape)
         return self._apply(x, y)
+
+    def _zero(self, x: Node, y: Node) -> Any:
+        """B(x, y) at 0 if one of them is 0 there, without its products; else, or where it is not plain, None."""
+        a, b = x.value, y.value
+        if (x.known[0] is None or y.known[0] is None) and type(a) is type(b) is np.ndarray and a.dtype == b.dtype:
+            return zeros(a, (*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), self.shape[2])) if a.size else None
+        return None
 
     def left(self, x: Any) -> Any:
         """The matrix of y -> B(x, y), shape (..., c, b)."""
@@ -108,6 +129,13 @@ class FieldMap:
                 self._turned = np.ascontiguousarray(table.reshape(self.shape[1], -1))
             return (y @ self._turned).reshape(*y.shape[:-1], self.shape[2], self.shape[0])
         return self._matrix(y, "right")
+
+    def pulled(self, y: Any, z: Any) -> Any:
+        """R^T z for the matrix R of x -> B(x, y): the transpose of ``right(y)`` on z (..., c), shape (..., a)."""
+        if self._pulled is None:
+            a, b, c = self.shape
+            self._pulled = FieldMap([(j, k, i, v) for i, j, k, v in self._entries], (b, c, a), self._field)
+        return self._pulled(y, z)
 
     def _matrix(self, x: Any, side: str) -> Any:
         if type(x) is Traced:
@@ -144,16 +172,20 @@ class FieldMap:
 
     def _by_columns(self, x: Any, y: Any) -> Any:
         """One product of columns for each entry, which for large ensembles and few entries is faster."""
-        out = np.zeros((*x.shape[:-1], self.shape[2]))
+        out, spare = np.empty((self.shape[2], *x.shape[:-1])), np.empty(x.shape[:-1])
+        left, right = [x[..., i] for i in range(self.shape[0])], [y[..., j] for j in range(self.shape[1])]
+        begun = [False] * self.shape[2]
         for i, j, k, value in self._floats:
-            term = x[..., i] * y[..., j]
-            if value == 1:
-                out[..., k] += term
-            elif value == -1:
-                out[..., k] -= term
-            else:
-                out[..., k] += value * term
-        return out
+            term = np.multiply(left[i], right[j], out=spare if begun[k] else out[k])
+            if value not in (1, -1) or (value == -1 and not begun[k]):
+                term *= value
+            if begun[k]:
+                (np.subtract if value == -1 else np.add)(out[k], term, out=out[k])
+            begun[k] = True
+        for k, some in enumerate(begun):
+            if not some:
+                out[k] = 0.0
+        return out.T if out.ndim == 2 else np.moveaxis(out, 0, -1)
 
     def _traced(self, x: Any, y: Any) -> Traced:
         """One product for each entry that is not 0."""

@@ -69,9 +69,9 @@ class Rodrigues(TrueExponential):
             return m + (sine * special("cosq", q / 4) * once + 0.5 * sine * sine * self.infinitesimal(x, once))
         if q.shape == (1,) and type(q) is np.ndarray and q.dtype == np.float64 and -1e5 < q[0] < 1e15:
             whole, half = _sine_quotient_of(float(q[0])), _sine_quotient_of(float(q[0]) / 4)
-        else:
-            whole, half = _sine_quotient(q), _sine_quotient(q / 4)
-        return m + (whole * once + 0.5 * half * half * self.infinitesimal(x, once))
+            return m + (whole * once + 0.5 * half * half * self.infinitesimal(x, once))
+        s, c = _quotients(q)
+        return m + (s * once + c * self.infinitesimal(x, once))
 
 
 def _sine_quotient_of(q: float) -> float:
@@ -82,16 +82,38 @@ def _sine_quotient_of(q: float) -> float:
     return (sin(r) if q > 0 else sinh(r)) / r
 
 
-def _sine_quotient(q: Any) -> Any:
-    """The same on arrays, of any precision."""
+def _quotients(q: Any) -> tuple[Any, Any]:
+    """S and C on arrays, of any precision: what one entry gives does not depend on the others."""
     xp = namespace(q)
     small = xp.abs(q) < NEAR
+    if xp is np:  # mostly all are of one kind
+        if bool(small.all()):
+            return _near(q)
+        if not bool(small.any()) and bool((q > 0).all()):
+            return _far(np, q, np.sqrt(q), "sin", "cos")
     safe = xp.where(small, 1.0, q)
-    r = xp.sqrt(xp.abs(safe))
+    r, turns = xp.sqrt(xp.abs(safe)), safe > 0
     # of the branch that is not taken neither the value nor, under jax.grad, the derivative may overflow
-    far = xp.where(safe > 0, xp.sin(r), xp.sinh(xp.where(safe > 0, 0.0, r))) / r
-    near = 1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156)))))
-    return xp.where(small, near, far)
+    round_, straight = _far(xp, safe, r, "sin", "cos"), _far(xp, safe, xp.where(turns, 0.5, r), "sinh", "cosh")
+    return tuple(
+        xp.where(small, near, xp.where(turns, a, b)) for near, a, b in zip(_near(q), round_, straight, strict=True)
+    )
+
+
+def _near(q: Any) -> tuple[Any, Any]:
+    """S and C where |q| < NEAR, by as many terms as the precision needs."""
+    s, c = (
+        (1 - q / 42, 1 - q / 56)
+        if q.dtype != np.longdouble
+        else (1 - q / 42 * (1 - q / 72 * (1 - q / 110)), 1 - q / 56 * (1 - q / 90 * (1 - q / 132)))
+    )
+    return 1 - q / 6 * (1 - q / 20 * s), 0.5 - q / 24 * (1 - q / 30 * c)
+
+
+def _far(xp: Any, q: Any, r: Any, sine: str, cosine: str) -> tuple[Any, Any]:
+    """S and C by the functions of half the angle, r = |q|^(1/2)."""
+    half = getattr(xp, sine)(0.5 * r) / r
+    return 2.0 * half * getattr(xp, cosine)(0.5 * r), 2.0 * half * half
 
 
 def cubic_form(representation: Representation) -> FieldMap | None:

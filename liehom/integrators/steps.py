@@ -36,6 +36,10 @@ class Euler(OneExponential):
     def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
         return h * psi(m, t)
 
+    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+        velocity = psi(m, t)  # once, for whatever h
+        return LocalStep(lambda h: (h * velocity,))
+
 
 @final
 @dataclass(frozen=True)

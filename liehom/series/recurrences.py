@@ -64,7 +64,7 @@ def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
     Where another operand begins with a structural zero, coefficient k needs an operand only up to k - 1.
     """
     if len(operands) == 2:
-        return _bilinear(function, *operands)
+        return bilinear(function, *operands)
     order = min(o.order for o in operands)
     starts = [1 if o.known[0] is None else 0 for o in operands]
     known = [o.known for o in operands]
@@ -82,8 +82,8 @@ def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
     return Node(order, value, [first], lags, rule)
 
 
-def _bilinear(function: Callable[[Any, Any], Any], a: Node, b: Node) -> Node:
-    """The case of two operands, in which most of the work is done."""
+def bilinear(function: Callable[[Any, Any], Any], a: Node, b: Node, value: Any = None) -> Node:
+    """The case of two operands, in which most of the work is done; `value`, at 0, where it is known."""
     first, second = a.known, b.known
     start, end = (1 if first[0] is None else 0), (0 if second[0] is None else 1)
 
@@ -96,7 +96,8 @@ def _bilinear(function: Callable[[Any, Any], Any], a: Node, b: Node) -> Node:
                 total = term if total is None else total + term
         return total
 
-    value = function(a.value, b.value)
+    if value is None:
+        value = function(a.value, b.value)
     known = [None if start or not end else value]
     return Node(min(a.order, b.order), value, known, ((a, 1 - end), (b, start)), rule)
 
