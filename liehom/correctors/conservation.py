@@ -4,7 +4,7 @@
 
 with e = 1/2 (Corollary 11), or 1 where the correction is an exponential of its own.  Adding t^(n-1) zeta to a step adds
 chi_m(zeta) to the coefficient of t^n of F(step(t)) - F(m), and nothing before.
-Imports first_integral, expansion, step, tower, homogeneous, series, errors.
+Imports first_integral, expansion, step, tower, homogeneous, series, tracing, errors.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from liehom.correctors.expansion import flow_series
 from liehom.correctors.first_integral import FirstIntegral, conditioning
 from liehom.correctors.step import Step
 from liehom.correctors.tower import NOISE
-from liehom.errors import InputError
+from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
 from liehom.homogeneous.field import check_point
 from liehom.series.arrays import as_values, is_exact
+from liehom.tracing import Traced
 
 RANK_RTOL = 1e-8
 
@@ -49,14 +50,11 @@ class Conservation:
     value, gradient : arrays of shape (..., k) and (..., k, N)
         F(m) and DF(m).
     basis : array of shape (..., dim g, s)
-        An orthonormal basis of g_m.
+        An orthonormal basis of g_m (in compiled code a projector on it, or of g where nothing has to be projected).
     matrix : array of shape (..., k, s)
         chi_m in this basis.
     scale : array of shape (..., k)
         |F| + sum_i |dF/dm_i| |m_i|: F is rounded by this much times eps.
-    hat : array of shape (..., k, s)
-        chi_m with each row divided by its largest possible size, as its rank is decided: its rows are at most of norm
-        sqrt(s), and 0 where X or DF on the orbit vanish.
 
     Notes
     -----
@@ -68,13 +66,14 @@ class Conservation:
     """
 
     __slots__ = (
+        "_bound",
+        "_on_tangents",
         "_sizes",
         "_velocity",
         "action",
         "basis",
         "factor",
         "gradient",
-        "hat",
         "integral",
         "m",
         "matrix",
@@ -87,11 +86,15 @@ class Conservation:
     def __init__(
         self, action: Action, integral: FirstIntegral, frame: IsotropyFrame, m: Any, generator: Any, factor: float
     ) -> None:
-        self.action, self.integral, self.basis, self.m, self.factor = action, integral, frame.basis, m, factor
+        self.action, self.integral, self.m, self.factor = action, integral, m, factor
         self.value, self.gradient = integral.gradient(m)
         self.scale = conditioning(self.value, self.gradient, m)
-        noise = NOISE * np.finfo(m.dtype).eps
-        tangential = self.gradient @ frame.tangent
+        noise = NOISE * float(np.finfo(m.dtype).eps)
+        self._on_tangents = self.gradient
+        if frame.basis is None:
+            tangential = self._on_even_orbit(frame)
+        else:
+            self.basis, tangential = frame.basis, self.gradient @ frame.tangent
         sizes = _length(tangential)
         kept = sizes > noise * _length(self.gradient)
         self._sizes = np.where(kept, sizes, 0.0)
@@ -99,11 +102,36 @@ class Conservation:
         velocity = action.infinitesimal(generator, m)
         self._take(velocity, _length(velocity) > noise * action.size * _length(generator) * _length(m))
 
+    def _on_even_orbit(self, frame: IsotropyFrame) -> Any:
+        """DF on the tangent space, for a frame without a basis of g_m: what lengths are taken of is the same."""
+        action, even = self.action, self.action.even
+        columns, basis = action.infinitesimal.right(self.m), action.inner_product.orthonormal_basis()
+        tangential = (self.gradient @ columns) @ frame.lift
+        if even is not None and even.symmetric:  # R(X)^T DF is in g_m if DF is tangential
+            self.basis, self._on_tangents = basis, tangential
+        else:
+            self.basis = basis - frame.lift @ (columns @ basis)
+        return tangential
+
     def _take(self, velocity: Any, moving: Any) -> None:
-        self._velocity, self.moving, self.matrix = velocity, moving, self.along(velocity)
-        bound = self.factor * self.action.size * _length(velocity)[..., None] * self._sizes
-        kept = moving[..., None] & (bound > 0)
-        self.hat = np.where(kept[..., None], self.matrix / np.where(kept, bound, 1.0)[..., None], 0.0)
+        self._velocity, self.moving = velocity, moving
+        pulled = self.action.infinitesimal.pulled(velocity[..., None, :], self._on_tangents)
+        self.matrix = self.factor * (pulled @ self.basis)
+        self._bound = self.factor * self.action.size * _length(velocity)[..., None] * self._sizes
+
+    @property
+    def hat(self) -> Any:
+        """chi_m with each row divided by its largest possible size, as its rank is decided, shape (..., k, s).
+
+        Its rows are at most of norm sqrt(s), and 0 where X or DF on the orbit vanish.
+        """
+        kept = self.moving[..., None] & (self._bound > 0)
+        return np.where(kept[..., None], self.matrix / np.where(kept, self._bound, 1.0)[..., None], 0.0)
+
+    def _of_one(self) -> tuple[Any, Any]:
+        """Of one integral: |chi_m|, and whether it counts as not 0, both (..., 1)."""
+        size = _length(self.matrix)
+        return size, self.moving[..., None] & (size > RANK_RTOL * self._bound)
 
     def toward(self, displacement: Any) -> Conservation:
         """The same with a displacement (..., N) of the step in place of X where X(m, t) = 0.
@@ -121,9 +149,14 @@ class Conservation:
         (0, 1)
         """
         made = copy(self)
-        moved = _length(displacement) > NOISE * np.finfo(self.m.dtype).eps * _length(self.m)
+        moved = _length(displacement) > NOISE * float(np.finfo(self.m.dtype).eps) * _length(self.m)
         made._take(np.where(self.moving[..., None], self._velocity, displacement), self.moving | moved)
         return made
+
+    def needs_motion(self, displacement: Any) -> None:
+        """In compiled code: only steps are made for which `toward` would change nothing."""
+        moved = _length(displacement) > NOISE * float(np.finfo(np.float64).eps) * _length(self.m)
+        self.m.tape.required.append((self.moving | ~moved).entries[()])
 
     @property
     def dimension(self) -> int:
@@ -144,9 +177,8 @@ class Conservation:
         >>> found.along(np.ones(3)).shape
         (1, 1)
         """
-        basis = self.basis if directions is None else directions
-        moved = self.action.infinitesimal(np.swapaxes(basis, -1, -2), displacement[..., None, :])
-        return self.factor * (self.gradient @ np.swapaxes(moved, -1, -2))
+        pulled = self.action.infinitesimal.pulled(displacement[..., None, :], self.gradient)
+        return self.factor * (pulled @ (self.basis if directions is None else directions))
 
     def __call__(self, zeta: Any) -> Any:
         """chi_m(zeta) for zeta (..., dim g) in g_m, shape (..., k)."""
@@ -156,20 +188,24 @@ class Conservation:
     @property
     def singular_values(self) -> Any:
         """Of `hat`, shape (..., min(k, s)), decreasing."""
-        if self.hat.shape[-2] == 1:
-            return _length(self.hat)[..., : self.hat.shape[-1]]
+        if self.matrix.shape[-2] == 1:
+            return _length(self.hat)[..., : self.matrix.shape[-1]]
+        needs_one(self.hat)
         return np.linalg.svd(_double(self.hat), compute_uv=False)
 
     @property
     def rank(self) -> Any:
         """Of chi_m, shape (...,)."""
+        if self.matrix.shape[-2] == 1:
+            return self._of_one()[1][..., 0].astype(int)
         return (self.singular_values > RANK_RTOL).sum(axis=-1)
 
     @property
     def wanted(self) -> Any:
         """How many of the integrals are independent on the orbit at m: the rank of DF(m) on its tangent space."""
         if self.tangential.shape[-2] == 1:
-            return (_length(self.tangential)[..., 0] > 0).astype(int)
+            return (self._sizes[..., 0] > 0).astype(int)
+        needs_one(self.tangential)
         return (np.linalg.svd(_double(self.tangential), compute_uv=False) > RANK_RTOL).sum(axis=-1)
 
     @property
@@ -180,11 +216,11 @@ class Conservation:
     @property
     def directions(self) -> Any:
         """V_m: an orthonormal basis of the complement of ker chi_m in g_m, shape (..., dim g, q); zeros fill up."""
-        if self.hat.shape[-2] == 1:
-            size = _length(self.hat)[..., None]
-            kept = size > RANK_RTOL
-            rows = np.where(kept, self.hat / np.where(kept, size, 1.0), 0.0)
+        if self.matrix.shape[-2] == 1:
+            size, kept = (x[..., None] for x in self._of_one())
+            rows = np.where(kept, self.matrix / np.where(kept, size, 1.0), 0.0)
         else:
+            needs_one(self.hat)
             _, sizes, right = np.linalg.svd(_double(self.hat), full_matrices=False)
             rows = right * (sizes > RANK_RTOL)[..., None]
         return self.basis @ np.swapaxes(rows, -1, -2)
@@ -226,6 +262,15 @@ class Conservation:
         if self.onto:
             return state
         return state + "; isotropy does not reach " + ", ".join(combination(z) for z in self.unreachable())
+
+
+def needs_one(matrix: Any) -> None:
+    """Refuse several integrals where values are not known: a singular value decomposition branches on them."""
+    if type(matrix) is Traced:
+        raise TraceError(
+            "several first integrals at once need a singular value decomposition, which is not compiled: conserve one, "
+            "or integrate without compile="
+        )
 
 
 def combination(covector: Any) -> str:

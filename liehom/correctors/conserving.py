@@ -5,7 +5,7 @@
 n - 1 is the order to which the step conserves F by itself.  sigma lies in V_m, the complement of ker chi_m in g_m; its
 linearisation solves chi_m(sigma) = -E_n.
 Imports conservation, conserved_order, first_integral, level_newton, expansion, step, tower, homogeneous, series,
-errors.
+tracing, errors.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ from liehom.correctors.first_integral import FirstIntegral
 from liehom.correctors.level_newton import aim as newton
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors, step_variable
 from liehom.correctors.tower import NOISE, with_correction
-from liehom.errors import InputError
+from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action
 from liehom.series.arrays import is_exact, is_jax, zeros
 from liehom.series.jet import Jet
+from liehom.tracing import Traced
 
 AIMS = ("start", "previous")
 ROUND_OFF = 0.5
@@ -122,6 +123,8 @@ class Conserving(Step):
         if is_jax(m) or is_exact(m):
             raise InputError("a conserving step iterates to round-off, on numpy arrays of floats only")
         time = t[..., 0] if np.ndim(t) else t
+        if self.linear and type(m) is Traced:
+            raise TraceError("linear=True measures the order to which F is kept, which is not compiled: leave it out")
         known = psi.prepared.get((self, action))
         if known is None:
             known = psi.prepared[self, action] = _Begun(self, action, psi, m, time)
@@ -157,13 +160,24 @@ class _Begun:
         start = m if psi.start is None else psi.start
         self.integral = FirstIntegral(step._source, action.representation.size)
         self.n: int | None = None
+        self.target: Any = None
+        if type(m) is Traced:
+            self.target = self._given(step, m)
+            return
         bound = step.order + 1
         self.integral.check(flow_series(psi.field, start, bound, t), bound)
-        self.target: Any = None
         if step.aim == "start" and (psi.start is not None or step._value is not None):
             value = self.integral(start)
             self.target = value if step._value is None else _aimed_at(step._value, value)
         self._explore(step, action, psi, start, t)
+
+    def _given(self, step: Conserving, m: Any) -> Any:
+        """The target of a traced step, a number that every trajectory has; None for F(m). All else is not needed."""
+        if step.aim == "previous":
+            return None
+        if step._value is not None:
+            return _aimed_at(step._value, self.integral(m))
+        return Traced(m.tape, [m.tape.given_number(lambda points: self.integral(points)[..., 0])])
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Any, t: Any) -> None:
         """n, and whether chi is onto, at the start and at points next to it, as symmetric points may mislead."""
@@ -287,7 +301,7 @@ class ConservingStep(LocalStep):
         self.estimate_order = getattr(base, "estimate_order", None)
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
-        self._unit = ROUND_OFF * np.finfo(found.m.dtype).eps * found.scale
+        self._unit = ROUND_OFF * float(np.finfo(found.m.dtype).eps) * found.scale
         self._last: tuple[Any, tuple[Any, ...], Conserved] | None = None
         self._sigma: Any = None
 
@@ -320,6 +334,10 @@ class ConservingStep(LocalStep):
 
     # -- private -----------------------------------------------------------------------------------------
     def _made(self, h: Any) -> tuple[Any, tuple[Any, ...], Conserved]:
+        if isinstance(h, Traced):
+            if self._last is None or self._last[0] is not h:
+                self._last = (h, *self._corrected(h))
+            return self._last
         last, h = self._last, np.asarray(h)
         if last is None or h.shape != last[0].shape or h.dtype != last[0].dtype or not (h == last[0]).all():
             last = self._last = (h.copy(), *self._corrected(h))
@@ -341,14 +359,16 @@ class ConservingStep(LocalStep):
             x = self.sigma() * h ** ((self.n or 1) - 1)
             resolved, iterations, left = found.rank, np.zeros(m.shape[:-1], dtype=int), residual(x)
         else:
-            if not found.moving.all():
+            if type(m) is Traced:
+                found.needs_motion(z - m)
+            elif not found.moving.all():
                 found = found.toward(z - m)
             directions = found.directions
             jacobian = found.along(z - m, directions)
             aimed = newton(residual, first, directions, jacobian, self._unit, action.size)
             x, resolved, iterations, left = aimed.x, aimed.resolved, aimed.iterations, aimed.residual
         defect = np.abs(left)
-        units = (defect / np.maximum(self._unit, np.finfo(defect.dtype).tiny)).max(axis=-1)
+        units = (defect / np.maximum(self._unit, float(np.finfo(defect.dtype).tiny))).max(axis=-1)
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
         record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)

@@ -3,7 +3,7 @@
 The unknown is an element x of V_m, the complement of ker chi_m in g_m; the Jacobian is at first the one of Corollary 11
 along the step that is made, e DF(m) rho(x) (step - m), and is corrected by the differences that are met (Broyden's
 updates; for one integral the secant method).  Residuals are in units of what F is rounded by.
-Imports conservation.
+Imports conservation, tracing.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.conservation import RANK_RTOL
+from liehom.tracing import Traced, repeated
 
 MAX_ITERATIONS = 20
 STALLED = 2
@@ -73,7 +74,9 @@ def aim(residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: A
     >>> bool(np.isclose(found.x[0], np.pi / 6, rtol=1e-15)), bool(found.iterations < 8)
     (True, True)
     """
-    unit = np.maximum(unit, np.finfo(first.dtype).tiny)
+    unit = np.maximum(unit, float(np.finfo(first.dtype).tiny))
+    if type(first) is Traced:
+        return _on_tape(residual, first, directions[:, 0], jacobian[0, 0], unit, size)
     if jacobian.shape == (1, 1):
         return _of_one(residual, first, directions[:, 0], jacobian.item(), unit.item(), size)
     project, lift, slopes, kept = _reduced(jacobian / unit[..., None], RESOLVED * size)
@@ -126,6 +129,33 @@ def _of_one(residual: Callable[[Any], Any], first: Any, direction: Any, slope: A
         else:
             stalled += 1
     return Aimed(x, left, np.array(iterations), np.array(1))
+
+
+def _on_tape(residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float) -> Aimed:
+    """`_of_one` in compiled code, every lane for itself."""
+    tape = first.tape
+    resolved = np.abs(slope) > RESOLVED * size * unit[0]
+    start = first[0]
+
+    def iteration(c: Any, best: Any, over: Any, stalled: Any, count: Any, active: Any) -> Any:
+        # with 1 / slope, as there is then one division
+        step = np.clip(-best * over, -1 / size, 1 / size)
+        value = residual((c + step) * direction)[0]
+        change = value - best
+        better = active & (np.abs(value) < np.abs(best))
+        clear = np.abs(change * over) > 1e-3 * np.abs(step)
+        over = np.where(clear, step / np.where(clear, change, 1.0), over)
+        c, best = np.where(better, c + step, c), np.where(better, value, best)
+        stalled = np.where(better, stalled, stalled + 1.0)
+        count = count + np.where(active, 1.0, 0.0)
+        active = active & (np.abs(best) > unit[0]) & (stalled < STALLED)
+        return [c, best, over, stalled, count, active], active
+
+    active = resolved & (np.abs(start) > unit[0])
+    over = 1.0 / np.where(resolved, slope, 1.0)
+    found = repeated(iteration, [0.0, start, over, 0.0, 0.0, active], tape, MAX_ITERATIONS)
+    c, best, _, _, count, _ = found
+    return Aimed(c * direction, best[None], count, np.where(resolved, 1, 0))
 
 
 def _reduced(jacobian: Any, cutoff: float) -> tuple[Any, Any, Any, Any]:

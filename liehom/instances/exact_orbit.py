@@ -6,7 +6,7 @@ At unit vectors, with sigma_i and R, h, v as in `closed_forms`, w = omega_o, rho
     f(s) = sigma_i + (t rho - 1 + t^2 v^2/4) s + (t^2/4)(b - h) s^2 - (t^2/4) s^3,
 
 a cubic whose root next to t = 0 is sigma_i (1 + t rho + ...).  It always has a real root.
-Imports closed_forms, updates, correctors, homogeneous, errors.
+Imports closed_forms, updates, correctors, homogeneous, tracing, errors.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from liehom.instances.closed_forms import Ingredients, dot
 from liehom.instances.updates import step_sizes
 from liehom.integrators.points import points_of
 from liehom.series.jet import Jet
+from liehom.tracing import Traced
 
 if TYPE_CHECKING:
     from liehom.instances.rigid_body import RigidBody
@@ -124,8 +125,11 @@ class OrbitStep(LocalStep):
         for _ in range(ITERATIONS):
             slope = self._slope(s, t)
             s = np.where(slope < -LEAST_SLOPE / 2, s - self._value(s, t) / np.where(slope < 0, slope, -1), s)
-        eps = np.finfo(s.dtype).eps
+        eps = float(np.finfo(s.dtype).eps)
         kept = (np.abs(self._value(s, t)) <= 16 * eps * (1 + np.abs(s))) & (self._slope(s, t) < -LEAST_SLOPE)
+        if isinstance(s, Traced):  # where it does not hold the step is not made by compiled code
+            s.tape.required.append(Traced(s.tape, np.all(kept)).entries[()])
+            return s, kept
         if not bool(kept.all()):
             s = np.where(kept, s, self._nearest(start, t, kept))
         return s, kept

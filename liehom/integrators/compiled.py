@@ -1,8 +1,8 @@
 """Runs of plain steps made ahead by compiled code; what is not plain is left to the run itself.
 
 The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
-before a time of t_eval, and before a step that fails in any way.
-Imports clock, jax_kernel, run, traced_step, tracing, errors.
+before a time of t_eval, and before a step that fails in any way.  Where step sizes are adapted, each lane has its own.
+Imports clock, jax_kernel, run, traced_size, traced_step, tracing, errors.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 from liehom.errors import InputError
 from liehom.integrators.clock import SLACK
 from liehom.integrators.jax_kernel import JaxKernel
+from liehom.integrators.traced_size import Limits
 from liehom.integrators.traced_step import traced_step
 from liehom.tracing import Kernel, StepGraph, padded
 
@@ -50,20 +51,33 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
     """
     if backend not in BACKENDS:
         raise InputError(f"compile is {backend!r}, expected one of {', '.join(map(repr, BACKENDS))}, or None")
-    if run.options.dt is None:
-        raise InputError(f"compile={backend!r} takes fixed steps: give dt, or integrate without compile=")
     if run.events is not None:
         raise InputError(f"compile={backend!r} does not look for events: integrate without compile=")
     if run.dtype != np.float64:
         raise InputError(f"compile={backend!r} computes in float64, the start is of type {run.dtype}")
     dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
     points = run.start.reshape(-1, run.start.shape[-1])
-    groups = []
+    groups, calls = [], []
     for d in np.unique(dimensions):
-        lanes = np.flatnonzero(dimensions == d)
-        graph = traced_step(run.action, run.field, run.step, points[lanes], int(d), nominal=run.options.nominal)
+        lanes, before = np.flatnonzero(dimensions == d), run.calls
+        graph = traced_step(
+            run.action,
+            run.psi.field,
+            run.step,
+            points[lanes],
+            int(d),
+            nominal=run.options.nominal,
+            limits=_limits(run) if run.options.dt is None else None,
+        )
         groups.append(Group(graph, lanes, backend, points[lanes]))
-    return Compiled(groups)
+        calls.append(run.calls - before)
+        run.calls = before
+    return Compiled(groups, None if run.options.dt is not None else max(calls))
+
+
+def _limits(run: Run) -> Limits:
+    o = run.options
+    return Limits(o.rtol, o.atol, o.max_step, float(run.end), float(run.direction), float(run.tiny))
 
 
 @final
@@ -133,11 +147,13 @@ class Compiled:
     Parameters
     ----------
     groups : list of Group
+    calls : int, optional
+        Of psi in a step; by default as many as in the first step that the run makes.
     """
 
-    def __init__(self, groups: list[Group]) -> None:
+    def __init__(self, groups: list[Group], calls: int | None = None) -> None:
         self.groups = groups
-        self._calls: int | None = None
+        self._calls = calls
 
     def __call__(self, run: Run) -> None:
         """Make plain steps until every trajectory rests, or for a while."""
@@ -148,7 +164,7 @@ class Compiled:
         lanes = int(np.prod(run.shape, dtype=int))
         steps = min(int(run.options.max_steps) - 1 - int(np.max(run.taken)), max(1, BREATH // lanes))
         if run.keeps:
-            steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 1))))
+            steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 2))))
         if steps < 1:
             return
         state = _State(run)
@@ -165,17 +181,23 @@ class _State:
         size = run.start.shape[-1]
         self.m = run.m.reshape(-1, size).T.astype(np.float64, order="C", copy=True)
         self.t = np.array(run.t, dtype=np.float64).reshape(-1)
-        self.h = (run.direction * np.broadcast_to(run.options.dt, run.shape)).reshape(-1)
+        self.adaptive = run.options.dt is None
+        if self.adaptive:  # proposed sizes, without a sign
+            self.h = np.array(run.h, dtype=np.float64).reshape(-1)
+        else:
+            self.h = (run.direction * np.broadcast_to(run.options.dt, run.shape)).reshape(-1)
         self.limit = np.full(self.t.shape, float(run.end))
         if run.samples is not None and len(run.samples.times):
             done, times = run.samples.done.reshape(-1), run.samples.times
             ahead = times[np.minimum(done, len(times) - 1)]
             self.limit = np.where(done < len(times), ahead, self.limit)
-        self.alive = run.active.reshape(-1).astype(np.float64)
+        # without a proposal the first size is for the run to find
+        self.alive = (run.active.reshape(-1) & np.isfinite(self.h)).astype(np.float64)
         self.before = run.taken.reshape(-1).astype(np.float64)
         self.count = self.before.copy()
-        self.paths: list[tuple[Any, Any, Any]] = []
-        self.accounts: list[tuple[Any, Any]] = []
+        self.tries = np.zeros(self.t.shape)
+        self.paths: list[tuple[Any, Any, Any, Any]] = []
+        self.accounts: list[tuple[Any, dict[str, Any]]] = []
 
     def step(self, group: Group, steps: int) -> None:
         """Let a kernel step its lanes."""
@@ -185,36 +207,42 @@ class _State:
         if graph.passed is None:  # so many steps end before it
             whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
             limit = np.ceil(whole - SLACK) - 1
-        fixed = [group.packed(x) for x in (self.h, limit)]
-        alive = group.packed(self.alive)
+        h, limit = group.packed(self.h), group.packed(limit)
+        alive, tries = group.packed(self.alive), group.packed(self.tries)
         extra = np.zeros((max(1, len(graph.largest) + len(graph.summed)), m.shape[-1]))
-        path = path_t = None
+        path = path_t = path_h = None
         if run.keeps:
             path, path_t = np.empty((steps, *m.shape)), np.empty((steps, m.shape[-1]))
+            path_h = np.zeros(path_t.shape) if self.adaptive else None
         group.run(
-            [m, t, *fixed, count, alive, extra, group.constants, path, path_t],
+            [m, t, h, limit, count, alive, extra, group.constants, path, path_t, tries, path_h],
             steps,
             float(run.span[0]),
             float(run.direction),
         )
         used = slice(0, len(lanes))
         self.m[:, lanes], self.t[lanes], self.count[lanes] = m[:, used], t[used], count[used]
+        self.tries[lanes] = tries[used] if self.adaptive else count[used] - self.before[lanes]
+        if self.adaptive:
+            self.h[lanes] = h[used]
         if path is not None and path_t is not None:
-            made = int((self.count[lanes] - self.before[lanes]).max(initial=0))
-            self.paths.append((lanes, path[:made, :, used], path_t[:made, used]))
+            rows = slice(0, int(self.tries[lanes].max(initial=0)))
+            sizes = None if path_h is None else path_h[rows, used]
+            self.paths.append((lanes, path[rows, :, used], path_t[rows, used], sizes))
         if graph.summed:
-            zeros = np.zeros((2 - len(graph.largest), m.shape[-1]))
-            self.accounts.append((lanes, np.concatenate([zeros, extra])[:4, used]))
+            self.accounts.append((lanes, dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))))
 
     def hand_back(self, calls: int) -> None:
         """The new state of the run."""
         run, shape = self.run, self.run.shape
         new = (self.count - self.before).astype(int)
-        most = int(new.max(initial=0))
+        most = int(self.tries.max(initial=0))
         if most == 0:
             return
         run.m = self.m.T.copy().reshape(run.start.shape)
         run.t = self.t.reshape(shape) if shape else np.asarray(self.t[0])
+        if self.adaptive:
+            run.h = self.h.reshape(shape)
         run.taken = run.taken + new.reshape(shape)
         run.calls += calls * most
         for lanes, extra in self.accounts:
@@ -224,15 +252,21 @@ class _State:
 
     def _keep(self, new: Any, most: int) -> None:
         run, shape = self.run, self.run.shape
-        moved = np.arange(most)[:, None] < new
         if len(self.paths) == 1 and len(self.paths[0][0]) == len(new):
-            points, times = np.swapaxes(self.paths[0][1], 1, 2), self.paths[0][2]
+            points, times, sizes = np.swapaxes(self.paths[0][1], 1, 2), *self.paths[0][2:]
         else:
             points, times = np.zeros((most, len(new), run.start.shape[-1])), np.zeros((most, len(new)))
-            for lanes, path, path_t in self.paths:
+            sizes = np.zeros(times.shape)
+            for lanes, path, path_t, path_h in self.paths:
                 points[: len(path), lanes] = np.swapaxes(path, 1, 2)
                 times[: len(path_t), lanes] = path_t
-        sizes = np.where(moved, self.h, 0.0)
+                if path_h is not None:
+                    sizes[: len(path_t), lanes] = path_h
+        if self.adaptive:
+            moved = sizes != 0
+        else:
+            moved = np.arange(most)[:, None] < new
+            sizes = np.where(moved, self.h, 0.0)
         run.path.extend(
             times.reshape(most, *shape),
             points.reshape(most, *run.start.shape),

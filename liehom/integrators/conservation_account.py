@@ -130,6 +130,22 @@ class ConservationAccount:
             seen["covectors"] = local.found.unreachable(index)
         self._seen = seen  # arrays are replaced, never written into: older states stay whole
 
+    def add_compiled(self, lanes: Any, extra: dict[str, Any]) -> None:
+        """Take in what compiled steps with one integral summed up, for some lanes of the flattened ensemble.
+
+        Of those that are not left alone ("usual") chi is onto; others are not made by compiled code.
+        """
+        old = self._seen
+        seen = {name: np.array(x).reshape(-1) for name, x in old.items() if name not in ("place", "covectors")}
+        usual = extra["usual"] > 0
+        seen["rank"][lanes] = np.where(usual, np.minimum(seen["rank"][lanes], 1), seen["rank"][lanes])
+        seen["wanted"][lanes] = np.where(usual, np.maximum(seen["wanted"][lanes], 1), seen["wanted"][lanes])
+        for name in ("iterations", "defect"):
+            seen[name][lanes] = np.maximum(seen[name][lanes], extra[name].astype(seen[name].dtype))
+        for name in ("missed", "left"):
+            seen[name][lanes] += extra[name].astype(int)
+        self._seen = {**old, **{name: x.reshape(np.shape(old[name])) for name, x in seen.items()}}
+
     def report(self) -> ConservationReport | None:
         """The account as a report; None for other steps."""
         if not isinstance(self._step, Conserving):

@@ -121,18 +121,22 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
 
     direction = 1.0 if span[1] >= span[0] else -1.0
     h, n = direction * dt, graph.size
-    constants = dict(enumerate(_constants(graph, m), n + 2))
+    constants = {-1 - i: c for i, c in enumerate(_constants(graph, m))}
     gaps = np.abs(np.diff(np.concatenate([[span[0]], np.asarray(times)])))
     most = ceil(float(gaps.max(initial=0.0)) / dt * (1.0 if graph.passed is None else SPARE)) + 1
 
     def step(m: Any, t: Any, size: Any) -> tuple[Any, Any]:
-        outputs = [*graph.point, *([] if graph.passed is None else [graph.passed])]
-        made = evaluated(outputs, {**dict(enumerate(m)), n: t, n + 1: size, **constants})
+        outputs = [*graph.point, *[x for x in (graph.passed, graph.solved) if x is not None]]
+        made = evaluated(outputs, {**dict(enumerate(m)), n: t, n + 1: size, **constants}, differentiable=True)
         made = [jnp.broadcast_to(x, t.shape) for x in made]
-        return jnp.stack(made[:n]), made[n] if graph.passed is not None else jnp.broadcast_to(size, t.shape)
+        point = jnp.stack(made[:n])
+        if graph.solved is not None:
+            point = jnp.where(made[-1], point, jnp.nan)
+        return point, made[n] if graph.passed is not None else jnp.broadcast_to(size, t.shape)
 
     def size_for(m: Any, t: Any, left: Any) -> Any:
-        made = evaluated([c for _, c in graph.clock], {**dict(enumerate(m)), n: t, **constants})
+        coefficients = [c for _, c in graph.clock]
+        made = evaluated(coefficients, {**dict(enumerate(m)), n: t, **constants}, differentiable=True)
         found = dict(zip([k for k, _ in graph.clock], made, strict=True))
         s = left
         for _ in range(NEWTON if found else 0):
@@ -163,4 +167,4 @@ def _constants(graph: StepGraph, m: Any) -> list[Any]:
     """Numbers of the trajectories, from their starts."""
     from jax import numpy as jnp
 
-    return [rank / jnp.einsum("i...,ij,j...->...", m, form, m) for rank, form in graph.forms]
+    return [number(jnp.moveaxis(m, 0, -1)) for number in graph.given]

@@ -28,8 +28,8 @@ MOST = 64
 def _fingerprint(graph: StepGraph) -> str:
     """The same for graphs of the same operations."""
     rows = [(x.op, *[a.place for a in x.args], x.value) for x in needed(graph.outputs)]
-    layout = [x.place for x in graph.outputs], graph.size, len(graph.largest), len(graph.forms)
-    optional = graph.passed is None, graph.runs is None
+    layout = [x.place for x in graph.outputs], graph.size, len(graph.largest), len(graph.given)
+    optional = graph.passed is None, graph.runs is None, graph.sizes is None
     return hashlib.sha256(repr((rows, layout, optional)).encode()).hexdigest()
 
 
@@ -59,19 +59,22 @@ class JaxKernel:
 
     def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:
         """Step all lanes at most so many times; `arrays` are changed in place, None is no path."""
-        m, t, h, limit, count, alive, extra, constants, path, path_t = arrays
+        m, t, h, limit, count, alive, extra, constants, path, path_t, *more = arrays
+        tries, path_h = more or (np.zeros_like(t), None)
         with enabled_x64():
-            fixed = (h, limit, () if constants is None else constants, *time)
-            state = (m, t, count, alive, extra)
+            fixed = (limit, () if constants is None else constants, *time)
+            state = (m, t, count, alive, extra, h, tries)
             if path is None:
                 state, _ = self._jit(state, fixed, steps, stored=0)
             done = 0
             while path is not None and done < steps and np.any(np.asarray(state[3]) > 0):
                 size = min(CHUNK, 1 << (steps - done).bit_length() - 1)
-                state, (points, times) = self._jit(state, fixed, size, stored=size)
+                state, (points, times, sizes) = self._jit(state, fixed, size, stored=size)
                 path[done : done + size], path_t[done : done + size] = points, times
+                if path_h is not None:
+                    path_h[done : done + size] = sizes
                 done += size
-            for old, new in zip((m, t, count, alive, extra), state, strict=True):
+            for old, new in zip((m, t, count, alive, extra, h, tries), state, strict=True):
                 old[...] = new
 
     def _loop(self, state: Any, fixed: Any, steps: Any, stored: int) -> Any:
@@ -82,25 +85,25 @@ class JaxKernel:
         if not stored:
             found = lax.while_loop(
                 lambda s: (s[0] < steps) & jnp.any(s[1][3] > 0),
-                lambda s: (s[0] + 1, self._step(s[1], fixed)),
+                lambda s: (s[0] + 1, self._step(s[1], fixed)[0]),
                 (0, state),
             )
             return found[1], None
 
         def body(s: Any, _: Any) -> Any:
-            s = self._step(s, fixed)
-            return s, (s[0], s[1])
+            s, size = self._step(s, fixed)
+            return s, (s[0], s[1], size)
 
         return lax.scan(body, state, None, length=stored)
 
     def _step(self, state: Any, fixed: Any) -> Any:
-        """One step of the lanes for which it is a plain one; the others rest from now on."""
+        """One step of the lanes for which it is a plain one, and its size; the others rest from now on."""
         import jax.numpy as jnp
 
-        m, t, count, alive, extra = state
-        h, limit, constants, origin, direction = fixed
+        m, t, count, alive, extra, h, tries = state
+        limit, constants, origin, direction = fixed
         graph, n = self.graph, self.graph.size
-        inputs = {**dict(enumerate(m)), n: t, n + 1: h, **{n + 2 + i: c for i, c in enumerate(constants)}}
+        inputs = {**dict(enumerate(m)), n: t, n + 1: h, **{-1 - i: c for i, c in enumerate(constants)}}
         made = [jnp.broadcast_to(x, t.shape) for x in evaluated(graph.outputs, inputs)]
         new = jnp.stack(made[:n])
         rest = made[n:]
@@ -110,18 +113,24 @@ class JaxKernel:
             go = go & (count + 1 <= limit)
         else:
             after = t + rest.pop(0)
-            go = go & (direction * (limit - after) > SLACK * jnp.abs(h))
         if graph.runs is not None:
             go = go & rest.pop(0)
+        size, accepted, proposal = (h, True, h) if graph.sizes is None else [rest.pop(0) for _ in range(3)]
+        if graph.passed is not None:
+            go = go & (direction * (limit - after) > SLACK * jnp.abs(size))
+        tried, go = go, go & accepted
         more = [jnp.maximum(extra[i], x) if i < len(graph.largest) else extra[i] + x for i, x in enumerate(rest)]
         kept = jnp.concatenate([jnp.stack(more), extra[len(more) :]]) if more else extra
-        return (
+        state = (
             jnp.where(go, new, m),
             jnp.where(go, after, t),
             count + go,
-            jnp.where(go, 1.0, 0.0),
+            jnp.where(tried, 1.0, 0.0),
             jnp.where(go, kept, extra),
+            jnp.where(tried, proposal, h),
+            tries + tried,
         )
+        return state, jnp.where(go, size, 0.0)
 
 
 def enabled_x64() -> Any:

@@ -87,15 +87,20 @@ class Account:
         Parameters
         ----------
         lanes : array of int
-        extra : array of shape (4, L)
-            The largest residual and number of orders missed, and how many steps missed the order or were at equilibria.
+        extra : dict of arrays of shape (L,)
+            The largest residual and number of orders missed ("short"), how many steps missed the order or were at
+            equilibria, and what a `ConservationAccount` takes.
         """
         seen = {name: np.array(x).reshape(-1) for name, x in self._seen.items()}
-        seen["residual"][lanes] = np.maximum(seen["residual"][lanes], extra[0])
-        seen["reached"][lanes] = np.minimum(seen["reached"][lanes], self._wanted - extra[1].astype(int))
-        seen["failed"][lanes] += extra[2].astype(int)
-        seen["equilibria"][lanes] += extra[3].astype(int)
+        if "short" in extra:
+            seen["residual"][lanes] = np.maximum(seen["residual"][lanes], extra["residual"])
+            seen["reached"][lanes] = np.minimum(seen["reached"][lanes], self._wanted - extra["short"].astype(int))
+            seen["failed"][lanes] += extra["failed"].astype(int)
+        if "equilibria" in extra:
+            seen["equilibria"][lanes] += extra["equilibria"].astype(int)
         self._seen = {name: x.reshape(np.shape(self._seen[name])) for name, x in seen.items()}
+        if "usual" in extra:
+            self._conservation.add_compiled(lanes, extra)
 
     def _note_where(self, lowest: Any, t: Any, m: Any) -> None:
         """Where the smallest singular value of all trajectories was met."""

@@ -5,27 +5,33 @@ Imports clock, correctors, homogeneous, tracing, errors.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import reduce
 from typing import Any
 
 import numpy as np
 
-from liehom.correctors.conserving import Conserving
+from liehom.correctors.conserving import ConservingStep
 from liehom.correctors.corrected import CorrectedStep
 from liehom.correctors.range_solver import EvenRangeSolver
 from liehom.correctors.step import Generator, Step, apply_factors
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.lazy_frame import evenness
-from liehom.integrators.clock import has_clock
-from liehom.tracing import Expr, StepGraph, Tape, Traced
+from liehom.integrators.clock import has_clock, pace
+from liehom.integrators.conservation_account import REACHED
+from liehom.integrators.control import ERROR_TERMS
+from liehom.integrators.traced_size import Limits, judgement, tried_size
+from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
 
 CALM = 0.8
 """A clock certainly runs if tau' is that close to 1 over the whole step."""
 
 
 def traced_step(
-    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, *, nominal: bool
-) -> StepGraph:
+    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, *, nominal: bool,
+    limits: Limits | None = None,
+) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
     Parameters
@@ -36,6 +42,8 @@ def traced_step(
     orbit_dimension : int
     nominal : bool
         Whether time advances by the step size rather than by the step's own clock.
+    limits : Limits, optional
+        Adapt the step size to them.
 
     Raises
     ------
@@ -50,13 +58,8 @@ def traced_step(
     >>> len(graph.point), graph.passed
     (2, None)
     """
-    if isinstance(step, Conserving):
-        raise TraceError(
-            f"{step!r} solves equations by iterations whose length depends on values, which is not compiled: "
-            "integrate without compile="
-        )
     try:
-        return _traced(action, field, step, points, orbit_dimension, nominal)
+        return _traced(action, field, step, points, orbit_dimension, nominal, limits)
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -67,25 +70,47 @@ def traced_step(
 
 
 def _traced(
-    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool
-) -> StepGraph:
+    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool,
+    limits: Limits | None,
+) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
     even = evenness(action, points, orbit_dimension)
-    forms: tuple[tuple[int, Any], ...] = ()
     if even is not None and action.inner_product.invariant:
-        forms = ((orbit_dimension, even.trace),)
-        even = even._replace(over=Traced(tape, tape.input(n + 2)))
+        form = even.trace
+        over = tape.given_number(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
+        even = even._replace(over=Traced(tape, over))
     action = action.on_even_orbits(even)
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
-    local = step.at(action, Generator(field, orbit_dimension), m, t[..., None])
-    made = apply_factors(action, local.factors(h[..., None]), m)
+    psi, error_terms = Generator(field, orbit_dimension), 0 if limits is None else ERROR_TERMS
+    local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
+    given_limits: Limits | None = None
+    if limits is not None:
+        given_limits = Limits._make(Traced(tape, tape.given_number(_everywhere(x))) for x in limits)
+        h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
+        tape.required.append(_number(tape, certain))
+    size = h[..., None]
+    made = apply_factors(action, local.factors(size), m)
     passed, runs = None, None
     clock: tuple[tuple[int, Expr], ...] = ()
     if has_clock(local) and not nominal:
-        passed = _number(tape, local.time(h))
-        runs, clock = _runs(tape, local, h), _coefficients(tape, local)
-    worst, summed = _account(tape, local, step) if isinstance(local, CorrectedStep) else ((), ())
-    return StepGraph([_number(tape, made[i]) for i in range(n)], passed, runs, worst, summed, forms, clock)
+        passed, inner = _number(tape, local.time(h)), local.base if isinstance(local, ConservingStep) else local
+        runs, clock = _runs(tape, inner, h), _coefficients(tape, inner)
+        if limits is not None:  # larger steps than fixed ones: the clock is looked at as closely as it can be
+            runs = _number(tape, pace(local, h)[0])
+    sizes = None
+    if given_limits is not None:
+        passed = _number(tape, h) if passed is None else passed
+        sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
+    worst, summed = _account(tape, local, step, size)
+    solved = reduce(tape.both, tape.required) if tape.required else None
+    if solved is not None:
+        runs = solved if runs is None else tape.both(runs, solved)
+    point = [_number(tape, made[i]) for i in range(n)]
+    return StepGraph(point, passed, runs, worst, summed, tuple(tape.given), clock, solved, sizes)
+
+
+def _everywhere(x: float) -> Callable[[Any], Any]:
+    return lambda points: np.full(len(points), x)
 
 
 def _number(tape: Tape, x: Any) -> Expr:
@@ -112,13 +137,26 @@ def _runs(tape: Tape, local: Any, h: Any) -> Expr | None:
     return None if total is None else _number(tape, total < CALM)
 
 
-def _account(tape: Tape, local: CorrectedStep, step: Step) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
-    """(residual, orders missed) and (steps that missed the order, steps at equilibria)."""
-    found = local.correction
-    if all(isinstance(part.solver, EvenRangeSolver) for part in found.parts):
-        rest = _number(tape, np.where(Traced(tape, found.leading) == 0, 1.0, 0.0))
-        return (), (tape.zero, rest)
-    missed = step.order - np.where(Traced(tape, found.leading) == 0, step.order, Traced(tape, found.reached))
-    worst = _number(tape, found.residual), _number(tape, missed)
-    summed = np.where(missed > 0, 1.0, 0.0), np.where(Traced(tape, found.leading) == 0, 1.0, 0.0)
-    return worst, (_number(tape, summed[0]), _number(tape, summed[1]))
+def _account(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str, Expr], dict[str, Expr]]:
+    """What the report has of a step: numbers of which the largest is kept, and numbers that are summed up."""
+    largest: dict[str, Any] = {}
+    summed: dict[str, Any] = {}
+    if isinstance(local, ConservingStep):
+        made = local.conserved(size)
+        tape.required.append(_number(tape, made.left | (made.rank >= made.wanted)))
+        largest |= {"iterations": made.iterations, "defect": made.defect}
+        summed |= {
+            "missed": np.where(made.units > REACHED, 1.0, 0.0),
+            "left": np.where(made.left, 1.0, 0.0),
+            "usual": np.where(made.left, 0.0, 1.0),
+        }
+        local = local.base
+    if isinstance(local, CorrectedStep):
+        found = local.correction
+        rest = Traced(tape, found.leading) == 0
+        summed["equilibria"] = np.where(rest, 1.0, 0.0)
+        if not all(isinstance(part.solver, EvenRangeSolver) for part in found.parts):
+            short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
+            largest |= {"residual": found.residual, "short": short}
+            summed["failed"] = np.where(short > 0, 1.0, 0.0)
+    return ({k: _number(tape, x) for k, x in largest.items()}, {k: _number(tape, x) for k, x in summed.items()})

@@ -22,7 +22,7 @@ REDUCTIONS = {
     "add": "sum", "multiply": "prod", "maximum": "max", "minimum": "min", "logical_and": "all", "logical_or": "any",
 }  # fmt: skip
 COMPARISONS = {"less": "lt", "less_equal": "le", "equal": "eq", "not_equal": "ne"}
-STRUCTURAL = frozenset(["sum", "stack", "concatenate", "reshape", "swapaxes", "transpose", "moveaxis", "broadcast_to",
+STRUCTURAL = frozenset(["stack", "concatenate", "reshape", "swapaxes", "transpose", "moveaxis", "broadcast_to",
     "expand_dims", "squeeze", "ravel", "diagonal", "trace", "dot", "tensordot", "inner", "outer", "cross", "kron",
     "vdot", "roll", "flip", "take", "repeat", "tile", "cumsum", "diff", "mean", "prod", "hstack", "vstack", "dstack",
     "column_stack", "split", "array_split", "atleast_1d", "atleast_2d", "copy", "fliplr", "flipud", "rot90", "triu",
@@ -168,7 +168,7 @@ def _is_foreign(x: Any) -> bool:
 
 def _method(x: Traced, name: str, *args: Any, **options: Any) -> Any:
     if name == "astype":
-        return x
+        return _numbers(x.tape, x) if np.dtype(args[0]) != bool else x
     if name == "copy":
         return Traced(x.tape, x.entries.copy())
     if name in ("reshape", "transpose") and len(args) > 1:
@@ -347,6 +347,17 @@ def _reduced(
     return Traced(tape, out)
 
 
+def _numbers(tape: Tape, a: Any) -> Traced:
+    """Truth values as 0 and 1."""
+    made = Traced(tape, a)
+    return _each(tape, tape.select, made, 1.0, 0.0) if made.dtype == bool else made
+
+
+def _sum(tape: Tape, a: Any, axis: Any = None, **options: Any) -> Traced:
+    known = {k: v for k, v in options.items() if k in ("keepdims", "initial")}
+    return Traced(tape, np.sum(_numbers(tape, a).entries, axis=axis, **known))
+
+
 def _extremum(least: bool) -> Callable[..., Traced]:
     def found(tape: Tape, a: Any, axis: Any = None, keepdims: bool = False, initial: Any = None, **_: Any) -> Traced:
         start = None if initial is None or not np.isscalar(initial) else tape.of(initial)
@@ -426,7 +437,7 @@ def _blank(fill: float) -> Callable[..., Traced]:
 
 SPECIAL: dict[str, Callable[..., Any]] = {
     "max": _extremum(False), "amax": _extremum(False), "min": _extremum(True), "amin": _extremum(True),
-    "all": _all, "any": _any, "where": _where, "clip": _clip, "linalg.norm": _norm, "linalg.solve": _solve,
+    "all": _all, "any": _any, "where": _where, "sum": _sum, "clip": _clip, "linalg.norm": _norm, "linalg.solve": _solve,
     "linalg.inv": _inverse, "zeros_like": _blank(0.0), "ones_like": _blank(1.0), "empty_like": _blank(0.0),
     "full_like": lambda tape, a, fill_value, **_: Traced(tape, np.full(np.shape(a), 1.0)) * fill_value,
     "shape": lambda tape, a: a.shape, "ndim": lambda tape, a: a.ndim,

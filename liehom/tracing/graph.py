@@ -324,7 +324,25 @@ class Tape:
             return self.of({"lt": x < y, "le": x <= y, "eq": x == y, "ne": x != y}[op])
         if a is b and op in ("lt", "ne"):
             return self.false
+        if op in ("lt", "le"):
+            first, second = self._square(a), self._square(b)
+            if first and second and (first[1] or second[1]):  # of roots, without the roots
+                a, b = first[0], second[0]
         return self._make(op, (a, b))
+
+    def _square(self, x: Expr) -> tuple[Expr, bool] | None:
+        """The square of a number that is certainly not negative, and whether it had a root; None of others."""
+        if x.constant:
+            return (self.constant(x.value * x.value), False) if x.value >= 0 else None
+        if x.op == "sqrt":
+            return x.args[0], True
+        if x.op == "abs":
+            return self.mul(x.args[0], x.args[0]), False
+        if x.op == "mul":
+            first, second = self._square(x.args[0]), self._square(x.args[1])
+            if first and second:
+                return self.mul(first[0], second[0]), first[1] or second[1]
+        return None
 
     def both(self, a: Expr, b: Expr) -> Expr:
         """a and b."""

@@ -2,7 +2,8 @@
 
 Lanes are trajectories; W of them are stepped together, block by block, all steps of a block before the next block.
 A lane rests as soon as its next step would not be a plain one: the last before a limit, one that is not finite, one
-over which the clock does not run.  Imports graph, llvm_text, errors; llvmlite where it is used.
+over which the clock does not run.  Where sizes are adapted, a step that is not accepted changes only the size.
+Imports graph, llvm_text, errors; llvmlite where it is used.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import ctypes
 import hashlib
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
@@ -21,6 +22,7 @@ from liehom.tracing.graph import Expr, needed
 from liehom.tracing.llvm_text import LIBM, Body, Writer
 
 SLACK = 1e-9
+ARRAYS = 12
 
 
 @final
@@ -46,7 +48,7 @@ class Sizes:
 @final
 @dataclass(frozen=True, slots=True)
 class StepGraph:
-    """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, the others constants.
+    """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, -1, -2, ... constants.
 
     Attributes
     ----------
@@ -55,22 +57,28 @@ class StepGraph:
     passed : Expr or None
         The time that passes; None if it is the step size.
     runs : Expr or None
-        Whether the clock certainly runs over the step; None without a clock.
-    largest, summed : tuple of Expr
-        Numbers of which the run keeps the largest, or the sum, of the steps that are made.
-    forms : tuple of (int, array of shape (N, N))
-        Inputs N + 2, ...: the numbers r / <m, F m> of the trajectories, which do not change.
+        Whether the step is certainly a plain one: its clock runs over it, its equations were solved; None if always.
+    largest, summed : dict of str to Expr
+        Numbers of which the run keeps the largest, or the sum, of the steps that are made, by their names.
+    given : tuple of callable
+        Inputs -1, -2, ...: numbers of the trajectories, which do not change, as functions of their starts (L, N).
     clock : tuple of (int, Expr)
         k and c_k: in a step of size h the time h + c_2 h^2 + ... passes.
+    solved : Expr or None
+        Whether all equations of the step were solved (`runs` says so too); None where there are none.
+    sizes : Sizes or None
+        None if the size is fixed.
     """
 
     point: list[Expr]
     passed: Expr | None
     runs: Expr | None
-    largest: tuple[Expr, ...]
-    summed: tuple[Expr, ...]
-    forms: tuple[tuple[int, Any], ...] = ()
+    largest: dict[str, Expr]
+    summed: dict[str, Expr]
+    given: tuple[Callable[[Any], Any], ...] = ()
     clock: tuple[tuple[int, Expr], ...] = ()
+    solved: Expr | None = None
+    sizes: Sizes | None = None
 
     @property
     def size(self) -> int:
@@ -79,13 +87,15 @@ class StepGraph:
 
     def constants(self, points: Any) -> Any:
         """The further inputs, (count, L), for points (L, N)."""
-        return [r / ((points @ form) * points).sum(axis=-1) for r, form in self.forms]
+        return [number(points) for number in self.given]
 
     @property
     def outputs(self) -> list[Expr]:
         """All results."""
         extra = [x for x in (self.passed, self.runs) if x is not None]
-        return [*self.point, *extra, *self.largest, *self.summed]
+        sizes = self.sizes
+        adapted = [] if sizes is None else [sizes.tried, sizes.accepted, sizes.proposal]
+        return [*self.point, *extra, *adapted, *self.largest.values(), *self.summed.values()]
 
 
 def assembly(graph: StepGraph, width: int) -> str:
@@ -94,7 +104,7 @@ def assembly(graph: StepGraph, width: int) -> str:
     v, n = w.vector, graph.size
     _head(w, n)
     kept = _loop_head(w, graph)
-    constants = {n + 2 + i: f"%c{i}" for i in range(len(graph.forms))}
+    constants = {-1 - i: f"%c{i}" for i in range(len(graph.given))}
     body = Body(w, {**{i: f"%x{i}" for i in range(n)}, n: "%t", n + 1: "%h", **constants})
     body.write(needed(graph.outputs))
     _loop_end(w, graph, body)
@@ -125,7 +135,8 @@ def _head(w: Writer, n: int) -> None:
     w.lines += [
         "define void @run(ptr noalias %m, ptr noalias %t.in, ptr noalias %h.in, ptr noalias %limit.in,"
         " ptr noalias %count.in, ptr noalias %alive.in, ptr noalias %extra, ptr noalias %constants, ptr noalias %path,"
-        " ptr noalias %path.t, i64 %lanes, i64 %first, i64 %last, i64 %steps, double %origin, double %direction) #0 {",
+        " ptr noalias %path.t, ptr noalias %tries.in, ptr noalias %path.h,"
+        " i64 %lanes, i64 %first, i64 %last, i64 %steps, double %origin, double %direction) #0 {",
         "entry:",
         "  %stored = icmp ne ptr %path, null",
         "  br label %next",
@@ -147,15 +158,18 @@ def _loop_head(w: Writer, graph: StepGraph) -> list[tuple[str, str]]:
     kept = [(f"x{i}", _pointer(w, "%m", i)) for i in range(n)]
     kept += [("t", _pointer(w, "%t.in", 0)), ("count", _pointer(w, "%count.in", 0))]
     kept += [("alive", _pointer(w, "%alive.in", 0))]
+    if graph.sizes is not None:
+        kept += [("h", _pointer(w, "%h.in", 0)), ("tries", _pointer(w, "%tries.in", 0))]
     kept += [(f"e{i}", _pointer(w, "%extra", i)) for i in range(len(graph.largest) + len(graph.summed))]
     for name, place in kept:
         w.lines.append(f"  %{name}.start = load {v}, ptr {place}, align 8")
-    for name, base in (("h", "%h.in"), ("limit", "%limit.in")):
-        w.lines.append(f"  %{name} = load {v}, ptr {_pointer(w, base, 0)}, align 8")
-    for i in range(len(graph.forms)):
+    w.lines.append(f"  %limit = load {v}, ptr {_pointer(w, '%limit.in', 0)}, align 8")
+    if graph.sizes is None:
+        w.lines.append(f"  %h = load {v}, ptr {_pointer(w, '%h.in', 0)}, align 8")
+    for i in range(len(graph.given)):
         w.lines.append(f"  %c{i} = load {v}, ptr {_pointer(w, '%constants', i)}, align 8")
-    size = w.intrinsic("fabs", "%h")
-    w.lines.append(f"  %slack = fmul {v} {size}, {w.splat(SLACK)}")
+    if graph.sizes is None:
+        w.lines.append(f"  %slack = fmul {v} {w.intrinsic('fabs', '%h')}, {w.splat(SLACK)}")
     w.lines.append(f"  %dir = fadd {v} {w.spread('%direction')}, {w.splat(-0.0)}")
     w.lines.append(f"  %zero.time = fadd {v} {w.spread('%origin')}, {w.splat(-0.0)}")
     w.lines += ["  br label %step", "step:"]
@@ -175,7 +189,11 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
     else:
         after = w.emit(f"fadd {v} %t, {body.name(graph.passed)}")
         left = w.emit(f"fmul {v} %dir, {w.emit(f'fsub {v} %limit, {after}')}")
-        go = w.emit(f"fcmp ogt {v} {left}, %slack")
+        slack = "%slack"
+        if graph.sizes is not None:
+            size = w.intrinsic("fabs", body.name(graph.sizes.tried))
+            slack = w.emit(f"fmul {v} {size}, {w.splat(SLACK)}")
+        go = w.emit(f"fcmp ogt {v} {left}, {slack}")
     total = body.name(graph.point[0])
     for x in graph.point[1:]:
         total = w.emit(f"fadd {v} {total}, {body.name(x)}")
@@ -186,16 +204,23 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
     go = w.emit(f"and {w.mask} {go}, {w.emit(f'fcmp ogt {v} %alive, {w.splat(0.0)}')}")
     new = {f"x{i}": body.name(x) for i, x in enumerate(graph.point)}
     new |= {"t": after, "count": more}
-    for i, x in enumerate((*graph.largest, *graph.summed)):
+    for i, x in enumerate((*graph.largest.values(), *graph.summed.values())):
         if i < len(graph.largest):
             new[f"e{i}"] = w.intrinsic("maxnum", f"%e{i}", body.name(x))
         else:
             zero = x.constant and x.value == 0
             new[f"e{i}"] = f"%e{i}" if zero else w.emit(f"fadd {v} %e{i}, {body.name(x)}")
+    tried, old, sizes = go, {}, graph.sizes
+    if sizes is not None:
+        go = w.emit(f"and {w.mask} {go}, {body.name(sizes.accepted)}")
+        new |= {"h": body.name(sizes.proposal), "tries": w.emit(f"fadd {v} %tries, {w.splat(1.0)}")}
+        new["size"], old["size"] = body.name(sizes.tried), w.splat(0.0)
     # a branch that is foreseen costs nothing, selections would stand in the chain from step to step
     w.lines += [f"  br i1 {w.all(go)}, label %made, label %mixed, !prof !1", "mixed:"]
     for name, value in new.items():
-        w.lines.append(f"  %{name}.mixed = select {w.mask} {go}, {v} {value}, {v} %{name}")
+        where = tried if name in ("h", "tries") else go
+        w.lines.append(f"  %{name}.mixed = select {w.mask} {where}, {v} {value}, {v} {old.get(name, f'%{name}')}")
+    go = tried
     w.lines.append(f"  %alive.mixed = select {w.mask} {go}, {v} {w.splat(1.0)}, {v} {w.splat(0.0)}")
     going = w.any(go)
     w.lines += ["  br label %made", "made:"]
@@ -215,6 +240,8 @@ def _store_path(w: Writer, graph: StepGraph) -> None:
         row = w.emit(f"add i64 {w.emit(f'mul i64 %k, {n}')}, {i}")
         w.lines.append(f"  store {v} %x{i}.next, ptr {_pointer(w, '%path', row)}, align 8")
     w.lines.append(f"  store {v} %t.next, ptr {_pointer(w, '%path.t', '%k')}, align 8")
+    if graph.sizes is not None:
+        w.lines.append(f"  store {v} %size.next, ptr {_pointer(w, '%path.h', '%k')}, align 8")
     w.lines.append("  br label %step.end")
 
 
@@ -238,13 +265,17 @@ class Kernel:
         self.graph, self.width = graph, width
         self.text = assembly(graph, width)
         self._engine, self.cached = _engine(self.text)
-        arguments = [ctypes.c_void_p] * 10 + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
+        arguments = [ctypes.c_void_p] * ARRAYS + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
         self._run = ctypes.CFUNCTYPE(None, *arguments)(self._engine.get_function_address("run"))
 
     def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:
-        """Step the blocks first..last-1 at most so many times; `arrays` are changed in place, None is no path."""
+        """Step the blocks first..last-1 at most so many times; `arrays` are changed in place, None is no path.
+
+        They are m, t, h, limit, count, alive, extra, constants, path, path_t; where sizes are adapted also tries (how
+        many steps were tried) and path_h.
+        """
         places = [None if a is None else a.ctypes.data for a in arrays]
-        self._run(*places, lanes, *blocks, steps, *time)
+        self._run(*places, *[None] * (ARRAYS - len(places)), lanes, *blocks, steps, *time)
 
 
 _ENGINES: dict[str, Any] = {}

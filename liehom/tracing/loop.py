@@ -81,7 +81,7 @@ def iterated(
         if x.place not in changing and any(a.place in changing for a in x.args):
             changing.add(x.place)
             inside.append(x)
-    for x in [*new, again, *[a for x in inside for a in x.args]]:
+    for x in [*new, again, *[a for y in inside for a in y.args]]:
         if x.place not in changing and not x.constant:
             fixed[x.place] = x
     loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit)

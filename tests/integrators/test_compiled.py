@@ -208,10 +208,9 @@ def test_results_do_not_depend_on_threads_or_the_number_of_lanes(monkeypatch: py
     ("options", "message"),
     [
         ({"compile": "fortran"}, "expected one of"),
-        ({"dt": None}, "fixed steps"),
         ({"events": lambda t, y: y[0]}, "events"),
     ],
-    ids=["backend", "adaptive", "events"],
+    ids=["backend", "events"],
 )
 def test_what_is_not_compiled_is_refused(options: dict[str, Any], message: str) -> None:
     given = {"dt": 0.1, "compile": "numba", **options}
@@ -237,12 +236,6 @@ def test_a_psi_that_looks_at_values_is_refused_with_the_reason(psi: Any) -> None
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
     with pytest.raises(TraceError, match=r"Euler\(\) cannot be compiled for this field"):
         lh.integrate(field, (0, 1), START, step=lh.Euler(), dt=0.1, compile="numba")
-
-
-@pytest.mark.parametrize("step", [lh.BackwardEuler(), lh.RKMK("gauss2")], ids=["backward Euler", "Gauss"])
-def test_implicit_steps_are_refused(step: Any) -> None:
-    with pytest.raises(TraceError, match="cannot be compiled"):
-        lh.integrate(BODY, (0, 1), START, step=step, dt=0.1, compile="numba")
 
 
 # -- machine code ------------------------------------------------------------------------------------------
