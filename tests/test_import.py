@@ -13,7 +13,7 @@ LIMIT_SECONDS = 0.3
 TRIALS = 8
 LATE = ("scipy", "sympy", "networkx", "matplotlib", "jax", "numba", "typer", "rich")
 
-TIMED_IMPORT = "import time; t = time.perf_counter(); import liehom; print(time.perf_counter() - t)"
+TIMED_IMPORT = "import time; t = time.process_time(); import liehom; print(time.process_time() - t)"
 LOADED = "import sys, liehom; print(*sorted({name.partition('.')[0] for name in sys.modules}))"
 
 

@@ -85,9 +85,9 @@ def test_names_of_the_basis():
 def test_e8_is_quick():
     times = []
     for _ in range(4):
-        start = time.perf_counter()
+        start = time.process_time()
         lh.chevalley("E8")
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     assert min(times) < 0.2
 
 

@@ -204,9 +204,9 @@ def test_e8_is_quick():
 
 
 def _timed():
-    start = time.perf_counter()
+    start = time.process_time()
     RootSystem.of_type("E8")
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def test_random_weights_become_dominant():

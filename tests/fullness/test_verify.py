@@ -325,9 +325,9 @@ def test_no_isotropy_at_all() -> None:
 
 def test_a_large_sparse_pair() -> None:
     pair, certificate = orthogonal(40), sphere_certificate(40)
-    start = time.perf_counter()
+    start = time.process_time()
     assert verify_certificate(pair, certificate)
-    assert time.perf_counter() - start < 20  # about 2 s
+    assert time.process_time() - start < 20  # about 2 s
     broken = list(pair.algebra.entries)
     i, j, k, c = broken[-1]
     broken[-1] = (i, j, k, 2 * c)
