@@ -24,6 +24,7 @@ from liehom.scalars.modular_span import rational_lifts
 BATCH = 8
 LIFTED_SIZE = 150
 MIXED = 3
+ROW_ENTRIES = 8
 ROUNDS = 4
 
 
@@ -84,7 +85,8 @@ def _lifted(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int]
     """
     rng = random.Random(11)
     pairs = list(zip(source, target, strict=True))
-    used = pairs if len(pairs) <= MIXED else [_mixed(source, target, rng) for _ in range(MIXED)]
+    batch = _enough(source, shape[1])
+    used = pairs if len(pairs) <= MIXED else [_mixed(source, target, rng, batch) for _ in range(MIXED)]
     for _ in range(ROUNDS):
         left, right = [a for a, _ in used], [b for _, b in used]
         first = intertwining_residues(left, right)
@@ -119,11 +121,17 @@ def _first_failing(candidates: Sequence[Any], source: Sequence[Any], target: Seq
     return None
 
 
-def _mixed(source: Sequence[Any], target: Sequence[Any], rng: random.Random) -> tuple[Any, Any]:
+def _enough(matrices: Sequence[Any], d: int) -> int:
+    """How many matrices of such few entries a combination needs for several entries in each of d rows."""
+    entries = max(1, *(sum(map(bool, a.entries())) for a in (matrices[0], matrices[-1])))
+    return max(BATCH, -(-ROW_ENTRIES * d // entries))
+
+
+def _mixed(source: Sequence[Any], target: Sequence[Any], rng: random.Random, batch: int = BATCH) -> tuple[Any, Any]:
     """A random small combination of a few A_i and the same one of the B_i."""
     if not source:
         raise InternalError("no matrices to combine")
-    chosen = rng.sample(range(len(source)), min(BATCH, len(source)))
+    chosen = rng.sample(range(len(source)), min(batch, len(source)))
     weights = [rng.choice((-2, -1, 1, 2)) for _ in chosen]
     a, b = source[chosen[0]].scale(weights[0]), target[chosen[0]].scale(weights[0])
     for i, w in zip(chosen[1:], weights[1:], strict=True):

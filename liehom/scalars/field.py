@@ -91,7 +91,9 @@ class Matrix(ABC):
 
     def to_strings(self) -> list[list[str]]:
         """The entries in the grammar of values, as JSON files carry them."""
-        return [[self.field.format(x) for x in row] for row in self.to_rows()]
+        written = self.field.format
+        zero = written(self.field.zero)
+        return [[written(x) if x != 0 else zero for x in row] for row in self.to_rows()]
 
     def row(self, i: int) -> list[Scalar]:
         """Row i as a list of field elements."""

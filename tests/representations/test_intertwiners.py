@@ -139,14 +139,38 @@ def test_residues_and_words_find_the_same(seed: int, monkeypatch: pytest.MonkeyP
     assert same_span(list(forms.symmetric), list(slow.symmetric), n * n)
 
 
-def test_combinations_that_do_not_generate_are_completed() -> None:
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    calls: list[int] = []
+    made = module.intertwining_residues
+
+    def residues(left: Any, right: Any, attempt: int = 0) -> Any:
+        calls.append(len(left))
+        return made(left, right, attempt)
+
+    monkeypatch.setattr(module, "intertwining_residues", residues)
+    return calls
+
+
+@pytest.mark.parametrize("batch", [2, module.BATCH])
+def test_combinations_that_do_not_generate_are_completed(batch: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Many commuting matrices: three random combinations show less than all of them."""
+    monkeypatch.setattr(module, "BATCH", batch)
+    monkeypatch.setattr(module, "ROW_ENTRIES", 0)
+    calls = counted(monkeypatch)
     n = 14
     diagonals = [QQ.matrix([[int(i == j == k) for j in range(n)] for i in range(n)]) for k in range(n)]
     assert len(commutant(diagonals, n, QQ)) == n
     blocks = [QQ.matrix([[int((i, j) == (k, k + 1)) for j in range(n)] for i in range(n)]) for k in range(n - 1)]
     assert len(commutant(blocks, n, QQ)) == 2  # scalars, and the corner
     assert len(commutant([QQ.zeros(n, n)] * 2, n, QQ)) == n * n
+    assert max(calls) > module.MIXED
+
+
+def test_matrices_of_few_entries_are_combined_so_that_they_generate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the matrices with two entries of so(24), eight leave most rows 0."""
+    calls = counted(monkeypatch)
+    matrices = lh.defining(lh.so(24)).matrices
+    assert len(commutant(matrices, 24, QQ)) == 1 and calls == [module.MIXED]
 
 
 def test_between_different_modules() -> None:
