@@ -99,7 +99,7 @@ def integrate(
     checkpoint_every : float
         Seconds between two checkpoints.
     compile : "numba" or "jax", optional
-        Compile the step (extra ``numba`` or ``jax``): see Notes. Fixed steps only.
+        Compile the step (extra ``numba`` or ``jax``), for fixed and for adapted step sizes: see Notes.
 
     Returns
     -------
@@ -133,10 +133,12 @@ def integrate(
     With ``compile`` the step is traced once, with everything that derives it, and becomes machine code, which is kept
     on disk. It makes the plain steps; the first one, the last one, those that pass a time of `t_eval` and those of a
     trajectory that fails are made as without it. The results agree to round-off, and psi must be the same
-    function all the time: it is called while the step is traced, not in the steps.
+    function all the time: it is called while the step is traced, not in the steps. Adapted step sizes agree as well as
+    the estimate of the error does, which is a small difference of large numbers: where it is far below the tolerance
+    sizes may differ by 1e-7 of themselves, and a step that is accepted by less than that may be rejected.
 
     With ``compile="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default start and end), and
-    jax.jit, jax.grad and jax.vmap pass through; `report` then only says what was asked for.
+    jax.jit, jax.grad and jax.vmap pass through; it needs `dt`, and `report` then only says what was asked for.
 
     Examples
     --------
@@ -202,7 +204,10 @@ def _on_jax(
 ) -> Solution:
     """Checked arguments for `integrate_on_jax` (dt None: refused); without t_eval the points at start and end."""
     if dt is None:
-        raise InputError("integrate on JAX arrays takes dt, and no events, dense output or checkpoints")
+        raise InputError(
+            "integrate on JAX arrays takes fixed steps (give dt), and no events, dense output or checkpoints: from "
+            "numpy arrays compile='jax' adapts steps too"
+        )
     dt = float(dt)
     span = _span(t_span, np.dtype(np.float64))
     if clock not in CLOCKS:
