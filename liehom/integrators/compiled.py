@@ -2,7 +2,7 @@
 
 The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
 before a time of t_eval, and before a step that fails in any way.  Where step sizes are adapted, each lane has its own.
-Imports clock, jax_kernel, run, traced_size, traced_step, tracing, errors.
+Imports clock, jax_kernel, run, traced_size, traced_step, correctors, tracing, errors.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
+from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.clock import SLACK
 from liehom.integrators.jax_kernel import JaxKernel
@@ -72,7 +73,9 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
         groups.append(Group(graph, lanes, backend, points[lanes]))
         calls.append(run.calls - before)
         run.calls = before
-    return Compiled(groups, None if run.options.dt is not None else max(calls))
+    # how often an implicit step calls psi is known when one is made
+    counted = isinstance(run.step, Conserving) or all(group.graph.solved is None for group in groups)
+    return Compiled(groups, max(calls) if counted else None)
 
 
 def _limits(run: Run) -> Limits:

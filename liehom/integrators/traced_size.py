@@ -75,7 +75,7 @@ def tried_size(
     """
     left = np.abs(limits.end - t)
     h, certain = np.minimum(proposal, largest_size(limits.max_step, left)), True
-    if not hasattr(local, "estimate"):
+    if getattr(local, "estimate", None) is None:
         speed = length(m) / time_scale(psi.field, m, t)
         defects = defects_of(action, psi, local, m, t, step.order)
         h = size_from_defects(defects, Tolerance(limits.rtol, limits.atol).norm(m), speed, h)

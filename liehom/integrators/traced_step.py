@@ -84,10 +84,10 @@ def _traced(
     psi, error_terms = Generator(field, orbit_dimension), 0 if limits is None else ERROR_TERMS
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
     given_limits: Limits | None = None
+    certain: Any = True
     if limits is not None:
         given_limits = Limits._make(Traced(tape, tape.given_number(_everywhere(x))) for x in limits)
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
-        tape.required.append(_number(tape, certain))
     size = h[..., None]
     made = apply_factors(action, local.factors(size), m)
     passed, runs = None, None
@@ -103,8 +103,8 @@ def _traced(
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
     worst, summed = _account(tape, local, step, size)
     solved = reduce(tape.both, tape.required) if tape.required else None
-    if solved is not None:
-        runs = solved if runs is None else tape.both(runs, solved)
+    plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
+    runs = reduce(tape.both, plain) if plain else None
     point = [_number(tape, made[i]) for i in range(n)]
     return StepGraph(point, passed, runs, worst, summed, tuple(tape.given), clock, solved, sizes)
 
