@@ -2,7 +2,7 @@
 
 The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
 before a time of t_eval, and before a step that fails in any way.  Where step sizes are adapted, each lane has its own.
-Imports clock, jax_kernel, run, traced_size, traced_step, correctors, tracing, errors.
+Imports clock, jax_kernel, run, traced_size, traced_step, tracing, errors.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.clock import SLACK
 from liehom.integrators.jax_kernel import JaxKernel
@@ -58,12 +57,12 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
         raise InputError(f"compile={backend!r} computes in float64, the start is of type {run.dtype}")
     dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
     points = run.start.reshape(-1, run.start.shape[-1])
-    groups, calls = [], []
+    groups = []
     for d in np.unique(dimensions):
-        lanes, before = np.flatnonzero(dimensions == d), run.calls
+        lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(
             run.action,
-            run.psi.field,
+            run.field,
             run.step,
             points[lanes],
             int(d),
@@ -71,11 +70,7 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
             limits=_limits(run) if run.options.dt is None else None,
         )
         groups.append(Group(graph, lanes, backend, points[lanes]))
-        calls.append(run.calls - before)
-        run.calls = before
-    # how often an implicit step calls psi is known when one is made
-    counted = isinstance(run.step, Conserving) or all(group.graph.solved is None for group in groups)
-    return Compiled(groups, max(calls) if counted else None)
+    return Compiled(groups)
 
 
 def _limits(run: Run) -> Limits:
@@ -150,20 +145,15 @@ class Compiled:
     Parameters
     ----------
     groups : list of Group
-    calls : int, optional
-        Of psi in a step; by default as many as in the first step that the run makes.
     """
 
-    def __init__(self, groups: list[Group], calls: int | None = None) -> None:
+    def __init__(self, groups: list[Group]) -> None:
         self.groups = groups
-        self._calls = calls
 
     def __call__(self, run: Run) -> None:
         """Make plain steps until every trajectory rests, or for a while."""
         if not run.active.any():
             return
-        if self._calls is None:  # of psi, in the step that the run has made
-            self._calls = run.calls
         lanes = int(np.prod(run.shape, dtype=int))
         steps = min(int(run.options.max_steps) - 1 - int(np.max(run.taken)), max(1, BREATH // lanes))
         if run.keeps:
@@ -173,7 +163,7 @@ class Compiled:
         state = _State(run)
         for group in self.groups:
             state.step(group, steps)
-        state.hand_back(self._calls)
+        state.hand_back()
 
 
 class _State:
@@ -201,6 +191,7 @@ class _State:
         self.tries = np.zeros(self.t.shape)
         self.paths: list[tuple[Any, Any, Any, Any]] = []
         self.accounts: list[tuple[Any, dict[str, Any]]] = []
+        self.calls = 0
 
     def step(self, group: Group, steps: int) -> None:
         """Let a kernel step its lanes."""
@@ -229,13 +220,18 @@ class _State:
         if self.adaptive:
             self.h[lanes] = h[used]
         if path is not None and path_t is not None:
-            rows = slice(0, int(self.tries[lanes].max(initial=0)))
-            sizes = None if path_h is None else path_h[rows, used]
-            self.paths.append((lanes, path[rows, :, used], path_t[rows, used], sizes))
+            made = slice(0, int(self.tries[lanes].max(initial=0)))
+            sizes = None if path_h is None else path_h[made, used]
+            self.paths.append((lanes, path[made, :, used], path_t[made, used], sizes))
+        rows: dict[str, Any] = {}
         if graph.summed:
-            self.accounts.append((lanes, dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))))
+            rows = dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))
+            self.accounts.append((lanes, rows))
+        # of psi, by the trajectory that calls it most: where steps iterate, each has its own number
+        most = self.tries[lanes] * graph.calls if graph.calls is not None else rows["calls"]
+        self.calls = max(self.calls, int(most.max(initial=0)))
 
-    def hand_back(self, calls: int) -> None:
+    def hand_back(self) -> None:
         """The new state of the run."""
         run, shape = self.run, self.run.shape
         new = (self.count - self.before).astype(int)
@@ -247,7 +243,7 @@ class _State:
         if self.adaptive:
             run.h = self.h.reshape(shape)
         run.taken = run.taken + new.reshape(shape)
-        run.calls += calls * most
+        run.calls += self.calls
         for lanes, extra in self.accounts:
             run.account.add_compiled(lanes, extra)
         if run.keeps:

@@ -133,7 +133,8 @@ def integrate(
     With ``compile`` the step is traced once, with everything that derives it, and becomes machine code, which is kept
     on disk. It makes the plain steps; the first one, the last one, those that pass a time of `t_eval` and those of a
     trajectory that fails are made as without it. The results agree to round-off, and psi must be the same
-    function all the time: it is called while the step is traced, not in the steps. Adapted step sizes agree as well as
+    function all the time: it is called while the step is traced, not in the steps (`nfev` says how often it would be
+    called by the trajectory that calls it most). Adapted step sizes agree as well as
     the estimate of the error does, which is a small difference of large numbers: where it is far below the tolerance
     sizes may differ by 1e-7 of themselves, and a step that is accepted by less than that may be rejected.
 

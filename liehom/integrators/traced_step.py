@@ -81,7 +81,7 @@ def _traced(
         even = even._replace(over=Traced(tape, over))
     action = action.on_even_orbits(even)
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
-    psi, error_terms = Generator(field, orbit_dimension), 0 if limits is None else ERROR_TERMS
+    psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
     given_limits: Limits | None = None
     certain: Any = True
@@ -106,7 +106,18 @@ def _traced(
     plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
     runs = reduce(tape.both, plain) if plain else None
     point = [_number(tape, made[i]) for i in range(n)]
-    return StepGraph(point, passed, runs, worst, summed, tuple(tape.given), clock, solved, sizes)
+    calls = int(tape.calls.value) if tape.calls.constant else None
+    if calls is None:
+        summed["calls"] = tape.calls
+    return StepGraph(point, passed, runs, worst, summed, tuple(tape.given), clock, solved, sizes, calls)
+
+
+def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
+    def psi(m: Any, t: Any = 0.0) -> Any:
+        tape.calls = tape.calls + tape.one
+        return field.psi(m, t)
+
+    return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
 
 
 def _everywhere(x: float) -> Callable[[Any], Any]:

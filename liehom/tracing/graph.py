@@ -144,6 +144,8 @@ class Tape:
         """Truth values without which the numbers of a trajectory are not what they are to be."""
         self.given: list[Callable[[Any], Any]] = []
         """Numbers of the trajectories, as functions of their starts."""
+        self.calls = self.zero
+        """How often a function that is counted is called in the step; in loops, so often in all iterations."""
 
     # -- making numbers ----------------------------------------------------------------------------------
     def constant(self, value: float) -> Expr:

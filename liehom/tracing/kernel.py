@@ -68,6 +68,8 @@ class StepGraph:
         Whether all equations of the step were solved (`runs` says so too); None where there are none.
     sizes : Sizes or None
         None if the size is fixed.
+    calls : int or None
+        Of psi in a step; None where that depends on values, it is then summed up as "calls".
     """
 
     point: list[Expr]
@@ -79,6 +81,7 @@ class StepGraph:
     clock: tuple[tuple[int, Expr], ...] = ()
     solved: Expr | None = None
     sizes: Sizes | None = None
+    calls: int | None = 0
 
     @property
     def size(self) -> int:

@@ -72,9 +72,15 @@ def iterated(
     >>> round(float(evaluated([root], {0: 2.0})[0]), 5)
     1.41421
     """
-    first = len(tape.made)
+    first, calls, count = len(tape.made), tape.calls, len(start)
+    tape.calls = tape.zero
     variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
     new, again = body(list(variables))
+    if tape.calls is not tape.zero:  # the iterations of each lane are counted, with what is called in one
+        start = [*start, tape.zero, tape.true]
+        total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
+        new = [*new, total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
+        variables += [total, wanted]
     changing = {x.place for x in variables}
     inside, fixed = [], {}
     for x in needed([*new, again]):
@@ -85,7 +91,9 @@ def iterated(
         if x.place not in changing and not x.constant:
             fixed[x.place] = x
     loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit)
-    return tape.block("loop", [*start, *fixed.values()], len(start), loop)
+    found = tape.block("loop", [*start, *fixed.values()], len(start), loop)
+    tape.calls = calls + found[count] if len(found) > count else calls
+    return found[:count]
 
 
 def repeated(
