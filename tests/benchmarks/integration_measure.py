@@ -22,6 +22,8 @@ from tests.benchmarks.integration_problems import Problem
 SAMPLES = 5
 FINEST = 3e-13
 MANY = 1000
+CLIFF = 1e6
+"""Between two settings whose errors are further apart nothing is interpolated."""
 PATIENCE = 20.0
 """Seconds after which no finer setting of a solver is tried for its errors."""
 Point = tuple[float, float, float]
@@ -86,8 +88,8 @@ def _length(x: Any) -> Any:
 
 
 def typical(errors: Any) -> float:
-    """Of errors (SAMPLES, L): the largest along a trajectory, the median over trajectories."""
-    found = float(np.median(np.max(errors, axis=0)))
+    """Of errors (SAMPLES, L): the largest along a trajectory, which nine of ten trajectories keep below."""
+    found = float(np.quantile(np.max(errors, axis=0), 0.9))
     return found if np.isfinite(found) else math.inf
 
 
@@ -122,10 +124,15 @@ def accuracy(problem: Problem, solver: Solver, settings: tuple[float, ...] | Non
 
 # -- cost ------------------------------------------------------------------------------------------------
 def cost(problem: Problem, solver: Solver, count: int, points: list[Point], enough: float = 0.05) -> dict[str, Any]:
-    """Microseconds for each trajectory: {"call", "step"}, or for each setting those for the time `problem.span`."""
+    """Microseconds for each trajectory: {"call", "step"}, or for each setting those for the time `problem.span`.
+
+    Where steps of another size cost something else: {"at": {setting: {"call", "step"}}}.
+    """
     if count >= MANY:
         count = min(count, solver.lanes, problem.lanes)
     starts = problem.starts(count).reshape(count, -1)
+    if solver.varying:
+        return {"at": {repr(p[0]): _of_steps(problem, solver, starts, enough, p[0]) for p in points}}
     if solver.fixed:
         return _of_steps(problem, solver, starts, enough)
     span = problem.span if count < MANY else problem.lanes_span
@@ -141,8 +148,10 @@ def cost(problem: Problem, solver: Solver, count: int, points: list[Point], enou
     return {"settings": made}
 
 
-def _of_steps(problem: Problem, solver: Solver, starts: Any, enough: float) -> dict[str, Any]:
-    dt = 0.1 * problem.slow
+def _of_steps(
+    problem: Problem, solver: Solver, starts: Any, enough: float, dt: float | None = None
+) -> dict[str, float]:
+    dt = 0.1 * problem.slow if dt is None else dt
 
     def taken(steps: int, rounds: int = 3) -> float:
         return seconds(lambda: solver.solve(problem, starts, dt * steps, dt, 1), rounds)
@@ -169,7 +178,15 @@ def cost_of(problem: Problem, measured: dict[str, Any], setting: float, *, call:
     span = problem.span if orbit else problem.trajectory_span
     if "settings" in measured:
         return float(measured["settings"][repr(setting)]) * span / problem.span
+    measured = measured["at"][repr(setting)] if "at" in measured else measured
     return float(measured["step"] * math.ceil(span / setting - 1e-9) + (measured["call"] if call else 0.0))
+
+
+def is_known(measured: dict[str, Any], setting: float) -> bool:
+    """Whether the cost was measured at a setting."""
+    if "at" in measured:
+        return repr(setting) in measured["at"]
+    return "step" in measured or repr(setting) in measured["settings"]
 
 
 def matched(
@@ -177,12 +194,12 @@ def matched(
 ) -> float:
     """The cost at an error, by interpolation of logarithms between the settings around it; infinite if not reached."""
     column = 1 if orbit else 2
-    known = [p for p in points if "step" in measured or repr(p[0]) in measured["settings"]]
+    known = [p for p in points if is_known(measured, p[0])]
     curve = sorted((cost_of(problem, measured, p[0], call=call, orbit=orbit), p[column]) for p in known)
     before: tuple[float, float] | None = None
     for price, error in curve:
         if error <= target:
-            if before is None or error <= 0 or before[1] == error:
+            if before is None or error <= 0 or before[1] == error or before[1] / error > CLIFF:
                 return price
             share = math.log(before[1] / target) / math.log(before[1] / error)
             return math.exp(math.log(before[0]) + share * math.log(price / before[0]))

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.correctors import Generator, apply_factors
+from liehom.correctors import Conserving, Generator, apply_factors
 from liehom.instances.exact_orbit import ExactOrbit
 from tests.benchmarks.integration_peers import LADDER, Solve, Solver, sample_times
 from tests.benchmarks.integration_problems import Problem, rigid_body
@@ -29,6 +29,7 @@ STEPS: dict[str, tuple[Any, str]] = {
     "T12": (lh.LieTaylor(12), "exp"),
     "RK4": (lh.RKMK("rk4"), "exp"),
 }
+KEEPING = {"C2": lh.LieTaylor(2), "C4": lh.LieTaylor(4)}
 EXPLAINED = {
     "E2": "`Corrected(Euler(), 2)`",
     "E2 cay": "the same with the Cayley transform",
@@ -38,7 +39,10 @@ EXPLAINED = {
     "T8": "`LieTaylor(8)`",
     "T12": "`LieTaylor(12)`",
     "RK4": '`RKMK("rk4")`',
+    "C2": "`Conserving(LieTaylor(2), energy)`",
+    "C4": "`Conserving(LieTaylor(4), energy)`",
     "adaptive": "`LieTaylor(6)` with adapted steps, the default",
+    "DOP853": '`RKMK("dop853")` with adapted steps',
     "exact orbit": "`ExactOrbit`, the rigid body's own step on the orbit, with the Cayley transform",
 }
 
@@ -54,11 +58,18 @@ def _flat(problem: Problem, y: Any, samples: int) -> Any:
     return np.moveaxis(np.asarray(y), -1, 0).reshape(samples, -1, problem.size)
 
 
+def step_of(name: str, problem: Problem) -> tuple[Any, str]:
+    """A step by its letters, and its exponential."""
+    if name in KEEPING:
+        return Conserving(KEEPING[name], problem.energy), "exp"
+    return STEPS[name]
+
+
 def integrate(name: str, compile: str | None) -> Solve:
     """`liehom.integrate` with fixed steps."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        step, exponential = STEPS[name]
+        step, exponential = step_of(name, problem)
         sol = lh.integrate(
             problem.field, (0.0, span), _shaped(problem, starts), step=step, dt=setting, exponential=exponential,
             t_eval=sample_times(span, samples), compile=compile,
@@ -68,20 +79,31 @@ def integrate(name: str, compile: str | None) -> Solve:
     return solve
 
 
-def _adaptive(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-    times = sample_times(span, samples)
-    sol = lh.integrate(problem.field, (0.0, span), _shaped(problem, starts), rtol=setting, atol=setting, t_eval=times)
-    return _flat(problem, sol.y, samples)
+def adaptive(step: Any, compile: str | None) -> Solve:
+    """`liehom.integrate` with adapted steps."""
+
+    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+        sol = lh.integrate(
+            problem.field, (0.0, span), _shaped(problem, starts), step=step, rtol=setting, atol=setting,
+            t_eval=sample_times(span, samples), compile=compile,
+        )  # fmt: skip
+        return _flat(problem, sol.y, samples)
+
+    return solve
 
 
-def _exact_orbit(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-    body = lh.RigidBody([1, 2, 3])
-    times = sample_times(span, samples)
-    sol = lh.integrate(
-        body.field("o"), (0.0, span), _shaped(problem, starts), step=ExactOrbit(body), dt=setting,
-        exponential="cayley", t_eval=times,
-    )  # fmt: skip
-    return _flat(problem, sol.y, samples)
+def exact_orbit(compile: str | None) -> Solve:
+    """The rigid body's own step."""
+
+    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+        body = lh.RigidBody([1, 2, 3])
+        sol = lh.integrate(
+            body.field("o"), (0.0, span), _shaped(problem, starts), step=ExactOrbit(body), dt=setting,
+            exponential="cayley", t_eval=sample_times(span, samples), compile=compile, clock="nominal",
+        )  # fmt: skip
+        return _flat(problem, sol.y, samples)
+
+    return solve
 
 
 # -- spins that act on each other, under jax.jit ---------------------------------------------------------------
@@ -150,9 +172,26 @@ def solvers(problem: Problem) -> list[Solver]:
             rows.append(Solver(EAGER, n, integrate(n, None), LADDER, "numpy", True, made, counts=ENDS))
         if n == "T4" or (n == "E4" and problem.size == 3):
             rows.append(Solver(JAX, n, integrate(n, "jax"), LADDER, "jax", True, made, counts=ENDS))
-    rows.append(Solver(EAGER, "adaptive", _adaptive, (1e-3, 1e-6, 1e-9), counts=(1,), sample=8))
+    if problem.energy is not None:
+        rows += [
+            Solver(NUMBA, n, integrate(n, "numba"), LADDER[:6], "llvmlite", True, counts=ENDS, varying=True)
+            for n in KEEPING
+        ]
+    rows += _adaptive_solvers()
     if problem is rigid_body():
-        rows.append(Solver(EAGER, "exact orbit", _exact_orbit, LADDER[:6], fixed=True, counts=LARGE))
+        made = Solver(NUMBA, "exact orbit", exact_orbit("numba"), LADDER[:6], "llvmlite", True, counts=ENDS)
+        rows += [made, Solver(EAGER, "exact orbit", exact_orbit(None), LADDER[:6], "numpy", True, made, counts=LARGE)]
+    return rows
+
+
+def _adaptive_solvers() -> list[Solver]:
+    rows = []
+    for label, step, tolerances in (
+        ("adaptive", lh.LieTaylor(6), (1e-3, 1e-6, 1e-9)),
+        ("DOP853", lh.RKMK("dop853"), (1e-3, 1e-6, 1e-9, 1e-12)),
+    ):
+        made = Solver(NUMBA, label, adaptive(step, "numba"), tolerances, "llvmlite", counts=ENDS, sample=8)
+        rows += [made, Solver(EAGER, label, adaptive(step, None), tolerances, "numpy", False, made, counts=(1,))]
     return rows
 
 

@@ -49,8 +49,8 @@ def _cell(problem: Problem, rows: list[dict[str, Any]], count: int, target: floa
 
 
 def _call(rows: list[dict[str, Any]], count: int) -> str:
-    calls = [row["costs"][str(count)].get("call") for row in rows if str(count) in row.get("costs", {})]
-    known = [c for c in calls if c is not None]
+    measured = [row["costs"][str(count)] for row in rows if str(count) in row.get("costs", {})]
+    known = [part["call"] for m in measured for part in m.get("at", {"": m}).values() if "call" in part]
     if not known:
         return "in"
     low, high = shown(min(known)), shown(max(known))
@@ -150,7 +150,7 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
         "process is given, not time on the clock, and it still grows by some ten per cent, at times by twice, when "
         "others use the same caches and vector units. Ratios within a table are better than its figures.",
         "",
-        "Errors are medians over trajectories of the largest error at five times; settings are refined until the "
+        "Errors are those of nine of ten trajectories, the largest at five times; settings are refined until the "
         "wanted error is reached, and costs interpolated between settings. Compilation was before. "
         '"call" is what a call of the program costs besides its steps, for each trajectory: with `compile=` the trace '
         "of the step and the first and the last step, which are made on numpy arrays. The other columns are the cost "

@@ -20,7 +20,7 @@ import liehom as lh
 from liehom.integrators.traced_step import traced_step
 from liehom.tracing import Kernel, padded
 from tests.benchmarks import test_compiled as by_hand
-from tests.benchmarks.integration_measure import cost_of, matched
+from tests.benchmarks.integration_measure import cost_of, is_known, matched
 from tests.benchmarks.integration_problems import Problem
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -128,6 +128,6 @@ def ratios(problem: Problem, methods: list[dict[str, Any]], count: int, *, orbit
 def curve(problem: Problem, row: dict[str, Any], count: int, *, orbit: bool) -> list[tuple[float, float]]:
     """(cost of the steps, error) along the settings of a method."""
     measured = row["costs"][str(count)]
-    known = [p for p in row["points"] if "step" in measured or repr(p[0]) in measured["settings"]]
+    known = [p for p in row["points"] if is_known(measured, p[0])]
     made = [(cost_of(problem, measured, p[0], call=False, orbit=orbit), p[1 if orbit else 2]) for p in known]
     return [(c, e) for c, e in made if c > 0 and 0 < e < 3]
