@@ -85,7 +85,7 @@ def test_sizes_from_defects_agree_to_round_off(name: str, step: str) -> None:
 )
 def test_embedded_pairs_agree_as_well_as_their_estimates(name: str, step: str) -> None:
     space, times = spaces.make(name), [0.0, 0.31, 1.0]
-    options: dict[str, Any] = {"step": STEPS[step], "rtol": 1e-7, "atol": 1e-9}
+    options: dict[str, Any] = {"step": STEPS[step], "rtol": 1e-6, "atol": 1e-8}
     assert_same(*both(a_field(name, space), (0, 1), space.starts[:3], **options), times=PAIRED)
     plain, made = both(a_field(name, space), (0, 1), space.starts[:3], t_eval=times, **options)
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-12 * float(np.abs(plain.y).max()))
@@ -255,7 +255,8 @@ def test_an_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 # -- JAX, and refusals -----------------------------------------------------------------------------------------
-@pytest.mark.parametrize("step", ["Euler to 4", pytest.param("RK45", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("step", ["Euler to 4", "RK45"])
 def test_jax_agrees(step: str) -> None:
     pytest.importorskip("jax")
     starts = sphere(5) * SPEEDS[::4]
