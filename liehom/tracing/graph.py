@@ -140,12 +140,10 @@ class Tape:
         self._known: dict[tuple[Any, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
         self.false, self.true = self.constant(False), self.constant(True)
+        # truth values without which the numbers of a trajectory are not what they are to be
         self.required: list[Expr] = []
-        """Truth values without which the numbers of a trajectory are not what they are to be."""
         self.given: list[Callable[[Any], Any]] = []
-        """Numbers of the trajectories, as functions of their starts."""
-        self.calls = self.zero
-        """How often a function that is counted is called in the step; in loops, so often in all iterations."""
+        self.calls = self.zero  # of the function that is counted; in loops, in all iterations
 
     # -- making numbers ----------------------------------------------------------------------------------
     def constant(self, value: float) -> Expr:
