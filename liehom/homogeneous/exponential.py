@@ -19,7 +19,7 @@ from liehom.homogeneous.maps import FieldMap, action_map, bracket_map
 from liehom.homogeneous.matrix_functions import expm1, norms, series_terms
 from liehom.representations import Representation
 from liehom.series import recurrences
-from liehom.series.arrays import as_values, is_exact, is_jax
+from liehom.series.arrays import as_values, in_lanes, is_exact, is_jax
 from liehom.series.jet import Jet
 from liehom.series.lie_series import dexp_inverse, magnus, without_constant
 from liehom.tracing.array import Traced, exponential_action
@@ -171,6 +171,11 @@ class SeriesExponential(TrueExponential):
     def act(self, x: Any, m: Any) -> Any:
         if is_exact(x) or is_exact(m):
             return exact_exponential(self.infinitesimal, x, m)
+        if self.infinitesimal.in_columns(x, m):  # of a large ensemble no matrices are made
+            x = in_lanes(x)
+            largest = self.infinitesimal.largest(x)
+            if largest <= SUBSTEP:
+                return m + _increment(x, m, largest, self.infinitesimal)
         matrix = self.infinitesimal.left(x)
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
@@ -249,7 +254,7 @@ def _products(matrix: Any, m: Any) -> Any:
 
 
 def _increment(matrix: Any, m: Any, size: float, times: Any) -> Any:
-    """exp(A) m - m for |A| = size, at most SUBSTEP."""
+    """exp(A) m - m for |A| = size, at most SUBSTEP; times(A, m) is A m."""
     term = times(matrix, m)
     total = term
     for j in range(2, series_terms(size, float(np.finfo(term.dtype).eps)) + 1):

@@ -294,7 +294,8 @@ def _stacked(parts: list[Any], m: Any) -> Any:
     if is_exact(value):
         out = np.empty((*lead, len(parts)), dtype=object)
     else:
-        out = np.empty((*lead, len(parts)), dtype=np.result_type(value.dtype, *[p for p in parts if np.ndim(p)]))
+        kind = np.result_type(value.dtype, *[p for p in parts if np.ndim(p)])
+        out = np.moveaxis(np.empty((len(parts), *lead), dtype=kind), 0, -1)
     for i, part in enumerate(parts):
         out[..., i] = part
     return out

@@ -201,6 +201,8 @@ def is_even(matrix: Any, rank: int) -> Any:
     >>> bool(is_even(np.eye(3), 3)), bool(is_even(np.diag([1.0, 2.0]), 2))
     (True, False)
     """
-    square = np.sum(matrix * matrix, axis=(-2, -1))[..., None, None] / rank
-    defect = matrix @ (np.swapaxes(matrix, -1, -2) @ matrix) - square * matrix
-    return np.abs(defect).max(axis=(-2, -1)) <= EVEN_RTOL * (square[..., 0, 0] * np.abs(matrix).max(axis=(-2, -1)))
+    a = np.ascontiguousarray(np.moveaxis(matrix, (-2, -1), (0, 1)))  # sums over all matrices at once
+    square = np.einsum("pq...,pq...->...", a, a) / rank
+    left = np.einsum("pr...,qr...->pq...", a, a)
+    defect = np.einsum("pr...,rq...->pq...", left, a) - square * a
+    return np.abs(defect).max(axis=(0, 1)) <= EVEN_RTOL * (square * np.abs(a).max(axis=(0, 1)))

@@ -17,7 +17,7 @@ from liehom.errors import ShapeError
 from liehom.representations import Representation
 from liehom.scalars import Field
 from liehom.series import recurrences
-from liehom.series.arrays import is_exact, is_lazy, namespace, zeros
+from liehom.series.arrays import across_lanes, in_lanes, is_exact, is_lazy, namespace, zeros
 from liehom.series.bilinear import Bilinear
 from liehom.series.jet import Jet
 from liehom.series.node import Node
@@ -28,8 +28,8 @@ Entries = Iterable[tuple[int, int, int, Any]]
 # up to this many coefficients, or this share of entries that are not 0, a dense table is faster than a sparse one
 DENSE_SIZE = 32768
 DENSE_SHARE = 0.2
-# ensembles of so many numbers are worked column by column where the map has so few entries
-MANY, FEW = 3000, 12
+# L lanes are worked column by column where entries * (COLUMN + L) <= L * (ROW + size of the table / NUMBER), measured
+COLUMN, ROW, NUMBER = 2000, 20, 8
 
 
 @final
@@ -61,8 +61,10 @@ class FieldMap:
         "_field",
         "_floating",
         "_floats",
+        "_many",
         "_pulled",
         "_rest",
+        "_root",
         "_table",
         "_turned",
         "shape",
@@ -83,8 +85,11 @@ class FieldMap:
         self._exact: Bilinear | None = None
         a, b, c = shape
         dense = a * b * c <= DENSE_SIZE or len(places) > DENSE_SHARE * a * b * c
+        gain = ROW + a * b * c / NUMBER - len(places)
+        self._many = COLUMN * len(places) / gain if gain > 0 else np.inf
         self._turned: Any = None
         self._pulled: FieldMap | None = None
+        self._root: Any = None
         self._table = np.ascontiguousarray(self._floating.tensor().reshape(a, b * c)) if dense else None
 
     def __call__(self, x: Any, y: Any) -> Any:
@@ -137,6 +142,26 @@ class FieldMap:
             self._pulled = FieldMap([(j, k, i, v) for i, j, k, v in self._entries], (b, c, a), self._field)
         return self._pulled(y, z)
 
+    def in_columns(self, x: Any, y: Any) -> bool:
+        """Whether B(x, y) is worked column by column: for ensembles that are large, next to the number of entries."""
+        return (
+            self._table is not None
+            and type(x) is type(y) is np.ndarray
+            and x.ndim > 1
+            and x.shape[:-1] == y.shape[:-1]
+            and x.size >= self._many * self.shape[0]
+            and x.dtype == y.dtype == np.float64
+        )
+
+    def largest(self, x: Any) -> float:
+        """The largest Frobenius norm of the matrices ``left(x)``, for x (..., a) in float64, without making them."""
+        if self._root is None:
+            table = self._floating.tensor().reshape(self.shape[0], self.shape[1] * self.shape[2])
+            values, vectors = np.linalg.eigh(table @ table.T)
+            self._root = vectors * np.sqrt(np.maximum(values, 0.0))
+        turned = across_lanes(x, self._root)
+        return float(np.sqrt(np.einsum("...i,...i->...", turned, turned).max(initial=0.0)))
+
     def _matrix(self, x: Any, side: str) -> Any:
         if type(x) is Traced:
             count = self.shape[1] if side == "left" else self.shape[0]
@@ -153,8 +178,8 @@ class FieldMap:
         if self._table is not None and type(x) is np.ndarray and x.dtype == y.dtype == np.float64:
             if x.ndim == y.ndim == 1:
                 return y.dot(x.dot(self._table).reshape(self.shape[1:]))
-            if x.ndim > 1 and x.size >= MANY and x.shape[:-1] == y.shape[:-1] and len(self._entries) <= FEW:
-                return self._by_columns(x, y)
+            if self.in_columns(x, y):
+                return self._by_columns(in_lanes(x), in_lanes(y))
             matrix = (x @ self._table).reshape(*x.shape[:-1], *self.shape[1:])
             return np.einsum("...b,...bc->...c", y, matrix)
         if type(x) is Traced or type(y) is Traced:

@@ -129,7 +129,7 @@ class Run:
         def psi(m: Any, t: Any = 0.0) -> Any:
             self.calls += 1
             try:
-                return field.psi(m, t)
+                return in_lanes(field.psi(m, t))
             except np.linalg.LinAlgError:
                 self.psi_raised = bool(np.isfinite(m.value if isinstance(m, Jet) else m).all())
                 raise

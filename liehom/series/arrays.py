@@ -238,7 +238,7 @@ def across_lanes(x: Any, matrix: Any) -> Any:
     >>> across_lanes(in_lanes(np.ones((5, 3))), np.ones((3, 2))).strides
     (8, 40)
     """
-    if type(x) is not np.ndarray or x.ndim < 2 or x.flags.c_contiguous:
+    if type(x) is not np.ndarray or x.ndim < 2 or x.flags.c_contiguous or not x.size:
         return x @ matrix
     components = x.T if x.ndim == 2 else np.moveaxis(x, -1, 0)
     if not components.flags.c_contiguous:

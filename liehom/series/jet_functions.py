@@ -176,7 +176,11 @@ def _joined(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Je
     if "out" in options or "dtype" in options or len(args) > 2:
         raise refused(f"np.{function.__name__} with out= or dtype=")
 
+    last = function is np.stack and not args[1:] and options == {"axis": -1}
+
     def joined(*parts: Any) -> Any:
+        if last and all(type(x) is np.ndarray and x.ndim for x in parts):
+            return np.moveaxis(np.stack(parts), 0, -1)  # in the layout of `in_lanes`
         return twin(function, *parts)(list(parts), *args[1:], **options)
 
     return fresh(recurrences.linear(joined, nodes(*members)))

@@ -16,7 +16,7 @@ import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
-from liehom.series.arrays import beside, elementary, is_jax, namespace
+from liehom.series.arrays import across_lanes, beside, elementary, is_jax, namespace
 from liehom.series.assembly import holds_jets, nodes
 from liehom.series.jet import Jet
 from liehom.series.node import Node
@@ -122,8 +122,11 @@ def _product(ufunc: Any, x: Any, y: Any) -> Jet:
 def bilinear(function: Callable[..., Any], x: Any, y: Any, **options: Any) -> Jet:
     """A function that is linear in each of two arguments, one or both of them Jets."""
     factors = nodes(x, y)
+    shared = function is np.matmul and not options and len(np.shape(factors[1].value)) == 2
 
     def at(a: Any, b: Any) -> Any:
+        if shared and type(b) is np.ndarray:
+            return across_lanes(a, b)
         return twin(function, a, b)(a, b, **options)
 
     return fresh(recurrences.multilinear(at, factors))
