@@ -16,7 +16,7 @@ import numpy as np
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.series.arrays import across_lanes, as_values, beside, is_exact, namespace, zeros
+from liehom.series.arrays import across_lanes, as_values, beside, in_lanes, is_exact, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 
@@ -253,6 +253,8 @@ def vanishing(flow: Flow, k: int) -> Any:
         return np.array([all(x == 0 for x in row) for row in w.reshape(-1, w.shape[-1])]).reshape(w.shape[:-1])
     xp = namespace(w)
     size = xp.max(xp.abs(w), axis=-1)
+    if k == 1 and not flow.time_dependent and _all_move(flow, size):
+        return np.zeros(size.shape, dtype=bool)
     terms: Any = 0.0
     for i in range(k):
         terms = terms + _moved(xp, flow, flow.psi(i), flow.point(k - 1 - i))
@@ -261,6 +263,17 @@ def vanishing(flow: Flow, k: int) -> Any:
         floor = xp.maximum(size, np.finfo(w.dtype).tiny * (1 + xp.max(xp.abs(m), axis=-1)))
         terms = terms + _moved(xp, flow, flow.psi(1), m) * (xp.max(xp.abs(m), axis=-1) / floor)
     return size <= NOISE * np.finfo(w.dtype).eps * terms / k
+
+
+def _all_move(flow: Flow, size: Any) -> bool:
+    """Whether w_1 with largest coordinates `size` is beyond round-off everywhere, by norms; False if not known."""
+    m = flow.point(0)
+    norm = flow.field.sizes(flow.psi(0), m)
+    if norm is None or not bool((size > 0).all()):
+        return False
+    if flow.generator.order >= 1:
+        norm = norm + flow.field.sizes(in_lanes(flow.psi(1)), m) * (np.abs(m).max(axis=-1) / size)
+    return bool((size > 2 * NOISE * np.finfo(m.dtype).eps * norm * np.sqrt(_square(m))).all())
 
 
 def at_rest(action: Action, flow: Flow) -> Any:

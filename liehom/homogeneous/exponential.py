@@ -173,7 +173,7 @@ class SeriesExponential(TrueExponential):
             return exact_exponential(self.infinitesimal, x, m)
         if self.infinitesimal.in_columns(x, m):  # of a large ensemble no matrices are made
             x = in_lanes(x)
-            largest = self.infinitesimal.largest(x)
+            largest = float(self.infinitesimal.sizes(x).max(initial=0.0))
             if largest <= SUBSTEP:
                 return m + _increment(x, m, largest, self.infinitesimal)
         matrix = self.infinitesimal.left(x)

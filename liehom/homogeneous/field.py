@@ -168,6 +168,10 @@ class GeneratorField:
         """rho(x) m for x (..., r) and m (..., N)."""
         return self._action(x, m)
 
+    def sizes(self, x: Any, m: Any) -> Any:
+        """The Frobenius norms of rho(x), shape (...,), where that is cheap: for large ensembles (x, m); else None."""
+        return self._action.sizes(x) if self._action.in_columns(x, m) else None
+
     def __repr__(self) -> str:
         kind = "time-dependent " if self.time_dependent else ""
         return f"<{kind}generator field of {self.representation!r}>"

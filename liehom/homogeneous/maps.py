@@ -153,14 +153,14 @@ class FieldMap:
             and x.dtype == y.dtype == np.float64
         )
 
-    def largest(self, x: Any) -> float:
-        """The largest Frobenius norm of the matrices ``left(x)``, for x (..., a) in float64, without making them."""
+    def sizes(self, x: Any) -> Any:
+        """The Frobenius norms of the matrices ``left(x)``, for x (..., a) in float64, without making them."""
         if self._root is None:
             table = self._floating.tensor().reshape(self.shape[0], self.shape[1] * self.shape[2])
             values, vectors = np.linalg.eigh(table @ table.T)
             self._root = vectors * np.sqrt(np.maximum(values, 0.0))
         turned = across_lanes(x, self._root)
-        return float(np.sqrt(np.einsum("...i,...i->...", turned, turned).max(initial=0.0)))
+        return np.sqrt(np.einsum("...i,...i->...", turned, turned))
 
     def _matrix(self, x: Any, side: str) -> Any:
         if type(x) is Traced:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
+from liehom.correctors.expansion import at_rest, flow_series, vanishing
 from liehom.homogeneous.exponential import MatrixExponential, SeriesExponential
 from liehom.homogeneous.maps import action_map
 from liehom.homogeneous.rodrigues import Rodrigues
@@ -37,10 +38,10 @@ def test_products_and_exponentials(name: str) -> None:
         np.testing.assert_allclose(act(a, b), np.einsum("nij,nj->ni", dense, m), rtol=0, atol=1e-12)
         right = act.right(m)
         np.testing.assert_allclose(act.pulled(b, c), np.einsum("nia,ni->na", right, z), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(act.largest(x), np.linalg.norm(dense, axis=(1, 2)).max(), rtol=1e-13)
+    np.testing.assert_allclose(act.sizes(x), np.linalg.norm(dense, axis=(1, 2)), rtol=1e-13)
     exp, other = SeriesExponential(rho), MatrixExponential(rho)
     for size in (1e-3, 0.2, 5.0):  # the last is beyond what the series on columns takes
-        y = x * (size / act.largest(x))
+        y = x * (size / act.sizes(x).max())
         made = exp.act(y, m)
         scale = max(1.0, float(np.abs(made).max()))
         np.testing.assert_allclose(made, other.act(y, m), rtol=0, atol=1e-12 * scale)
@@ -78,3 +79,16 @@ def test_layout() -> None:
         np.testing.assert_array_equal(across_lanes(y, matrix), x @ matrix)
     assert across_lanes(in_lanes(np.zeros((2, 0, 3))), matrix).shape == (2, 0, 2)
     assert in_lanes(x[0, 0]) is not None and in_lanes(x[0, 0]).shape == (3,)
+
+
+@pytest.mark.parametrize("some", [0, 3])
+def test_what_is_at_rest_in_a_large_ensemble(some: int) -> None:
+    rho = lh.adjoint(lh.so(3))
+    field = lh.GeneratorField(rho, lambda m: m * [1.0, 2.0, 3.0])
+    m = np.random.default_rng(1).normal(size=(COUNT, 3))
+    m[:some] = [0.0, 0.6, 0.0]
+    m[some : 2 * some, 1:] *= 1e-9  # near an equilibrium, but not there
+    flow = flow_series(field, m, 2)
+    assert field.sizes(flow.psi(0), m) is not None and field.sizes(flow.psi(0)[:9], m[:9]) is None
+    for found in (vanishing(flow, 1), at_rest(lh.Action(rho), flow)):
+        assert found.dtype == bool and found.tolist() == [True] * some + [False] * (COUNT - some)
