@@ -164,7 +164,16 @@ def _diffrax_run(problem: Problem, method: str, samples: int) -> Any:
         control = diffrax.PIDController(rtol=tolerance, atol=tolerance)
         saved = diffrax.SaveAt(ts=times)
         return diffrax.diffeqsolve(
-            term, solver, 0.0, times[-1], None, y0, saveat=saved, stepsize_controller=control, max_steps=None
+            term,
+            solver,
+            0.0,
+            times[-1],
+            None,
+            y0,
+            saveat=saved,
+            stepsize_controller=control,
+            max_steps=MOST,
+            throw=False,
         ).ys
 
     return jax.jit(jax.vmap(one, in_axes=(0, None, None)))
@@ -268,6 +277,7 @@ def _uncoupled(problem: Problem) -> bool:
     return not problem.coupled
 
 
+MOST = 100_000  # steps: at a coarse tolerance a trajectory may leave the sphere for good
 TOLERANCES, FEWER = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13), (1e-2, 1e-5, 1e-8, 1e-11)
 LANES_ONE, LANES_MANY = (
     Solver("numba RK4 by hand", "one at a time", _rk4(1), LADDER, "numba", fixed=True),
