@@ -25,6 +25,7 @@ STEPS: dict[str, tuple[Any, str]] = {
     "E4": (EULER4, "exp"),
     "E6": (EULER6, "exp"),
     "T4": (lh.LieTaylor(4), "exp"),
+    "T6": (lh.LieTaylor(6), "exp"),
     "T8": (lh.LieTaylor(8), "exp"),
     "T12": (lh.LieTaylor(12), "exp"),
     "RK4": (lh.RKMK("rk4"), "exp"),
@@ -36,6 +37,7 @@ EXPLAINED = {
     "E4": "`Corrected(Euler(), 4)`",
     "E6": "`Corrected(Euler(), 6)`",
     "T4": "`LieTaylor(4)`",
+    "T6": "`LieTaylor(6)`",
     "T8": "`LieTaylor(8)`",
     "T12": "`LieTaylor(12)`",
     "RK4": '`RKMK("rk4")`',
@@ -146,7 +148,7 @@ def under_jit(name: str) -> Solve:
 
 
 # -- rows ------------------------------------------------------------------------------------------------
-FEW, MANY = ("E4", "T8", "RK4"), ("E2", "E2 cay", "E4", "E6", "T4", "T8", "T12", "RK4")
+FEW, MANY = ("E4", "T8", "RK4"), ("E2", "E2 cay", "E4", "E6", "T4", "T6", "T8", "T12", "RK4")
 EAGER, NUMBA, JAX = "liehom, numpy", 'liehom, compile="numba"', 'liehom, compile="jax"'
 IN_JIT = "liehom, a step under jax.jit"
 ALL, ENDS, LARGE = (1, 10, 10_000), (1, 10_000), (10_000,)
