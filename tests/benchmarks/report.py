@@ -107,7 +107,7 @@ def main() -> None:
     data = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
     if not options.render:
         measure(data, options.only, options.long)
-    write(data, DOCS)
+    write(_rounded(data), DOCS)  # what is kept, so that the page can be made again
 
 
 def measure(data: dict[str, Any], only: list[str] | None, long: bool) -> None:
