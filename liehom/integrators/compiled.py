@@ -20,7 +20,7 @@ from liehom.integrators.clock import SLACK
 from liehom.integrators.jax_kernel import JaxKernel
 from liehom.integrators.traced_size import Limits
 from liehom.integrators.traced_step import traced_step
-from liehom.tracing import Kernel, StepGraph, padded
+from liehom.tracing import Kernel, StepGraph, needed, padded
 
 if TYPE_CHECKING:
     from liehom.integrators.run import Run
@@ -28,14 +28,16 @@ if TYPE_CHECKING:
 BACKENDS = ("numba", "jax")
 WIDTH, NARROW = 16, 8
 PATH_BYTES = 64_000_000
-BREATH = 20_000_000
-"""Steps of lanes between two looks at progress, checkpoints and interruptions."""
+BREATH = 4_000_000_000
+"""Operations, of all lanes together, between two looks at progress, checkpoints and interruptions."""
+ITERATIONS = 5
+"""For so many iterations a loop in a step is taken."""
 SHARED = 50_000
 """From so many steps of lanes on, threads share the blocks."""
 
 
-def compiled_steps(run: Run, backend: str) -> Callable[[Run], None]:
-    """What makes the plain steps of a run ahead.
+def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
+    """What makes the plain steps of a run ahead, and says whether it can go on at once.
 
     Parameters
     ----------
@@ -140,7 +142,9 @@ class Group:
 
 @final
 class Compiled:
-    """The plain steps of a run, made ahead after every step of its own.
+    """The plain steps of a run, made ahead between steps of its own.
+
+    How many are made in one call is of no effect on the results: where a call has to pause, the next one goes on.
 
     Parameters
     ----------
@@ -149,21 +153,33 @@ class Compiled:
 
     def __init__(self, groups: list[Group]) -> None:
         self.groups = groups
+        self.work = max((_operations(group.graph) for group in groups), default=1)
+        self.calls: Any = 0
 
-    def __call__(self, run: Run) -> None:
-        """Make plain steps until every trajectory rests, or for a while."""
-        if not run.active.any():
-            return
+    def __call__(self, run: Run) -> bool:
+        """Make plain steps until every trajectory rests, or for a while; whether there are more to be made."""
         lanes = int(np.prod(run.shape, dtype=int))
-        steps = min(int(run.options.max_steps) - 1 - int(np.max(run.taken)), max(1, BREATH // lanes))
+        if not run.active.any() or (run.tried is None and not run.taken.any()):
+            return False  # the first step is that of the run
+        steps = int(min(run.options.max_steps - 1 - int(np.max(run.taken)), max(1, BREATH // (self.work * lanes))))
         if run.keeps:
             steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 2))))
         if steps < 1:
-            return
+            return False
         state = _State(run)
         for group in self.groups:
             state.step(group, steps)
+        # psi is counted for the trajectory that calls it most, over all calls
+        before, self.calls = np.max(self.calls), self.calls + state.calls
+        run.calls += int(np.max(self.calls) - before)
         state.hand_back()
+        return bool((state.going > 0).any())
+
+
+def _operations(graph: StepGraph) -> int:
+    """About how many operations a step has."""
+    rows = needed(graph.outputs)
+    return len(rows) + ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop")
 
 
 class _State:
@@ -185,13 +201,14 @@ class _State:
             ahead = times[np.minimum(done, len(times) - 1)]
             self.limit = np.where(done < len(times), ahead, self.limit)
         # without a proposal the first size is for the run to find
-        self.alive = (run.active.reshape(-1) & np.isfinite(self.h)).astype(np.float64)
+        self.alive = run.active.reshape(-1) & np.isfinite(self.h)
+        self.going = np.zeros(self.t.shape)
         self.before = run.taken.reshape(-1).astype(np.float64)
         self.count = self.before.copy()
         self.tries = np.zeros(self.t.shape)
         self.paths: list[tuple[Any, Any, Any, Any]] = []
         self.accounts: list[tuple[Any, dict[str, Any]]] = []
-        self.calls = 0
+        self.calls = np.zeros(self.t.shape)
 
     def step(self, group: Group, steps: int) -> None:
         """Let a kernel step its lanes."""
@@ -200,9 +217,10 @@ class _State:
         limit = self.limit
         if graph.passed is None:  # so many steps end before it
             whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
-            limit = np.ceil(whole - SLACK) - 1
+            total: Any = run.total  # no step is made of a rest below the round-off of times
+            limit = np.minimum(np.ceil(whole - SLACK), np.broadcast_to(total, run.shape).reshape(-1)) - 1
         h, limit = group.packed(self.h), group.packed(limit)
-        alive, tries = group.packed(self.alive), group.packed(self.tries)
+        alive, tries = group.packed(self.alive.astype(np.float64)), group.packed(self.tries)
         extra = np.zeros((max(1, len(graph.largest) + len(graph.summed)), m.shape[-1]))
         path = path_t = path_h = None
         if run.keeps:
@@ -216,6 +234,7 @@ class _State:
         )
         used = slice(0, len(lanes))
         self.m[:, lanes], self.t[lanes], self.count[lanes] = m[:, used], t[used], count[used]
+        self.going[lanes] = alive[used]
         self.tries[lanes] = tries[used] if self.adaptive else count[used] - self.before[lanes]
         if self.adaptive:
             self.h[lanes] = h[used]
@@ -227,9 +246,8 @@ class _State:
         if graph.summed:
             rows = dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))
             self.accounts.append((lanes, rows))
-        # of psi, by the trajectory that calls it most: where steps iterate, each has its own number
-        most = self.tries[lanes] * graph.calls if graph.calls is not None else rows["calls"]
-        self.calls = max(self.calls, int(most.max(initial=0)))
+        # where steps iterate, each trajectory has its own number
+        self.calls[lanes] = self.tries[lanes] * graph.calls if graph.calls is not None else rows["calls"]
 
     def hand_back(self) -> None:
         """The new state of the run."""
@@ -243,7 +261,6 @@ class _State:
         if self.adaptive:
             run.h = self.h.reshape(shape)
         run.taken = run.taken + new.reshape(shape)
-        run.calls += self.calls
         for lanes, extra in self.accounts:
             run.account.add_compiled(lanes, extra)
         if run.keeps:

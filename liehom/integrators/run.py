@@ -122,7 +122,7 @@ class Run:
             self.samples = Samples(options.t_eval, start.shape, self.dtype, float(self.direction))
             self.samples.start(span[0], start)
         self.path = Path(self.t, self.m)
-        self.ahead: Callable[[Run], None] | None = None
+        self.ahead: Callable[[Run], bool] | None = None
         self.keeps = options.t_eval is None or options.dense_output
 
     def _counted(self, field: GeneratorField) -> GeneratorField:
@@ -147,9 +147,7 @@ class Run:
         with Progress(show) as progress:
             if path is None:
                 while self.active.any():
-                    self.advance()
-                    if self.ahead is not None:
-                        self.ahead(self)
+                    self._go_on()
                     progress.update(self._fraction)
             else:
                 self._execute_with_checkpoints(progress, path)
@@ -166,11 +164,8 @@ class Run:
         mark, due = state.mark(self), wall.monotonic() + self.options.checkpoint_every
         try:
             while self.active.any():
+                self._go_on()
                 mark = state.mark(self)
-                self.advance()
-                if self.ahead is not None:
-                    mark = state.mark(self)
-                    self.ahead(self)
                 progress.update(self._fraction)
                 if wall.monotonic() >= due:
                     begin = wall.monotonic()
@@ -187,6 +182,11 @@ class Run:
         passed = np.min(np.abs(self.t - self.span[0]), where=self.active, initial=np.inf)
         whole = float(abs(self.end - self.span[0])) or 1.0
         return float(min(passed / whole, 1.0))
+
+    def _go_on(self) -> None:
+        """Plain steps ahead, for a while; where there are none to be made, one step of all active trajectories."""
+        if self.ahead is None or not self.ahead(self):
+            self.advance()
 
     def advance(self) -> None:
         """One step of all active trajectories."""
@@ -367,15 +367,14 @@ class Run:
         """A step could not be computed: find out for which trajectories, or take smaller steps."""
         if self.psi_raised:
             raise error
-        if isinstance(error, np.linalg.LinAlgError):
-            bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
-            if not bad.any():
-                series = flow_series(self.field, self.m, self.step.order + ERROR_TERMS, self.t)
-                points = [series.point(k) for k in range(series.points.order + 1)]
-                bad = self.active & ~np.isfinite(points).all(axis=(0, -1))
-            if bad.any():
-                self._fail(bad, PSI)
-                return
+        bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
+        if isinstance(error, np.linalg.LinAlgError) and not bad.any():
+            series = flow_series(self.field, self.m, self.step.order + ERROR_TERMS, self.t)
+            points = [series.point(k) for k in range(series.points.order + 1)]
+            bad = self.active & ~np.isfinite(points).all(axis=(0, -1))
+        if bad.any():
+            self._fail(bad, PSI)
+            return
         code = IMPLICIT if isinstance(error, ConvergenceError) else LINEAR
         if self.tried is None:
             self._fail(self.active, code)

@@ -74,14 +74,12 @@ def tried_size(
     (-0.5, True)
     """
     left = np.abs(limits.end - t)
-    h, certain = np.minimum(proposal, largest_size(limits.max_step, left)), True
+    h = np.minimum(proposal, largest_size(limits.max_step, left))
     if getattr(local, "estimate", None) is None:
         speed = length(m) / time_scale(psi.field, m, t)
         defects = defects_of(action, psi, local, m, t, step.order)
         h = size_from_defects(defects, Tolerance(limits.rtol, limits.atol).norm(m), speed, h)
-        for _, size in defects:  # the smaller of two traced numbers is not always nan where one of them is
-            certain = certain & np.isfinite(size)
-    return limits.direction * h, certain & is_large_enough(h, limits.tiny, left)
+    return limits.direction * h, is_large_enough(h, limits.tiny, left)
 
 
 def judgement(limits: Limits, local: LocalStep, m: Any, size: Any) -> tuple[Any, Any]:

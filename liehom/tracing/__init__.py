@@ -1,7 +1,7 @@
 """Recording a computation as a graph of scalar operations, and machine code made of the graph."""
 
 from liehom.tracing.array import Traced as Traced
-from liehom.tracing.graph import Expr as Expr
+from liehom.tracing.expr import Expr as Expr
 from liehom.tracing.graph import Tape as Tape
 from liehom.tracing.graph import needed as needed
 from liehom.tracing.kernel import Kernel as Kernel

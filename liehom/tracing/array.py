@@ -2,7 +2,7 @@
 
 The entries are `Expr` of one tape, in an array of objects.  Numpy's functions that only move entries, add and multiply
 run on that array; comparisons, extrema, `np.where` and linear systems are here.  What needs values is refused.
-Imports graph, errors.
+Imports elements, expr, graph, errors.
 """
 
 from __future__ import annotations
@@ -14,7 +14,9 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from liehom.errors import TraceError
-from liehom.tracing.graph import FOLDED, Expr, Tape
+from liehom.tracing.elements import ELEMENTS, LOGICAL, eliminated
+from liehom.tracing.expr import FOLDED, Expr
+from liehom.tracing.graph import Tape
 
 ARITHMETIC = frozenset(["add", "subtract", "multiply", "divide", "true_divide", "negative", "positive", "matmul",
                         "square", "reciprocal", "conjugate", "vecdot", "matvec", "vecmat"])  # fmt: skip
@@ -130,12 +132,18 @@ class Traced(NDArrayOperatorsMixin):
             raise AttributeError(name)
         if name in METHODS:
             return lambda *args, **options: _method(self, name, *args, **options)
+        if name in FOLDED:  # numpy's functions call these on arrays of objects, such as np.array([m[0], m[1]])
+            return lambda: getattr(np, name)(self)
         raise AttributeError(f"an array of a compiled step has no attribute {name!r}")
 
     def __repr__(self) -> str:
         return f"<traced array of shape {self.shape}>"
 
     # -- numpy's protocols -------------------------------------------------------------------------------
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
+        # as an array of objects; numbers that are not known are no floats, which they say themselves
+        return self.entries.copy() if dtype is None else self.entries.astype(dtype)
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         if any(_is_foreign(x) for x in inputs):
             return NotImplemented  # a Jet of traced values
@@ -168,7 +176,7 @@ def _is_foreign(x: Any) -> bool:
 
 def _method(x: Traced, name: str, *args: Any, **options: Any) -> Any:
     if name == "astype":
-        return _numbers(x.tape, x) if np.dtype(args[0]) != bool else x
+        return _converted(x, *args, **options)
     if name == "copy":
         return Traced(x.tape, x.entries.copy())
     if name in ("reshape", "transpose") and len(args) > 1:
@@ -176,6 +184,16 @@ def _method(x: Traced, name: str, *args: Any, **options: Any) -> Any:
     if name == "item":
         return x[args] if args else x.reshape(())
     return getattr(np, name)(x, *args, **options)
+
+
+def _converted(x: Traced, dtype: Any, **_: Any) -> Traced:
+    """A copy with another type, where that changes no number."""
+    kind = np.dtype(dtype)
+    if kind.kind == "b":
+        return _each(x.tape, x.tape.truth, x)
+    if kind in (np.float64, np.dtype(object)) or (x.dtype.kind == "b" and kind.kind in "iuf"):
+        return Traced(x.tape, _numbers(x.tape, x).entries.copy())
+    raise TraceError(f"compiled code computes in float64: numbers are not made {kind}")
 
 
 METHODS = frozenset(["astype", "copy", "item", "reshape", "transpose", "sum", "max", "min", "all", "any", "mean", "dot",
@@ -231,9 +249,9 @@ def _checked_key(key: Any) -> Any:
     return key
 
 
-def _each(tape: Tape, function: Callable[..., Expr], *arrays: Any) -> Traced:
-    """function on the entries, with broadcasting."""
-    made = np.broadcast_arrays(*[_objects(tape, a) for a in arrays])
+def _each(tape: Tape, function: Callable[..., Expr], *arrays: Any, numbers: bool = False) -> Traced:
+    """function on the entries, with broadcasting; `numbers`: truth values count as 0 and 1."""
+    made = np.broadcast_arrays(*[_objects(tape, _numbers(tape, a) if numbers else a) for a in arrays])
     out = np.empty(made[0].shape, dtype=object)
     for index in np.ndindex(out.shape):
         out[index] = function(*[a[index] for a in made])
@@ -281,48 +299,19 @@ def _ufunc(tape: Tape, ufunc: Any, method: str, inputs: Any, options: Any) -> Tr
         return made
     if method != "__call__" or set(options) - {"dtype", "casting"}:
         raise TraceError(f"np.{name}.{method} with {sorted(options)} cannot be compiled")
+    if name == "add" and all((x if isinstance(x, Traced) else np.asarray(x)).dtype.kind == "b" for x in inputs):
+        name = "logical_or"
     if name in ARITHMETIC:
         return Traced(tape, ufunc(*[_objects(tape, x) for x in inputs]))
     if name in COMPARISONS:
-        return _each(tape, lambda a, b: tape.compare(COMPARISONS[name], a, b), *inputs)
+        return _each(tape, lambda a, b: tape.compare(COMPARISONS[name], a, b), *inputs, numbers=True)
+    if name in LOGICAL:
+        return _each(tape, lambda *a: LOGICAL[name](tape, *a), *inputs)
     if name in ELEMENTS:
-        return _each(tape, lambda *a: ELEMENTS[name](tape, *a), *inputs)
+        return _each(tape, lambda *a: ELEMENTS[name](tape, *a), *inputs, numbers=True)
     if name in FOLDED:
-        return _each(tape, lambda *a: tape.call(name, *a), *inputs)
+        return _each(tape, lambda *a: tape.call(name, *a), *inputs, numbers=True)
     raise TraceError(f"np.{name} cannot be compiled")
-
-
-def _sign(tape: Tape, x: Expr) -> Expr:
-    negative = tape.select(tape.compare("lt", x, tape.zero), tape.constant(-1.0), tape.zero)
-    return tape.select(tape.compare("lt", tape.zero, x), tape.one, negative)
-
-
-ELEMENTS: dict[str, Callable[..., Expr]] = {
-    "absolute": lambda tape, x: tape.call("abs", x),
-    "fabs": lambda tape, x: tape.call("abs", x),
-    "maximum": lambda tape, a, b: tape.largest(a, b),
-    "minimum": lambda tape, a, b: tape.largest(a, b, least=True),
-    "fmax": lambda tape, a, b: tape.largest(a, b),
-    "fmin": lambda tape, a, b: tape.largest(a, b, least=True),
-    "greater": lambda tape, a, b: tape.compare("lt", b, a),
-    "greater_equal": lambda tape, a, b: tape.compare("le", b, a),
-    "logical_and": lambda tape, a, b: tape.both(a, b),
-    "bitwise_and": lambda tape, a, b: tape.both(a, b),
-    "logical_or": lambda tape, a, b: tape.either(a, b),
-    "bitwise_or": lambda tape, a, b: tape.either(a, b),
-    "logical_not": lambda tape, a: tape.negated(a),
-    "invert": lambda tape, a: tape.negated(a),
-    "isfinite": lambda tape, a: tape.compare("lt", tape.call("abs", a), tape.constant(np.inf)),
-    "isnan": lambda tape, a: tape.compare("ne", a, a),
-    "power": lambda tape, a, b: tape.power(a, b),
-    "float_power": lambda tape, a, b: tape.power(a, b),
-    "hypot": lambda tape, a, b: tape.call("sqrt", tape.add(tape.mul(a, a), tape.mul(b, b))),
-    "sign": _sign,
-    "deg2rad": lambda tape, a: tape.mul(a, tape.constant(np.pi / 180)),
-    "radians": lambda tape, a: tape.mul(a, tape.constant(np.pi / 180)),
-    "rad2deg": lambda tape, a: tape.mul(a, tape.constant(180 / np.pi)),
-    "degrees": lambda tape, a: tape.mul(a, tape.constant(180 / np.pi)),
-}
 
 
 # -- functions that are not only structural ----------------------------------------------------------------
@@ -350,28 +339,32 @@ def _reduced(
 def _numbers(tape: Tape, a: Any) -> Traced:
     """Truth values as 0 and 1."""
     made = Traced(tape, a)
-    return _each(tape, tape.select, made, 1.0, 0.0) if made.dtype == bool else made
+    return _each(tape, tape.number, made) if any(e.boolean for e in made.entries.flat) else made
 
 
-def _sum(tape: Tape, a: Any, axis: Any = None, **options: Any) -> Traced:
+def _sum(tape: Tape, a: Any, axis: Any = None, where: Any = True, **options: Any) -> Traced:
     known = {k: v for k, v in options.items() if k in ("keepdims", "initial")}
-    return Traced(tape, np.sum(_numbers(tape, a).entries, axis=axis, **known))
+    return Traced(tape, np.sum(_numbers(tape, _where(tape, where, a, 0.0)).entries, axis=axis, **known))
 
 
 def _extremum(least: bool) -> Callable[..., Traced]:
-    def found(tape: Tape, a: Any, axis: Any = None, keepdims: bool = False, initial: Any = None, **_: Any) -> Traced:
+    def found(
+        tape: Tape, a: Any, axis: Any = None, out: Any = None, keepdims: Any = False, initial: Any = None,
+        where: Any = True,
+    ) -> Traced:  # fmt: skip
         start = None if initial is None or not np.isscalar(initial) else tape.of(initial)
-        return _reduced(tape, lambda x, y: tape.largest(x, y, least=least), a, axis, keepdims, start)
+        a = _numbers(tape, a) if start is None else _where(tape, where, _numbers(tape, a), start)
+        return _reduced(tape, lambda x, y: tape.largest(x, y, least=least), a, axis, keepdims is True, start)
 
     return found
 
 
-def _all(tape: Tape, a: Any, axis: Any = None, keepdims: bool = False, **_: Any) -> Traced:
-    return _reduced(tape, tape.both, a, axis, keepdims, tape.true)
+def _all(tape: Tape, a: Any, axis: Any = None, out: Any = None, keepdims: Any = False, where: Any = True) -> Traced:
+    return _reduced(tape, tape.both, _where(tape, where, a, tape.true), axis, keepdims is True, tape.true)
 
 
-def _any(tape: Tape, a: Any, axis: Any = None, keepdims: bool = False, **_: Any) -> Traced:
-    return _reduced(tape, tape.either, a, axis, keepdims, tape.false)
+def _any(tape: Tape, a: Any, axis: Any = None, out: Any = None, keepdims: Any = False, where: Any = True) -> Traced:
+    return _reduced(tape, tape.either, _where(tape, where, a, tape.false), axis, keepdims is True, tape.false)
 
 
 def _where(tape: Tape, condition: Any, x: Any = None, y: Any = None) -> Traced:
@@ -384,6 +377,12 @@ def _clip(tape: Tape, a: Any, a_min: Any = None, a_max: Any = None, **options: A
     low, high = options.get("min", a_min), options.get("max", a_max)
     made = a if low is None else np.maximum(a, low)
     return made if high is None else np.minimum(made, high)
+
+
+def _without_nan(tape: Tape, a: Any, copy: bool = True, nan: Any = 0.0, posinf: Any = None, neginf: Any = None) -> Any:
+    largest = float(np.finfo(np.float64).max)
+    high, low = largest if posinf is None else posinf, -largest if neginf is None else neginf
+    return np.where(np.isnan(a), nan, np.where(a == np.inf, high, np.where(a == -np.inf, low, a)))
 
 
 def _norm(tape: Tape, x: Any, ord: Any = None, axis: Any = None, keepdims: bool = False) -> Any:
@@ -402,26 +401,8 @@ def _solve(tape: Tape, a: Any, b: Any) -> Traced:
     a, b = np.broadcast_to(a, (*lead, *a.shape[-2:])), np.broadcast_to(b, (*lead, *b.shape[-2:]))
     out = np.empty(b.shape, dtype=object)
     for index in np.ndindex(*lead):
-        out[index] = _eliminated(tape, a[index].copy(), b[index].copy())
+        out[index] = eliminated(tape, a[index].copy(), b[index].copy())
     return Traced(tape, out[..., 0] if vector else out)
-
-
-def _eliminated(tape: Tape, a: Any, b: Any) -> Any:
-    n = len(a)
-    rows = np.concatenate([a, b], axis=1)
-    for i in range(n):
-        for j in range(i + 1, n):
-            better = tape.compare("lt", tape.call("abs", rows[i, i]), tape.call("abs", rows[j, i]))
-            for k in range(i, rows.shape[1]):
-                p, q = rows[i, k], rows[j, k]
-                rows[i, k], rows[j, k] = tape.select(better, q, p), tape.select(better, p, q)
-        rows[i, i + 1 :] = rows[i, i + 1 :] / rows[i, i]
-        for j in range(i + 1, n):
-            rows[j, i + 1 :] = rows[j, i + 1 :] - rows[i, i + 1 :] * rows[j, i]
-    for i in range(n - 1, 0, -1):
-        for j in range(i):
-            rows[j, n:] = rows[j, n:] - rows[i, n:] * rows[j, i]
-    return rows[:, n:]
 
 
 def _inverse(tape: Tape, a: Any) -> Traced:
@@ -443,6 +424,6 @@ SPECIAL: dict[str, Callable[..., Any]] = {
     "shape": lambda tape, a: a.shape, "ndim": lambda tape, a: a.ndim,
     "size": lambda tape, a, axis=None: a.size if axis is None else a.shape[axis],
     "result_type": lambda tape, *arrays: np.dtype(np.float64),
-    "real": lambda tape, a: a, "nan_to_num": lambda tape, a, **_: np.where(np.isfinite(a), a, 0.0),
+    "real": lambda tape, a: a, "nan_to_num": _without_nan,
     "array_equal": lambda tape, a, b: np.all(a == b), "iscomplexobj": lambda tape, a: False,
 }  # fmt: skip

@@ -2,125 +2,24 @@
 
 An `Expr` stands for a number that is not known yet; arithmetic on it appends to its `Tape`.  What is recorded is
 simplified as it is recorded: products with 0 and 1, terms that cancel in a sum, quotients by the same divisor.
-Imports errors.
+Imports expr, errors.
 """
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, final
 
+import numpy as np
+
 from liehom.errors import TraceError
+from liehom.tracing.expr import FOLDED, Expr
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
 LONGEST = 10
 """Sums of so many terms at most are searched for terms that cancel."""
 NEAR = 4e-16
-
-FOLDED: dict[str, Callable[..., float]] = {
-    "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log,
-    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh, "arcsin": math.asin, "arccos": math.acos,
-    "arctan": math.atan, "arcsinh": math.asinh, "arccosh": math.acosh, "arctanh": math.atanh, "expm1": math.expm1,
-    "log1p": math.log1p, "log2": math.log2, "log10": math.log10, "exp2": math.exp2, "cbrt": math.cbrt,
-    "arctan2": math.atan2, "pow": math.pow, "abs": abs,
-    "sinq": lambda q: (cmath.sin(cmath.sqrt(q)) / cmath.sqrt(q)).real if q else 1.0,
-    "cosq": lambda q: cmath.cos(cmath.sqrt(q)).real,
-}  # fmt: skip
-BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
-
-
-@final
-class Expr:
-    """A number, or a truth value, on a tape.
-
-    Attributes
-    ----------
-    tape : Tape
-    op : str
-        "const", "input", "add", ..., "get" for one of the results of a block.
-    args : tuple of Expr
-    value : float, int, str or None
-        Of a constant; the index of an input or result; the block of a result.
-    place : int
-        Its number on the tape; arguments have smaller ones.
-    """
-
-    __slots__ = ("args", "op", "place", "tape", "terms", "value")
-
-    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Any, place: int) -> None:
-        self.tape, self.op, self.args, self.value, self.place = tape, op, args, value, place
-        self.terms: Any = None
-
-    @property
-    def constant(self) -> bool:
-        """Whether the number is known."""
-        return self.op == "const"
-
-    @property
-    def boolean(self) -> bool:
-        """Whether it is a truth value."""
-        if self.op == "get" and self.args[0].op == "loop":
-            return bool(self.args[0].args[self.value].boolean)
-        return self.op in BOOLEAN or (self.constant and isinstance(self.value, bool))
-
-    def __add__(self, other: Any) -> Expr:
-        return self.tape.add(self, self.tape.of(other))
-
-    def __sub__(self, other: Any) -> Expr:
-        return self.tape.sub(self, self.tape.of(other))
-
-    def __mul__(self, other: Any) -> Expr:
-        return self.tape.mul(self, self.tape.of(other))
-
-    def __truediv__(self, other: Any) -> Expr:
-        return self.tape.div(self, self.tape.of(other))
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __rsub__(self, other: Any) -> Expr:
-        return self.tape.sub(self.tape.of(other), self)
-
-    def __rtruediv__(self, other: Any) -> Expr:
-        return self.tape.div(self.tape.of(other), self)
-
-    def __neg__(self) -> Expr:
-        return self.tape.neg(self)
-
-    def __pos__(self) -> Expr:
-        return self
-
-    def __pow__(self, other: Any) -> Expr:
-        return self.tape.power(self, self.tape.of(other))
-
-    def __rpow__(self, other: Any) -> Expr:
-        return self.tape.power(self.tape.of(other), self)
-
-    def conjugate(self) -> Expr:
-        """Itself: numbers are real."""
-        return self
-
-    def __bool__(self) -> bool:
-        if self.constant:
-            return bool(self.value)
-        raise TraceError(
-            "the step branches on the value of a number (`if`, `while`, `and`, a comparison used as an index), which "
-            "compiled code does not know: write np.where, or integrate without compile="
-        )
-
-    def __float__(self) -> float:
-        if self.constant:
-            return float(self.value)
-        raise TraceError(
-            "the step makes a plain float of a number that compiled code does not know yet (math.sin, float(), an "
-            "entry of a float array): use numpy's functions and np.stack, or integrate without compile="
-        )
-
-    __int__ = __index__ = __complex__ = __float__
-
-    def __repr__(self) -> str:
-        return repr(self.value) if self.constant else f"<{self.op} {self.place}>"
 
 
 @final
@@ -179,6 +78,14 @@ class Tape:
             return self.constant(float(x))
         except (TypeError, ValueError):
             raise TraceError(f"compiled code works on real numbers, got {x!r} in the step") from None
+
+    def number(self, x: Expr) -> Expr:
+        """A truth value as 0 or 1; numbers as they are."""
+        return self.select(x, self.one, self.zero) if x.boolean else x
+
+    def truth(self, x: Expr) -> Expr:
+        """Whether a number is not 0; truth values as they are."""
+        return x if x.boolean else self.compare("ne", x, self.zero)
 
     def _make(self, op: str, args: tuple[Expr, ...], value: Any = None, extra: Any = None) -> Expr:
         if op in COMMUTATIVE and args[0].place > args[1].place:
@@ -302,19 +209,27 @@ class Tape:
         if all(a.constant for a in args) and name in FOLDED:
             try:
                 return self.constant(float(FOLDED[name](*[float(a.value) for a in args])))
-            except (ValueError, OverflowError):
-                return self.constant(math.nan)
+            except (ValueError, OverflowError):  # infinite, or nan: as numpy has it
+                with np.errstate(all="ignore"):
+                    function = getattr(np, {"pow": "power"}.get(name, name), None)
+                    return self.constant(float(function(*[a.value for a in args])) if function else math.nan)
         if name == "abs" and args[0].op in ("neg", "abs"):
             return self.call("abs", args[0].args[0])
         return self._make(name, args)
 
     def largest(self, a: Expr, b: Expr, *, least: bool = False) -> Expr:
-        """The larger of two numbers, or the smaller."""
+        """The larger of two numbers, or the smaller; nan where one of them is."""
         if a is b:
             return a
-        if a.constant and b.constant:
-            return self.constant(min(a.value, b.value) if least else max(a.value, b.value))
-        return self.select(self.compare("lt", a, b) if least else self.compare("lt", b, a), a, b)
+        a, b = (b, a) if a.constant else (a, b)
+        if b.constant:
+            if a.constant and math.isnan(a.value):
+                return a
+            if math.isnan(b.value):
+                return b
+            return self.select(self.compare("le", b, a) if least else self.compare("le", a, b), b, a)
+        first = self.select(self.compare("ne", a, a), a, b)
+        return self.select(self.compare("lt", a, b) if least else self.compare("lt", b, a), a, first)
 
     # -- truth values ------------------------------------------------------------------------------------
     def compare(self, op: str, a: Expr, b: Expr) -> Expr:
@@ -322,7 +237,7 @@ class Tape:
         if a.constant and b.constant:
             x, y = a.value, b.value
             return self.of({"lt": x < y, "le": x <= y, "eq": x == y, "ne": x != y}[op])
-        if a is b and op in ("lt", "ne"):
+        if a is b and op == "lt":
             return self.false
         if op in ("lt", "le"):
             first, second = self._square(a), self._square(b)
@@ -334,8 +249,8 @@ class Tape:
         """The square of a number that is certainly not negative, and whether it had a root; None of others."""
         if x.constant:
             return (self.constant(x.value * x.value), False) if x.value >= 0 else None
-        if x.op == "sqrt":
-            return x.args[0], True
+        if x.op == "sqrt":  # that of a negative number is nan
+            return (x.args[0], True) if _is_nonnegative(x.args[0]) else None
         if x.op == "abs":
             return self.mul(x.args[0], x.args[0]), False
         if x.op == "mul":
@@ -346,6 +261,7 @@ class Tape:
 
     def both(self, a: Expr, b: Expr) -> Expr:
         """a and b."""
+        a, b = self.truth(a), self.truth(b)
         if a.constant:
             return b if a.value else self.false
         if b.constant:
@@ -358,12 +274,16 @@ class Tape:
 
     def negated(self, a: Expr) -> Expr:
         """not a."""
+        a = self.truth(a)
         if a.constant:
             return self.of(not a.value)
         return a.args[0] if a.op == "not" else self._make("not", (a,))
 
     def select(self, where: Expr, a: Expr, b: Expr) -> Expr:
         """a where a condition holds, else b."""
+        where = self.truth(where)
+        if a.boolean is not b.boolean:
+            a, b = self.number(a), self.number(b)
         if where.constant:
             return a if where.value else b
         if a is b:
@@ -428,6 +348,21 @@ class Tape:
             for y, c in terms.items():
                 made[y] = made.get(y, 0.0) + factor * c
         return made
+
+
+def _is_nonnegative(x: Expr) -> bool:
+    """Whether a number is certainly not negative, or nan: sums, products and quotients of squares, ..."""
+    stack, seen = [x], set()
+    while stack:
+        y = stack.pop()
+        square = y.op == "mul" and y.args[0] is y.args[1]
+        if y.place in seen or square or y.op in ("sqrt", "abs", "exp") or (y.constant and y.value >= 0):
+            continue
+        if y.op not in ("add", "mul", "div", "select"):
+            return False
+        seen.add(y.place)
+        stack.extend(y.args[1:] if y.op == "select" else y.args)
+    return True
 
 
 def needed(outputs: Sequence[Expr]) -> list[Expr]:

@@ -1,6 +1,6 @@
 """A graph as a function on JAX arrays, to be compiled by jax.jit; it can be differentiated and vmapped.
 
-Imports graph, llvm_text, errors; jax where it is used.
+Imports expr, graph, llvm_text, errors; jax where it is used.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from liehom.errors import TraceError
-from liehom.tracing.graph import Expr, needed
+from liehom.tracing.expr import Expr
+from liehom.tracing.graph import needed
 from liehom.tracing.llvm_text import SHORT, rotation_series
 
 SUBSTEPS, TERMS = 4, 18

@@ -3,7 +3,7 @@
 Lanes are trajectories; W of them are stepped together, block by block, all steps of a block before the next block.
 A lane rests as soon as its next step would not be a plain one: the last before a limit, one that is not finite, one
 over which the clock does not run.  Where sizes are adapted, a step that is not accepted changes only the size.
-Imports graph, llvm_text, errors; llvmlite where it is used.
+Imports expr, graph, llvm_text, errors; llvmlite where it is used.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import Any, final
 
 from liehom.errors import TraceError
-from liehom.tracing.graph import Expr, needed
+from liehom.tracing.expr import Expr
+from liehom.tracing.graph import needed
 from liehom.tracing.llvm_text import LIBM, Body, Writer
 
 SLACK = 1e-9

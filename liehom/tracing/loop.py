@@ -1,6 +1,6 @@
 """Loops in a traced step: iterations until nothing changes, for every trajectory as long as it needs.
 
-What does not depend on the numbers that change stands before the loop.  Imports array, graph.
+What does not depend on the numbers that change stands before the loop.  Imports array, expr, graph.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from typing import Any, final
 import numpy as np
 
 from liehom.tracing.array import Traced
-from liehom.tracing.graph import Expr, Tape, needed
+from liehom.tracing.expr import Expr
+from liehom.tracing.graph import Tape, needed
 
 
 @final

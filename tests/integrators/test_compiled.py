@@ -260,3 +260,16 @@ def test_branches_are_selections() -> None:
         lh.adjoint(lh.so(3)), lambda m: np.where(m > 0, m, -0.5 * m) + np.maximum(np.abs(m), 0.3) * [0.1, 0.2, 0.3]
     )
     assert_same(*both(field, (0, 2), sphere(7), step=lh.RKMK("rk4"), dt=0.05))
+
+
+# -- ends of runs ------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("span", [(1e6, 1e6 + 1), (1e9, 1e9 + 1e-3)])
+def test_a_rest_below_the_round_off_of_times_is_no_step(span: Any) -> None:
+    dt = (span[1] - span[0]) / (10 + 5e-9)
+    plain, made = both(BODY, span, sphere(3), step=lh.Euler(), dt=dt)
+    assert plain.n_steps.tolist() == made.n_steps.tolist() == [10, 10, 10]
+    assert_same(plain, made)
+
+
+def test_there_may_be_no_bound_for_the_number_of_steps() -> None:
+    assert_same(*both(BODY, (0, 2), sphere(3), step=lh.Euler(), dt=0.1, max_steps=np.inf))

@@ -13,6 +13,7 @@ import pytest
 import liehom as lh
 from liehom.errors import InputError
 from liehom.integrators import compiled
+from liehom.integrators.progress import Progress
 
 from . import spaces
 from .test_compiled import BODY, START, a_field, sphere
@@ -232,26 +233,36 @@ def test_a_psi_that_ends_ends_a_trajectory_as_without(step: str) -> None:
     assert set(made.statuses.tolist()) == {-1, 0}
 
 
-def test_an_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiled, "BREATH", 50)
+@pytest.mark.parametrize("within", [False, True], ids=["between", "within"])
+@pytest.mark.parametrize("dt", [None, 0.05], ids=["adapted", "fixed"])
+def test_an_interrupted_run_goes_on_bit_for_bit(
+    dt: float | None, within: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever the pauses are in which interruptions are noticed."""
+    file, starts = tmp_path / "state.npz", sphere(3)
+    options: dict[str, Any] = {"step": STEPS["Heun to 3"], "dt": dt, "compile": "numba", "t_eval": [7.3, 50.0]}
+    whole = lh.integrate(BODY, (0, 50), starts, **options)
+    monkeypatch.setattr(compiled, "BREATH", 10_000)
     calls: list[int] = []
 
-    def psi(m: Any) -> Any:
+    def stop(*_: Any) -> None:
         calls.append(1)
-        if len(calls) == 25:
+        if len(calls) == 12:
             raise KeyboardInterrupt
-        return -m * [1.0, 0.5, 0.25]
 
-    field, file = lh.GeneratorField(lh.adjoint(lh.so(3)), psi), tmp_path / "state.npz"
-    options: dict[str, Any] = {"step": STEPS["Heun to 3"], "compile": "numba"}
-    whole = lh.integrate(BODY, (0, 50), START, **options)
-    with pytest.raises(KeyboardInterrupt):
-        lh.integrate(field, (0, 50), START, checkpoint=file, **options)
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        if not within:
+            patch.setattr(Progress, "update", stop)
+        else:
+            real = compiled._State.hand_back
+            patch.setattr(compiled._State, "hand_back", lambda state: (real(state), stop()))
+        lh.integrate(BODY, (0, 50), starts, checkpoint=file, **options)
     with np.load(file) as kept:
-        assert 5 < kept["t"] < 45 and 0.01 < kept["h"] < 1.0
-    again = lh.integrate(field, (0, 50), START, checkpoint=file, **options)
-    assert_same(whole, again)
-    assert again.nfev == whole.nfev and not file.exists()
+        assert 2 < kept["t"].min() < kept["t"].max() < 45
+    again = lh.integrate(BODY, (0, 50), starts, checkpoint=file, **options)
+    np.testing.assert_array_equal(again.y, whole.y)
+    np.testing.assert_array_equal(again.n_steps, whole.n_steps)
+    assert str(again.report) == str(whole.report) and not file.exists()
 
 
 # -- JAX, and refusals -----------------------------------------------------------------------------------------

@@ -1,0 +1,135 @@
+"""Expr: a number that is not known yet, on a tape that records what is computed with it.
+
+Imports errors.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, final
+
+from liehom.errors import TraceError
+
+if TYPE_CHECKING:
+    from liehom.tracing.graph import Tape
+
+FOLDED: dict[str, Callable[..., float]] = {
+    "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log,
+    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh, "arcsin": math.asin, "arccos": math.acos,
+    "arctan": math.atan, "arcsinh": math.asinh, "arccosh": math.acosh, "arctanh": math.atanh, "expm1": math.expm1,
+    "log1p": math.log1p, "log2": math.log2, "log10": math.log10, "exp2": math.exp2, "cbrt": math.cbrt,
+    "arctan2": math.atan2, "pow": math.pow, "abs": abs,
+    "sinq": lambda q: (cmath.sin(cmath.sqrt(q)) / cmath.sqrt(q)).real if q else 1.0,
+    "cosq": lambda q: cmath.cos(cmath.sqrt(q)).real,
+}  # fmt: skip
+BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
+
+
+@final
+class Expr:
+    """A number, or a truth value, on a tape.
+
+    Attributes
+    ----------
+    tape : Tape
+    op : str
+        "const", "input", "add", ..., "get" for one of the results of a block.
+    args : tuple of Expr
+    value : float, int, str or None
+        Of a constant; the index of an input or result; the block of a result.
+    place : int
+        Its number on the tape; arguments have smaller ones.
+    boolean : bool
+        Whether it is a truth value.
+    """
+
+    __slots__ = ("args", "boolean", "op", "place", "tape", "terms", "value")
+
+    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Any, place: int) -> None:
+        self.tape, self.op, self.args, self.value, self.place = tape, op, args, value, place
+        self.terms: Any = None
+        self.boolean = op in BOOLEAN
+        if op == "const":
+            self.boolean = isinstance(value, bool)
+        elif op == "select":
+            self.boolean = args[1].boolean
+        elif op == "get" and args[0].op == "loop":
+            self.boolean = args[0].args[value].boolean
+
+    @property
+    def constant(self) -> bool:
+        """Whether the number is known."""
+        return self.op == "const"
+
+    def __add__(self, other: Any) -> Expr:
+        return self.tape.add(*self._with(other))
+
+    def __sub__(self, other: Any) -> Expr:
+        return self.tape.sub(*self._with(other))
+
+    def __mul__(self, other: Any) -> Expr:
+        return self.tape.mul(*self._with(other))
+
+    def __truediv__(self, other: Any) -> Expr:
+        return self.tape.div(*self._with(other))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __rsub__(self, other: Any) -> Expr:
+        return self.tape.sub(*self._with(other)[::-1])
+
+    def __rtruediv__(self, other: Any) -> Expr:
+        return self.tape.div(*self._with(other)[::-1])
+
+    def __neg__(self) -> Expr:
+        return self.tape.neg(self.tape.number(self))
+
+    def __pos__(self) -> Expr:
+        return self
+
+    def __pow__(self, other: Any) -> Expr:
+        return self.tape.power(*self._with(other))
+
+    def __rpow__(self, other: Any) -> Expr:
+        return self.tape.power(*self._with(other)[::-1])
+
+    def __getattr__(self, name: str) -> Any:
+        # the functions of numpy call these on the entries of an array of objects
+        if name in FOLDED and name not in ("pow", "abs"):
+            return lambda *args: self.tape.call(name, self, *[self.tape.of(x) for x in args])
+        raise AttributeError(f"a number of a compiled step has no attribute {name!r}")
+
+    def __abs__(self) -> Expr:
+        return self.tape.call("abs", self)
+
+    def _with(self, other: Any) -> tuple[Expr, Expr]:
+        """Both as numbers: truth values count as 0 and 1."""
+        other = self.tape.of(other)
+        return self.tape.number(self) if self.boolean else self, self.tape.number(other) if other.boolean else other
+
+    def conjugate(self) -> Expr:
+        """Itself: numbers are real."""
+        return self
+
+    def __bool__(self) -> bool:
+        if self.constant:
+            return bool(self.value)
+        raise TraceError(
+            "the step branches on the value of a number (`if`, `while`, `and`, a comparison used as an index), which "
+            "compiled code does not know: write np.where, or integrate without compile="
+        )
+
+    def __float__(self) -> float:
+        if self.constant:
+            return float(self.value)
+        raise TraceError(
+            "the step makes a plain float of a number that compiled code does not know yet (math.sin, float(), an "
+            "entry of a float array): use numpy's functions and np.stack, or integrate without compile="
+        )
+
+    __int__ = __index__ = __complex__ = __float__
+
+    def __repr__(self) -> str:
+        return repr(self.value) if self.constant else f"<{self.op} {self.place}>"
