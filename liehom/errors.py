@@ -203,6 +203,17 @@ class UndecidedError(LiehomError, TypeError):
     """A verdict that is not proved was used as a truth value, or the invariants at hand do not decide."""
 
 
+class NoRationalInvolutionError(UndecidedError):
+    """It is proved that no Cartan involution has entries in the field of the algebra; `reason` says why.
+
+    Over the reals there is one. It is caught with `UndecidedError`, which is raised where none was found.
+    """
+
+    def __init__(self, reason: str, message: str) -> None:
+        self.reason = reason
+        super().__init__(message)
+
+
 class InternalError(LiehomError, RuntimeError):
     """The library reached a state that a theorem excludes: a bug, please report it."""
 

@@ -1,13 +1,14 @@
 """The Cartan decomposition g = k + p over the field of the algebra, from a Cartan involution that is proved.
 
 An involution theta is a Cartan involution if it is an automorphism and -K(x, theta y) is positive definite; both are
-exact checks.  Candidates come from floating point (cartan_involution): in a basis that suits the algebra the best
-Cartan involution has small rational entries.  In another basis dimension 3 is solved directly, simple ideals are taken
-one by one, and each is first brought to a basis of a large Lie order (lie_order), where lattice reduction and random
-moves look for one (rational_involution).  Where no rational candidate passes the checks there may be none: then
-`UndecidedError` says so, and the decomposition over float64 is at hand.
-Imports cartan_involution, cartan_subalgebra, direct_sum_decomposition, lie_algebra, lie_order, rational_involution,
-subalgebra, scalars, errors.
+exact checks.  Candidates come from floating point (approximate_involution): in a basis that suits the algebra the best
+Cartan involution has small rational entries.  In another basis dimension 3 (over the centroid) is solved directly
+(half_turn), simple ideals are taken one by one, and each is first brought to a basis of a large Lie order (lie_order),
+where lattice reduction and random moves look for one (rational_involution).  Where the centroid excludes one
+`NoRationalInvolutionError` is raised before any search (involution_obstruction); where no candidate passes the checks
+there may be none: then `UndecidedError` says so, and the decomposition over float64 is at hand.
+Imports approximate_involution, cartan_subalgebra, direct_sum_decomposition, half_turn, involution_obstruction,
+lie_algebra, lie_order, rational_involution, real_splitting, subalgebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -17,23 +18,23 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.cartan_involution import cartan_involution_of_constants, nearest_cartan_involution
+from liehom.algebra.approximate_involution import approximate_involution, numerical_involution
 from liehom.algebra.cartan_subalgebra import cartan_subalgebra
 from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition
+from liehom.algebra.half_turn import half_turn, half_turn_over_centroid
+from liehom.algebra.involution_obstruction import involution_obstruction
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.lie_order import lie_order
 from liehom.algebra.rational_involution import DENOMINATOR, rational_involution
+from liehom.algebra.real_splitting import CentroidField, centroid_field
 from liehom.algebra.subalgebra import Subalgebra
-from liehom.errors import ConvergenceError, InputError, UndecidedError
-from liehom.scalars import RR, FloatField, Subspace
-from liehom.scalars.forms import orthogonal_basis
+from liehom.errors import InputError, NoRationalInvolutionError, UndecidedError
+from liehom.scalars import FloatField, Subspace
 
 ROUNDS = 60
 FEW_ROUNDS = 8
 SMALL = 12
 LATTICE_DIMENSION = 40
-SEEDS = 4
-ACCURATE = 1e-11
 
 
 @final
@@ -66,8 +67,11 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
     ------
     InputError
         If the algebra is not semisimple.
+    NoRationalInvolutionError
+        If it is proved that no Cartan involution has entries in the field: of two ideals over the reals that are
+        conjugate over the field one is compact and the other is not, for example (`involution_obstruction`).
     UndecidedError
-        If no Cartan involution with small rational entries was found; over ``lh.RR`` it is found numerically.
+        If none with small rational entries was found. In both cases over ``lh.RR`` one is found numerically.
 
     Notes
     -----
@@ -86,7 +90,7 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
     if killing.rank() < n:
         raise InputError("a Cartan decomposition is that of a semisimple algebra; take the Levi factor")
     if n and isinstance(field, FloatField):
-        return _decomposed(algebra, field.from_entries(_numerical(algebra).T.ravel().tolist(), n, n))
+        return _decomposed(algebra, field.from_entries(numerical_involution(algebra).T.ravel().tolist(), n, n))
     theta = field.identity(n) if killing.signature()[0] == 0 else _rational(algebra, killing)
     if theta is None:
         raise UndecidedError(
@@ -125,41 +129,6 @@ def _decomposed(algebra: LieAlgebra, theta: Any) -> CartanDecomposition:
     return CartanDecomposition(Subalgebra(algebra, k, check=False), Subspace(field, p, n), theta)
 
 
-def _numerical(algebra: LieAlgebra) -> Any:
-    """Theta on rows, for an algebra over float64."""
-    n = algebra.dimension
-    constants = algebra.table.dense().array.reshape(n, n, n)
-    killing = algebra.killing_form().to_numpy()
-    return _found(constants, killing, _numerical_rank(constants))
-
-
-def _numerical_rank(constants: Any) -> int:
-    x = np.random.default_rng(len(constants)).standard_normal(len(constants))
-    values = np.abs(np.linalg.eigvals(np.einsum("i,ijk->jk", x, constants)))
-    return int((values < 1e-6 * max(values.max(), 1e-300)).sum())
-
-
-def _found(constants: Any, killing: Any, rank: int) -> Any:
-    """Theta on rows, from the generic element that gives the most accurate one."""
-    failure: Exception | None = None
-    best, least = None, np.inf
-    for seed in range(SEEDS):
-        try:
-            theta = cartan_involution_of_constants(constants, killing, rank, seed)
-            theta = nearest_cartan_involution(constants, killing, theta)
-        except (ConvergenceError, np.linalg.LinAlgError) as error:
-            failure = error
-            continue
-        size = float(np.abs(theta @ theta - np.eye(len(theta))).max())
-        if size < least:
-            best, least = theta, size
-        if size < ACCURATE:
-            break
-    if best is None:
-        raise ConvergenceError(f"no Cartan involution in double precision: {failure}")
-    return best
-
-
 def _rational(algebra: LieAlgebra, killing: Any) -> Any:
     """A Cartan involution over the field, on columns, or None."""
     n = algebra.dimension
@@ -168,33 +137,33 @@ def _rational(algebra: LieAlgebra, killing: Any) -> Any:
         return is_cartan_involution(algebra, theta)
 
     rank = cartan_subalgebra(algebra).dimension
-    theta = _approximate(algebra, killing, rank)
+    theta = approximate_involution(algebra, rank)
     found = None if theta is None else rational_involution(algebra, theta, proved, 1)
     if found is not None:
         return found
     if n == 3:
-        return _about_an_axis(algebra, killing)
+        return half_turn(algebra)
     ideals = direct_sum_decomposition(algebra)
+    centres = [centroid_field(ideal) for ideal in ideals]
+    _not_excluded(algebra, centres)  # before any search: what excludes it for an ideal does so for the sum
     if len(ideals) > 1:
         return _of_ideals(algebra, ideals)
+    (centre,) = centres
+    if n == 3 * centre.degree and theta is not None and centre.polynomial.count_real_roots() == centre.degree:
+        return half_turn_over_centroid(centre, theta)
     return _in_a_suitable_lattice(algebra, killing, rank, theta)
 
 
-def _approximate(algebra: LieAlgebra, killing: Any, rank: int) -> Any:
-    """Theta on rows in floating point, or None."""
-    n = algebra.dimension
-    try:
-        return _found(algebra.over(RR).table.dense().array.reshape(n, n, n), killing.to_numpy(), rank)
-    except (ConvergenceError, np.linalg.LinAlgError):
-        return None
-
-
-def _about_an_axis(algebra: LieAlgebra, killing: Any) -> Any:
-    """Dimension 3: 1 on some x with K(x, x) < 0, -1 where K(x, y) = 0: half a turn, as minus a reflection is."""
-    field = algebra.field
-    rows, values = orthogonal_basis(killing)
-    axis, value = next((r, v) for r, v in zip(rows, values, strict=True) if field.sign(v) < 0)
-    return (axis.T @ (axis @ killing)).scale(2 / value) - field.identity(3)
+def _not_excluded(algebra: LieAlgebra, centres: list[CentroidField]) -> None:
+    for centre in centres:
+        reason = involution_obstruction(centre)
+        if reason is not None:
+            raise NoRationalInvolutionError(
+                reason,
+                f"{algebra!r} has no Cartan involution with entries in {algebra.field.name}, by proof: for a simple "
+                f"ideal of dimension {centre.algebra.dimension}, {reason}; over the reals there is one, and "
+                "algebra.over(lh.RR).cartan_decomposition() finds it numerically",
+            )
 
 
 def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Any:
@@ -221,8 +190,7 @@ def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: 
         frame = np.eye(n) if theta is None else _factor(-killing.to_numpy() @ theta.T)
         basis = lie_order(algebra, frame)
     current = algebra.change_of_basis(basis)
-    form = current.killing_form()
-    theta = _approximate(current, form, rank)  # afresh: more accurate in this basis
+    theta = approximate_involution(current, rank)  # afresh: more accurate in this basis
     if theta is None:
         return None
     # Over number fields Z^n is no canonical lattice: little hope.

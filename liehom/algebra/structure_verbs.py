@@ -357,9 +357,9 @@ class StructureVerbs:
         ------
         InputError
             If the algebra is not semisimple.
-        UndecidedError
-            If no Cartan involution with small rational entries was found (there may be none); over ``lh.RR`` it is
-            found numerically.
+        NoRationalInvolutionError, UndecidedError
+            If it is proved that no Cartan involution has entries in the field; if none with small rational entries
+            was found. In both cases over ``lh.RR`` one is found numerically.
 
         Examples
         --------

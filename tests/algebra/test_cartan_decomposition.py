@@ -11,7 +11,7 @@ import pytest
 import liehom as lh
 from liehom.algebra.cartan_decomposition import CartanDecomposition, cartan_decomposition, is_cartan_involution
 from liehom.algebra.lie_order import lie_order
-from liehom.errors import InputError, UndecidedError
+from liehom.errors import InputError, NoRationalInvolutionError, UndecidedError
 from liehom.testing import random_unimodular
 
 
@@ -195,3 +195,79 @@ def test_none_is_rational_for_a_division_algebra_of_degree_three() -> None:
         cartan_decomposition(algebra)
     k, _ = cartan_decomposition(algebra.over(lh.RR))
     assert k.dimension == 3
+
+
+def quaternions_over(d: int, *values: tuple[int, int]) -> lh.LieAlgebra:
+    """[x, y] = c z, [y, z] = a x, [z, x] = b y over QQ(sqrt(d)), seen over QQ; a pair (p, q) is p + q sqrt(d)."""
+    powers = [np.array([[1, 0], [0, 1]]), np.array([[0, 1], [d, 0]])]  # of sqrt(d), on rows
+    table: dict[tuple[int, int], dict[int, int]] = {}
+    for i, j, k, value in ((0, 1, 2, values[2]), (1, 2, 0, values[0]), (2, 0, 1, values[1])):
+        for e in range(2):
+            for f in range(2):
+                row = (np.array(value) @ powers[e] @ powers[f]).tolist()
+                first, second, sign = (2 * i + e, 2 * j + f, 1) if i < j else (2 * j + f, 2 * i + e, -1)
+                table[first, second] = {2 * k: sign * row[0], 2 * k + 1: sign * row[1]}
+    return lh.LieAlgebra(table, dimension=6)
+
+
+@pytest.mark.parametrize("values", [((0, 1), (1, 0), (1, 0)), ((1, 1), (1, 0), (1, 0)), ((7, 1), (-5, 2), (9, -4))])
+def test_compact_and_noncompact_places_exclude_a_rational_one(values: tuple[tuple[int, int], ...]) -> None:
+    natural = quaternions_over(2, *values)
+    for algebra in (natural, natural.change_of_basis(rational_rows(6, 1))):
+        if algebra.real_form() == "so(3) + sl(2,R)":
+            with pytest.raises(NoRationalInvolutionError, match="dim p is 2 at one real place") as caught:
+                cartan_decomposition(algebra)
+            assert "0 at another" in caught.value.reason
+            k, p = cartan_decomposition(algebra.over(lh.RR))
+            assert (k.dimension, p.dimension) == (4, 2)
+        else:
+            check_laws(algebra, cartan_decomposition(algebra))
+
+
+@pytest.mark.parametrize(
+    "values", [((-1, 0), (-1, 0), (1, 0)), ((-3, 1), (-2, 1), (5, 1)), ((31, 4), (-7, 3), (-9, 5))]
+)
+def test_dimension_three_over_a_totally_real_centroid_is_solved(values: tuple[tuple[int, int], ...]) -> None:
+    natural = quaternions_over(2, *values)
+    assert natural.real_form() == "sl(2,R) + sl(2,R)"
+    for algebra in (natural, *(natural.change_of_basis(rational_rows(6, seed)) for seed in (1, 2))):
+        found = cartan_decomposition(algebra)
+        check_laws(algebra, found)
+        assert found.k.dimension == 2
+
+
+def scalars_extended(polynomial: list[int]) -> lh.LieAlgebra:
+    """so(3) over the field of a monic polynomial (coefficients ascending), seen over QQ."""
+    m = len(polynomial) - 1
+    companion = np.array([[int(j == i + 1) if i < m - 1 else -polynomial[j] for j in range(m)] for i in range(m)])
+    table = {}
+    for i, j, k, sign in ((0, 1, 2, 1), (1, 2, 0, 1), (0, 2, 1, -1)):
+        for e in range(m):
+            for f in range(m):
+                row = np.linalg.matrix_power(companion, e + f)[0].tolist()
+                table[m * i + e, m * j + f] = {m * k + c: sign * v for c, v in enumerate(row)}
+    return lh.LieAlgebra(table, dimension=3 * m)
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "reason"),
+    [
+        ([-2, 0, 0, 1], "real and complex places"),
+        ([2, 0, 0, 0, 1], "without complex multiplication"),
+        ([1, 1, 1, 1, 1], None),
+        ([1, -3, 0, 1], None),
+    ],
+)
+def test_what_the_places_of_the_centroid_exclude(polynomial: list[int], reason: str | None) -> None:
+    algebra = scalars_extended(polynomial)
+    if reason is None:
+        check_laws(algebra, cartan_decomposition(algebra))
+        return
+    with pytest.raises(NoRationalInvolutionError, match=reason):
+        cartan_decomposition(algebra)
+
+
+def test_a_reason_for_one_ideal_is_one_for_the_sum() -> None:
+    algebra = lh.direct_sum(lh.so(4, 1), quaternions_over(2, (0, 1), (1, 0), (1, 0)))
+    with pytest.raises(NoRationalInvolutionError, match="ideal of dimension 6"):
+        cartan_decomposition(algebra.change_of_basis(rational_rows(16, 1)))
