@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -85,3 +86,13 @@ def test_single_precision_and_what_needs_values_are_refused() -> None:
     step = lh.correctors.Conserving(lh.Heun(), ["m0**2 + m1**2/2 + m2**2/4", "m0*m0 + m1*m1 + m2*m2"])
     with pytest.raises(TraceError, match="compiled"):
         lh.integrate(BODY, (0, 1), START, step=step, dt=0.1, compile="jax")
+
+
+def test_stages_are_not_computed_anew_for_each_use() -> None:
+    """A step of RK4 for one point takes 0.2 us; where it does not hold, 40 us."""
+    options: dict[str, Any] = {"step": lh.RKMK("rk4"), "dt": 0.01, "t_eval": [0.5], "compile": "jax"}
+    starts = points(4000)
+    lh.integrate(BODY, (0, 0.5), starts, **options)
+    before = time.process_time()
+    lh.integrate(BODY, (0, 0.5), starts, **options)
+    assert time.process_time() - before < 2
