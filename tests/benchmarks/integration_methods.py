@@ -159,6 +159,9 @@ def names_for(problem: Problem) -> list[str]:
     names = [n for n in MANY if problem.full or not n.startswith("E")]
     if problem.size > 3:
         names.remove("T12")
+    if problem.size > 10:  # minutes of compilation
+        names.remove("T6")
+        names.remove("T8")
     return [n for n in names if problem.size <= 3 or n not in ("E6", "E2 cay")]
 
 
