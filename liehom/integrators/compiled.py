@@ -32,6 +32,8 @@ BREATH = 4_000_000_000
 """Operations, of all lanes together, between two looks at progress, checkpoints and interruptions."""
 ITERATIONS = 5
 """For so many iterations a loop in a step is taken."""
+LEAST = 8
+"""Steps that are made in any case, as a pause takes as long as some steps."""
 SHARED = 50_000
 """From so many steps of lanes on, threads share the blocks."""
 
@@ -153,7 +155,7 @@ class Compiled:
 
     def __init__(self, groups: list[Group]) -> None:
         self.groups = groups
-        self.work = max((_operations(group.graph) for group in groups), default=1)
+        self.work = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
         self.calls: Any = 0
 
     def __call__(self, run: Run) -> bool:
@@ -161,7 +163,8 @@ class Compiled:
         lanes = int(np.prod(run.shape, dtype=int))
         if not run.active.any() or (run.tried is None and not run.taken.any()):
             return False  # the first step is that of the run
-        steps = int(min(run.options.max_steps - 1 - int(np.max(run.taken)), max(1, BREATH // (self.work * lanes))))
+        pace = max(LEAST, BREATH // (self.work * lanes))
+        steps = int(min(run.options.max_steps - 1 - int(np.max(run.taken)), pace))
         if run.keeps:
             steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 2))))
         if steps < 1:

@@ -22,6 +22,7 @@ CHUNK = 256
 """Steps are stored in blocks of powers of 2, at most so many, so that few functions are compiled."""
 
 
+SLOWER = 16
 _JITTED: dict[str, Any] = {}
 MOST = 64
 
@@ -41,6 +42,11 @@ class JaxKernel:
     Parameters
     ----------
     graph : StepGraph
+
+    Attributes
+    ----------
+    cost : int
+        How long an operation takes, in those of machine code.
     """
 
     width = 1
@@ -51,6 +57,7 @@ class JaxKernel:
         except ImportError:
             raise TraceError('compile="jax" needs the extra: pip install "liehom[jax]"') from None
         self.graph = graph
+        self.cost = SLOWER if jax.default_backend() == "cpu" else 1
         key = _fingerprint(graph)
         if key not in _JITTED:
             if len(_JITTED) >= MOST:
@@ -143,7 +150,7 @@ def _how() -> dict[str, Any]:
     """
     import jax
 
-    how = {"compiler_options": {"xla_cpu_use_fusion_emitters": False}}
+    how: dict[str, Any] = {"compiler_options": {"xla_cpu_use_fusion_emitters": False}}
     try:
         if jax.default_backend() == "cpu" and jax.jit(lambda x: x + 1, **how)(1) == 2:
             return how

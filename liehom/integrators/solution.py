@@ -33,7 +33,8 @@ class Report:
     singular_value : float
         The smallest singular value that decided the range condition (6.2); inf for plain steps.
     singular_at : tuple or None
-        (t, point) where it was met.
+        (t, point) where it was met. Compiled steps take no singular values: with ``compile`` it is that of the steps
+        between them, and so is the rank.
     rank, orbit_dimension : int
         The least rank met in the range condition, and the dimension of the orbits that it should have.
     failed_steps : int

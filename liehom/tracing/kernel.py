@@ -263,7 +263,11 @@ class Kernel:
     ----------
     cached : bool
         Whether the code was found on disk.
+    cost : int
+        How long an operation takes, 1.
     """
+
+    cost = 1
 
     def __init__(self, graph: StepGraph, width: int) -> None:
         self.graph, self.width = graph, width
@@ -359,11 +363,14 @@ def _write(key: str, code: bytes) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=folder)
+    except OSError:
+        return
+    try:
         with os.fdopen(handle, "wb") as file:
             file.write(hashlib.sha256(code).digest() + code)
         os.replace(name, folder / f"{key}.o")
-    except OSError:
-        return
+    except OSError:  # of a full disk nothing is left behind
+        Path(name).unlink(missing_ok=True)
 
 
 def padded(count: int, width: int) -> int:
