@@ -4,11 +4,12 @@ An involution theta is a Cartan involution if it is an automorphism and -K(x, th
 exact checks.  Candidates come from floating point (approximate_involution): in a basis that suits the algebra the best
 Cartan involution has small rational entries.  In another basis dimension 3 (over the centroid) is solved directly
 (half_turn), simple ideals are taken one by one, and each is first brought to a basis of a large Lie order (lie_order),
-where lattice reduction and random moves look for one (rational_involution).  Where the centroid excludes one
+where lattice reduction looks for one (rational_involution); where there are nilpotent elements one is constructed
+(isotropic_involution), and else random moves lead to others.  Where the centroid excludes one
 `NoRationalInvolutionError` is raised before any search (involution_obstruction); where no candidate passes the checks
 there may be none: then `UndecidedError` says so, and the decomposition over float64 is at hand.
 Imports approximate_involution, cartan_subalgebra, direct_sum_decomposition, half_turn, involution_obstruction,
-lie_algebra, lie_order, rational_involution, real_splitting, subalgebra, scalars, errors.
+isotropic_involution, lie_algebra, lie_order, rational_involution, real_splitting, subalgebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from liehom.algebra.cartan_subalgebra import cartan_subalgebra
 from liehom.algebra.direct_sum_decomposition import direct_sum_decomposition
 from liehom.algebra.half_turn import half_turn, half_turn_over_centroid
 from liehom.algebra.involution_obstruction import involution_obstruction
+from liehom.algebra.isotropic_involution import isotropic_involution
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.lie_order import lie_order
 from liehom.algebra.rational_involution import DENOMINATOR, rational_involution
@@ -34,7 +36,7 @@ from liehom.scalars import FloatField, Subspace
 ROUNDS = 60
 FEW_ROUNDS = 8
 SMALL = 12
-LATTICE_DIMENSION = 40
+LATTICE_DIMENSION = 60
 
 
 @final
@@ -199,7 +201,12 @@ def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: 
     def proved(candidate: Any) -> bool:
         return is_cartan_involution(current, candidate)
 
-    found = rational_involution(current, theta, proved, rounds)
+    found = rational_involution(current, theta, proved, 1)
+    if found is None and field.degree == 1:
+        candidate = isotropic_involution(current, theta)
+        found = candidate if candidate is not None and proved(candidate) else None
+    if found is None:
+        found = rational_involution(current, theta, proved, rounds)
     return None if found is None else basis.T @ found @ basis.T.inverse()
 
 

@@ -11,7 +11,6 @@ Nothing here is proved to be maximal.  Imports ideals_modulo, lie_algebra, scala
 
 from __future__ import annotations
 
-import random
 from typing import Any
 
 import numpy as np
@@ -119,9 +118,9 @@ class _Order:
         ideal = field.from_integers(_flattened(space, d, n), n, n)
         blocks = self.inner.table.contract(field.identity(n), ideal, ideal.inverse())
         flat = field.stack_rows([b.reshape(1, n * n) for b in blocks], n * n)
-        rng = random.Random(n)
         count = min(n * n, n + SPARE)
-        mixing = field.from_integers([rng.randrange(min(d, 1 << 30)) for _ in range(n * n * count)], n * n, count)
+        weights = np.random.default_rng(n).integers(0, min(d, 1 << 30), n * n * count)
+        mixing = field.from_integers(weights.tolist(), n * n, count)
         return kernel_modulo(flat @ mixing, d)
 
 
