@@ -230,7 +230,11 @@ class Conservation:
         directions = self.directions
         matrix = self.along(self._velocity, directions)
         units = np.where(self.scale > 0, self.scale, 1.0)
-        inverse = pseudo_inverse(matrix / units[..., None], 0.0)
+        matrix = matrix / units[..., None]
+        if type(matrix) is Traced:  # of one integral
+            inverse = np.where(matrix == 0, 0.0, 1.0 / np.where(matrix == 0, 1.0, matrix))
+        else:
+            inverse = pseudo_inverse(matrix, 0.0)
         return (directions @ (inverse @ (target / units)[..., None]))[..., 0]
 
     def range(self, index: tuple[int, ...] = ()) -> Any:

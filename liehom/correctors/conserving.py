@@ -125,9 +125,7 @@ class Conserving(Step):
         time = t[..., 0] if np.ndim(t) else t
         if self.linear and type(m) is Traced:
             raise TraceError("linear=True measures the order to which F is kept, which is not compiled: leave it out")
-        known = psi.prepared.get((self, action))
-        if known is None:
-            known = psi.prepared[self, action] = _Begun(self, action, psi, m, time)
+        known = self._begun(action, psi, m, time)
         local = self.step.at(action, psi, m, t, error_terms=error_terms)
         frame = action.isotropy_frame(m, psi.orbit_dimension)
         factor = 0.5 if self.one_exponential else 1.0
@@ -136,6 +134,16 @@ class Conserving(Step):
         return (ClockedConservingStep if has_clock else ConservingStep)(
             local, found, known.target, known.n, one_exponential=self.one_exponential, linear=self.linear
         )
+
+    def kept_order(self, action: Action, psi: Generator, m: Any, t: Any) -> int | None:
+        """n of (7.2) at the start of a run, with t of shape (...,); None if no E_n was found that does not vanish."""
+        return self._begun(action, psi, m, t).n
+
+    def _begun(self, action: Action, psi: Generator, m: Any, t: Any) -> _Begun:
+        known: _Begun | None = psi.prepared.get((self, action))
+        if known is None:
+            known = psi.prepared[self, action] = _Begun(self, action, psi, m, t)
+        return known
 
     def __repr__(self) -> str:
         given = repr(self._source) if isinstance(self._source, str) else _shown(self._source)
@@ -162,7 +170,7 @@ class _Begun:
         self.n: int | None = None
         self.target: Any = None
         if type(m) is Traced:
-            self.target = self._given(step, m)
+            self.target, self.n = self._given(step, m), psi.prepared.get(step)
             return
         bound = step.order + 1
         self.integral.check(flow_series(psi.field, start, bound, t), bound)
@@ -172,11 +180,13 @@ class _Begun:
         self._explore(step, action, psi, start, t)
 
     def _given(self, step: Conserving, m: Any) -> Any:
-        """The target of a traced step, a number that every trajectory has; None for F(m). All else is not needed."""
+        """The target of a traced step, a number that every trajectory has; None for F(m)."""
         if step.aim == "previous":
             return None
         if step._value is not None:
-            return _aimed_at(step._value, self.integral(m))
+            if step._value.size > 1:
+                raise TraceError("a value of F for each trajectory is not compiled: give one, or leave it to the start")
+            return _aimed_at(step._value.reshape(()), self.integral(m))
         return Traced(m.tape, [m.tape.given_number(lambda points: self.integral(points)[..., 0])])
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Any, t: Any) -> None:
@@ -381,12 +391,10 @@ class ConservingStep(LocalStep):
     def _removing(self, along: Any, z: Any, k: int) -> Any:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""
         value, m = along.coefficient(k), self.found.m
-        size = np.maximum(np.linalg.norm(np.asarray(m, dtype=float), axis=-1), np.finfo(float).tiny)
+        size = np.maximum(_length(m), np.finfo(float).tiny)
         rate = 0.0 * size
         for j in range(1, k + 1):
-            rate = np.maximum(
-                rate, (np.linalg.norm(np.asarray(z.coefficient(j), dtype=float), axis=-1) / size) ** (1 / j)
-            )
+            rate = np.maximum(rate, (_length(z.coefficient(j)) / size) ** (1 / j))
         noise = NOISE * np.finfo(m.dtype).eps * self.found.scale * rate[..., None] ** k
         return -self.found.preimage(np.where(np.abs(value) > noise, value, 0.0))
 
@@ -413,6 +421,10 @@ class ConservingStep(LocalStep):
             if x is not None:
                 made = x + (made if made is not None else 0.0 * h)
         return None if made is None else made * h
+
+
+def _length(x: Any) -> Any:
+    return np.linalg.norm(x if type(x) is Traced else np.asarray(x, dtype=float), axis=-1)
 
 
 @final

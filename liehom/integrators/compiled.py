@@ -2,7 +2,7 @@
 
 The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
 before a time of t_eval, and before a step that fails in any way.  Where step sizes are adapted, each lane has its own.
-Imports clock, jax_kernel, run, traced_size, traced_step, tracing, errors.
+Imports clock, jax_kernel, run, traced_size, traced_step, correctors, tracing, errors.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
+from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.clock import SLACK
 from liehom.integrators.jax_kernel import JaxKernel
@@ -61,7 +62,9 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
         raise InputError(f"compile={backend!r} computes in float64, the start is of type {run.dtype}")
     dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
     points = run.start.reshape(-1, run.start.shape[-1])
-    groups = []
+    groups, kept_order = [], None
+    if isinstance(run.step, Conserving) and run.options.dt is None and not run.step.linear:
+        kept_order = run.step.kept_order(run.action, run.psi, run.m, run.t)
     for d in np.unique(dimensions):
         lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(
@@ -72,6 +75,7 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
             int(d),
             nominal=run.options.nominal,
             limits=_limits(run) if run.options.dt is None else None,
+            kept_order=kept_order,
         )
         groups.append(Group(graph, lanes, backend, points[lanes]))
     return Compiled(groups)

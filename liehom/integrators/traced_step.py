@@ -30,7 +30,7 @@ CALM = 0.8
 
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, *, nominal: bool,
-    limits: Limits | None = None,
+    limits: Limits | None = None, kept_order: int | None = None,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
@@ -44,6 +44,8 @@ def traced_step(
         Whether time advances by the step size rather than by the step's own clock.
     limits : Limits, optional
         Adapt the step size to them.
+    kept_order : int, optional
+        ``Conserving.kept_order``, which the sizes of a conserving step depend on.
 
     Raises
     ------
@@ -59,7 +61,7 @@ def traced_step(
     (2, None)
     """
     try:
-        return _traced(action, field, step, points, orbit_dimension, nominal, limits)
+        return _traced(action, field, step, points, orbit_dimension, nominal, limits, kept_order)
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -71,7 +73,7 @@ def traced_step(
 
 def _traced(
     action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool,
-    limits: Limits | None,
+    limits: Limits | None, kept_order: int | None,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
     even = evenness(action, points, orbit_dimension)
@@ -82,6 +84,7 @@ def _traced(
     action = action.on_even_orbits(even)
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
+    psi.prepared[step] = kept_order
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
     given_limits: Limits | None = None
     certain: Any = True
