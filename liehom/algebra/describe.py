@@ -1,11 +1,12 @@
 """The card of a Lie algebra: what a mathematician asks first, every line of it computed exactly.
 
-Imports identification, radical, levi, lie_algebra.
+Imports dynkin, identification, radical, levi, lie_algebra.
 """
 
 from __future__ import annotations
 
-from liehom.algebra.identification import real_forms_of, semisimple_type
+from liehom.algebra.dynkin import join_types
+from liehom.algebra.identification import simple_parts
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.real_form import RealForm
 from liehom.algebra.real_form_names import join_real_forms
@@ -47,11 +48,13 @@ def describe(algebra: LieAlgebra) -> str:
 
 def semisimple_lines(algebra: LieAlgebra) -> list[str]:
     """The lines on a semisimple algebra."""
-    kind = semisimple_type(algebra)
+    parts = simple_parts(algebra)
+    kind = join_types(part.type for part in parts for _ in range(part.centre.degree))
     try:
-        forms = real_forms_of(algebra)
+        forms = [form for part in parts for form in part.real_forms()]
     except UndecidedError as undecided:
         return [f"semisimple of complex type {kind}; {undecided}"]
+    forms.sort(key=lambda form: (form.dimension, form.real_rank > 0, form.name))  # in the order of the name of the sum
     rank = sum(form.rank for form in forms)
     real_rank = sum(form.real_rank for form in forms)
     compact = "+".join(form.maximal_compact for form in forms if form.maximal_compact != "0") or "0"
