@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 
 from tests.benchmarks.integration_measure import seconds
-from tests.benchmarks.integration_methods import EAGER, IN_JIT, NUMBA, integrate, under_jit
+from tests.benchmarks.integration_methods import EAGER, IN_JIT, NUMBA, exact_orbit, integrate, under_jit
 from tests.benchmarks.integration_peers import LANES_MANY, LANES_ONE, PEERS, Solver
 from tests.benchmarks.integration_problems import Problem, chain, quartic, rigid_body
 
 COUNT = 16
-SETTINGS = {"E4": 0.1, "T8": 0.4, "heyoka.py": 2.22e-16, "scipy DOP853": 1e-11, "numba RK4 by hand": 0.02}
+SETTINGS = {
+    "E4": 0.1, "T8": 0.4, "C2": 0.8, "exact orbit": 0.8, "heyoka.py": 2.22e-16, "scipy DOP853": 1e-11,
+    "numba RK4 by hand": 0.02,
+}  # fmt: skip
 
 
 def _one(problem: Problem, solver: Solver, span: float, setting: float, count: int) -> dict[str, Any]:
@@ -42,12 +45,13 @@ def _one(problem: Problem, solver: Solver, span: float, setting: float, count: i
 def long_runs(*, span: float = 1e4, spins: int = 10_000) -> list[dict[str, Any]]:
     """Rows of the table."""
     rows = []
-    ours = [Solver(NUMBA, n, integrate(n, "numba"), (), "llvmlite", True) for n in ("E4", "T8")]
+    ours = [Solver(NUMBA, n, integrate(n, "numba"), (), "llvmlite", True) for n in ("E4", "T8", "C2")]
+    own = Solver(NUMBA, "exact orbit", exact_orbit("numba"), (), "llvmlite", True)
     others = [p for p in PEERS if p.group in ("heyoka.py", "scipy DOP853")]
     for problem in (rigid_body(), quartic()):
         scale = 1.0 if problem is rigid_body() else 0.25
-        for solver in [*ours, *others, LANES_MANY]:
-            setting = SETTINGS[solver.label if solver in ours else solver.group]
+        for solver in [*ours, *([own] if problem is rigid_body() else []), *others, LANES_MANY]:
+            setting = SETTINGS[solver.label if solver.group == NUMBA else solver.group]
             rows.append(_one(problem, solver, span, setting * (scale if solver.fixed else 1.0), COUNT))
     many, dt = chain(spins), 0.05
     time = max(2 * dt, span / 1e4 * 10)

@@ -175,7 +175,7 @@ def solvers(problem: Problem) -> list[Solver]:
         rows.append(made)
         if n in FEW:
             rows.append(Solver(EAGER, n, integrate(n, None), LADDER, "numpy", True, made, counts=ENDS))
-        if n == "T4" or (n == "E4" and problem.size == 3):
+        if (n == "T4" and problem.size <= 10) or (n == "E4" and problem.size == 3):
             rows.append(Solver(JAX, n, integrate(n, "jax"), LADDER, "jax", True, made, counts=ENDS))
     if problem.energy is not None:
         rows += [

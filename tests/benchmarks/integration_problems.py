@@ -216,10 +216,15 @@ def projective_plane() -> Problem:
     # diag(i, i, -2i) in the basis of su(3), whose last two elements are diagonal
     point = np.array([0, 0, 0, 0, 0, 0, 1, 2])
     assert rho.orbit_dimension(point) == 4
+    form = np.array(rho.algebra.killing_form().to_numpy(), dtype=float)
+
+    def size(m: Any) -> Any:
+        return np.sqrt(np.abs(np.einsum("...i,ij,...j", m, form, m)) / 12)  # 12 = 2 * 6: of matrices, |A|^2 / 2
+
     rng = np.random.default_rng(8)
     constant, linear = 0.5 * rng.normal(size=8), 0.1 * rng.normal(size=(8, 8))
     return Problem(
-        name="CP²", title="generic quadratic field on CP²", start=_moved(rho, point), energy=None, drift=_norm,
+        name="CP²", title="generic quadratic field on CP²", start=_moved(rho, point), energy=None, drift=size,
         lanes_span=20.0, slow=0.5, **_linear_generator(rho, constant, linear),
     )  # fmt: skip
 
