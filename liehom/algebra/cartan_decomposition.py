@@ -153,7 +153,14 @@ def _rational(algebra: LieAlgebra, killing: Any) -> Any:
     (centre,) = centres
     if n == 3 * centre.degree and theta is not None and centre.polynomial.count_real_roots() == centre.degree:
         return half_turn_over_centroid(centre, theta)
-    return _in_a_suitable_lattice(algebra, killing, rank, theta)
+    found = None if theta is None else _constructed(algebra, theta)
+    return found if found is not None else _in_a_suitable_lattice(algebra, killing, rank, theta)
+
+
+def _constructed(algebra: LieAlgebra, theta: Any) -> Any:
+    """Theta over the field from nilpotent elements, on columns, or None; `theta` is numerical."""
+    candidate = isotropic_involution(algebra, theta) if algebra.field.degree == 1 else None
+    return candidate if candidate is not None and is_cartan_involution(algebra, candidate) else None
 
 
 def _not_excluded(algebra: LieAlgebra, centres: list[CentroidField]) -> None:
@@ -202,9 +209,8 @@ def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: 
         return is_cartan_involution(current, candidate)
 
     found = rational_involution(current, theta, proved, 1)
-    if found is None and field.degree == 1:
-        candidate = isotropic_involution(current, theta)
-        found = candidate if candidate is not None and proved(candidate) else None
+    if found is None:
+        found = _constructed(current, theta)
     if found is None:
         found = rational_involution(current, theta, proved, rounds)
     return None if found is None else basis.T @ found @ basis.T.inverse()

@@ -8,7 +8,7 @@ the centre of l, and -1 on its split part.  Then g_2 = [l, e], g_2 generates the
 
 is a Cartan involution: one that is theta_0 on l maps the part e_a of e in a simple restricted root space to -c_a f_a,
 c_a > 0, and c_a = 1 after an automorphism from the split torus.  The parts of the centre are found in floating point.
-Imports nilpotent_element, lie_algebra, subalgebra, scalars.
+Imports nilpotent_element, lie_algebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ import numpy.typing as npt
 
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.algebra.nilpotent_element import Triple, eigenspace, generic_nilpotent, positive_eigenvalues
+from liehom.errors import SingularError
 from liehom.scalars.integral_basis import integral_basis
+from liehom.scalars.lattice import reduced_rows
 
 Array = npt.NDArray[Any]
 CLOSE = 1e-7
@@ -47,8 +49,11 @@ def isotropic_involution(algebra: LieAlgebra, theta: Array) -> Any:
     >>> is_cartan_involution(g, isotropic_involution(g, approximate_involution(g, 2)))
     True
     """
-    triple = generic_nilpotent(algebra, theta)
-    return None if triple is None else involution_of_triple(algebra, triple)
+    try:
+        triple = generic_nilpotent(algebra, theta)
+        return None if triple is None else involution_of_triple(algebra, triple)
+    except (np.linalg.LinAlgError, SingularError):  # double precision was not enough
+        return None
 
 
 def involution_of_triple(algebra: LieAlgebra, triple: Triple) -> Any:
@@ -97,27 +102,48 @@ def _on_levi(algebra: LieAlgebra, triple: Triple) -> tuple[Any, Any] | None:
     inner = levi.as_algebra()
     centre = integral_basis(inner.center().basis @ levi.basis)
     derived = integral_basis(inner.derived_subalgebra().basis @ levi.basis)
-    split = _recognised(_split_part(algebra, centre, imaginary=True))
-    compact = _recognised(_split_part(algebra, centre, imaginary=False))
-    if split is None or compact is None or len(split) + len(compact) != centre.nrows:
+    parts = _parts(algebra, centre)
+    if parts is None:
         return None
-    parts = [field.matrix(x.tolist(), x.shape) @ centre for x in (split, compact)]
-    rows = field.stack_rows([derived, parts[1], parts[0]], n)
-    images = field.stack_rows([derived, parts[1], -parts[0]], n)
+    split, compact = parts
+    rows = field.stack_rows([derived, compact, split], n)
+    images = field.stack_rows([derived, compact, -split], n)
     return rows, images
 
 
-def _split_part(algebra: LieAlgebra, centre: Any, imaginary: bool) -> Array:
-    """Coefficients, as rows, of the elements on which all roots have no imaginary (or no real) part."""
+def _parts(algebra: LieAlgebra, centre: Any) -> tuple[Any, Any] | None:
+    """Bases of the split and the compact part of the centre of l, as rows; None where they are not recognised."""
+    field, n, k = algebra.field, algebra.dimension, centre.nrows
+    form = centre @ algebra.killing_form() @ centre.T
+    if form.is_positive_definite():
+        return centre, field.zeros(0, n)
+    values = _roots(algebra, centre)
+    gram = (values @ values.conj().T).real
+    change = reduced_rows(field.identity(k), np.linalg.cholesky((gram + gram.T) / 2))
+    values = change.to_numpy() @ values
+    split, compact = (_recognised(_null_rows(table)) for table in (values.imag, values.real))
+    if split is None or compact is None or len(split) + len(compact) != k:
+        return None
+    parts = [field.matrix(x.tolist(), x.shape) @ change @ centre for x in (split, compact)]
+    return parts[0], parts[1]
+
+
+def _roots(algebra: LieAlgebra, centre: Any) -> Array:
+    """The values (k, n) of the roots, and of zeros, on rows of a commutative subalgebra."""
     actions = np.array([algebra.ad(x).to_numpy() for x in centre.to_rows()])
     weights = np.random.default_rng(len(actions)).standard_normal(len(actions))
+    weights /= np.linalg.norm(actions, axis=(1, 2))
     _, vectors = np.linalg.eig(np.einsum("a,aij->ij", weights, actions))
     places = np.argmax(np.abs(vectors), axis=0)
     index = np.arange(vectors.shape[1])
-    values = (actions @ vectors)[:, places, index] / vectors[places, index]
-    table = (values.imag if imaginary else values.real).T
-    _, sizes, rows = np.linalg.svd(table)
-    rank = int((sizes > CLOSE * max(1.0, float(np.abs(values).max()))).sum())
+    values: Array = (actions @ vectors)[:, places, index] / vectors[places, index]
+    return values
+
+
+def _null_rows(table: Array) -> Array:
+    """An orthonormal basis of the rows x with x A = 0, approximately."""
+    _, singular, rows = np.linalg.svd(table.T)
+    rank = int((singular > CLOSE * max(1.0, float(np.abs(table).max()))).sum())
     return rows[rank:]
 
 
