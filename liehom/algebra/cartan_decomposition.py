@@ -93,7 +93,7 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
         raise InputError("a Cartan decomposition is that of a semisimple algebra; take the Levi factor")
     if n and isinstance(field, FloatField):
         return _decomposed(algebra, field.from_entries(numerical_involution(algebra).T.ravel().tolist(), n, n))
-    theta = field.identity(n) if killing.signature()[0] == 0 else _rational(algebra, killing)
+    theta = field.identity(n) if killing.signature()[0] == 0 else _rational(algebra)
     if theta is None:
         raise UndecidedError(
             f"no Cartan involution of {algebra!r} with entries of denominator at most {DENOMINATOR} was found in this "
@@ -131,16 +131,12 @@ def _decomposed(algebra: LieAlgebra, theta: Any) -> CartanDecomposition:
     return CartanDecomposition(Subalgebra(algebra, k, check=False), Subspace(field, p, n), theta)
 
 
-def _rational(algebra: LieAlgebra, killing: Any) -> Any:
+def _rational(algebra: LieAlgebra) -> Any:
     """A Cartan involution over the field, on columns, or None."""
     n = algebra.dimension
-
-    def proved(theta: Any) -> bool:
-        return is_cartan_involution(algebra, theta)
-
     rank = cartan_subalgebra(algebra).dimension
     theta = approximate_involution(algebra, rank)
-    found = None if theta is None else rational_involution(algebra, theta, proved, 1)
+    found = None if theta is None else _searched(algebra, theta, 1)
     if found is not None:
         return found
     if n == 3:
@@ -154,7 +150,7 @@ def _rational(algebra: LieAlgebra, killing: Any) -> Any:
     if n == 3 * centre.degree and theta is not None and centre.polynomial.count_real_roots() == centre.degree:
         return half_turn_over_centroid(centre, theta)
     found = None if theta is None else _constructed(algebra, theta)
-    return found if found is not None else _in_a_suitable_lattice(algebra, killing, rank, theta)
+    return found if found is not None else _in_a_suitable_lattice(algebra, rank, theta)
 
 
 def _constructed(algebra: LieAlgebra, theta: Any) -> Any:
@@ -184,36 +180,37 @@ def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Any:
         inner = ideal.as_algebra()
         killing = inner.killing_form()
         one = field.identity(ideal.dimension)
-        theta = one if killing.signature()[0] == 0 else _rational(inner, killing)
+        theta = one if killing.signature()[0] == 0 else _rational(inner)
         if theta is None:
             return None
         blocks.append(ideal.basis.T @ theta)
     return field.stack_columns(blocks, n) @ basis.T.inverse()
 
 
-def _in_a_suitable_lattice(algebra: LieAlgebra, killing: Any, rank: int, theta: Any) -> Any:
+def _in_a_suitable_lattice(algebra: LieAlgebra, rank: int, theta: Any) -> Any:
     """Theta over the field, on columns, found in the basis of a large order, or None; `theta` is numerical."""
     field, n = algebra.field, algebra.dimension
-    basis = field.identity(n)
-    if field.degree == 1 and n <= LATTICE_DIMENSION:
-        frame = np.eye(n) if theta is None else _factor(-killing.to_numpy() @ theta.T)
-        basis = lie_order(algebra, frame)
-    current = algebra.change_of_basis(basis)
-    theta = approximate_involution(current, rank)  # afresh: more accurate in this basis
-    if theta is None:
-        return None
+    basis, current = field.identity(n), algebra
     # Over number fields Z^n is no canonical lattice: little hope.
-    rounds = FEW_ROUNDS if field.degree > 1 else max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2)
-
-    def proved(candidate: Any) -> bool:
-        return is_cartan_involution(current, candidate)
-
-    found = rational_involution(current, theta, proved, 1)
-    if found is None:
-        found = _constructed(current, theta)
-    if found is None:
-        found = rational_involution(current, theta, proved, rounds)
+    orders = (False, True) if field.degree == 1 and n <= LATTICE_DIMENSION else ()
+    for thorough in orders:  # most algebras are done before the second order, which costs more
+        frame = np.eye(n) if theta is None else _factor(-current.killing_form().to_numpy() @ theta.T)
+        basis = lie_order(current, frame, thorough=thorough) @ basis
+        current = algebra.change_of_basis(basis)
+        theta = approximate_involution(current, rank)  # afresh: more accurate in this basis
+        found = None if theta is None else _searched(current, theta, 1)
+        if found is None and theta is not None:
+            found = _constructed(current, theta)
+        if found is not None:
+            return basis.T @ found @ basis.T.inverse()
+    rounds = max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2) if orders else FEW_ROUNDS
+    found = None if theta is None else _searched(current, theta, rounds)
     return None if found is None else basis.T @ found @ basis.T.inverse()
+
+
+def _searched(algebra: LieAlgebra, theta: Any, rounds: int) -> Any:
+    """Theta over the field by lattice reduction, on columns, or None; `theta` is numerical."""
+    return rational_involution(algebra, theta, lambda candidate: is_cartan_involution(algebra, candidate), rounds)
 
 
 def _factor(form: Any) -> Any:

@@ -26,7 +26,7 @@ TRIES = 12
 IDEALS = 24
 
 
-def lie_order(algebra: LieAlgebra, factor: Any) -> Any:
+def lie_order(algebra: LieAlgebra, factor: Any, *, thorough: bool = True) -> Any:
     """A basis of a lattice closed under brackets, as rows (n, n) in the basis of a semisimple algebra over QQ.
 
     Parameters
@@ -34,6 +34,8 @@ def lie_order(algebra: LieAlgebra, factor: Any) -> Any:
     algebra : LieAlgebra
     factor : (n, n) float array
         A frame: the basis is short and nearly orthogonal for the form factor factor^T.
+    thorough : bool, optional
+        Whether other ideals than the radical of the Killing form are tried, most of the cost: then the order is larger.
 
     Examples
     --------
@@ -55,7 +57,7 @@ def lie_order(algebra: LieAlgebra, factor: Any) -> Any:
     while waiting:
         d = waiting.pop()
         for _ in range(STEPS):
-            found = order.enlarged(d)
+            found = order.enlarged(d, thorough)
             if isinstance(found, int):
                 waiting += pairwise_coprime(found) + pairwise_coprime(d // found)
             if not isinstance(found, _Order):
@@ -83,7 +85,7 @@ class _Order:
             return None
         return _Order(self.algebra, rows @ self.basis, self.factor)
 
-    def enlarged(self, d: int) -> _Order | int | None:
+    def enlarged(self, d: int, thorough: bool) -> _Order | int | None:
         """A larger order inside M/d, a divisor of d, or None."""
         for radical in (False, True):  # J = d M, then the radical of the Killing form
             space = kernel_modulo(self.inner.killing_form(), d) if radical else ([], list(range(self.n)))
@@ -94,7 +96,7 @@ class _Order:
                 return found
             if found[0]:
                 return self._with(found, d)
-        return self._enlarged_by_search(d) if d < LARGEST_PRIME else None
+        return self._enlarged_by_search(d) if thorough and d < LARGEST_PRIME else None
 
     def _enlarged_by_search(self, p: int) -> _Order | None:
         """The largest of the normalizers of some ideals modulo a small prime."""
