@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,9 @@ from liehom.integrators import compiled
 from liehom.integrators.progress import Progress
 
 from . import spaces
-from .test_compiled import BODY, START, a_field, sphere
+from .test_compiled import BODY, START, a_field, cache, sphere
+
+__all__ = ["cache"]
 
 EPS = float(np.finfo(float).eps)
 ULPS = 256
@@ -34,19 +34,6 @@ STEPS = {
     "Heun to 3": lh.Corrected(lh.Heun(), 3),
     "default": None,
 }
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """Machine code of the tests, apart from the user's."""
-    folder = tmp_path_factory.mktemp("code")
-    before = os.environ.get("LIEHOM_CACHE_DIR")
-    os.environ["LIEHOM_CACHE_DIR"] = str(folder)
-    yield folder
-    if before is None:
-        del os.environ["LIEHOM_CACHE_DIR"]
-    else:
-        os.environ["LIEHOM_CACHE_DIR"] = before
 
 
 def both(field: lh.GeneratorField, span: Any, y0: Any, backend: str = "numba", **options: Any) -> tuple[Any, Any]:
