@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from liehom.correctors.conserving import ConservingStep
-from liehom.correctors.corrected import CorrectedStep
+from liehom.correctors.conserving import Conserving, ConservingStep
+from liehom.correctors.corrected import Corrected, CorrectedStep
 from liehom.correctors.range_solver import EvenRangeSolver
 from liehom.correctors.step import Generator, Step, apply_factors
 from liehom.errors import LiehomError, TraceError
@@ -76,7 +76,9 @@ def _traced(
     limits: Limits | None, kept_order: int | None,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
-    even = evenness(action, points, orbit_dimension)
+    even = action.even
+    if even is None and isinstance(step, Corrected | Conserving):  # others ask for no isotropy
+        even = evenness(action, points, orbit_dimension)
     if even is not None and action.inner_product.invariant:
         form = even.trace
         over = tape.given_number(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
