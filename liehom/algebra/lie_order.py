@@ -3,19 +3,20 @@
 For any lattice L the normalizer N(L) = {x : [x, L] in L} is an order.  An order M is enlarged at a number d that
 divides the discriminant of its Killing form: the normalizer of an ideal J of M contains M, and for
 J = {x in M : K(x, M) = 0 mod d} it is larger for most M that are not maximal (the idea of the round-2 algorithm for
-orders in fields and algebras); for primes d < 1000 other ideals are tried too: at larger ones, lattices in special
-position may stay below a maximal order.  With d M in J and M = N(M), N(J) lies in
-M/d, so that linear algebra modulo d finds it; d need not be a prime, and is split where elimination meets a divisor.
-Nothing here is proved to be maximal.  Imports ideals_modulo, lie_algebra, scalars.
+orders in fields and algebras); for primes d < 1000 the {x in M : K(x, M) = 0 mod d^k} + d M and other ideals are
+tried too: at larger ones, lattices in special position may stay below a maximal order.  With d M in J and M = N(M),
+N(J) lies in M/d, so that linear algebra modulo d finds it; d need not be a prime, and is split where elimination meets
+a divisor.  Nothing here is proved to be maximal.  Imports ideals_modulo, lie_algebra, scalars.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from liehom.algebra.ideals_modulo import LARGEST_PRIME, ideals_modulo
+from liehom.algebra.ideals_modulo import LARGEST_PRIME, echelon_modulo, ideals_modulo
 from liehom.algebra.lie_algebra import LieAlgebra
 from liehom.scalars import QQ
 from liehom.scalars.lattice import integral_preimage, kernel_modulo, pairwise_coprime, reduced_rows
@@ -87,8 +88,7 @@ class _Order:
 
     def enlarged(self, d: int, thorough: bool) -> _Order | int | None:
         """A larger order inside M/d, a divisor of d, or None."""
-        for radical in (False, True):  # J = d M, then the radical of the Killing form
-            space = kernel_modulo(self.inner.killing_form(), d) if radical else ([], list(range(self.n)))
+        for space in self._ideals(d):
             if isinstance(space, int):
                 return space
             found = self._normalizer_of(space, d)
@@ -97,6 +97,25 @@ class _Order:
             if found[0]:
                 return self._with(found, d)
         return self._enlarged_by_search(d) if thorough and d < LARGEST_PRIME else None
+
+    def _ideals(self, d: int) -> Iterator[Any]:
+        """0, the radical of the Killing form over its content, for small primes the images of {x : K(x, M) in d^k}.
+
+        Where d divides the dual Coxeter number the whole form vanishes modulo d.
+        """
+        killing = self.inner.killing_form()
+        yield [], list(range(self.n))
+        yield kernel_modulo(killing.primitive(), d)
+        power, last = d, self.n
+        while d < LARGEST_PRIME:
+            rows = integral_preimage(QQ.stack_columns([QQ.identity(self.n), killing.scale(QQ.one / power)], self.n))
+            table = np.array([int(x) % d for x in rows.parts[0].entries()], dtype=np.int64).reshape(self.n, self.n)
+            space, pivots = echelon_modulo(table, d)
+            if not pivots:
+                return
+            if len(pivots) < last:
+                yield space.tolist(), [j for j in range(self.n) if j not in pivots]
+            power, last = power * d, len(pivots)
 
     def _enlarged_by_search(self, p: int) -> _Order | None:
         """The largest of the normalizers of some ideals modulo a small prime."""

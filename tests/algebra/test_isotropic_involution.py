@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import random
 
+import numpy as np
 import pytest
 
 import liehom as lh
 from liehom.algebra.approximate_involution import approximate_involution
 from liehom.algebra.cartan_decomposition import cartan_decomposition, is_cartan_involution
 from liehom.algebra.isotropic_involution import isotropic_involution
+from liehom.algebra.lie_order import lie_order
 from liehom.algebra.nilpotent_element import generic_nilpotent, sl2_triple
 from liehom.errors import SingularError
 from liehom.testing import random_unimodular
@@ -72,3 +74,16 @@ def test_dimension_45_in_a_rational_basis() -> None:
     rng = random.Random(1)
     rows = [[rng.randint(-3, 3) + 5 * (i == j) for j in range(45)] for i in range(45)]
     assert cartan_decomposition(natural.change_of_basis(rows)).k.dimension == 25
+
+
+def test_an_order_at_a_prime_that_divides_the_dual_coxeter_number() -> None:
+    """The Killing form of so(4,3) is 0 modulo 5 on every order: its radical modulo 25 leads out of a sublattice."""
+    natural = lh.simple("B3", "so(4,3)")
+    rng = random.Random(1)
+    rows = [[rng.randint(-3, 3) + 5 * (i == j) for j in range(21)] for i in range(21)]
+    algebra = natural.change_of_basis(rows)
+    order = algebra.change_of_basis(lie_order(algebra, np.eye(21), thorough=False))
+    assert order.table.den == 1
+    assert int(order.killing_form().determinant()) % 5**22 != 0
+    found = cartan_decomposition(algebra)
+    assert is_cartan_involution(algebra, found.theta) and found.k.dimension == 9
