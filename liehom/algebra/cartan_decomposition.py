@@ -96,8 +96,9 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
     theta = field.identity(n) if killing.signature()[0] == 0 else _rational(algebra)
     if theta is None:
         raise UndecidedError(
-            f"no Cartan involution of {algebra!r} with entries of denominator at most {DENOMINATOR} was found in this "
-            "basis or a reduced one; algebra.over(lh.RR).cartan_decomposition() finds one numerically"
+            f"no Cartan involution of {algebra!r} over {field.name} was found, and none was excluded: lattice "
+            f"reduction met none of denominator at most {DENOMINATOR}, and nilpotent elements gave none; "
+            "algebra.over(lh.RR).cartan_decomposition() finds one numerically"
         )
     return _decomposed(algebra, theta)
 
