@@ -149,9 +149,12 @@ def _rational(algebra: LieAlgebra) -> Any:
         return _of_ideals(algebra, ideals)
     (centre,) = centres
     if n == 3 * centre.degree and theta is not None and centre.polynomial.count_real_roots() == centre.degree:
-        return half_turn_over_centroid(centre, theta)
-    found = None if theta is None else _constructed(algebra, theta)
-    return found if found is not None else _in_a_suitable_lattice(algebra, rank, theta)
+        found = half_turn_over_centroid(centre, theta)
+    elif theta is not None and algebra.field.degree == 1:
+        found = isotropic_involution(algebra, theta)
+    if found is not None and is_cartan_involution(algebra, found):
+        return found
+    return _in_a_suitable_lattice(algebra, rank, theta)
 
 
 def _constructed(algebra: LieAlgebra, theta: Any) -> Any:
