@@ -216,6 +216,19 @@ def test_pictures_are_drawn(suffix: str, begins: bytes) -> None:
     assert written() == [picture, "rigid_body.npz"]
 
 
+@pytest.mark.parametrize("file", [RIGID, SYM3, SPIN])
+def test_a_compiled_step_gives_the_same(file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LIEHOM_CACHE_DIR", str(tmp_path / "code"))
+    found = []
+    for name, words in (("plain.npz", ()), ("made.npz", ("--compile", "numba"))):
+        result = liehom("integrate", file, "--t-span", "0", "2", "--dt", "0.05", "--out", name, *words)
+        assert result.exit_code == 0, result.stderr
+        found.append(np.load(name)["y"])
+    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-13)
+    refused = liehom("integrate", file, "--dt", "0.05", "--compile", "fortran", "--out", "other.npz")
+    assert refused.exit_code == 2 and "fortran" in refused.stderr and "other.npz" not in written()
+
+
 @pytest.mark.parametrize("words", [("--t-span", "3", "3"), ("--dt", "0.1", "--max-steps", "3"), ("--t-span", "2", "0")])
 def test_pictures_of_odd_runs(words: tuple[str, ...]) -> None:
     result = liehom("integrate", RIGID, "--plot", "picture.png", "--json", *words)

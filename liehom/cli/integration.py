@@ -41,6 +41,7 @@ class Output:
     as_json: bool = False
     progress: bool | None = None
     max_steps: int | None = None
+    compile: str | None = None
 
     def checked(self, file: str) -> Output:
         """With the default name of the .npz file; refuses what could not be written after the work."""
@@ -64,6 +65,7 @@ def run_integrate(file: str, words: Words, wanted: Output) -> int:
     output = wanted.checked(file)
     problem = problem_of(file, words)
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
+    options["compile"] = output.compile
     options["dense_output"] = output.plot is not None
     options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
     try:

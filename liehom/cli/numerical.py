@@ -46,6 +46,7 @@ def integrate(
         str | None, typer.Option(metavar="PATH", help="Keep the state in this file; an interrupted run continues.")
     ] = None,
     max_steps: Annotated[int | None, typer.Option(metavar="N", help="Stop after so many steps.")] = None,
+    compile: Annotated[str | None, typer.Option(metavar="NAME", help="Compile the step: numba or jax.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it is there.")] = False,
     json: JsonOption = False,
 ) -> None:
@@ -56,7 +57,7 @@ def integrate(
         from liehom.cli.problem import Words
 
         words = Words(t_span, dt, base, order, rtol, atol, exponential, clock)
-        return run_integrate(file, words, Output(out, plot, checkpoint, force, json, progress, max_steps))
+        return run_integrate(file, words, Output(out, plot, checkpoint, force, json, progress, max_steps, compile))
 
     _run(action)
 

@@ -36,6 +36,7 @@ def observed_order(
     t_span: tuple[float, float] = (0.0, 1.0),
     exponential: Any = "exp",
     clock: str = "corrected",
+    compile: str | None = None,
     reference: Reference | None = None,
     executor: Source = None,
     store: str | os.PathLike[str] | None = None,
@@ -54,7 +55,7 @@ def observed_order(
     t_span : (float, float)
         Errors are measured at its end, by default t = 1 from t = 0: choose it so that the solution moves by about
         its own size.
-    exponential, clock
+    exponential, clock, compile
         As for `integrate`. With clock="nominal" the trajectory is compared at the nominal time.
     reference : Reference, optional
         The exact solution through (t_span[0], y0); by default it is made in extended precision.
@@ -93,7 +94,7 @@ def observed_order(
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
     if reference is not None and not isinstance(reference, Reference):
         raise InputError(f"reference is {reference!r}, expected a liehom.integrators.Reference")
-    options = {"step": step, "exponential": exponential, "clock": clock}
+    options = {"step": step, "exponential": exponential, "clock": clock, "compile": compile}
     problems = [Problem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
     if not any(run.success for run in runs):
