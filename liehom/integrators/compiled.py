@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 BACKENDS = ("numba", "jax")
 WIDTH, NARROW = 16, 8
+LONG = 700
+"""Operations between two loops, from which on blocks are narrow."""
 PATH_BYTES = 64_000_000
 BREATH = 4_000_000_000
 """Operations, of all lanes together, between two looks at progress, checkpoints and interruptions."""
@@ -103,7 +105,7 @@ class Group:
     def __init__(self, graph: StepGraph, lanes: Any, backend: str, points: Any) -> None:
         self.graph, self.lanes = graph, lanes
         self.kernel: Kernel | JaxKernel
-        self.width = 1 if len(lanes) < NARROW // 2 else NARROW if len(lanes) < 4 * WIDTH else WIDTH
+        self.width = 1 if len(lanes) < NARROW // 2 else NARROW if len(lanes) < 4 * WIDTH else _width(graph)
         if backend == "jax":
             self.width, self.kernel = 1, JaxKernel(graph)
         else:
@@ -296,6 +298,12 @@ class _State:
             sizes.reshape(most, *shape),
             moved.reshape(most, *shape),
         )
+
+
+def _width(graph: StepGraph) -> int:
+    """Lanes of a block: wide ones hide how long operations take, in long code they run out of registers."""
+    ops = needed(graph.outputs)
+    return WIDTH if len(ops) < LONG * (1 + sum(x.op in ("expv", "loop") for x in ops)) else NARROW
 
 
 def _cores() -> int:
