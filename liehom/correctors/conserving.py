@@ -198,8 +198,8 @@ class _Begun:
         first: Conservation | None = None
         bound = step.order + BEYOND
         for j in range(SAMPLES + 1):
-            if j and short.size >= MANY and not short.any():
-                break  # so many trajectories are not all at symmetric points
+            if j > 1 and short.size >= MANY and not short.any():
+                break  # so many trajectories, moved once from where they may all be symmetric, are points enough
             x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.size or 1.0)
             point = action.act(np.broadcast_to(x, (*start.shape[:-1], x.size)), start) if j else start
             point = point.astype(start.dtype, copy=False)

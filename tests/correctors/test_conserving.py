@@ -489,3 +489,19 @@ def test_exact_points_are_refused() -> None:
     field = lh.GeneratorField(spin(), ["m0", 0, 0])
     with pytest.raises(InputError, match="numpy arrays of floats"):
         Conserving(lh.Heun(), "m1**2+m2**2").at(lh.Action(field.representation), Generator(field, 2), m, np.zeros(1))
+
+
+@pytest.mark.parametrize("step", [lh.LieTaylor(2), lh.RKMK("rk4")], ids=["Taylor", "RK4"])
+@pytest.mark.parametrize("point", [[0.6, 0.0, 0.8], [1.0, 0.0, 0.0]], ids=["plane", "axis"])
+def test_many_trajectories_at_symmetric_points_do_not_mislead(step: Any, point: Any) -> None:
+    """There the first coefficient of the energy's error vanishes; the order is that next to them."""
+    w = np.array([1.0, 0.5, 0.25])
+    fields = [lambda m: -m * w, lambda m, t: -m * w * np.asarray(t)[..., None] ** 2]  # the second one is 0 at t = 0
+    for psi in fields:
+        field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
+        found = []
+        for m in (np.array(point), np.tile(point, (20, 1))):
+            conserving = Conserving(step, lambda m: np.sum(m * m * w, axis=-1) / 2)
+            generator = lh.correctors.Generator(field, 2, m)
+            found.append(conserving.kept_order(lh.Action(field.representation), generator, m, np.zeros(m.shape[:-1])))
+        assert found[0] is not None and found[0] == found[1]
