@@ -7,13 +7,17 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.integration_methods import EXPLAINED
+from tests.benchmarks.integration_methods import EAGER, EXPLAINED, IN_JIT, JAX, NUMBA
 from tests.benchmarks.integration_problems import Problem, problems
 from tests.benchmarks.integration_targets import TARGETS, best, curve, ratios
 
 BEGIN, END = "<!-- integration: begin -->", "<!-- integration: end -->"
 MANY, EXPONENTS = 10_000, ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
-STYLES = ("o-", "s-", "^-", "v--", "D--", "x--", "+:", "*:")
+STYLES = {
+    NUMBA: "o-", EAGER: "s-", JAX: "^-", "scipy DOP853": "v--", "heyoka.py": "D--", "diffrax": "x--",
+    "numba RK4 by hand": "+:", IN_JIT: "*-",
+}  # fmt: skip
+"""One line and one colour for each program, in all pictures."""
 
 
 def shown(x: float | None, digits: int = 2) -> str:
@@ -113,12 +117,12 @@ def draw(problem: Problem, data: dict[str, Any], folder: Path) -> None:
     with matplotlib.rc_context({"svg.hashsalt": "liehom", "svg.fonttype": "none", "font.size": 8}):
         figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True, layout="constrained")
         for ax, orbit in zip(axes, (True, False), strict=True):
-            for i, (name, rows) in enumerate(groups(data["methods"]).items()):
+            for name, rows in groups(data["methods"]).items():
                 measured = [r for r in rows if str(count) in r.get("costs", {})]
                 front = _front([p for r in measured for p in curve(problem, r, count, orbit=orbit)])
                 if front:
-                    style = STYLES[i % len(STYLES)]
-                    ax.loglog(*zip(*front, strict=True), style, color=f"C{i}", ms=3, lw=1, label=name)
+                    color = f"C{list(STYLES).index(name)}"
+                    ax.loglog(*zip(*front, strict=True), STYLES[name], color=color, ms=3, lw=1, label=name)
             what = ("energy" if problem.energy is not None else "distance from the orbit") if orbit else "trajectory"
             ax.set(xlabel=f"µs for each of {count} trajectories", title=f"{problem.name}: {what}", ylim=(1e-14, 1))
             ax.grid(alpha=0.3)
