@@ -1,7 +1,7 @@
 """The exceptions of liehom: everything the library refuses is a `LiehomError`.
 
 Each error says what was found, what would be right and, where there is a position (an index, a pair of
-basis elements, a key of a file), carries it as an attribute.  Imports nothing.
+basis elements, a key of a file), carries it as an attribute.
 """
 
 from __future__ import annotations

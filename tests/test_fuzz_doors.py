@@ -18,8 +18,9 @@ from typer.testing import CliRunner
 import liehom as lh
 from liehom import errors, io
 from liehom.cli.app import app
-from liehom.fullness.certificate import Certificate
-from liehom.scalars import QQ, common_field, grammar, number_field
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.scalars import QQ, common_field, number_field
+from liehom.scalars.fields import grammar
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 FILES = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(EXAMPLES.glob("*.json"))}

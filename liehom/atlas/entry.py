@@ -1,7 +1,4 @@
-"""Entry: what was decided of one pair, with its proof as JSON; Atlas: a table of entries.
-
-Imports catalog, fullness, errors.
-"""
+"""Entry: what was decided of one pair, with its proof as JSON; Atlas: a table of entries."""
 
 from __future__ import annotations
 

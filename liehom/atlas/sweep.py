@@ -1,7 +1,4 @@
-"""sweep: decide a list of pairs on any executor, every certificate checked, every entry kept as it is done.
-
-Imports entry, catalog, fullness, parallel, representations, errors.
-"""
+"""sweep: decide a list of pairs on any executor, every certificate checked, every entry kept as it is done."""
 
 from __future__ import annotations
 

@@ -1,14 +1,11 @@
-"""Lie algebras and representations by name.
-
-Imports families, names, linear, algebra, representations.
-"""
+"""Lie algebras and representations by name."""
 
 from __future__ import annotations
 
 from liehom.algebra import LieAlgebra, abelian, direct_sum, euclidean, heisenberg, semidirect_sum
-from liehom.algebra.classical import linear_algebra
-from liehom.algebra.closure import lie_closure
-from liehom.algebra.matrix_basis import IntegerArray
+from liehom.algebra.closure.closure import lie_closure
+from liehom.algebra.matrices.classical import linear_algebra
+from liehom.algebra.matrices.matrix_basis import IntegerArray
 from liehom.catalog.families import family_algebra, is_family
 from liehom.catalog.linear import is_linear, linear_matrices
 from liehom.catalog.names import Expression, Sum, Term, parse_expression, unknown

@@ -1,7 +1,7 @@
 """What the listed pairs are expected to be: dimensions, and whether they are full.
 
 Read by tests only, which build each pair, count its dimensions and decide it; no decision looks here.
-The expectations are those of the classification of full pairs.  Imports nothing of liehom.
+The expectations are those of the classification of full pairs.
 """
 
 from __future__ import annotations

@@ -4,8 +4,6 @@ iso(p,q)                poincare(p, q)
 galilei(n), bargmann(n) with and without mass
 conformal(p), conformal(p,q), aff(n), filiform(n), oscillator(n), free_nilpotent(g,k)
 bianchi(I), ..., bianchi(VI;a), bianchi(VII;a)
-
-Imports names, algebra.
 """
 
 from __future__ import annotations

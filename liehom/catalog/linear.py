@@ -1,6 +1,6 @@
 """From a name to matrices: linear Lie algebras as integer matrix bases.
 
-classical       gl, sl, so, su, u, sp, spin with the parameters of `liehom.algebra.classical`; so*(2n)
+classical       gl, sl, so, su, u, sp, spin with the parameters of `liehom.algebra.matrices.classical`; so*(2n)
 other scalars   sl(n,Q(sqrt(c))), sl(n,Q(a,b)): over a quadratic field, or over the quaternion algebra (a, b)
 exceptional     g2, g2(2), f4, f4(-20), f4(4), e6(-26), e6(6)
 forms           form(d1,...,dn): so of the diagonal quadratic form
@@ -8,8 +8,6 @@ commutative     field(c0,...,c_(n-1)): Q[t]/(t^n + ... + c0) on itself; diag(...
 triangular      upper(n), strict(n)
 from others     dual(X), tensor(X,Y), blocks(X,Y,...), copies(k,X), Sk(X), Lk(X); sym(n): so(n) on Sym(n)
 with scalars    X+R, X+u(1), X+sp(1), X+sl(1,Q(a,b)): scalars that commute with X
-
-Imports names, algebra.
 """
 
 from __future__ import annotations
@@ -19,10 +17,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from liehom.algebra import matrix_families as families
-from liehom.algebra.classical import classical_matrices
-from liehom.algebra.matrix_basis import IntegerArray, stack, unit
-from liehom.algebra.simple import exceptional_matrices
+from liehom.algebra.constructions.simple import exceptional_matrices
+from liehom.algebra.matrices import matrix_families as families
+from liehom.algebra.matrices.classical import classical_matrices
+from liehom.algebra.matrices.matrix_basis import IntegerArray, stack, unit
 from liehom.catalog.names import Expression, Item, Sum, Term, terms
 from liehom.errors import CatalogError
 

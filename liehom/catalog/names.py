@@ -7,7 +7,7 @@
     head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
 
 Blanks are ignored.  Printing a tree and parsing it again gives the same tree; `parse` drops parameters that
-say nothing, so that 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.  Imports errors.
+say nothing, so that 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.
 """
 
 from __future__ import annotations

@@ -6,8 +6,6 @@ G/Pk, G/P       the stabiliser of a k-dimensional subspace of the scalars, isotr
                 P = P1; in e6, of the line of an idempotent; in g2(2), of a null line
 G/B             sl(n) and gl(n): of a complete flag
 G/H             what the table of `special` names; otherwise H as blocks of the matrices of G, wherever they fit
-
-Imports subalgebras, linear, algebras, names, representations.
 """
 
 from __future__ import annotations
@@ -17,8 +15,8 @@ import re
 import numpy as np
 
 from liehom.algebra import LieAlgebra, Subalgebra
-from liehom.algebra.classical import linear_algebra
-from liehom.algebra.matrix_basis import IntegerArray
+from liehom.algebra.matrices.classical import linear_algebra
+from liehom.algebra.matrices.matrix_basis import IntegerArray
 from liehom.catalog.algebras import affine_algebra, algebra_of
 from liehom.catalog.claims import CLAIMS
 from liehom.catalog.linear import is_linear, linear_matrices

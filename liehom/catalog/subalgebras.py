@@ -3,8 +3,6 @@
 Each condition is linear in the element X of g, and those that satisfy it are closed under commutators:
 
     X W in W for a subspace W,   X v = 0,   X T = T X,   X^T F + F X = 0.
-
-Imports linear, algebra.
 """
 
 from __future__ import annotations
@@ -16,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from liehom.algebra.closure import square_matrices
-from liehom.algebra.matrix_basis import IntegerArray, null_space
-from liehom.algebra.sparse_commutators import entries_of, private_places
+from liehom.algebra.closure.closure import square_matrices
+from liehom.algebra.closure.sparse_commutators import entries_of, private_places
+from liehom.algebra.matrices.matrix_basis import IntegerArray, null_space
 from liehom.catalog.linear import at_offset
 
 NOTHING: Sequence[IntegerArray] = ()
@@ -47,7 +45,7 @@ def preserving(
     --------
     The upper triangular matrices of sl(2):
 
-    >>> from liehom.algebra.matrix_families import sl
+    >>> from liehom.algebra.matrices.matrix_families import sl
     >>> preserving(sl(2), subspaces=[np.array([[1, 0]])]).tolist()
     [[1, 0, 0], [0, 0, 1]]
     """

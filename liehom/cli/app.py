@@ -1,7 +1,4 @@
-"""The commands of ``liehom``: each gathers its input, calls one function of the library, and prints.
-
-Imports describe, guard, numerical, reproduce; inputs, show and the library inside the commands.
-"""
+"""The commands of ``liehom``: each gathers its input, calls one function of the library, and prints."""
 
 from __future__ import annotations
 
@@ -150,8 +147,8 @@ def _verify(text: str, file: str, as_json: bool) -> int:
     from liehom.cli.inputs import file_argument, pair_argument
     from liehom.cli.show import show_answer, show_json
     from liehom.errors import CertificateError, CertificateFormatError
-    from liehom.fullness.certificate import Certificate
-    from liehom.fullness.verify import verify_certificate
+    from liehom.fullness.certificates.certificate import Certificate
+    from liehom.fullness.checker.verify import verify_certificate
     from liehom.io import read_object
 
     pair = pair_argument(text)
@@ -251,7 +248,7 @@ def range_(
 def _range(text: str, psi: str | None, as_json: bool) -> int:
     from liehom.cli.inputs import pair_argument, row_in
     from liehom.cli.show import short_vector, show_answer, show_json
-    from liehom.homogeneous.range_condition import range_condition
+    from liehom.homogeneous.range.range_condition import range_condition
 
     pair = pair_argument(text)
     row = None if psi is None else row_in(pair.field, psi, "psi")

@@ -1,4 +1,4 @@
-"""``liehom order``: the order of convergence, measured on the problem of a file. Imports inputs, problem, show, io."""
+"""``liehom order``: the order of convergence, measured on the problem of a file."""
 
 from __future__ import annotations
 

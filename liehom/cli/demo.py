@@ -1,4 +1,4 @@
-"""``liehom demo``: a tour over the example files. Imports show, convergence, io, fullness, homogeneous, integrators."""
+"""``liehom demo``: a tour over the example files."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from liehom.cli.problem import can_draw
 from liehom.cli.show import show_json, show_table
 from liehom.errors import FormatError
 from liehom.fullness.decide import decide_fullness
-from liehom.homogeneous.range_condition import range_condition
+from liehom.homogeneous.range.range_condition import range_condition
 from liehom.representations import Pair
 
 if TYPE_CHECKING:

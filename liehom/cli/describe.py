@@ -1,7 +1,4 @@
-"""The command `describe`: what a file or a name stands for, as a card or as one JSON object.
-
-Imports guard; inputs, show and the library inside the command.
-"""
+"""The command `describe`: what a file or a name stands for, as a card or as one JSON object."""
 
 from __future__ import annotations
 
@@ -108,7 +105,7 @@ def algebra_facts(g: LieAlgebra) -> dict[str, Any]:
 
 
 def _structure(g: LieAlgebra) -> dict[str, Any]:
-    from liehom.algebra.real_form_names import join_real_forms
+    from liehom.algebra.roots.real_form_names import join_real_forms
     from liehom.errors import UndecidedError
 
     found = g.levi_decomposition()

@@ -1,7 +1,6 @@
 """Exit codes: every command runs under `guarded`, which turns exceptions into documented codes.
 
 Messages go to standard error; a command prints to standard output only when it has its whole answer.
-Imports errors.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From the words of a command to files, algebras, pairs, points, rows and numbers. Imports io, catalog, algebra."""
+"""From the words of a command to files, algebras, pairs, points, rows and numbers."""
 
 from __future__ import annotations
 

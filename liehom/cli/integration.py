@@ -1,7 +1,4 @@
-"""``liehom integrate``: a trajectory of the problem of a file, as a table, an .npz file and a picture.
-
-Imports guard, problem, show, io; numpy and the integrators inside.
-"""
+"""``liehom integrate``: a trajectory of the problem of a file, as a table, an .npz file and a picture."""
 
 from __future__ import annotations
 

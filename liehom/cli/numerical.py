@@ -1,7 +1,4 @@
-"""The commands `integrate` and `order`: their options; the work is in `integration` and `convergence`.
-
-Imports guard.
-"""
+"""The commands `integrate` and `order`: their options; the work is in `integration` and `convergence`."""
 
 from __future__ import annotations
 

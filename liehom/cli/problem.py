@@ -1,7 +1,4 @@
-"""What `integrate` and `order` share: the problem of a file, options that override it, where pictures go.
-
-Imports inputs, io.
-"""
+"""What `integrate` and `order` share: the problem of a file, options that override it, where pictures go."""
 
 from __future__ import annotations
 

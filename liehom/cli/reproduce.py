@@ -1,7 +1,4 @@
-"""``liehom reproduce``: the figures of the paper, written into a folder.
-
-Imports show, problem, guard, paper, errors.
-"""
+"""``liehom reproduce``: the figures of the paper, written into a folder."""
 
 from __future__ import annotations
 

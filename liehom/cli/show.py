@@ -1,5 +1,4 @@
-"""What a command prints: panels on a terminal, plain lines in a pipe, one object with --json. Imports nothing
-of liehom."""
+"""What a command prints: panels on a terminal, plain lines in a pipe, one object with --json."""
 
 from __future__ import annotations
 

@@ -1,28 +1,23 @@
 """Isotropy correctors: Theorem 5 at a point, iterated to any order, and what it needs of a step."""
 
-from liehom.correctors.closed_form import ClosedForm as ClosedForm
-from liehom.correctors.closed_form import closed_form as closed_form
-from liehom.correctors.conservation import Conservation as Conservation
-from liehom.correctors.conservation import conservation_map as conservation_map
-from liehom.correctors.conserved_order import ConservedOrder as ConservedOrder
-from liehom.correctors.conserved_order import conserved_order as conserved_order
+from liehom.correctors.conserving import Conservation as Conservation
 from liehom.correctors.conserving import Conserved as Conserved
+from liehom.correctors.conserving import ConservedOrder as ConservedOrder
 from liehom.correctors.conserving import Conserving as Conserving
 from liehom.correctors.conserving import ConservingStep as ConservingStep
-from liehom.correctors.corrected import Corrected as Corrected
-from liehom.correctors.corrected import CorrectedStep as CorrectedStep
+from liehom.correctors.conserving import FirstIntegral as FirstIntegral
+from liehom.correctors.conserving import conservation_map as conservation_map
+from liehom.correctors.conserving import conserved_order as conserved_order
 from liehom.correctors.expansion import Clock as Clock
 from liehom.correctors.expansion import Flow as Flow
 from liehom.correctors.expansion import flow_series as flow_series
 from liehom.correctors.expansion import leading_order as leading_order
 from liehom.correctors.expansion import step_series as step_series
-from liehom.correctors.first_integral import FirstIntegral as FirstIntegral
-from liehom.correctors.order import Correction as Correction
-from liehom.correctors.order import correction as correction
-from liehom.correctors.order_condition import OrderCondition as OrderCondition
-from liehom.correctors.order_condition import chi as chi
-from liehom.correctors.order_condition import order_condition as order_condition
-from liehom.correctors.range_solver import RangeSolver as RangeSolver
+from liehom.correctors.isotropy import Corrected as Corrected
+from liehom.correctors.isotropy import CorrectedStep as CorrectedStep
+from liehom.correctors.isotropy import Correction as Correction
+from liehom.correctors.isotropy import RangeSolver as RangeSolver
+from liehom.correctors.isotropy import correction as correction
 from liehom.correctors.step import Generator as Generator
 from liehom.correctors.step import LocalStep as LocalStep
 from liehom.correctors.step import OneExponential as OneExponential
@@ -30,3 +25,8 @@ from liehom.correctors.step import Step as Step
 from liehom.correctors.step import apply_factors as apply_factors
 from liehom.correctors.step import solve_implicitly as solve_implicitly
 from liehom.correctors.step import step_variable as step_variable
+from liehom.correctors.symbolic import ClosedForm as ClosedForm
+from liehom.correctors.symbolic import OrderCondition as OrderCondition
+from liehom.correctors.symbolic import chi as chi
+from liehom.correctors.symbolic import closed_form as closed_form
+from liehom.correctors.symbolic import order_condition as order_condition

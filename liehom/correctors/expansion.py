@@ -3,7 +3,7 @@
     F_t(m) = w_0 + w_1 t + ...,  (k + 1) w_(k+1) = sum_(i <= k) rho(psi_i) w_(k-i),  psi_i along the flow,
     step(t) = z_0 + z_1 t + ...
 
-Plain Taylor coefficients, not derivatives.  Imports step, homogeneous, series.
+Plain Taylor coefficients, not derivatives.
 """
 
 from __future__ import annotations

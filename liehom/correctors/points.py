@@ -1,4 +1,4 @@
-"""A point as floats or as exact numbers of the representation's field. Imports homogeneous, series, errors."""
+"""A point as floats or as exact numbers of the representation's field."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.field import check_point
+from liehom.homogeneous.fields.field import check_point
 from liehom.representations import Representation
 from liehom.series.arrays import as_values, is_exact
 

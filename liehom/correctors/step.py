@@ -1,7 +1,7 @@
 """Step: one step m -> Exp(xi(m, t, h)) m of a Lie group method, written once for arrays and for Jets.
 
 On arrays a step integrates; with the Jet h = 0 + 1 t it is expanded in the step size.  A step is one exponential
-(`OneExponential`) or a product of several.  Imports homogeneous, series, errors.
+(`OneExponential`) or a product of several.
 """
 
 from __future__ import annotations

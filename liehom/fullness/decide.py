@@ -2,7 +2,7 @@
 
 The steps are those of the theory page: trivial cases, the rank at sample points, invariant forms, nilpotent
 ideals, the commutant, construction of a definite form, spectral search for dominance.  Every step only
-proposes a certificate; the verdict is what the certificate proves.  Imports the steps, verdict, numerical.
+proposes a certificate; the verdict is what the certificate proves.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from collections.abc import Callable
 from typing import Any
 
 from liehom.errors import InputError, InternalError
-from liehom.fullness import proposals
-from liehom.fullness.certificate import Certificate
+from liehom.fullness.certificates import certificate_writer
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.certificates.witnesses import eta_of_witness, numerical_eta, numerical_eta_of_commutant
 from liehom.fullness.describe import full_reason
-from liehom.fullness.dominance import Dominant, find_dominant
-from liehom.fullness.eigenwitness import eigenvector_witness
-from liehom.fullness.forms import decide_by_forms
-from liehom.fullness.frame import balanced_frame, plain_frame
-from liehom.fullness.isotropy_algebra import IsotropyAlgebra
 from liehom.fullness.numerical import decide_numerically
-from liehom.fullness.positive_form import full_by_positive_form
-from liehom.fullness.reducible import certificate_of, kernel_witness
+from liehom.fullness.search.dominance import Dominant, find_dominant
+from liehom.fullness.search.eigenwitness import eigenvector_witness
+from liehom.fullness.search.forms import decide_by_forms
+from liehom.fullness.search.frame import balanced_frame, plain_frame
+from liehom.fullness.search.positive_form import full_by_positive_form
+from liehom.fullness.search.reducible import certificate_of, kernel_witness
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
 from liehom.fullness.verdict import Full, NotFull, Verdict
-from liehom.fullness.witnesses import eta_of_witness, numerical_eta, numerical_eta_of_commutant
 from liehom.representations import Pair
-from liehom.representations.intertwiners import commutant, invariant_forms
-from liehom.representations.irreducibility import nilpotent_ideal_rows, split_by_commutant, traceless
+from liehom.representations.invariants.intertwiners import commutant, invariant_forms
+from liehom.representations.invariants.irreducibility import nilpotent_ideal_rows, split_by_commutant, traceless
 
 Report = Callable[[str], None]
 FIRST_TRIES, ROUNDS = 40, 6
@@ -76,7 +76,7 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None
         return decide_numerically(pair, seed=seed)
     if pair.dimension <= 1:
         reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
-        return Full(pair, proposals.trivial(pair.field), reason[pair.dimension])
+        return Full(pair, certificate_writer.trivial(pair.field), reason[pair.dimension])
     action = IsotropyAlgebra(pair)
     for attempt in range(3):
         verdict = _decide(action, seed + attempt, report)
@@ -132,7 +132,7 @@ def _sample(action: IsotropyAlgebra, rng: random.Random) -> tuple[Any, Certifica
     for x in points:
         if action.rank_at(x) < action.size:
             phi = action.action_rows(x).null_space().select(rows=[0])
-            return x, proposals.rational_witness(action, x, phi)
+            return x, certificate_writer.rational_witness(action, x, phi)
         first = x if first is None else first
     return first, None
 

@@ -1,12 +1,11 @@
 """The reason for a verdict in one sentence.
 
 Names of transitive linear groups are read off (d, dim L0, commutant); the certificates do not rest on them.
-Imports isotropy_algebra.
 """
 
 from __future__ import annotations
 
-from liehom.fullness.isotropy_algebra import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
 
 
 def compact_name(d: int, size: int, commutant: int) -> str:

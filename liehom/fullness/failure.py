@@ -1,7 +1,6 @@
 """Where (6.3) fails for a pair that is not full: generically or on a cone, and certified parts of the cone.
 
 The forms, subspaces and dominant elements that decide fullness are exactly what the cone is made of.
-Imports isotropy_algebra, homogeneous, representations.
 """
 
 from __future__ import annotations
@@ -9,12 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, final
 
-from liehom.fullness.certificate import Certificate
-from liehom.fullness.isotropy_algebra import IsotropyAlgebra
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
 from liehom.homogeneous import FailureSet, RangeCondition, failure_cone, range_condition
 from liehom.representations import Pair
-from liehom.representations.intertwiners import invariant_forms
-from liehom.representations.irreducibility import nilpotent_ideal_rows
+from liehom.representations.invariants.intertwiners import invariant_forms
+from liehom.representations.invariants.irreducibility import nilpotent_ideal_rows
 
 
 @final

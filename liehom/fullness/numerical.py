@@ -2,7 +2,6 @@
 
 With the span of rho(h) and 1 orthonormalised, sigma_d(x)^2 is the minimum over unit u of sum_a (u . A_a x)^2,
 quadratic in u and in x; alternating eigenvector steps go down monotonically from many starts.
-Imports verdict, representations.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Verdicts: what a decision returns, with its proof or with the gap that a numerical answer rests on.
-
-Imports certificate, verify, representations, errors.
-"""
+"""Verdicts: what a decision returns, with its proof or with the gap that a numerical answer rests on."""
 
 from __future__ import annotations
 
@@ -9,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, final
 
 from liehom.errors import UndecidedError
-from liehom.fullness.certificate import Certificate
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.checker.verify import verify_certificate
 from liehom.fullness.failure import FailureReport, failure_report
-from liehom.fullness.verify import verify_certificate
 from liehom.representations import Pair
 from liehom.scalars import Field
 

@@ -3,7 +3,7 @@
     B(x, y)_k = sum_(i, j) v_ijk x_i y_j,   v_ijk in the field of the representation
 
 In float64, in extended precision (v as a sum of two floats, so that 1/3 or sqrt(2) is as good as the arithmetic), on
-JAX arrays, and over exact scalars in the field's own numbers.  Imports representations, series, errors.
+JAX arrays, and over exact scalars in the field's own numbers.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Action: a representation with an exponential, the numerical face of a homogeneous space.
 
 What integrators and correctors need of a space: rho(x) m, Exp(x) m, the bracket, an inner product on g, and at a
-point the isotropy subalgebra in an orthonormal basis.  Imports exponential, inner_product, maps, series, errors.
+point the isotropy subalgebra in an orthonormal basis.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Any, final
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.exponential import Exponential
-from liehom.homogeneous.inner_product import InnerProduct, inner_product
-from liehom.homogeneous.lazy_frame import Evenness, decomposed
+from liehom.homogeneous.exponentials.exponential import Exponential
+from liehom.homogeneous.exponentials.own_exponential import exponential_of
+from liehom.homogeneous.frames.branch_free_frames import Evenness, decomposed
+from liehom.homogeneous.frames.inner_product import InnerProduct, inner_product
 from liehom.homogeneous.maps import action_map, bracket_map
-from liehom.homogeneous.own_exponential import exponential_of
 from liehom.representations import Representation
 from liehom.series.arrays import is_jax, namespace
 from liehom.tracing.array import Traced

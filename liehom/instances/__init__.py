@@ -5,23 +5,23 @@ motion, the updates of Figure 6 by the corrector and in closed form, and the ste
 `sym_conjugation` (symmetric matrices with given eigenvalues, isospectral flows), `landau_lifshitz` (spins).
 """
 
-from liehom.instances.closed_forms import ClosedForm as ClosedForm
-from liehom.instances.exact_orbit import ExactOrbit as ExactOrbit
-from liehom.instances.exact_orbit import ExactOrbitUpdate as ExactOrbitUpdate
 from liehom.instances.isospectral import double_bracket_flow as double_bracket_flow
 from liehom.instances.isospectral import qr_flow as qr_flow
 from liehom.instances.isospectral import qr_solution as qr_solution
 from liehom.instances.isospectral import toda_flow as toda_flow
-from liehom.instances.joint_spins import JointSpins as JointSpins
-from liehom.instances.landau_lifshitz import LandauLifshitz as LandauLifshitz
-from liehom.instances.macrospin import macrospin as macrospin
-from liehom.instances.macrospin import switching_time as switching_time
-from liehom.instances.on_time import GeneratorTaylor as GeneratorTaylor
-from liehom.instances.on_time import OnTime as OnTime
+from liehom.instances.rigid_body import ClosedForm as ClosedForm
+from liehom.instances.rigid_body import ExactOrbit as ExactOrbit
+from liehom.instances.rigid_body import ExactOrbitUpdate as ExactOrbitUpdate
+from liehom.instances.rigid_body import GeneratorTaylor as GeneratorTaylor
+from liehom.instances.rigid_body import OnTime as OnTime
 from liehom.instances.rigid_body import RigidBody as RigidBody
-from liehom.instances.sphere import Sphere as Sphere
-from liehom.instances.sphere_frame import SphereFrame as SphereFrame
-from liehom.instances.spin_lattice import SpinLattice as SpinLattice
+from liehom.instances.rigid_body import Update as Update
+from liehom.instances.rigid_body import update_names as update_names
+from liehom.instances.spheres import Sphere as Sphere
+from liehom.instances.spheres import SphereFrame as SphereFrame
+from liehom.instances.spins import JointSpins as JointSpins
+from liehom.instances.spins import LandauLifshitz as LandauLifshitz
+from liehom.instances.spins import SpinLattice as SpinLattice
+from liehom.instances.spins import macrospin as macrospin
+from liehom.instances.spins import switching_time as switching_time
 from liehom.instances.sym_conjugation import SymmetricMatrices as SymmetricMatrices
-from liehom.instances.updates import Update as Update
-from liehom.instances.updates import update_names as update_names

@@ -6,7 +6,6 @@
 (R. W. Brockett, Linear Algebra Appl. 146, 1991; W. W. Symes, Physica D 4, 1982).  With exp(t f(S_0)) = Q(t) R(t),
 R upper triangular with positive diagonal, the second one is solved by S(t) = Q(t)^T S_0 Q(t): at integer times these
 are the iterates of the QR algorithm for exp(f(S_0)), and for f = log those for S_0 itself.
-Imports sym_conjugation, homogeneous, series, errors.
 """
 
 from __future__ import annotations

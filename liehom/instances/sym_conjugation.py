@@ -4,7 +4,7 @@
 
 The isotropy of S is full exactly where one eigenvalue is simple and the others are equal (projective space), or all
 are equal (a point): the paper's remark on Sym(k) in section 6.  Every field on an orbit is S' = [A(S), S] with A(S)
-skew: an isospectral flow, see `isospectral`.  Imports homogeneous, representations, algebra, scalars, series, errors.
+skew: an isospectral flow, see `isospectral`.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import Any, final
 import numpy as np
 
 from liehom.algebra import Subalgebra
-from liehom.algebra.closure import square_matrices
+from liehom.algebra.closure.closure import square_matrices
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.homogeneous.generator import joined, takes_time
+from liehom.homogeneous.fields.generator import joined, takes_time
 from liehom.representations import Pair, Representation, sym_conjugation
 from liehom.scalars import ExactMatrix, Polynomial
 from liehom.series.jet import Jet

@@ -1,8 +1,6 @@
 """integrate: trajectories of a generator field, in the manner of scipy's solve_ivp.
 
 The door checks what comes in; the work is in `run.py`.
-Imports checkpoint, compiled, jax_integration, options, run, solution, steps, correctors, homogeneous, series,
-errors.
 """
 
 from __future__ import annotations
@@ -13,20 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from liehom.correctors.corrected import Corrected
+from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.field import check_point
-from liehom.homogeneous.lazy_frame import evenness
-from liehom.integrators.checkpoint import checked_path
-from liehom.integrators.compiled import compiled_steps
-from liehom.integrators.jax_integration import integrate_on_jax
-from liehom.integrators.options import Options
-from liehom.integrators.points import points_of
-from liehom.integrators.run import Run
-from liehom.integrators.solution import Solution
-from liehom.integrators.steps import LieTaylor
+from liehom.homogeneous.fields.field import check_point
+from liehom.homogeneous.frames.branch_free_frames import evenness
+from liehom.integrators.compiled.compiled import compiled_steps
+from liehom.integrators.compiled.jax_integration import integrate_on_jax
+from liehom.integrators.methods.steps import LieTaylor
+from liehom.integrators.run.checkpoint import checked_path
+from liehom.integrators.run.options import Options
+from liehom.integrators.run.points import points_of
+from liehom.integrators.run.run import Run
+from liehom.integrators.run.solution import Solution
 from liehom.series.arrays import is_jax
 
 CLOCKS = ("corrected", "nominal")

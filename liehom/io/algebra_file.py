@@ -1,7 +1,6 @@
 """The format of an algebra: dimension and structure constants [i, j, k, value] with i < j.
 
 The pair file has the same keys for its algebra, and its reader is built from the pieces here.
-Imports json_text, values, algebra, scalars, errors.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from liehom.algebra import LieAlgebra
-from liehom.algebra.structure_constants import StructureConstants
+from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FormatError
 from liehom.io.json_text import as_list, check_header, check_keys, is_float64, kind_of, shown
 from liehom.io.values import RawList, field_for, write_field, write_number

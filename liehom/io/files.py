@@ -1,7 +1,4 @@
-"""The verbs: load, load_pair, load_problem, loads, from_json, to_json, dump.
-
-Imports algebra_file, json_text, pair_file, problem, representation_file.
-"""
+"""The verbs: load, load_pair, load_problem, loads, from_json, to_json, dump."""
 
 from __future__ import annotations
 
@@ -11,13 +8,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, overload
 
-from liehom.algebra.lie_algebra import LieAlgebra
+from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
 from liehom.io.json_text import kind_of, parse_object, read_object, shown
 from liehom.io.problem import Problem
-from liehom.representations.pair import Pair
-from liehom.representations.representation import Representation
+from liehom.representations.core.pair import Pair
+from liehom.representations.core.representation import Representation
 
 FORMATS = (algebra_file.FORMAT, pair_file.FORMAT, representation_file.FORMAT)
 

@@ -6,7 +6,6 @@
 
 What GAP prints for a table is a list of n rows of n entries [ [ indices ], [ coefficients ] ], then the flag -1
 (antisymmetric) and the zero 0.  Both are read, by a parser that executes nothing.
-Imports json_text, values, algebra, scalars, errors.
 """
 
 from __future__ import annotations

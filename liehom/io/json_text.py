@@ -1,7 +1,4 @@
-"""From a text to a JSON object, strictly: one object, no key twice, no NaN, no infinity.
-
-Imports errors.
-"""
+"""From a text to a JSON object, strictly: one object, no key twice, no NaN, no infinity."""
 
 from __future__ import annotations
 

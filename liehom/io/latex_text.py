@@ -1,8 +1,6 @@
-r"""LaTeX of brackets, matrices, subalgebras and numbers, for use inside mathematics.
+""" "LaTeX of brackets, matrices, subalgebras and numbers, for use inside mathematics.
 
-    \begin{aligned} [e_0, e_1] &= e_2 \\ ... \end{aligned},      \begin{pmatrix} -2 & 0 \\ 0 & \frac{1}{2} \end{pmatrix}
-
-Imports algebra, representations, scalars, errors.
+\begin{aligned} [e_0, e_1] &= e_2 \\ ... \\end{aligned},      \begin{pmatrix} -2 & 0 \\ 0 & \frac{1}{2} \\end{pmatrix}
 """
 
 from __future__ import annotations
@@ -13,10 +11,10 @@ from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError
-from liehom.representations.representation import Representation
+from liehom.representations.core.representation import Representation
 from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, NumberField
-from liehom.scalars.exact_matrix import ExactMatrix
-from liehom.scalars.floating import FloatMatrix
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.floating import FloatMatrix
 
 GREEK = re.compile(
     "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|upsilon|phi|chi|psi|"

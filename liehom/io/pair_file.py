@@ -1,7 +1,4 @@
-"""The format of a pair: dimension, structure constants [i, j, k, value] with i < j, rows of the subalgebra.
-
-Imports algebra_file, json_text, values, algebra, representations.
-"""
+"""The format of a pair: dimension, structure constants [i, j, k, value] with i < j, rows of the subalgebra."""
 
 from __future__ import annotations
 
@@ -13,7 +10,7 @@ from liehom.io.algebra_file import FORMAT as ALGEBRA
 from liehom.io.algebra_file import algebra_keys, made_table, read_dimension, read_entries, read_names
 from liehom.io.json_text import check_header, check_keys, is_float64
 from liehom.io.values import field_for, table_of_rows, write_number
-from liehom.representations.pair import Pair
+from liehom.representations.core.pair import Pair
 
 FORMAT = "liehom-pair"
 REQUIRED = ("dimension", "structure_constants", "subalgebra")

@@ -2,7 +2,6 @@
 
 The field is X(m, t) = rho(psi(m, t)) m with psi from "generator", or X itself from "vector_field".  The options are
 checked when they are read, the names among them (base, exponential, clock) when they are used.
-Imports json_text, values, homogeneous, integrators, representations, scalars.
 """
 
 from __future__ import annotations
@@ -14,10 +13,10 @@ from typing import TYPE_CHECKING, Any, final
 from liehom.errors import FormatError, InputError, ParseError
 from liehom.io.json_text import as_list, shown
 from liehom.io.values import vector
-from liehom.representations.pair import Pair
-from liehom.representations.representation import Representation
+from liehom.representations.core.pair import Pair
+from liehom.representations.core.representation import Representation
 from liehom.scalars import RR
-from liehom.scalars.grammar import Node, parse
+from liehom.scalars.fields.grammar import Node, parse
 
 if TYPE_CHECKING:
     from liehom.correctors import Step
@@ -44,7 +43,7 @@ class Problem:
     start : tuple of float or None
         The point rounded to float64.
     generator : tuple of Node or None
-        psi: one parsed coefficient per given matrix, in the names m0, m1, ..., t (`liehom.scalars.grammar`).
+        psi: one parsed coefficient per given matrix, in the names m0, m1, ..., t (`liehom.scalars.fields.grammar`).
     options : mapping
         Those of t_span, t_eval, dt, rtol, atol, base, order, exponential, clock that the file states.
     vector_field : tuple of Node or None
@@ -112,7 +111,7 @@ class Problem:
         >>> problem.step(), problem.step("heun"), problem.step(order=1)
         (Corrected(Euler(), order=3), Corrected(Heun(), order=3), Euler())
         """
-        from liehom.integrators.named import step_named
+        from liehom.integrators.methods.named import step_named
 
         named = self.options.get("base", BASE) if base is None else base
         return step_named(named, self.options.get("order") if order is None else order)
@@ -193,7 +192,7 @@ def _value(tree: Node, m: Any, t: float, what: str) -> float:
     """One component at one point."""
     import numpy as np
 
-    from liehom.homogeneous.generator import Components
+    from liehom.homogeneous.fields.generator import Components
 
     try:
         with np.errstate(all="ignore"):

@@ -1,7 +1,7 @@
 """The format of a representation: matrices, optionally a point and the options of a numerical problem.
 
 The matrices are the first basis elements of the algebra; missing brackets are appended in lexicographic
-order.  Imports algebra_file, json_text, values, problem, representations.
+order.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from liehom.algebra.closure import lie_closure
+from liehom.algebra.closure.closure import lie_closure
 from liehom.errors import FormatError, ShapeError
 from liehom.io.algebra_file import read_dimension
 from liehom.io.json_text import as_list, check_header, check_keys, is_float64
 from liehom.io.problem import NUMERICAL, Problem, read_fields, read_options
 from liehom.io.values import RawList, field_for, table_of_rows, vector, write_field, write_number
-from liehom.representations.pair import Pair
-from liehom.representations.representation import Representation
+from liehom.representations.core.pair import Pair
+from liehom.representations.core.representation import Representation
 from liehom.scalars import RR
 
 FORMAT = "liehom-representation"

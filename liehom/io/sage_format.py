@@ -3,7 +3,7 @@
     L = LieAlgebra(QQ, {('x', 'y'): {'z': 1}}, names=('x', 'y', 'z'))            [x, y] = z
 
 Read are such dictionaries and calls, and what Sage prints for ``L.structure_coefficients()``, by a parser that
-executes nothing.  Imports gap_format, json_text, algebra, scalars, errors.
+executes nothing.
 """
 
 from __future__ import annotations

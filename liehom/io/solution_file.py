@@ -1,6 +1,6 @@
 """A solution as a file: an .npz archive with the arrays t, y and a JSON text of the report; never a pickle.
 
-It is written under a temporary name and moved, so that nobody ever finds half of it.  Imports json_text, integrators.
+It is written under a temporary name and moved, so that nobody ever finds half of it.
 """
 
 from __future__ import annotations

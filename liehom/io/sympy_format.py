@@ -1,7 +1,6 @@
 """Exact objects as sympy has them: numbers, matrices, and arrays of structure constants.
 
-Into liehom, sympy's matrices, arrays and numbers go as they are.  Imports algebra, representations, scalars,
-errors; sympy where it is used.
+Into liehom, sympy's matrices, arrays and numbers go as they are.
 """
 
 from __future__ import annotations
@@ -10,10 +9,10 @@ from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError
-from liehom.representations.representation import Representation
+from liehom.representations.core.representation import Representation
 from liehom.scalars import QQ, AlgebraicNumber, Field, FloatField, NumberField
-from liehom.scalars.exact_matrix import ExactMatrix
-from liehom.scalars.floating import FloatMatrix
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.floating import FloatMatrix
 
 
 def to_sympy(thing: Any) -> Any:

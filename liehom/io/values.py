@@ -1,7 +1,7 @@
 """Lists of JSON values as numbers of a field, with a fast path for integers.
 
 A value is a JSON integer or a text in the grammar of values; in a float64 file also a JSON float.  Equal
-texts are parsed once, and a list of plain integers is converted in one go.  Imports json_text, scalars, errors.
+texts are parsed once, and a list of plain integers is converted in one go.
 """
 
 from __future__ import annotations

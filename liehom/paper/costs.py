@@ -1,7 +1,4 @@
-"""What a step costs: arithmetic operations, counted, and time relative to a step of Euler, measured.
-
-Imports kernels, samples, printed_data.
-"""
+"""What a step costs: arithmetic operations, counted, and time relative to a step of Euler, measured."""
 
 from __future__ import annotations
 

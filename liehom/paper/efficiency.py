@@ -2,8 +2,7 @@
 
     ln cost = a x + b,   x = -ln (average energy error on [0, 100]),   cost = steps times cost of a step
 
-over the step sizes of Figures 3 to 5; the unit of cost is a step of xi_b^Eul.  Imports costs, orders, energy_errors,
-samples, pictures, tables, printed_data.
+over the step sizes of Figures 3 to 5; the unit of cost is a step of xi_b^Eul.
 """
 
 from __future__ import annotations

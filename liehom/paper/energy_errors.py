@@ -1,7 +1,4 @@
-"""Figures 3, 4 and 5: average errors of the energy over [0, 100], for Euler, Heun and the methods of order four.
-
-Imports kernels, samples, tables, printed_data, instances.
-"""
+"""Figures 3, 4 and 5: average errors of the energy over [0, 100], for Euler, Heun and the methods of order four."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from liehom.instances.rigid_body import RigidBody
+from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.kernels import kernel
 from liehom.paper.printed_data import EULER, FIGURE_3, FIGURE_4, FIGURE_5, FOURTH, HEUN, Errors
 from liehom.paper.samples import (

@@ -1,4 +1,4 @@
-"""reproduce: a figure of the paper by its name.  Imports the figures, tables, errors."""
+"""reproduce: a figure of the paper by its name."""
 
 from __future__ import annotations
 

@@ -5,7 +5,6 @@
 in principal axes and on the unit sphere, for one body in each lane of the arrays; `liehom.instances.RigidBody` derives
 the same updates from base schemes and the generic corrector, and `reproduce` compares the two. Only sums, products and
 quotients are used: coordinates may be floats of any precision, arrays, or numbers that count operations.
-Imports printed_data, errors.
 """
 
 from __future__ import annotations

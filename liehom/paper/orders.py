@@ -1,7 +1,4 @@
-"""The orders of Figure 6, measured: of the solution and of the energy, T = 6, dt = 1/16 .. 1/64, extended precision.
-
-Imports kernels, samples, printed_data, instances.
-"""
+"""The orders of Figure 6, measured: of the solution and of the energy, T = 6, dt = 1/16 .. 1/64, extended precision."""
 
 from __future__ import annotations
 
@@ -9,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from liehom.instances.rigid_body import RigidBody
+from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.kernels import Body, kernel
 from liehom.paper.printed_data import UPDATES
 from liehom.paper.samples import QUICK_LAW, SEED, random_bodies

@@ -1,4 +1,4 @@
-"""The pictures of Figures 1 and 7.  Imports plotting, printed_data."""
+"""The pictures of Figures 1 and 7."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """The numbers that the paper prints in section 4, as they stand there; `None` where it prints nothing.
 
 Keys of the tables of errors: body, step size, update; names of updates are those of `liehom.instances.RigidBody`.
-Imports nothing.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Random bodies and starting points, and the largest error of the energy over a run.
 
 The paper averages over ten runs whose data it does not give. Here many such averages are made, each over ten bodies of
-its own, and their median is shown with the range that nine tenths of them lie in.  Imports kernels, errors.
+its own, and their median is shown with the range that nine tenths of them lie in.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The separatrix experiment of section 4: Euler's method from random points of separatrices, over [0, 500].
-
-Imports kernels, samples, energy_errors, tables, printed_data, instances.
-"""
+"""The separatrix experiment of section 4: Euler's method from random points of separatrices, over [0, 500]."""
 
 from __future__ import annotations
 
@@ -9,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from liehom.instances.rigid_body import RigidBody
+from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.energy_errors import kernels_agree, scale
 from liehom.paper.kernels import kernel
 from liehom.paper.printed_data import EULER

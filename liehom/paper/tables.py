@@ -1,7 +1,4 @@
-"""What a reproduction consists of: tables (CSV, Markdown), claims with the evidence for them, a picture.
-
-Imports io, errors.
-"""
+"""What a reproduction consists of: tables (CSV, Markdown), claims with the evidence for them, a picture."""
 
 from __future__ import annotations
 

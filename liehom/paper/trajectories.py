@@ -1,7 +1,4 @@
-"""Figures 1 and 2: trajectories of Euler's method over [0, 200] with dt = 0.1, and their largest energy errors.
-
-Imports kernels, samples, energy_errors, pictures, tables, printed_data.
-"""
+"""Figures 1 and 2: trajectories of Euler's method over [0, 200] with dt = 0.1, and their largest energy errors."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Store: results as they come, on disk, each whole or not there; a folder of .npz and .json files, or a zarr group.
 
-Nothing in it is a pickle.  A store knows by a fingerprint which problem it belongs to.  Imports errors.
+Nothing in it is a pickle.  A store knows by a fingerprint which problem it belongs to.
 """
 
 from __future__ import annotations

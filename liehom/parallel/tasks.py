@@ -1,7 +1,7 @@
 """completed: the results of many tasks on any `concurrent.futures.Executor`, as they are done; lost workers survived.
 
 Nothing is known of an executor but `submit`: processes, threads, a dask client's, those of mpi4py.  A task is a
-function of its argument alone, so that results do not depend on the executor.  Imports errors.
+function of its argument alone, so that results do not depend on the executor.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Figures, their style and their files: the one place that loads matplotlib.
 
 Colours are those of Okabe and Ito, which people with any kind of colour vision can tell apart; lines differ in their
-markers or dashes too.  Imports io, errors.
+markers or dashes too.
 """
 
 from __future__ import annotations

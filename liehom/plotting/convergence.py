@@ -1,7 +1,4 @@
-"""plot_convergence: errors over step sizes, both logarithmic, with triangles that show the slopes.
-
-Imports canvas, integrators, errors.
-"""
+"""plot_convergence: errors over step sizes, both logarithmic, with triangles that show the slopes."""
 
 from __future__ import annotations
 

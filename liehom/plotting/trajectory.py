@@ -1,7 +1,4 @@
-"""plot_trajectory: solutions in space where points have two or three coordinates, else coordinates over time.
-
-Imports canvas, integrators, errors.
-"""
+"""plot_trajectory: solutions in space where points have two or three coordinates, else coordinates over time."""
 
 from __future__ import annotations
 

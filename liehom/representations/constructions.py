@@ -1,7 +1,6 @@
 """Representations made from a Lie algebra alone: defining, adjoint, coadjoint, trivial; conjugation on Sym(k).
 
 What is made from a representation (dual, sums, products, powers, restriction) are methods of `Representation`.
-Imports representation, highest_weight, real_form_module, induced, algebra.
 """
 
 from __future__ import annotations
@@ -11,15 +10,15 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra
-from liehom.algebra import matrix_families as families
-from liehom.algebra.classical import classical_matrices, linear_algebra
-from liehom.algebra.closure import lie_closure
-from liehom.algebra.simple import exceptional_matrices, simple
+from liehom.algebra.closure.closure import lie_closure
+from liehom.algebra.constructions.simple import exceptional_matrices, simple
+from liehom.algebra.matrices import matrix_families as families
+from liehom.algebra.matrices.classical import classical_matrices, linear_algebra
 from liehom.errors import InputError, RepresentationError, ShapeError
-from liehom.representations.highest_weight import highest_weight_module
-from liehom.representations.induced import congruence_map, hermitian_map, monomials
-from liehom.representations.real_form_module import real_module
-from liehom.representations.representation import Representation
+from liehom.representations.core.representation import Representation
+from liehom.representations.highest_weight.highest_weight import highest_weight_module
+from liehom.representations.highest_weight.real_form_module import real_module
+from liehom.representations.invariants.induced import congruence_map, hermitian_map, monomials
 from liehom.scalars import QQ, ExactField, Field
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")

@@ -3,7 +3,7 @@
 `namespace` gives the module whose functions fit an array, `elementary` applies a function such as ``exp`` to the
 values of an array: numerically, or exactly to objects (sympy expressions; field elements where the value is in
 the field), and says so where it cannot.  JAX is never imported, only recognised; traced arrays are of `liehom.tracing`
-and are handled by numpy's own functions.  Imports tracing, errors.
+and are handled by numpy's own functions.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """One Jet from what users return: nested lists and arrays of objects that hold Jets and numbers.
 
 numpy makes ``np.array([m[0] * m[1], 0.0])`` an array of objects; `as_jet` makes it one Jet again.
-Imports jet, recurrences, arrays, errors.
 """
 
 from __future__ import annotations

@@ -3,7 +3,6 @@
     B(x, y)_k = sum over entries (i, j, k, v) of v x_i y_j
 
 It runs on numpy arrays, JAX arrays and exact scalars with any leading axes, and on Jets.
-Imports jet, recurrences, arrays, errors.
 """
 
 from __future__ import annotations

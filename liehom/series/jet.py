@@ -4,7 +4,6 @@ A Jet of order n stands for y(t) = y_0 + y_1 t + ... + y_n t^n + O(t^(n+1)) with
 has the shape of its values, and numpy functions of it are Jets.  Coefficients are Taylor coefficients (no
 factorials) and are computed on demand, so that a solution of a differential equation can be expanded in itself
 (`growing`).  The values are numpy arrays of any dtype, JAX arrays, or exact scalars in object arrays.
-Imports node, recurrences, jet_views, arrays, errors.
 """
 
 from __future__ import annotations

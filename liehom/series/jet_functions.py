@@ -2,7 +2,7 @@
 
 A function is linear in its first argument, bilinear, linear in a list of arrays, a function that returns a list of
 parts, or special.  Options that would add something, such as ``initial=``, are refused, as is every function that
-is not in a table.  Imports jet, jet_ufuncs, assembly, recurrences, arrays, errors.
+is not in a table.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """What numpy's ufuncs (arithmetic and elementary functions) do with Jets.
 
 Elementary functions are the table of the recurrences, the others the table here.  Anything else is refused by name.
-Imports jet, assembly, recurrences, arrays, errors.
 """
 
 from __future__ import annotations

@@ -2,7 +2,6 @@
 
 A Jet that numpy would hand out as a new array may be written into.  Its slices and transposes see what is written
 into it later, and slices pass on what is written into them, as views of numpy arrays do.
-Imports recurrences, node, arrays, errors.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ cay(x) = (1 - x/2)^-1 (1 + x/2), if and only if x' = (1 - x/2) a (1 + x/2).  For
     z' = dexp_z^-1 (dexp_x x') + dexp_(-z)^-1 (dexp_(-y) y').
 
 All series are built coefficient by coefficient: a coefficient asks for no more of the operands than it needs.
-They run on floats, JAX arrays and exact scalars.  Imports jet, recurrences, node, arrays, errors.
+They run on floats, JAX arrays and exact scalars.
 """
 
 from __future__ import annotations

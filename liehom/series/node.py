@@ -4,7 +4,7 @@ A node knows its coefficients so far, the nodes they depend on, and a rule for t
 sum or product needs coefficients up to k of the operands; of an integral or a recurrence, up to k - 1 (its lag).
 So a series may depend on itself with a lag, which is how the solution of a differential equation is expanded:
 nothing is computed twice, and an expansion to order n costs O(n^2) products.  A coefficient that is None is a
-structural zero.  Imports arrays, errors.
+structural zero.
 """
 
 from __future__ import annotations

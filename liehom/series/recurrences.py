@@ -2,7 +2,6 @@
 
 All are one formula each.  A multilinear map B has B(a, b)_k = sum_i B(a_i, b_(k-i)).  An elementary function F
 with F' = G has k F_k = sum_i i u_i G_(k-i), where G is again a series: exp' = exp, tan' = 1 + tan^2 and so on.
-Imports node, arrays, errors.
 """
 
 from __future__ import annotations

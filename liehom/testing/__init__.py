@@ -3,7 +3,6 @@
 Each check tests the axioms on random elements, by other code than that which constructs the objects, and
 that writing and reading and changing the basis lose nothing.  A failure raises `ConformanceError`, whose
 attribute `check` names what failed.  Random choices come from a generator that the caller may seed.
-Imports io, fullness and what is below.
 """
 
 from __future__ import annotations
@@ -14,12 +13,12 @@ from typing import Any
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import CertificateError, ConformanceError, LiehomError
-from liehom.fullness.certificate import Certificate
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.checker.verify import verify_certificate
 from liehom.fullness.decide import decide_fullness
-from liehom.fullness.verify import verify_certificate
 from liehom.io import from_json, to_json
-from liehom.representations.pair import Pair
-from liehom.representations.representation import Representation
+from liehom.representations.core.pair import Pair
+from liehom.representations.core.representation import Representation
 from liehom.testing.numerical import check_order as check_order
 from liehom.testing.numerical import check_space as check_space
 

@@ -1,7 +1,4 @@
-"""Checks of actions and steps: that an exponential is one, and that a step has the order that it states.
-
-Imports integrators and what is below, errors.
-"""
+"""Checks of actions and steps: that an exponential is one, and that a step has the order that it states."""
 
 from __future__ import annotations
 

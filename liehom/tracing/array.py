@@ -2,7 +2,6 @@
 
 The entries are `Expr` of one tape, in an array of objects.  Numpy's functions that only move entries, add and multiply
 run on that array; comparisons, extrema, `np.where` and linear systems are here.  What needs values is refused.
-Imports elements, expr, graph, errors.
 """
 
 from __future__ import annotations

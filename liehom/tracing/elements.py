@@ -1,7 +1,4 @@
-"""What numpy's functions of single numbers are on a tape, and the solution of linear equations there.
-
-Imports expr, graph.
-"""
+"""What numpy's functions of single numbers are on a tape, and the solution of linear equations there."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Expr: a number that is not known yet, on a tape that records what is computed with it.
-
-Imports errors.
-"""
+"""Expr: a number that is not known yet, on a tape that records what is computed with it."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 An `Expr` stands for a number that is not known yet; arithmetic on it appends to its `Tape`.  What is recorded is
 simplified as it is recorded: products with 0 and 1, terms that cancel in a sum, quotients by the same divisor.
-Imports expr, errors.
 """
 
 from __future__ import annotations

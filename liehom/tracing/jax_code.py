@@ -1,7 +1,4 @@
-"""A graph as a function on JAX arrays, to be compiled by jax.jit; it can be differentiated and vmapped.
-
-Imports expr, graph, llvm_text, errors; jax where it is used.
-"""
+"""A graph as a function on JAX arrays, to be compiled by jax.jit; it can be differentiated and vmapped."""
 
 from __future__ import annotations
 

@@ -3,7 +3,6 @@
 Lanes are trajectories; W of them are stepped together, block by block, all steps of a block before the next block.
 A lane rests as soon as its next step would not be a plain one: the last before a limit, one that is not finite, one
 over which the clock does not run.  Where sizes are adapted, a step that is not accepted changes only the size.
-Imports expr, graph, llvm_text, errors; llvmlite where it is used.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A graph as LLVM assembly for vectors of W lanes: straight-line code, one instruction per operation.
 
 `Body` writes the operations of a graph inside a function; what needs branches or loops (sin(r)/r near 0 and far from
-it, exp(A) m by a series) becomes functions of its own, which branch for all lanes together.  Imports expr, errors.
+it, exp(A) m by a series) becomes functions of its own, which branch for all lanes together.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Loops in a traced step: iterations until nothing changes, for every trajectory as long as it needs.
 
-What does not depend on the numbers that change stands before the loop.  Imports array, expr, graph.
+What does not depend on the numbers that change stands before the loop.
 """
 
 from __future__ import annotations

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.jax_kernel import enabled_x64
-from liehom.integrators.traced_step import traced_step
+from liehom.integrators.compiled.jax_kernel import enabled_x64
+from liehom.integrators.compiled.traced_step import traced_step
 from liehom.tracing import needed
 from tests.benchmarks.integration_methods import jitted
 

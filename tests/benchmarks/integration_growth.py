@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.traced_step import traced_step
+from liehom.integrators.compiled.traced_step import traced_step
 from liehom.tracing import Kernel, needed
 from tests.benchmarks.integration_problems import Problem, rigid_body, sphere4
 

@@ -14,7 +14,7 @@ import numpy as np
 
 import liehom as lh
 from liehom.correctors import Conserving, Generator, apply_factors
-from liehom.instances.exact_orbit import ExactOrbit
+from liehom.instances.rigid_body.exact_orbit import ExactOrbit
 from tests.benchmarks.integration_peers import LADDER, Solve, Solver, sample_times
 from tests.benchmarks.integration_problems import Problem, rigid_body
 
@@ -134,7 +134,7 @@ def under_jit(name: str) -> Solve:
     """A step of the library under ``jax.jit``, for spins that act on each other."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        from liehom.integrators.jax_kernel import enabled_x64
+        from liehom.integrators.compiled.jax_kernel import enabled_x64
 
         steps = max(1, round(span / samples / setting))
         with enabled_x64():

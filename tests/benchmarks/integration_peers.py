@@ -181,7 +181,7 @@ def _diffrax_run(problem: Problem, method: str, samples: int) -> Any:
 
 def _diffrax(method: str) -> Solve:
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        from liehom.integrators.jax_kernel import enabled_x64
+        from liehom.integrators.compiled.jax_kernel import enabled_x64
 
         with enabled_x64():
             run = _diffrax_run(problem, method, samples)

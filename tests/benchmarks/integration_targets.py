@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.traced_step import traced_step
+from liehom.integrators.compiled.traced_step import traced_step
 from liehom.tracing import Kernel, padded
 from tests.benchmarks import test_compiled as by_hand
 from tests.benchmarks.integration_measure import cost_of, is_known, matched

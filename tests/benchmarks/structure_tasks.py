@@ -16,10 +16,10 @@ from typing import Any
 
 import liehom as lh
 from liehom.algebra import LieAlgebra
-from liehom.algebra.closure import lie_closure
-from liehom.algebra.jacobi import prove_jacobi
-from liehom.algebra.structure_constants import StructureConstants
-from liehom.algebra.subalgebra import products
+from liehom.algebra.closure.closure import lie_closure
+from liehom.algebra.core.jacobi import prove_jacobi
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.core.subalgebra import products
 
 Action = Callable[[], Any]
 Question = Callable[[LieAlgebra], Any]

@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.integrators.traced_step import traced_step
+from liehom.integrators.compiled.traced_step import traced_step
 from liehom.tracing import Kernel, padded
 
 LANES, STEPS, H = 10_000, 200, 0.01

@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MEMORY = """
 import resource
 import liehom as lh
-from liehom.algebra.jacobi import prove_jacobi
+from liehom.algebra.core.jacobi import prove_jacobi
 g = lh.chevalley("E8")
 prove_jacobi(g.table, g.basis_names)
 x = [7 * i % 19 - 9 for i in range(248)]

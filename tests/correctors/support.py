@@ -51,7 +51,7 @@ def unit(seed: int, *shape: int) -> Any:
 
 def psi_of(field: lh.GeneratorField, m: Any) -> Generator:
     """The generator as steps call it."""
-    from liehom.homogeneous.field import check_point
+    from liehom.homogeneous.fields.field import check_point
 
     return Generator(field, check_point(field.representation, m))
 

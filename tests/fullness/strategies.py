@@ -9,7 +9,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.algebra.closure import lie_closure
+from liehom.algebra.closure.closure import lie_closure
 from liehom.scalars import QQ
 from tests.fullness.support import affine
 

@@ -9,8 +9,8 @@ from fractions import Fraction
 from typing import Any
 
 import liehom as lh
-from liehom.algebra.closure import lie_closure
-from liehom.fullness import proposals
+from liehom.algebra.closure.closure import lie_closure
+from liehom.fullness.certificates import certificate_writer
 from liehom.testing import random_unimodular
 
 DENSE_DIMENSION = 80
@@ -102,4 +102,4 @@ def without_cheap_points(action: Any, rng: random.Random) -> tuple[Any, Any]:
         x = action.field.from_integers([rng.randint(-(10**6), 10**6) for _ in range(action.size)], action.size, 1)
         if action.rank_at(x) == action.size:
             return x, None
-    return x, proposals.rational_witness(action, x, action.action_rows(x).null_space().select(rows=[0]))
+    return x, certificate_writer.rational_witness(action, x, action.action_rows(x).null_space().select(rows=[0]))

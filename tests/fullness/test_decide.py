@@ -14,7 +14,8 @@ import liehom as lh
 from liehom.catalog import CLAIMS
 from liehom.errors import UndecidedError
 from liehom.fullness import decide
-from liehom.scalars import QQ, rational
+from liehom.scalars import QQ
+from liehom.scalars.fields import rational
 from liehom.testing import random_unimodular
 from tests.fullness.support import (
     affine,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.algebra.closure import lie_closure
+from liehom.algebra.closure.closure import lie_closure
 from liehom.catalog import CLAIMS
 from liehom.fullness.numerical import least_singular_value, orthonormal_action, relative_singular_value
 from liehom.scalars import QQ

@@ -12,7 +12,7 @@ import pytest
 import liehom as lh
 from liehom.errors import InputError
 from liehom.homogeneous import exponential_of
-from liehom.homogeneous.field import check_point
+from liehom.homogeneous.fields.field import check_point
 from tests.homogeneous.support import matrices, representation, vectors
 
 

@@ -10,7 +10,7 @@ import scipy.linalg
 
 import liehom as lh
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.field import check_point
+from liehom.homogeneous.fields.field import check_point
 from tests.homogeneous.support import BUILDERS, matrix, representation, symmetric, vectors
 
 POSITIVE = [name for name in BUILDERS if name not in ("trivial", "zero")]

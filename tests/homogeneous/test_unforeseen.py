@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.errors import InputError
 from liehom.homogeneous import exponential_of, inner_product
-from liehom.homogeneous.field import check_point
+from liehom.homogeneous.fields.field import check_point
 from tests.homogeneous.support import heisenberg_matrices, rigid_motions, scrambled
 
 BASES: list[Any] = [

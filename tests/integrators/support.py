@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import liehom as lh
 from liehom.correctors import Generator, LocalStep, apply_factors
-from liehom.homogeneous.field import check_point
+from liehom.homogeneous.fields.field import check_point
 from liehom.scalars import QQ, Field
 
 GROUPS = {

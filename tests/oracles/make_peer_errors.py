@@ -4,7 +4,7 @@
 
 What GAP and sympy say is asked anew, and what SageMath and dgcv say where an interpreter is named that has them.  Of
 tools that are not installed the recorded answer is kept, with "reproduced": false.
-tests/algebra/test_peer_errors.py asks liehom the same.
+tests/algebra/structure/test_peer_errors.py asks liehom the same.
 """
 
 from __future__ import annotations

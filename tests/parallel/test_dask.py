@@ -13,7 +13,7 @@ import pytest
 
 import liehom as lh
 from liehom.parallel import completed
-from tests.integrators.test_ensemble import TOP, same, starts
+from tests.integrators.ensembles.test_ensemble import TOP, same, starts
 from tests.parallel import work
 
 pytest.importorskip("distributed")

@@ -1,0 +1,162 @@
+"""The span of the Lie algebra that matrices generate, by its echelon basis, proved; its bracket table in that basis.
+
+The span of all [a_1, [a_2, ... a_k]] of generators is the generated algebra.  It is found modulo a prime, where its
+dimension is at most the true one, and lifted to the rationals.  If the lift contains the generators and is closed under
+all commutators it contains the algebra, and having at most its dimension it is the algebra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.algebra.closure.sparse_commutators import sparse_commutator_table
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.scalars.modular.modular_span import (
+    ModularSpan,
+    flat_echelon,
+    product,
+    rational_lifts,
+    residue_map,
+    residues,
+)
+
+Words = list[tuple[int, int]]
+"""A basis of the generated algebra: (g, -1) is generator g, (g, w) the commutator [generator g, word w]."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class GeneratedSpan:
+    """The Lie algebra that matrices over QQ generate, in the echelon basis of its span.
+
+    Attributes
+    ----------
+    rows : Matrix
+        (d, N*N), reduced echelon form: the flattened basis.
+    places : list of int
+        The pivots: flat positions that are the coordinates of an element.
+    table : StructureConstants
+        In this basis.
+    """
+
+    rows: Any
+    places: list[int]
+    table: StructureConstants
+
+    def coordinates(self, matrices: Sequence[Any]) -> Any:
+        """The coordinates (k, d) of elements."""
+        size = self.rows.ncols
+        flat = self.rows.field.stack_rows([a.reshape(1, size) for a in matrices], size)
+        return flat.select(columns=self.places)
+
+
+def generating_words(generators: Sequence[Any]) -> Words:
+    """Words in the generators that are a basis modulo a prime: independent, and nearly always a basis.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> generating_words([QQ.matrix([[0, 1], [0, 0]]), QQ.matrix([[0, 0], [1, 0]])])
+    [(0, -1), (1, -1), (0, 1)]
+    """
+    field, n = generators[0].field, generators[0].nrows
+    p, root = residue_map(field)
+    given = np.array([residues(a, p, root) for a in generators])
+    span = ModularSpan(p, n * n)
+    kept = span.extend(given)
+    words: Words = [(i, -1) for i in kept]
+    frontier, start = given[kept], 0
+    while len(frontier) and span.rank < n * n:
+        images = np.concatenate([np.mod(product(a, frontier, p) - product(frontier, a, p), p) for a in given])
+        kept = span.extend(images)
+        words += [(i // len(frontier), start + i % len(frontier)) for i in kept]
+        start += len(frontier)
+        frontier = images[kept]
+    return words
+
+
+def commutator_pairs(basis: Sequence[Any], dimension: int) -> list[tuple[int, int]]:
+    """Commutators [i, j] of basis elements to append until a dimension is reached, round after round, lexicographic.
+
+    Each is independent of all earlier elements, proved by residues modulo a prime.
+
+    Parameters
+    ----------
+    basis : sequence of ExactMatrix
+        Independent.
+    dimension : int
+        That of the generated algebra modulo a prime, `generating_words`.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> commutator_pairs([QQ.matrix([[0, 1], [0, 0]]), QQ.matrix([[0, 0], [1, 0]])], 3)
+    [(0, 1)]
+    """
+    n = basis[0].nrows
+    p, root = residue_map(basis[0].field)
+    made = np.array([residues(a, p, root) for a in basis])
+    span = ModularSpan(p, n * n)
+    span.extend(made)
+    pairs: list[tuple[int, int]] = []
+    before = -1
+    while before < span.rank < dimension:
+        before, new = span.rank, []
+        for i in range(len(made) - 1):
+            later = made[i + 1 :]
+            images = np.mod(product(made[i], later, p) - product(later, made[i], p), p)
+            kept = span.extend(images)
+            pairs += [(i, i + 1 + j) for j in kept]
+            new.append(images[kept])
+            if span.rank == dimension:
+                break
+        made = np.concatenate([made, *new])
+    return pairs
+
+
+def generated_span(generators: Sequence[Any]) -> GeneratedSpan | None:
+    """The generated Lie algebra in the echelon basis of its span, proved; None where no lift could be proved.
+
+    Parameters
+    ----------
+    generators : sequence of ExactMatrix
+        Over QQ, (N, N), at least one.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> found = generated_span([QQ.matrix([[0, 3], [0, 0]]), QQ.matrix([[1, 1], [1, -1]])])
+    >>> found.rows.to_strings()
+    [['1', '0', '0', '-1'], ['0', '1', '0', '0'], ['0', '0', '1', '0']]
+    """
+    field, n = generators[0].field, generators[0].nrows
+    flat = field.stack_rows([a.reshape(1, n * n) for a in generators], n * n)
+    words = generating_words(generators)
+    for rows in rational_lifts(lambda attempt: _echelon(generators, words, attempt), field):
+        places = _pivots(rows)
+        if not (flat - flat.select(columns=places) @ rows).is_zero():
+            continue
+        table = sparse_commutator_table(rows.split_rows(n, n), places, field.identity(rows.nrows))
+        if isinstance(table, StructureConstants):
+            return GeneratedSpan(rows, places, table)
+    return None
+
+
+def _pivots(rows: Any) -> list[int]:
+    """The first non-zero places of the rows of an echelon form."""
+    n, entries = rows.ncols, rows.parts[0].entries()
+    return [next(j for j in range(n) if entries[i * n + j]) for i in range(rows.nrows)]
+
+
+def _echelon(generators: Sequence[Any], words: Words, attempt: int) -> Any:
+    """The echelon form of the words modulo a prime."""
+    images = [a.modulo(attempt) for a in generators]
+    made: list[Any] = []
+    for generator, parent in words:
+        a = images[generator]
+        made.append(a if parent < 0 else a * made[parent] - made[parent] * a)
+    return flat_echelon(made)

@@ -1,0 +1,294 @@
+"""Chevalley-Eilenberg cohomology H^k(g, V) of a Lie algebra, with cocycles that represent its classes.
+
+Ranks modulo a prime bound dim H^k from above; where that is 0 it is proved.  Else cocycles are solved for exactly that
+vanish at places where the coboundaries are independent modulo the prime: they are a complement of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, final
+
+from liehom.algebra.cohomology.cochain_complex import CochainComplex
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.errors import InputError, InternalError, ShapeError, SingularError
+from liehom.scalars import Subspace
+from liehom.scalars.modular.modular import pivot_columns
+
+PRIMES = 5
+
+
+@final
+class Cohomology:
+    """The cohomology of a Lie algebra in one degree; made by `cohomology`.
+
+    A cochain is a row, as in `liehom.algebra.cohomology.cochain_complex`; `cochain` and `values` convert it from and
+    to its values on basis elements.
+
+    Attributes
+    ----------
+    cochains : CochainComplex
+        The complex, with the algebra g and the module V.
+    degree : int
+        k.
+    representatives : Matrix
+        Cocycles, one row for each member of a basis of H^k.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> made = lh.cohomology(lh.heisenberg(1), 2)
+    >>> made.dimension, [made.values(row) for row in made.representatives.to_rows()]
+    (2, [{(0, 2): 1}, {(1, 2): 1}])
+    >>> made.is_coboundary(made.cochain({(0, 1): 5}))
+    True
+    """
+
+    __slots__ = ("cochains", "degree", "representatives")
+
+    def __init__(self, cochains: CochainComplex, degree: int, representatives: Any) -> None:
+        self.cochains = cochains
+        self.degree = degree
+        self.representatives = representatives
+
+    # -- properties --------------------------------------------------------------------------------------
+    @property
+    def algebra(self) -> LieAlgebra:
+        """The Lie algebra g."""
+        return self.cochains.algebra
+
+    @property
+    def dimension(self) -> int:
+        """dim H^k(g, V)."""
+        return int(self.representatives.nrows)
+
+    # -- verbs -------------------------------------------------------------------------------------------
+    def coboundaries(self) -> Subspace:
+        """The space of coboundaries d w, w a cochain of degree k - 1."""
+        return Subspace(self.algebra.field, self.cochains.differential(self.degree - 1), self._length())
+
+    def cocycles(self) -> Subspace:
+        """The space of cocycles."""
+        return self.coboundaries() + Subspace(self.algebra.field, self.representatives, self._length())
+
+    def is_cocycle(self, cochain: Any) -> bool:
+        """Whether d w = 0."""
+        return bool((self._row(cochain) @ self.cochains.differential(self.degree)).is_zero())
+
+    def is_coboundary(self, cochain: Any) -> bool:
+        """Whether w = d v for some v."""
+        try:
+            self.potential(cochain)
+        except SingularError:
+            return False
+        return True
+
+    def potential(self, cochain: Any) -> Any:
+        """Some v with d v = w, as a row matrix; `SingularError` if w is no coboundary."""
+        row = self._row(cochain)
+        before = self.cochains.differential(self.degree - 1)
+        if row.is_zero():
+            return self.algebra.field.zeros(1, before.nrows)
+        if 0 in before.shape:
+            raise SingularError("the cochain is not zero, and there are no coboundaries")
+        return before.T.solve(row.T).T
+
+    def coordinates(self, cochain: Any) -> Any:
+        """The class of a cocycle in the basis of the representatives, as a row matrix (1, dim H^k).
+
+        Raises
+        ------
+        InputError
+            If the cochain is no cocycle.
+        """
+        row, field = self._row(cochain), self.algebra.field
+        if not self.is_cocycle(row):
+            raise InputError("the cochain is no cocycle: it has no class")
+        if self.dimension == 0 or row.is_zero():
+            return field.zeros(1, self.dimension)
+        rows = field.stack_rows([self.representatives, self.cochains.differential(self.degree - 1)], self._length())
+        return rows.T.solve(row.T).T.select(columns=range(self.dimension))
+
+    def cochain(self, values: Mapping[Any, Any]) -> Any:
+        """The cochain with these values, as a row matrix.
+
+        Parameters
+        ----------
+        values : mapping
+            From k different indices (a tuple; or one index, for k = 1) to a number, or to the coordinates of a vector
+            of V where dim V is not 1. Indices in another order change the sign; what is not given is 0.
+
+        Raises
+        ------
+        InputError
+            If a key is no tuple of k different indices.
+        ShapeError
+            If a value does not have dim V coordinates.
+        """
+        field, m, n = self.algebra.field, self.cochains.size, self.algebra.dimension
+        found = {place: x for x, place in enumerate(self.cochains.places(self.degree))}
+        entries = [field.zero] * self._length()
+        for key, value in values.items():
+            indices = tuple(key) if isinstance(key, tuple) else (key,)
+            place = tuple(sorted(indices)) if all(isinstance(i, int) for i in indices) else indices
+            if place not in found:
+                raise InputError(f"{key!r} are no {self.degree} different indices from 0 to {n - 1}")
+            given = list(value) if hasattr(value, "__iter__") and not isinstance(value, str) else [value]
+            if len(given) != m:
+                raise ShapeError(f"the value at {key!r} has {len(given)} coordinates, expected {m}")
+            odd = sum(a > b for x, a in enumerate(indices) for b in indices[x + 1 :]) % 2
+            for u, v in enumerate(map(field.convert, given)):
+                entries[found[place] * m + u] += -v if odd else v
+        return field.from_entries(entries, 1, self._length())
+
+    def values(self, cochain: Any) -> dict[tuple[int, ...], Any]:
+        """The non-zero values by increasing indices: numbers, or lists of coordinates where dim V is not 1."""
+        row, m = self._row(cochain).row(0), self.cochains.size
+        blocks = {p: row[x * m : (x + 1) * m] for x, p in enumerate(self.cochains.places(self.degree))}
+        return {p: v[0] if m == 1 else v for p, v in blocks.items() if any(x != 0 for x in v)}
+
+    def forms(self) -> list[Any]:
+        """The representatives of degree 2 with values in R as antisymmetric matrices, for `central_extension`.
+
+        Raises
+        ------
+        InputError
+            In another degree, or for another module.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> form = lh.cohomology(lh.abelian(2), 2).forms()[0]
+        >>> lh.central_extension(lh.abelian(2), form) == lh.heisenberg(1)
+        True
+        """
+        if self.degree != 2 or self.cochains.size != 1:
+            raise InputError(f"only cochains of degree 2 with values in R are matrices; here k = {self.degree}")
+        n, field = self.algebra.dimension, self.algebra.field
+        made = []
+        for row in self.representatives.to_rows():
+            rows = [[field.zero] * n for _ in range(n)]
+            for (i, j), v in self.values(row).items():
+                rows[i][j], rows[j][i] = v, -v
+            made.append(field.matrix(rows, (n, n)))
+        return made
+
+    def _length(self) -> int:
+        return self.cochains.length(self.degree)
+
+    def _row(self, cochain: Any) -> Any:
+        field, length = self.algebra.field, self._length()
+        row = field.read(cochain) if hasattr(cochain, "nrows") else field.matrix([cochain], (1, length))
+        if row.shape != (1, length):
+            raise ShapeError(f"a cochain of degree {self.degree} is a row of length {length}, got shape {row.shape}")
+        return row
+
+    def __repr__(self) -> str:
+        g = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
+        module = "" if self.cochains.matrices is None else f" with values in dimension {self.cochains.size}"
+        return f"<H^{self.degree} of {g}{module}: dimension {self.dimension}>"
+
+
+def cohomology(algebra: LieAlgebra, degree: int, matrices: Any = None, *, size: int | None = None) -> Cohomology:
+    """The Chevalley-Eilenberg cohomology H^k(g, V).
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        g.
+    degree : int
+        k, not negative.
+    matrices : sequence of (m, m) array_like, optional
+        The representation on V = R^m, one matrix for each basis element of g; by default R, on which g acts by 0.
+    size : int, optional
+        m, needed only where g has dimension 0 and matrices are given.
+
+    Returns
+    -------
+    Cohomology
+
+    Raises
+    ------
+    InputError
+        If the degree is negative or the complex is too large.
+    ShapeError, RepresentationError
+        If the matrices do not fit, or are no representation.
+
+    Notes
+    -----
+    H^0(g, V) are the invariants of V, H^1(g, R) is dual to g / [g, g], H^1(g, g) are the outer derivations, H^2(g, R)
+    classifies the central extensions by R. For semisimple g and k = 1, 2 it is 0 (Whitehead: then nothing is
+    computed), and for k = 3 and V = R its dimension is the number of simple ideals of the complexification.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [lh.cohomology(lh.so(3), k).dimension for k in range(5)]
+    [1, 0, 0, 1, 0]
+    """
+    require_size("degree", degree, 0)
+    degree = int(degree)
+    cochains = CochainComplex(algebra, matrices, size=size)
+    field, length = algebra.field, cochains.length(degree)
+    if length == 0:
+        return Cohomology(cochains, degree, field.zeros(0, 0))
+    if not field.exact:
+        # cochains that d kills and that are orthogonal to the coboundaries
+        after, before = cochains.differential(degree), cochains.differential(degree - 1)
+        return Cohomology(cochains, degree, field.stack_rows([after.T, before], length).null_space())
+    if degree in (1, 2) and algebra.killing_form().rank() == algebra.dimension:
+        return Cohomology(cochains, degree, field.zeros(0, length))  # Whitehead's lemmas
+    return Cohomology(cochains, degree, _Solver(cochains).complement(degree))
+
+
+class _Solver:
+    """Complements of the coboundaries in the cocycles, degree by degree."""
+
+    def __init__(self, cochains: CochainComplex) -> None:
+        self.cochains = cochains
+        self.field = cochains.algebra.field
+        self._complements: dict[int, Any] = {}
+        self._images: dict[tuple[int, int], Any] = {}
+
+    def rank(self, degree: int) -> int:
+        """The exact rank of d on k-cochains."""
+        if self.cochains.length(degree) == 0:
+            return 0
+        matrix = self.cochains.differential(degree)
+        if 0 in matrix.shape:
+            return 0
+        # C^k = coboundaries + complement + what d does not kill
+        return int(matrix.nrows) - self.rank(degree - 1) - int(self.complement(degree).nrows)
+
+    def pivots(self, degree: int, attempt: int) -> list[int]:
+        """Columns of d that are independent modulo a prime, as many as its rank there."""
+        if (degree, attempt) not in self._images:
+            matrix = self.cochains.differential(degree)
+            image = [] if 0 in matrix.shape else pivot_columns(matrix.modulo(attempt))
+            self._images[degree, attempt] = image
+        return self._images[degree, attempt]  # type: ignore[no-any-return]
+
+    def complement(self, degree: int) -> Any:
+        """Cocycles that are a basis of them modulo the coboundaries; rows."""
+        if degree not in self._complements:
+            self._complements[degree] = self._found(degree)
+        return self._complements[degree]
+
+    def _found(self, degree: int) -> Any:
+        length = self.cochains.length(degree)
+        for attempt in range(PRIMES):
+            bounding, needed = self.pivots(degree - 1, attempt), self.pivots(degree, attempt)
+            if len(bounding) + len(needed) == length:
+                # the ranks modulo a prime are at most the true ones, whose sum is at most the length
+                return self.field.zeros(0, length)
+            if len(bounding) < self.rank(degree - 1):
+                continue
+            kept = sorted(set(range(length)) - set(bounding))
+            after = self.cochains.differential(degree)
+            some = after.select(kept, needed)
+            solved = some.left_null_space() if needed else self.field.identity(len(kept))
+            rows = solved @ self.field.identity(length).select(rows=kept)
+            if (rows @ after).is_zero():
+                return rows
+        raise InternalError(f"no prime was of use for the cohomology of {self.cochains.algebra!r} in degree {degree}")

@@ -1,0 +1,148 @@
+"""Generators of a Lie algebra and a basis of their left-normed brackets, modulo a small prime.
+
+A word is a generator or w = [x_i, v] with v an earlier word.  Words that are a basis modulo a prime are a basis.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.scalars.modular.modular import small_residues
+from liehom.scalars.modular.modular_span import ModularSpan, product
+
+Word = tuple[int, int]
+Residues = npt.NDArray[np.float64]
+ENOUGH = 1 << 200
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class GeneratingWords:
+    """Generators x_1, ..., x_s and a basis of words, with the brackets modulo a prime.
+
+    Attributes
+    ----------
+    modulus : int
+        A prime p below 2^22.
+    generators : Matrix
+        Rows (s, n) of small integers.
+    words : tuple
+        None for a generator (these come first, in order), else (i, v): the bracket of generator i with word v.
+    basis, inverse : array (n, n)
+        The words as rows modulo p, and the inverse.
+    table, word_table : array (n, n, n)
+        The structure constants modulo p in the given basis and in that of the words.
+    """
+
+    modulus: int
+    generators: Any
+    words: tuple[Word | None, ...]
+    basis: Residues
+    inverse: Residues
+    table: Residues
+    word_table: Residues
+
+
+def generating_words(algebra: LieAlgebra) -> Iterator[GeneratingWords]:
+    """Generators and words for one prime after the other: should one be of no use, the next is.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        Over an exact field. The generators are a complement of [g, g] and as few small random elements as it takes.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> next(generating_words(lh.heisenberg(1))).words
+    (None, None, (0, 1))
+    """
+    for p, root in small_residues(algebra.field, ENOUGH):  # type: ignore[arg-type]
+        if algebra.table.den % p:
+            yield _words_modulo(algebra, p, root)
+
+
+def exact_words(algebra: LieAlgebra, found: GeneratingWords) -> Any:
+    """The words as rows (n, n), exactly."""
+    n, field = algebra.dimension, algebra.field
+    s = found.generators.nrows
+    actions = [algebra.ad(found.generators.select(rows=[i])).T for i in range(s)]
+    rows = [found.generators.select(rows=[i]) for i in range(s)]
+    for word in found.words[s:]:
+        if word is not None:
+            rows.append(rows[word[1]] @ actions[word[0]])
+    return field.stack_rows(rows, n)
+
+
+def table_modulo(table: StructureConstants, p: int, root: int) -> Residues:
+    """The structure constants (n, n, n) modulo a prime that does not divide their denominator.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> table_modulo(lh.so(3).table, 7, 0)[0, 2].tolist()
+    [0.0, 6.0, 0.0]
+    """
+    values, power = [0] * len(table), pow(table.den, -1, p)
+    for part in table.parts:
+        values = [(v + power * int(x)) % p for v, x in zip(values, part, strict=True)]
+        power = power * root % p
+    dense = np.zeros((table.dimension,) * 3)
+    dense[table.i, table.j, table.k] = values
+    dense[table.j, table.i, table.k] = [-v % p for v in values]
+    return dense
+
+
+def _words_modulo(algebra: LieAlgebra, p: int, root: int) -> GeneratingWords:
+    n = algebra.dimension
+    table = table_modulo(algebra.table, p, root)
+    derived = ModularSpan(p, n)
+    derived.extend(table.reshape(n * n, n))
+    outside = sorted(set(range(n)) - set(derived.pivots))
+    generators = [[int(i == j) for j in range(n)] for i in outside]
+    rng = random.Random(n)
+    words, basis = _closed(table, generators, p)
+    while len(words) < n:
+        generators.append([rng.randint(-1, 1) for _ in range(n)])
+        words, basis = _closed(table, generators, p)
+        if words.count(None) < len(generators):  # it depends on the others
+            generators.pop()
+    inverse = _inverse(basis, p)
+    moved = product(product(basis, table.reshape(n, n * n), p).reshape(n, n, n), inverse, p)
+    rows = algebra.field.matrix(generators, (len(generators), n))
+    return GeneratingWords(p, rows, tuple(words), basis, inverse, table, product(basis, moved, p))
+
+
+def _closed(table: Residues, generators: list[list[int]], p: int) -> tuple[list[Word | None], Residues]:
+    """Words from independent generators, level by level, until brackets with generators give nothing new."""
+    n = len(table)
+    first = np.mod(np.array(generators, dtype=np.float64).reshape(-1, n), p)
+    span = ModularSpan(p, n)
+    words: list[Word | None] = [None] * len(span.extend(first))
+    levels, start = [first[: len(words)]], 0
+    actions = product(levels[0], table.reshape(n, n * n), p).reshape(-1, n, n)
+    while start < len(words) < n:
+        recent, count = levels[-1], len(words)
+        found = np.concatenate([product(recent, action, p) for action in actions])
+        chosen = span.extend(found)
+        words += [(x // len(recent), start + x % len(recent)) for x in chosen]
+        levels.append(found[chosen])
+        start = count
+    return words, np.concatenate(levels)
+
+
+def _inverse(matrix: Residues, p: int) -> Residues:
+    """The inverse of an invertible matrix modulo p."""
+    n = len(matrix)
+    span = ModularSpan(p, 2 * n)
+    span.extend(np.hstack([matrix, np.eye(n)]))
+    order = np.argsort(span.pivots)
+    return span.rows[order][:, n:]

@@ -1,0 +1,41 @@
+"""Lie algebras by name and from other Lie algebras: the constructors of the top level.
+
+Classical, kinematical, solvable and simple algebras, sums, quotients, extensions and complexifications. Users call
+them as `liehom.so`, `liehom.direct_sum` and so on; the bases are described in docs/catalogue.md.
+"""
+
+from liehom.algebra.constructions.complex_algebra import ComplexLieAlgebra as ComplexLieAlgebra
+from liehom.algebra.constructions.complex_algebra import complexification as complexification
+from liehom.algebra.constructions.complex_algebra import realification as realification
+from liehom.algebra.constructions.constructions import abelian as abelian
+from liehom.algebra.constructions.constructions import direct_sum as direct_sum
+from liehom.algebra.constructions.constructions import euclidean as euclidean
+from liehom.algebra.constructions.constructions import gl as gl
+from liehom.algebra.constructions.constructions import heisenberg as heisenberg
+from liehom.algebra.constructions.constructions import semidirect_sum as semidirect_sum
+from liehom.algebra.constructions.constructions import sl as sl
+from liehom.algebra.constructions.constructions import so as so
+from liehom.algebra.constructions.constructions import sp as sp
+from liehom.algebra.constructions.constructions import su as su
+from liehom.algebra.constructions.constructions import u as u
+from liehom.algebra.constructions.extensions import central_extension as central_extension
+from liehom.algebra.constructions.extensions import quotient as quotient
+from liehom.algebra.constructions.extensions import quotient_map as quotient_map
+from liehom.algebra.constructions.families import affine as affine
+from liehom.algebra.constructions.families import affine_of as affine_of
+from liehom.algebra.constructions.families import bargmann as bargmann
+from liehom.algebra.constructions.families import conformal as conformal
+from liehom.algebra.constructions.families import galilei as galilei
+from liehom.algebra.constructions.families import parabolic_subalgebra as parabolic_subalgebra
+from liehom.algebra.constructions.families import poincare as poincare
+from liehom.algebra.constructions.form_algebras import so_form as so_form
+from liehom.algebra.constructions.form_algebras import so_star as so_star
+from liehom.algebra.constructions.form_algebras import sp_form as sp_form
+from liehom.algebra.constructions.free_nilpotent import free_nilpotent as free_nilpotent
+from liehom.algebra.constructions.simple import simple as simple
+from liehom.algebra.constructions.solvable_families import almost_abelian as almost_abelian
+from liehom.algebra.constructions.solvable_families import bianchi as bianchi
+from liehom.algebra.constructions.solvable_families import filiform as filiform
+from liehom.algebra.constructions.solvable_families import oscillator as oscillator
+from liehom.algebra.constructions.solvable_families import strictly_upper_triangular as strictly_upper_triangular
+from liehom.algebra.constructions.solvable_families import upper_triangular as upper_triangular

@@ -1,0 +1,182 @@
+"""Quotients by ideals and central extensions by cocycles, [x, y]' = [x, y] + w(x, y) z."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import Any
+
+from liehom.algebra.core.homomorphism import Homomorphism
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.errors import CocycleError, InputError, ShapeError, StructureError, shown
+from liehom.scalars import Field, FloatField
+
+
+def quotient(algebra: LieAlgebra, ideal: Any, *, name: str | None = None) -> LieAlgebra:
+    """The quotient g/h by an ideal h.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        g.
+    ideal : Subalgebra of g, or rows (k, n)
+        A basis of h.
+    name : str, optional
+
+    Returns
+    -------
+    LieAlgebra
+        In the basis that `quotient_map` maps a complement of h to.
+
+    Raises
+    ------
+    NotAnIdealError
+        If [g, h] does not lie in h.
+    DependentRowsError, NotASubalgebraError, ShapeError
+        If the rows are dependent, their span is not closed, or they have another length.
+    InputError
+        If the ideal belongs to another algebra.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.quotient(lh.heisenberg(1), [[0, 0, 1]]).is_abelian()
+    True
+    """
+    return _ideal(algebra, ideal).quotient_algebra(name)
+
+
+def quotient_map(algebra: LieAlgebra, ideal: Any) -> Homomorphism:
+    """The projection of g onto its quotient by an ideal; arguments and errors as for `quotient`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.algebra.constructions.extensions import quotient_map
+    >>> quotient_map(lh.gl(2), [[1, 0, 0, 1]]).kernel().rows()
+    [[1, 0, 0, 1]]
+    """
+    h = _ideal(algebra, ideal)
+    # The bracket of the quotient is the one that makes this a homomorphism.
+    return Homomorphism(algebra, h.quotient_algebra(), h.quotient().projection.T, check=False)
+
+
+def central_extension(
+    algebra: LieAlgebra, cocycle: Any, *, basis: Sequence[str] | None = None, name: str | None = None
+) -> LieAlgebra:
+    """The central extension g + R^m with [x, y]' = [x, y] + sum_a w_a(x, y) z_a.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        g, of dimension n; its basis comes first.
+    cocycle : (n, n) array_like, or a sequence of m of them
+        Antisymmetric matrices w_a(e_i, e_j), one for each central element z_a.
+    basis : sequence of str, optional
+        Names of all basis elements; by default those of g and z, or z1, z2, ...
+    name : str, optional
+
+    Raises
+    ------
+    ShapeError
+        If a matrix does not have shape (n, n).
+    StructureError
+        If it is not antisymmetric; names i and j.
+    CocycleError
+        If w([e_i, e_j], e_k) + w([e_j, e_k], e_i) + w([e_k, e_i], e_j) is not zero; names i, j, k and the value.
+    FieldError
+        If an entry is not in the field of g.
+
+    Notes
+    -----
+    Extensions by cohomologous cocycles are isomorphic; classes come from ``cohomology(g, 2)``.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.central_extension(lh.abelian(2), [[0, 1], [-1, 0]]) == lh.heisenberg(1)
+    True
+    """
+    n, field = algebra.dimension, algebra.field
+    forms = [field.read(form, (n, n)) for form in _listed(cocycle, n)]
+    entries = list(algebra.structure_constants())
+    for a, form in enumerate(forms):
+        if form.shape != (n, n):
+            raise ShapeError(f"a cocycle on an algebra of dimension {n} has shape {(n, n)}, got {form.shape}")
+        _prove_cocycle(algebra, form)
+        places = itertools.combinations(range(n), 2)
+        entries += [(i, j, n + a, form[i, j]) for i, j in places if form[i, j] != field.zero]
+    names = _extended_names(algebra, len(forms)) if basis is None else basis
+    table = StructureConstants(field, n + len(forms), entries)
+    # The Jacobi identity of the extension is that of g and the cocycle condition.
+    return LieAlgebra(table, basis=names, name=name, check=False)
+
+
+def _ideal(algebra: LieAlgebra, ideal: Any) -> Subalgebra:
+    if not isinstance(ideal, Subalgebra):
+        return Subalgebra(algebra, ideal)
+    if ideal.algebra is not algebra and ideal.algebra != algebra:
+        raise InputError(f"the ideal is a subspace of {ideal.algebra!r}, not of {algebra!r}")
+    return ideal
+
+
+def _listed(cocycle: Any, n: int) -> list[Any]:
+    """One matrix or several, as a list of matrices."""
+    if hasattr(cocycle, "nrows"):
+        return [cocycle]
+    rows = cocycle.tolist() if hasattr(cocycle, "tolist") else cocycle
+    if not isinstance(rows, Sequence) or isinstance(rows, str):
+        raise ShapeError(f"a cocycle is an antisymmetric matrix or a list of them, got {cocycle!r}")
+    if all(hasattr(x, "nrows") or hasattr(x, "tolist") for x in rows):
+        tables = [x if hasattr(x, "nrows") else x.tolist() for x in rows]
+    else:
+        tables = list(rows)
+    # a list of rows of numbers is one matrix; a list of tables is several
+    single = any(isinstance(row, Sequence) and row and not _is_row(row[0]) for row in tables)
+    return [tables] if single else tables
+
+
+def _is_row(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str)
+
+
+def _prove_cocycle(algebra: LieAlgebra, form: Any) -> None:
+    """That w is antisymmetric and w([x, y], z) + cyclic = 0, on basis elements."""
+    n, field = algebra.dimension, algebra.field
+    bound = _rounding(field, form.entries())
+    symmetric = form + form.T
+    for i, j in itertools.combinations_with_replacement(range(n), 2):
+        if _exceeds(symmetric[i, j], bound):
+            there, back = (shown(field.format(form[x])) for x in ((i, j), (j, i)))
+            raise StructureError(f"a cocycle is antisymmetric, but w[{i}, {j}] = {there} and w[{j}, {i}] = {back}")
+    one = field.identity(n)
+    blocks = [block.to_rows() for block in algebra.table.contract(one, one, form)]  # [i][j][k] = w([e_i, e_j], e_k)
+    if bound:
+        bound *= n * max((abs(x) for x in algebra.table.values()), default=0.0)
+    for i, j, k in itertools.combinations(range(n), 3):
+        value = blocks[i][j][k] + blocks[j][k][i] + blocks[k][i][j]
+        if _exceeds(value, bound):
+            names = algebra.basis_names
+            raise CocycleError((i, j, k), field.format(value), (names[i], names[j], names[k]))
+
+
+def _rounding(field: Field, values: list[Any]) -> float:
+    """What may count as zero: 0 over an exact field, rtol times the largest value over floats."""
+    return field.rtol * max(map(abs, values), default=0.0) if isinstance(field, FloatField) else 0.0
+
+
+def _exceeds(value: Any, bound: float) -> bool:
+    return bool(abs(value) > bound) if bound else bool(value != 0)
+
+
+def _extended_names(algebra: LieAlgebra, m: int) -> list[str]:
+    """The names of g and z, or z1, z2, ...; with a prime as often as it takes where they are taken."""
+    names = list(algebra.basis_names)
+    for a in range(m):
+        name = "z" if m == 1 else f"z{a + 1}"
+        while name in names:
+            name += "'"
+        names.append(name)
+    return names

@@ -1,0 +1,258 @@
+"""Algebras of affine and kinematical groups, and parabolic subalgebras: gl(n) + R^n, Poincaré, Galilei, conformal.
+
+Each over QQ, with named basis elements.  Those of solvable groups are in `solvable_families`, free nilpotent ones
+in `free_nilpotent`.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+from liehom.algebra.closure.closure import lie_closure
+from liehom.algebra.constructions.constructions import semidirect_sum, sl, so
+from liehom.algebra.constructions.form_algebras import form_brackets, index_name
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.algebra.matrices.classical import classical_matrices, linear_algebra
+from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.errors import InputError
+from liehom.scalars import QQ
+
+
+def poincare(p: int, q: int = 1) -> LieAlgebra:
+    """iso(p, q) = so(p, q) + R^(p+q): rotations m_ij, i < j, as in so(p, q), then translations p_i.
+
+    Parameters
+    ----------
+    p, q : int
+        The signature of the quadratic form; not negative, with p + q at least 1. ``poincare(3)`` is the
+        algebra of dimension 10 of special relativity.
+
+    Raises
+    ------
+    InputError
+        If p or q is negative or both are zero.
+
+    Notes
+    -----
+    [m_ij, p_i] = e_i p_j and [m_ij, p_j] = -e_j p_i, with e_i = 1 for i <= p and -1 behind (for p = 0 all are 1).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.poincare(3)
+    >>> g, g.center().dimension, [s.dimension for s in g.derived_series()]
+    (<Lie algebra iso(3,1) of dimension 10 over QQ>, 0, [10])
+    """
+    matrices = classical_matrices("so", p, q)
+    names = [*_rotations(p + q), *(index_name("p", i) for i in range(p + q))]
+    # The matrices are the basis of so(p, q) itself: a representation.
+    return semidirect_sum(so(p, q), matrices, size=p + q, basis=names, name=f"iso({p},{q})", check=False)
+
+
+def galilei(n: int) -> LieAlgebra:
+    """The Galilei algebra of R^n and time: rotations m_ij, boosts k_i, translations p_i, time h; [k_i, h] = p_i.
+
+    Parameters
+    ----------
+    n : int
+        Dimension of space, at least 1.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.galilei(3)
+    >>> g, g.center().dimension, [s.dimension for s in g.derived_series()]
+    (<Lie algebra galilei(3) of dimension 10 over QQ>, 0, [10, 9])
+    """
+    return _galilean(n, massive=False)
+
+
+def bargmann(n: int) -> LieAlgebra:
+    """The Galilei algebra with central mass: as `galilei`, and [k_i, p_j] = mass for i = j.
+
+    Parameters
+    ----------
+    n : int
+        Dimension of space, at least 1.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.bargmann(3)
+    >>> g, g.center().rows() == [[0] * 10 + [1]]
+    (<Lie algebra bargmann(3) of dimension 11 over QQ>, True)
+    """
+    return _galilean(n, massive=True)
+
+
+def conformal(p: int, q: int = 0) -> LieAlgebra:
+    """The conformal algebra of R^(p,q), so(p+1, q+1): translations p_i, rotations m_ij, dilation d, special k_i.
+
+    Parameters
+    ----------
+    p, q : int
+        The signature of the quadratic form e; not negative, with p + q at least 1.
+
+    Raises
+    ------
+    InputError
+        If p or q is negative or both are zero.
+
+    Notes
+    -----
+    [d, p_i] = p_i, [d, k_i] = -k_i, [k_i, p_j] = m_ij + e_ij d, [m_ij, p_i] = e_ii p_j, [m_ij, p_j] = -e_jj p_i, and
+    the same for k. The p_i, m_ij, d are the similarities of R^(p,q).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.conformal(3, 1)
+    >>> g, g.killing_signature() == lh.so(4, 2).killing_signature()
+    (<Lie algebra conformal(3,1) of dimension 15 over QQ>, True)
+    """
+    require_size("p", p, 0)
+    require_size("q", q, 0)
+    require_size("p + q", p + q)
+    n = p + q
+    rows = [[int(i == j) * (1 if i < p else -1) for j in range(n + 2)] for i in range(n)]
+    form = QQ.matrix([*rows, [0] * (n + 1) + [1], [0] * n + [1, 0]])
+    pairs = [(i, n) for i in range(n)] + list(itertools.combinations(range(n), 2)) + [(n + 1, n)]
+    pairs += [(i, n + 1) for i in range(n)]
+    places = {pair: (k, 1) for k, pair in enumerate(pairs)}
+    places |= {(b, a): (k, -1) for k, (a, b) in enumerate(pairs)}
+    names = [*(index_name("p", i) for i in range(n)), *_rotations(n), "d", *(index_name("k", i) for i in range(n))]
+    table = StructureConstants(QQ, len(pairs), form_brackets(form, -1, places))
+    # The brackets are those of the orthogonal matrices of a form that is not degenerate.
+    return LieAlgebra(table, basis=names, name=f"conformal({p},{q})" if q else f"conformal({p})", check=False)
+
+
+def affine(n: int) -> LieAlgebra:
+    """aff(n) = gl(n) + R^n: the elementary matrices e_ij row by row, then the translations t_i.
+
+    Parameters
+    ----------
+    n : int
+        At least 1.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(lh.affine(1))
+    Lie algebra aff(1) over QQ, dimension 2
+      basis e11, t1
+      [e11, t1] = t1
+    """
+    matrices = classical_matrices("gl", n)
+    names = [*(index_name("e", i, j) for i in range(n) for j in range(n)), *(index_name("t", i) for i in range(n))]
+    # The matrices are the basis of gl(n) itself: a representation.
+    return semidirect_sum(linear_algebra(matrices), matrices, basis=names, name=f"aff({n})", check=False)
+
+
+def affine_of(matrices: Any, *, name: str | None = None) -> LieAlgebra:
+    """The affine algebra h + V of a linear Lie algebra h: the matrices first, then the translations of V.
+
+    Parameters
+    ----------
+    matrices : sequence of (N, N) array_like
+        A basis of h, closed under commutators; at least one matrix.
+    name : str, optional
+
+    Raises
+    ------
+    DependentRowsError, NotClosedError, ShapeError, InputError
+        If the matrices are dependent, their span is not closed, they are not square of one size, or there is none.
+
+    Notes
+    -----
+    [x, v] = x v. For a representation that is not faithful, and for an ideal that is not abelian, there is
+    `semidirect_sum`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.affine_of([[[0, -1], [1, 0]], [[1, 0], [0, 1]]])
+    <Lie algebra of dimension 4 over QQ>
+    """
+    made = lie_closure(matrices, close=False)
+    # The matrices have the brackets of the algebra: a representation.
+    return semidirect_sum(made.algebra, made.matrices, name=name, check=False)
+
+
+def parabolic_subalgebra(*sizes: int) -> Subalgebra:
+    """The block upper triangular matrices in sl(n): the parabolic subalgebra of a flag.
+
+    Parameters
+    ----------
+    *sizes : int
+        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. All 1: the Borel subalgebra.
+
+    Returns
+    -------
+    Subalgebra
+        Of ``sl(n)``, in its basis.
+
+    Raises
+    ------
+    InputError
+        If there is no block or a size is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> h = lh.parabolic_subalgebra(1, 2)
+    >>> h, h.algebra.normalizer(h).dimension
+    (<subalgebra of dimension 6 in sl(3) over QQ>, 6)
+    """
+    if not sizes:
+        raise InputError("a parabolic subalgebra needs the sizes of its diagonal blocks, such as (1, 2)")
+    for size in sizes:
+        require_size("the size of a block", size)
+    n = sum(sizes)
+    block = [b for b, size in enumerate(sizes) for _ in range(size)]
+    off = [pair for pair in itertools.product(range(n), repeat=2) if pair[0] != pair[1]]
+    kept = [k for k, (i, j) in enumerate(off) if block[i] <= block[j]] + list(range(len(off), n * n - 1))
+    # Products of block upper triangular matrices are block upper triangular.
+    return Subalgebra(sl(n), QQ.identity(n * n - 1).select(rows=kept), check=False)
+
+
+def _rotations(n: int) -> list[str]:
+    return [index_name("m", i, j) for i, j in itertools.combinations(range(n), 2)]
+
+
+def _galilean(n: int, massive: bool) -> LieAlgebra:
+    """so(n) by rotations on the nilpotent ideal of boosts, translations, time and perhaps mass."""
+    require_size("n", n)
+    brackets = {(i, 2 * n): {n + i: 1} for i in range(n)}
+    if massive:
+        brackets |= {(i, n + i): {2 * n + 1: 1} for i in range(n)}
+    d = 2 * n + 1 + massive
+    ideal = LieAlgebra(brackets, dimension=d)
+    rotations = []
+    for matrix in classical_matrices("so", n):
+        rows = [[0] * d for _ in range(d)]
+        for i, j in itertools.product(range(n), repeat=2):
+            rows[i][j] = rows[n + i][n + j] = int(matrix[i, j])
+        rotations.append(rows)
+    vectors = [index_name(letter, i) for letter in "kp" for i in range(n)]
+    names = [*_rotations(n), *vectors, "h", *(["mass"] if massive else [])]
+    name = f"{'bargmann' if massive else 'galilei'}({n})"
+    # Rotations preserve the brackets of the ideal, and the matrices are those of so(n).
+    return semidirect_sum(so(n), rotations, ideal, basis=names, name=name, check=False)

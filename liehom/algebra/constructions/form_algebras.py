@@ -1,0 +1,241 @@
+"""so and sp of a bilinear form given by its matrix, and so*(2n).
+
+For a form F(v, w) = v^T F w, symmetric (s = -1) or skew (s = 1), and basis vectors a, b put
+
+    M_ab v = F(a, v) b + s F(b, v) a,      [M_ab, M_cd] = F_ac M_bd + s F_bc M_ad + F_ad M_cb + s F_bd M_ca.
+
+These span {X : X^T F + F X = 0} if F is not degenerate, and no number is divided.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+from liehom.algebra.closure.closure import lie_closure, square_matrices
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.matrices import matrix_families as families
+from liehom.algebra.matrices.classical import linear_algebra
+from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.errors import InputError, ShapeError
+from liehom.scalars import Scalar
+
+
+def so_form(form: Any, *, name: str | None = None) -> LieAlgebra:
+    """The orthogonal algebra {X : X^T S + S X = 0} of a symmetric form S, which may be degenerate.
+
+    Parameters
+    ----------
+    form : (n, n) array_like
+        The symmetric matrix S: integers, fractions, texts such as 'sqrt(2)', sympy numbers, or floats.
+    name : str, optional
+
+    Returns
+    -------
+    LieAlgebra
+        Over the field of the entries. If S is not degenerate, of dimension n (n - 1) / 2 with the basis M_ij,
+        i < j, of the module; ``so_form(identity)`` is so(n) and a diagonal of signs gives so(p, q). If S has
+        rank r < n, of dimension r (r - 1) / 2 + (n - r) n: what maps into the radical of S is arbitrary.
+
+    Raises
+    ------
+    ShapeError
+        If the matrix is not square.
+    InputError
+        If it is not symmetric.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.so_form([[0, 0, 1], [0, 1, 0], [1, 0, 0]])
+    >>> print(g)
+    Lie algebra so of a form of signature (2, 1) over QQ, dimension 3
+      basis m12, m13, m23
+      [m12, m13] = m12
+      [m12, m23] = -m13
+      [m13, m23] = m23
+    >>> lh.so_form([[1, 0], [0, 0]]).dimension
+    2
+    """
+    matrix = _form(form, -1)
+    positive, negative, zero = matrix.signature()
+    signature = f"({positive}, {negative}, {zero})" if zero else f"({positive}, {negative})"
+    return _algebra(matrix, -1, name or f"so of a form of signature {signature}", zero > 0)
+
+
+def sp_form(form: Any, *, name: str | None = None) -> LieAlgebra:
+    """The symplectic algebra {X : X^T J + J X = 0} of a skew form J, which may be degenerate.
+
+    Parameters
+    ----------
+    form : (n, n) array_like
+        The skew matrix J, with entries as for `so_form`.
+    name : str, optional
+
+    Returns
+    -------
+    LieAlgebra
+        Over the field of the entries. If J is not degenerate (then n is even), of dimension n (n + 1) / 2 with
+        the basis M_ij, i <= j, of the module; if its rank is r < n, of dimension r (r + 1) / 2 + (n - r) n.
+
+    Raises
+    ------
+    ShapeError
+        If the matrix is not square.
+    InputError
+        If it is not skew.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.sp_form([[0, 1], [-1, 0]]).killing_signature()
+    (2, 1, 0)
+    >>> lh.sp_form([[0, 1, 0], [-1, 0, 0], [0, 0, 0]]).dimension
+    6
+    """
+    matrix = _form(form, 1)
+    rank = matrix.rank()
+    return _algebra(matrix, 1, name or f"sp of a form of rank {rank}", rank < matrix.nrows)
+
+
+def so_star(n: int) -> LieAlgebra:
+    """so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
+
+    Parameters
+    ----------
+    n : int
+        Size over the quaternions, at least 1: half of the number in the name.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.so_star(3), lh.so_star(3).killing_signature()
+    (<Lie algebra so*(6) of dimension 15 over QQ>, (6, 9, 0))
+    """
+    require_size("n", n)
+    return linear_algebra(families.so_star(n), f"so*({2 * n})")
+
+
+def index_name(letter: str, *indices: int) -> str:
+    """The name of a basis element with indices, that count from 0 here and from 1 in the name.
+
+    Examples
+    --------
+    >>> index_name("m", 0, 1), index_name("m", 0, 11)
+    ('m12', 'm1_12')
+    """
+    shown = [str(i + 1) for i in indices]
+    return letter + ("_" if any(len(x) > 1 for x in shown) else "").join(shown)
+
+
+def form_brackets(matrix: Any, sign: int, places: dict[tuple[int, int], tuple[int, int]]) -> list[Any]:
+    """The bracket table of the M_ab of a form, for a basis of them with signs.
+
+    Parameters
+    ----------
+    matrix : Matrix
+        The form F, (n, n).
+    sign : int
+        s: -1 for a symmetric form, 1 for a skew one.
+    places : dict
+        (a, b) to (k, e): M_ab is e times basis element k, e = 1 or -1; both orders of a, b are given.
+
+    Returns
+    -------
+    list of (i, j, k, value)
+        The entries with i < j, for `StructureConstants`.
+    """
+    rows = matrix.to_rows()
+    near = [[(b, v) for b, v in enumerate(row) if v != 0] for row in rows]
+    basis = {k: pair for pair, (k, e) in places.items() if e == 1}
+    entries: list[Any] = []
+    for i, (a, b) in basis.items():
+        found: dict[tuple[int, int], Scalar] = {}
+        # M_ab e_c = F_ac e_b + s F_bc e_a, and [X, M_cd] = M_{Xc, d} + M_{c, Xd}
+        image: dict[int, list[tuple[int, Scalar]]] = {}
+        for c, v in near[a]:
+            image.setdefault(c, []).append((b, v))
+        for c, v in near[b]:
+            image.setdefault(c, []).append((a, v * sign))
+        for c, moved in image.items():
+            for d in range(len(rows)):
+                _add_images(found, places, basis, i, (c, d), moved)
+        entries += [(i, j, k, v) for (j, k), v in found.items() if v != 0]
+    return entries
+
+
+def _add_images(
+    found: dict[tuple[int, int], Scalar],
+    places: dict[tuple[int, int], tuple[int, int]],
+    basis: dict[int, tuple[int, int]],
+    i: int,
+    pair: tuple[int, int],
+    moved: list[tuple[int, Scalar]],
+) -> None:
+    """Add M_{Xc, d} to the bracket with the basis element that M_cd is, up to sign; for c = d twice it."""
+    if pair not in places:
+        return
+    j, e = places[pair]
+    if j <= i:
+        return
+    c, d = pair
+    for x, v in moved:
+        target = places.get((x, d))
+        if target is not None:
+            k, f = target
+            found[j, k] = found.get((j, k), 0) + v * (e * f * (2 if c == d else 1))
+
+
+def _form(form: Any, sign: int) -> Any:
+    """The matrix of a form, of which the transpose is -sign times the form."""
+    rows = form.tolist() if hasattr(form, "tolist") else form
+    if hasattr(rows, "nrows"):
+        matrix = rows
+    else:
+        if not hasattr(rows, "__iter__") or isinstance(rows, str):
+            raise ShapeError(f"a form is given by a square matrix, got {form!r}")
+        matrix = square_matrices([list(rows)])[0]
+    if matrix.nrows != matrix.ncols or matrix.nrows == 0:
+        raise ShapeError(f"a form is given by a square matrix of size at least 1, got shape {matrix.shape}")
+    defect = matrix - matrix.T if sign < 0 else matrix + matrix.T
+    if not defect.is_zero():
+        kind = "symmetric" if sign < 0 else "skew"
+        i, j = next((i, j) for i in range(matrix.nrows) for j in range(matrix.nrows) if defect[i, j] != 0)
+        shown = [matrix.field.format(matrix[x]) for x in ((i, j), (j, i))]
+        raise InputError(f"the form is not {kind}: entry ({i}, {j}) is {shown[0]} and ({j}, {i}) is {shown[1]}")
+    return matrix
+
+
+def _algebra(matrix: Any, sign: int, name: str, degenerate: bool) -> LieAlgebra:
+    if degenerate:
+        return _degenerate(matrix, name)
+    n = matrix.nrows
+    pairs = [(a, b) for a in range(n) for b in range(a + (sign < 0), n)]
+    places = {pair: (k, 1) for k, pair in enumerate(pairs)}
+    for k, (a, b) in enumerate(pairs):
+        if a != b:
+            places[b, a] = (k, sign)
+    table = StructureConstants(matrix.field, len(pairs), form_brackets(matrix, sign, places))
+    # The brackets are those of the matrices M_ab, which are independent because F is not degenerate.
+    return LieAlgebra(table, basis=[index_name("m", *pair) for pair in pairs], name=name, check=False)
+
+
+def _degenerate(matrix: Any, name: str) -> LieAlgebra:
+    """The null space of X -> X^T F + F X, as matrices."""
+    n, field = matrix.nrows, matrix.field
+    rows = []
+    for a, b in itertools.product(range(n), repeat=2):
+        # of E_ab: row a of F as row b, and column a of F as column b
+        image = [field.zero] * (n * n)
+        for x in range(n):
+            image[b * n + x] = image[b * n + x] + matrix[a, x]
+            image[x * n + b] = image[x * n + b] + matrix[x, a]
+        rows.append(image)
+    solutions = field.matrix(rows, (n * n, n * n)).left_null_space()
+    return lie_closure(solutions.split_rows(n, n), field=field, close=False, name=name).algebra

@@ -1,0 +1,142 @@
+"""Free nilpotent Lie algebras in the basis of Lyndon words, a Hall basis.
+
+A word is Lyndon if it is smaller than its proper right factors.  Its bracketing is that of the two Lyndon words
+u v with v the longest proper right factor that is Lyndon.  For Lyndon words u < v the bracket [u, v] is the basis
+element u v if u is a letter or its right factor u2 is not smaller than v; else
+
+    [[u1, u2], v] = [[u1, v], u2] + [u1, [u2, v]],
+
+and this recursion ends.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cached_property
+from typing import final
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.scalars import QQ
+
+Word = tuple[int, ...]
+
+
+def free_nilpotent(generators: int, step: int) -> LieAlgebra:
+    """The free nilpotent Lie algebra with a number of generators and a step, over QQ.
+
+    Parameters
+    ----------
+    generators : int
+        At least 1.
+    step : int
+        The greatest length of a bracket that is not zero, at least 1.
+
+    Returns
+    -------
+    LieAlgebra
+        Basis elements by length and then alphabetically, with their brackets as names: x1, x2, [x1,x2],
+        [x1,[x1,x2]], ...
+
+    Raises
+    ------
+    InputError
+        If an argument is not a positive integer.
+
+    Notes
+    -----
+    Every Lie algebra that so many elements generate and that is nilpotent of this step is a quotient of it. There
+    are (1/k) sum_{d | k} mu(d) g^(k/d) basis elements of length k for g generators.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(lh.free_nilpotent(2, 3))
+    Lie algebra free_nilpotent(2,3) over QQ, dimension 5
+      basis x1, x2, [x1,x2], [x1,[x1,x2]], [[x1,x2],x2]
+      [x1, x2] = [x1,x2]
+      [x1, [x1,x2]] = [x1,[x1,x2]]
+      [x2, [x1,x2]] = -[[x1,x2],x2]
+    """
+    require_size("generators", generators)
+    require_size("step", step)
+    free = _FreeLie(generators, step)
+    index = {word: i for i, word in enumerate(free.words)}
+    entries = []
+    for i, u in enumerate(free.words):
+        for j in range(i + 1, len(free.words)):
+            v = free.words[j]
+            if len(u) + len(v) > step:
+                break  # words are sorted by length
+            entries += [(i, j, index[w], QQ.convert(c)) for w, c in free.bracket(u, v).items()]
+    names = [free.name(word) for word in free.words]
+    table = StructureConstants(QQ, len(names), entries)
+    # Brackets of a quotient of the free Lie algebra, rewritten by antisymmetry and the Jacobi identity only.
+    return LieAlgebra(table, basis=names, name=f"free_nilpotent({generators},{step})", check=False)
+
+
+@final
+class _FreeLie:
+    """Brackets of Lyndon words up to a length."""
+
+    def __init__(self, generators: int, step: int) -> None:
+        self.generators = generators
+        self.step = step
+        self._known: dict[tuple[Word, Word], dict[Word, int]] = {}
+
+    @cached_property
+    def words(self) -> list[Word]:
+        """The Lyndon words up to the length, by length and then alphabetically (Duval's generation)."""
+        found: list[Word] = []
+        word = [-1]
+        while word:
+            word[-1] += 1
+            found.append(tuple(word))
+            period = len(word)
+            while len(word) < self.step:
+                word.append(word[-period])
+            while word and word[-1] == self.generators - 1:
+                word.pop()
+        return sorted(found, key=lambda w: (len(w), w))
+
+    @cached_property
+    def _lyndon(self) -> frozenset[Word]:
+        return frozenset(self.words)
+
+    def factors(self, word: Word) -> tuple[Word, Word]:
+        """The two Lyndon words whose bracket a Lyndon word of length at least 2 is."""
+        cut = next(i for i in range(1, len(word)) if word[i:] in self._lyndon)
+        return word[:cut], word[cut:]
+
+    def name(self, word: Word) -> str:
+        """The bracketing with letters x1, x2, ..."""
+        if len(word) == 1:
+            return f"x{word[0] + 1}"
+        left, right = self.factors(word)
+        return f"[{self.name(left)},{self.name(right)}]"
+
+    def bracket(self, u: Word, v: Word) -> dict[Word, int]:
+        """[u, v] of two basis elements, as {word: coefficient}."""
+        if u == v or len(u) + len(v) > self.step:
+            return {}
+        if u > v:
+            return {w: -c for w, c in self.bracket(v, u).items()}
+        if (u, v) not in self._known:
+            self._known[u, v] = self._new_bracket(u, v)
+        return self._known[u, v]
+
+    def _new_bracket(self, u: Word, v: Word) -> dict[Word, int]:
+        if len(u) == 1:
+            return {u + v: 1}
+        first, second = self.factors(u)
+        if second >= v:
+            return {u + v: 1}
+        total: defaultdict[Word, int] = defaultdict(int)
+        for w, c in self.bracket(first, v).items():
+            for x, d in self.bracket(w, second).items():
+                total[x] += c * d
+        for w, c in self.bracket(second, v).items():
+            for x, d in self.bracket(first, w).items():
+                total[x] += c * d
+        return {w: c for w, c in total.items() if c}

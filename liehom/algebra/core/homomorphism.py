@@ -1,0 +1,155 @@
+"""Homomorphism: a linear map between Lie algebras that respects the bracket, proved at construction.
+
+f([x, y]) = [f(x), f(y)].  The matrix acts on columns of coefficients.
+"""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.errors import HomomorphismError, InputError, ShapeError
+
+
+@final
+class Homomorphism:
+    """A homomorphism of Lie algebras over one field.
+
+    Parameters
+    ----------
+    source, target : LieAlgebra
+    matrix : array_like of shape (dim target, dim source)
+        Column j holds the coefficients of f(e_j).
+    check : bool, optional
+        Prove that the bracket is respected (default). False is for callers that have proved it.
+
+    Raises
+    ------
+    ShapeError
+        If the matrix has another shape.
+    InputError
+        If the algebras are over different fields.
+    HomomorphismError
+        If f([e_i, e_j]) differs from [f(e_i), f(e_j)]; names i and j.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> trace = lh.Homomorphism(lh.gl(2), lh.abelian(1), [[1, 0, 0, 1]])
+    >>> trace.kernel(), trace.is_surjective()
+    (<subalgebra of dimension 3 in gl(2) over QQ>, True)
+    """
+
+    __slots__ = ("matrix", "source", "target")
+
+    def __init__(self, source: LieAlgebra, target: LieAlgebra, matrix: Any, *, check: bool = True) -> None:
+        if source.field != target.field:
+            raise InputError(f"the source is over {source.field.name}, the target over {target.field.name}")
+        shape = (target.dimension, source.dimension)
+        self.source = source
+        self.target = target
+        self.matrix = source.field.read(matrix, shape)
+        if self.matrix.shape != shape:
+            raise ShapeError(f"the matrix of a homomorphism has shape {shape}, got {self.matrix.shape}")
+        if check:
+            self._prove()
+
+    # -- constructors ------------------------------------------------------------------------------------
+    @classmethod
+    def identity(cls, algebra: LieAlgebra) -> Homomorphism:
+        """The identity map of a Lie algebra."""
+        return cls(algebra, algebra, algebra.field.identity(algebra.dimension), check=False)  # by definition
+
+    @classmethod
+    def inclusion(cls, subalgebra: Subalgebra) -> Homomorphism:
+        """The inclusion of a subalgebra, as an algebra in its own basis, into the whole.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.Homomorphism.inclusion(lh.so(3).subalgebra([[0, 0, 1]])).image().dimension
+        1
+        """
+        # The bracket of `as_algebra` is the restricted one.
+        return cls(subalgebra.as_algebra(), subalgebra.algebra, subalgebra.basis.T, check=False)
+
+    def _prove(self) -> None:
+        n = self.source.dimension
+        images = self.matrix.T
+        one = self.source.field.identity(n)
+        left = self.source.table.contract(one, one, images)
+        right = self.target.table.contract(images, images, self.target.field.identity(self.target.dimension))
+        for i, (a, b) in enumerate(zip(left, right, strict=True)):
+            defect = a - b
+            if not defect.is_zero():
+                j = next(j for j in range(n) if not defect.select(rows=[j]).is_zero())
+                names = self.source.basis_names
+                raise HomomorphismError(
+                    (i, j),
+                    f"not a homomorphism: f([{names[i]}, {names[j]}]) differs from [f({names[i]}), f({names[j]})]",
+                )
+
+    # -- verbs -------------------------------------------------------------------------------------------
+    def __call__(self, x: Any) -> Any:
+        """The coefficients of f(x), a numpy array, for a coefficient vector x."""
+        return self.target._vector((self.source.row(x) @ self.matrix.T).row(0) if self.target.dimension else [])
+
+    def rank(self) -> int:
+        """The dimension of the image."""
+        return int(self.matrix.rank())
+
+    def kernel(self) -> Subalgebra:
+        """The ideal {x : f(x) = 0} of the source."""
+        return Subalgebra(self.source, self.matrix.T.left_null_space(), check=False)  # kernels are ideals
+
+    def image(self) -> Subalgebra:
+        """The subalgebra f(source) of the target."""
+        return Subalgebra(self.target, self.matrix.T.row_space(), check=False)  # [f(x), f(y)] = f([x, y])
+
+    def is_injective(self) -> bool:
+        """Whether the kernel is zero."""
+        return self.rank() == self.source.dimension
+
+    def is_surjective(self) -> bool:
+        """Whether the image is the whole target."""
+        return self.rank() == self.target.dimension
+
+    def is_isomorphism(self) -> bool:
+        """Whether it is injective and surjective."""
+        return self.source.dimension == self.target.dimension and self.is_injective()
+
+    def compose(self, first: Homomorphism) -> Homomorphism:
+        """The composition x -> self(first(x)).
+
+        Raises
+        ------
+        InputError
+            If the target of the first is not the source of this one.
+        """
+        if first.target is not self.source and first.target != self.source:
+            raise InputError("the target of the first homomorphism is not the source of the second")
+        return Homomorphism(first.source, self.target, self.matrix @ first.matrix, check=False)  # both respect it
+
+    def inverse(self) -> Homomorphism:
+        """The inverse of an isomorphism.
+
+        Raises
+        ------
+        InputError
+            If it is not an isomorphism.
+        """
+        if not self.is_isomorphism():
+            raise InputError(f"only an isomorphism has an inverse; this map of rank {self.rank()} is none: {self!r}")
+        return Homomorphism(self.target, self.source, self.matrix.inverse(), check=False)  # of an isomorphism
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Homomorphism):
+            return NotImplemented
+        return self.source == other.source and self.target == other.target and bool(self.matrix == other.matrix)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        ends = [g.name or f"a Lie algebra of dimension {g.dimension}" for g in (self.source, self.target)]
+        return f"<homomorphism from {ends[0]} to {ends[1]} over {self.source.field.name}>"

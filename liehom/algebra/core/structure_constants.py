@@ -1,0 +1,305 @@
+"""StructureConstants: the bracket as a sparse table, and its contractions with matrices.
+
+The table holds c[i, j, k] for i < j only, [e_i, e_j] = sum_k c[i, j, k] e_k, as integers over a common
+denominator (over a number field: integer coordinates).  Contractions choose between one dense flint product
+and sparse integer products whose size excludes overflow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import gcd, lcm
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Scalar
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.spaces.sparse import SparseInteger
+
+IntArray = npt.NDArray[np.int64]
+DENSE_DIMENSION = 64
+
+
+@final
+class StructureConstants:
+    """The entries c[i, j, k], i < j, of a bracket table over a field, sorted by (i, j, k).
+
+    Parameters
+    ----------
+    field : Field
+    dimension : int
+    entries : iterable of (i, j, k, value)
+        Each position once, i < j, values non-zero elements of the field.
+    """
+
+    __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "field", "i", "j", "k", "parts")
+
+    def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
+        ordered = sorted(entries, key=lambda e: e[:3])
+        self.field = field
+        self.dimension = dimension
+        index = np.array([e[:3] for e in ordered], dtype=np.int64).reshape(len(ordered), 3)
+        self.i, self.j, self.k = index[:, 0], index[:, 1], index[:, 2]
+        values = [e[3] for e in ordered]
+        self.parts, self.den = _integers(field, values)
+        self._dense: Any = None
+        self._flat: Any = None
+        self._sparse: Any = None
+
+    @classmethod
+    def from_integers(
+        cls, field: Any, dimension: int, i: Any, j: Any, k: Any, numerators: Sequence[int], den: int = 1
+    ) -> StructureConstants:
+        """The table with rational entries numerators[x] / den at (i[x], j[x], k[x]), distinct places with i < j.
+
+        Zero entries are dropped.  This is the quick way for large tables: no field element is made.
+        """
+        made = cls.__new__(cls)
+        made.field, made.dimension = field, dimension
+        order = [x for x in np.lexsort((k, j, i)).tolist() if numerators[x]]
+        made.i, made.j, made.k = i[order], j[order], k[order]
+        common = gcd(den, *(numerators[x] for x in order)) if den != 1 else 1
+        first = [numerators[x] // common for x in order]
+        made.parts = (first, *([0] * len(order) for _ in range(field.degree - 1)))
+        made.den = den // common
+        made._dense = made._flat = made._sparse = None
+        return made
+
+    @classmethod
+    def from_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
+        """The table with [e_i, e_j] = row j of block i; antisymmetry is the caller's knowledge."""
+        if field.degree == 1 and field.exact:
+            return cls._from_rational_blocks(field, n, blocks)
+        entries, zero = [], field.zero
+        for i, block in enumerate(blocks):
+            found = enumerate(block.entries())
+            entries += [(i, place // n, place % n, v) for place, v in found if place >= (i + 1) * n and v != zero]
+        return cls(field, n, entries)
+
+    @classmethod
+    def _from_rational_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
+        den = lcm(*(block.den for block in blocks))
+        places: list[int] = []
+        numerators: list[int] = []
+        for i, block in enumerate(blocks):
+            factor = den // block.den
+            entries = block.parts[0].entries()
+            found = [x for x in range((i + 1) * n, n * n) if entries[x]]
+            places += [i * n * n + x for x in found]
+            numerators += [int(entries[x]) * factor for x in found]
+        index = np.array(places, dtype=np.int64)
+        return cls.from_integers(field, n, index // (n * n), index // n % n, index % n, numerators, den)
+
+    # -- entries -----------------------------------------------------------------------------------------
+    def __len__(self) -> int:
+        return len(self.i)
+
+    def values(self) -> list[Scalar]:
+        """The entries as field elements, in the table's order."""
+        if isinstance(self.field, FloatField):
+            return [float(x) for x in self.parts[0]]
+        make, den = self.field.from_integer_coordinates, self.den  # type: ignore[attr-defined]
+        return [make(x, den) for x in zip(*self.parts, strict=True)]
+
+    def __iter__(self) -> Iterator[tuple[int, int, int, Scalar]]:
+        return zip(self.i.tolist(), self.j.tolist(), self.k.tolist(), self.values(), strict=True)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, StructureConstants):
+            return NotImplemented
+        if self.field != other.field or self.dimension != other.dimension or len(self) != len(other):
+            return False
+        return list(self) == list(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def by_pair(self) -> dict[tuple[int, int], list[tuple[int, Any]]]:
+        """{(i, j): [(k, value), ...]} for both orders of i, j; integer values over `den` where that is possible."""
+        table: dict[tuple[int, int], list[tuple[int, Any]]] = {}
+        integral = len(self.parts) == 1 and self.field.exact
+        values = self.parts[0] if integral else self.values()
+        for i, j, k, v in zip(self.i.tolist(), self.j.tolist(), self.k.tolist(), values, strict=True):
+            table.setdefault((i, j), []).append((k, v))
+            table.setdefault((j, i), []).append((k, -v))
+        return table
+
+    def jacobi_terms(self) -> int:
+        """The number of products in all double brackets: what a sparse proof of the Jacobi identity costs."""
+        if not len(self):
+            return 0
+        n = self.dimension
+        out = np.bincount(self.k, minlength=n)
+        into = np.bincount(self.i, minlength=n) + np.bincount(self.j, minlength=n)
+        return int(out @ into)
+
+    # -- contractions ------------------------------------------------------------------------------------
+    def is_dense(self) -> bool:
+        """Whether contractions go through one dense product."""
+        n = self.dimension
+        return n <= DENSE_DIMENSION or not self.field.exact or (n <= 160 and len(self) > n * n)
+
+    def dense(self) -> Any:
+        """The matrix (n*n, n) with row i*n + j the coefficients of [e_i, e_j]."""
+        if self._dense is None:
+            self._dense = self._filled(self.dimension**2, self.dimension)
+        return self._dense
+
+    def _filled(self, nrows: int, ncols: int) -> Any:
+        """All c[i, j, k] in lexicographic order of (i, j, k), as a matrix of a shape."""
+        n = self.dimension
+        forward = (self.i * n + self.j) * n + self.k
+        backward = (self.j * n + self.i) * n + self.k
+        if isinstance(self.field, FloatField):
+            array = np.zeros(n**3)
+            array[forward], array[backward] = self.parts[0], -np.array(self.parts[0])
+            return FloatMatrix(self.field, array.reshape(nrows, ncols))
+        return _dense_exact(self.field, (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den)
+
+    def flat(self) -> Any:
+        """The matrix (n, n*n) with row i the matrix c[i, :, :] row after row (cached: x flat() is ad x transposed)."""
+        if self._flat is None:
+            self._flat = self._filled(self.dimension, self.dimension**2)
+        return self._flat
+
+    def sparse(self) -> SparseInteger:
+        """The integer table (n*n, n) as a sparse matrix; only over QQ."""
+        if self._sparse is None:
+            n = self.dimension
+            rows = np.concatenate([self.i * n + self.j, self.j * n + self.i])
+            values = [*self.parts[0], *(-v for v in self.parts[0])]
+            self._sparse = SparseInteger(rows, np.concatenate([self.k, self.k]), values, (n * n, n), self.den)
+        return self._sparse  # type: ignore[no-any-return]
+
+    def adjoint(self, x: Any) -> Any:
+        """The matrix of y -> [x, y] on columns; x a row matrix (1, n)."""
+        n = self.dimension
+        if self.is_dense():
+            return (x @ self.flat()).reshape(n, n).T
+        if self.field.degree > 1:
+            return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
+        return self._adjoint_sparse(x)
+
+    def _adjoint_sparse(self, x: Any) -> Any:
+        n, weights = self.dimension, [int(w) for w in x.parts[0].entries()]
+        places = [i for i, w in enumerate(weights) if w]
+        chosen = np.flatnonzero(np.isin(self.i, places) | np.isin(self.j, places))
+        out = [0] * (n * n)
+        values = self.parts[0]
+        for t, i, j, k in zip(
+            *(a.tolist() for a in (chosen, self.i[chosen], self.j[chosen], self.k[chosen])), strict=True
+        ):
+            out[k * n + j] += weights[i] * values[t]
+            out[k * n + i] -= weights[j] * values[t]
+        return self.field.from_integers(out, n, n, self.den * x.den)  # type: ignore[attr-defined]
+
+    def contract(self, left: Any, right: Any, out: Any) -> list[Any]:
+        """For each row a of `left`, the matrix with rows [left_a, right_b] @ out.
+
+        Parameters
+        ----------
+        left, right : Matrix
+            Rows of coefficients, shapes (p, n) and (q, n).
+        out : Matrix
+            Shape (n, r).
+
+        Returns
+        -------
+        list of Matrix
+            p matrices of shape (q, r).
+        """
+        n, p, q, r = self.dimension, left.nrows, right.nrows, out.ncols
+        if p == 0 or q == 0 or r == 0 or n == 0:
+            return [self.field.zeros(q, r) for _ in range(p)]
+        if self.is_dense() or self.field.degree > 1:
+            if self.field.exact and self.field.degree == 1:
+                return self._contract_rational(left, right, out)
+            one = self.field.identity(n)
+            blocks = (self.flat() if left == one else left @ self.flat()).split_rows(n, n)
+            if right != one:
+                blocks = [right @ block for block in blocks]
+            return blocks if out == one else [block @ out for block in blocks]
+        product = self._contract_sparse(left, right, out)
+        return product.dense_blocks(self.field, p, q, r)  # type: ignore[arg-type]
+
+    def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
+        """The same for a dense table over QQ: numerators are multiplied, denominators reduced once."""
+        n, field = self.dimension, self.field
+        one = field.identity(n)
+        flat: Any = self.flat()
+        integers = flat.parts[0] if left == one else left.parts[0] * flat.parts[0]
+        den = flat.den * left.den * right.den * out.den
+        blocks = ExactMatrix(field, (integers,), 1).split_rows(n, n)  # type: ignore[arg-type]
+        made = []
+        for block in blocks:
+            inner = block.parts[0] if right == one else right.parts[0] * block.parts[0]
+            inner = inner if out == one else inner * out.parts[0]
+            made.append(ExactMatrix(field, (inner,), den).normalized())  # type: ignore[arg-type]
+        return made
+
+    def first_nonzero(self, left: Any, right: Any, out: Any) -> tuple[int, int] | None:
+        """The first (a, b) with [left_a, right_b] @ out not zero, or None: a proof that all vanish."""
+        if min(left.nrows, right.nrows, out.ncols, self.dimension) == 0:
+            return None
+        if self.is_dense() or self.field.degree > 1:
+            for a, block in enumerate(self.contract(left, right, out)):
+                if not block.is_zero():
+                    rows = [b for b in range(block.nrows) if not block.select(rows=[b]).is_zero()]
+                    return a, rows[0]
+            return None
+        product = self._contract_sparse(left, right, out)
+        found = product.first_entry()
+        if found is None:
+            return None
+        row, column = found
+        return column // out.ncols, row
+
+    def changed(self, rows: Any, inverse: Any) -> StructureConstants:
+        """The table in the basis given by the rows (n, n), whose inverse is given: an isomorphic algebra."""
+        n = self.dimension
+        if n and not self.is_dense() and self.field.degree == 1:
+            product = self._contract_sparse(rows, rows, inverse)  # (b, a n + c)
+            i, j, k = product.columns // n, product.rows, product.columns % n
+            upper = i < j
+            values = product.values[upper].tolist()
+            return StructureConstants.from_integers(self.field, n, i[upper], j[upper], k[upper], values, product.den)
+        return StructureConstants.from_blocks(self.field, n, self.contract(rows, rows, inverse))
+
+    def _contract_sparse(self, left: Any, right: Any, out: Any) -> SparseInteger:
+        """Rows b, columns a * r + c."""
+        n, p, r = self.dimension, left.nrows, out.ncols
+        first = self.sparse() @ SparseInteger.from_matrix(out)  # (i n + j, c)
+        second = SparseInteger.from_matrix(left) @ first.reshape(n, n * r)  # (a, j r + c)
+        moved = second.regroup(p, n, r)  # (j, a r + c)
+        return SparseInteger.from_matrix(right) @ moved
+
+
+def _integers(field: Field, values: Sequence[Any]) -> tuple[tuple[Any, ...], int]:
+    """Numerators (one sequence per coordinate) over a common denominator; floats as one array."""
+    if isinstance(field, FloatField):
+        return (np.array(values, dtype=np.float64),), 1
+    if not isinstance(field, ExactField):
+        raise TypeError(f"structure constants over {field} are not supported")
+    if field.degree == 1:
+        if all(v.q == 1 for v in values):
+            return ([int(v.p) for v in values],), 1
+        den = lcm(*(int(v.q) for v in values))
+        return ([int(v.p) * (den // int(v.q)) for v in values],), den
+    columns = [field.coordinates(v) for v in values]
+    den = lcm(*(int(c.q) for column in columns for c in column))
+    integral = [[int(c.p) * (den // int(c.q)) for c in column] for column in columns]
+    return tuple(list(part) for part in zip(*integral, strict=True)) or ([],) * field.degree, den
+
+
+def _dense_exact(
+    field: Any, shape: tuple[int, int], forward: list[int], backward: list[int], parts: Any, den: int
+) -> ExactMatrix:
+    made = []
+    for part in parts:
+        out = [0] * (shape[0] * shape[1])
+        for f, b, v in zip(forward, backward, part, strict=True):
+            out[f] = v
+            out[b] = -v
+        made.append(out)
+    return field.from_parts(made, *shape, den)  # type: ignore[no-any-return]

@@ -1,0 +1,169 @@
+"""Cartan involutions from a rational minimal parabolic subalgebra, by linear algebra: nothing is searched for.
+
+Let [h, e] = 2 e, [h, f] = -2 f, [e, f] = h with l = z(h) the Levi factor of a minimal parabolic subalgebra and e
+generic in g_2, g_k the eigenspaces of ad h.  Let theta_0 be 1 on [l, l], which is compact, and on the compact part of
+the centre of l, and -1 on its split part.  Then g_2 = [l, e], g_2 generates the sum of the g_k, k > 0, and
+
+    theta = theta_0 on l,   theta [x, e] = -[theta_0 x, f],   theta [u, v] = [theta u, theta v],   theta theta = 1
+
+is a Cartan involution: one that is theta_0 on l maps the part e_a of e in a simple restricted root space to -c_a f_a,
+c_a > 0, and c_a = 1 after an automorphism from the split torus.  The parts of the centre are found in floating point.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.involutions.nilpotent_element import Triple, eigenspace, generic_nilpotent, positive_eigenvalues
+from liehom.errors import SingularError
+from liehom.scalars.lattices.lattice import reduced_rows
+from liehom.scalars.spaces.integral_basis import integral_basis
+
+Array = npt.NDArray[Any]
+CLOSE = 1e-7
+DENOMINATOR = 10_000
+
+
+def isotropic_involution(algebra: LieAlgebra, theta: Array) -> Any:
+    """A candidate for a Cartan involution over QQ, (n, n) on columns, or None.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        Semisimple, over QQ, in the basis of a lattice that is closed under brackets.
+    theta : (n, n) float array
+        A Cartan involution, on rows, approximately.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.algebra.involutions.approximate_involution import approximate_involution
+    >>> from liehom.algebra.involutions.cartan_decomposition import is_cartan_involution
+    >>> g = lh.so(3, 1)
+    >>> is_cartan_involution(g, isotropic_involution(g, approximate_involution(g, 2)))
+    True
+    """
+    try:
+        triple = generic_nilpotent(algebra, theta)
+        return None if triple is None else involution_of_triple(algebra, triple)
+    except (np.linalg.LinAlgError, SingularError):  # double precision was not enough
+        return None
+
+
+def involution_of_triple(algebra: LieAlgebra, triple: Triple) -> Any:
+    """The theta of the triple, (n, n) on columns, or None where it is not defined.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.algebra.involutions.nilpotent_element import sl2_triple
+    >>> g = lh.sl(2)
+    >>> involution_of_triple(g, sl2_triple(g, g.field.matrix([[1, 0, 0]]))).to_strings()
+    [['0', '-1', '0'], ['-1', '0', '0'], ['0', '0', '-1']]
+    """
+    field, n = algebra.field, algebra.dimension
+    on_levi = _on_levi(algebra, triple)
+    if on_levi is None:
+        return None
+    levi, images = on_levi
+    ad_e, ad_f = (algebra.ad(x.to_rows()[0]).T for x in (triple.e, triple.f))
+    # rows [e, x] and [f, theta_0 x]: theta [x, e] = -[theta_0 x, f] as [x, e] = -[e, x]
+    places = _independent(levi @ ad_e)
+    raised = (levi @ ad_e).select(rows=places)
+    lowered = -(images @ ad_f).select(rows=places)
+    ups, downs = [raised], [lowered]
+    for _ in positive_eigenvalues(algebra, triple.h)[1:]:
+        up = field.stack_rows(algebra.table.contract(raised, ups[-1], field.identity(n)), n)
+        down = field.stack_rows(algebra.table.contract(lowered, downs[-1], field.identity(n)), n)
+        places = _independent(up)
+        ups.append(up.select(rows=places))
+        downs.append(down.select(rows=places))
+    basis = field.stack_rows([levi, *ups, *downs], n)
+    if basis.nrows != n or basis.rank() < n:
+        return None
+    return (basis.inverse() @ field.stack_rows([images, *downs, *ups], n)).T
+
+
+def _independent(rows: Any) -> list[int]:
+    """The places of rows that are a basis of the row space."""
+    return list(rows.T.echelon()[1])
+
+
+def _on_levi(algebra: LieAlgebra, triple: Triple) -> tuple[Any, Any] | None:
+    """A basis of l, as rows, and theta_0 of it."""
+    field, n = algebra.field, algebra.dimension
+    levi = algebra.subalgebra(eigenspace(algebra, triple.h, 0))
+    inner = levi.as_algebra()
+    centre = integral_basis(inner.center().basis @ levi.basis)
+    derived = integral_basis(inner.derived_subalgebra().basis @ levi.basis)
+    parts = _parts(algebra, centre)
+    if parts is None:
+        return None
+    split, compact = parts
+    rows = field.stack_rows([derived, compact, split], n)
+    images = field.stack_rows([derived, compact, -split], n)
+    return rows, images
+
+
+def _parts(algebra: LieAlgebra, centre: Any) -> tuple[Any, Any] | None:
+    """Bases of the split and the compact part of the centre of l, as rows; None where they are not recognised."""
+    field, n, k = algebra.field, algebra.dimension, centre.nrows
+    form = centre @ algebra.killing_form() @ centre.T
+    if form.is_positive_definite():
+        return centre, field.zeros(0, n)
+    values = _roots(algebra, centre)
+    gram = (values @ values.conj().T).real
+    change = reduced_rows(field.identity(k), np.linalg.cholesky((gram + gram.T) / 2))
+    values = change.to_numpy() @ values
+    split, compact = (_recognised(_null_rows(table)) for table in (values.imag, values.real))
+    if split is None or compact is None or len(split) + len(compact) != k:
+        return None
+    parts = [field.matrix(x.tolist(), x.shape) @ change @ centre for x in (split, compact)]
+    return parts[0], parts[1]
+
+
+def _roots(algebra: LieAlgebra, centre: Any) -> Array:
+    """The values (k, n) of the roots, and of zeros, on rows of a commutative subalgebra."""
+    actions = np.array([algebra.ad(x).to_numpy() for x in centre.to_rows()])
+    weights = np.random.default_rng(len(actions)).standard_normal(len(actions))
+    weights /= np.linalg.norm(actions, axis=(1, 2))
+    _, vectors = np.linalg.eig(np.einsum("a,aij->ij", weights, actions))
+    places = np.argmax(np.abs(vectors), axis=0)
+    index = np.arange(vectors.shape[1])
+    values: Array = (actions @ vectors)[:, places, index] / vectors[places, index]
+    return values
+
+
+def _null_rows(table: Array) -> Array:
+    """An orthonormal basis of the rows x with x A = 0, approximately."""
+    _, singular, rows = np.linalg.svd(table.T)
+    rank = int((singular > CLOSE * max(1.0, float(np.abs(table).max()))).sum())
+    return rows[rank:]
+
+
+def _recognised(rows: Array) -> Array | None:
+    """The reduced echelon form of float rows as fractions with small denominators, or None."""
+    table = rows.copy()
+    row = 0
+    for column in range(table.shape[1]):
+        if row == len(table):
+            break
+        best = row + int(np.argmax(np.abs(table[row:, column])))
+        if abs(table[best, column]) < CLOSE:
+            continue
+        table[[row, best]] = table[[best, row]]
+        table[row] /= table[row, column]
+        for other in range(len(table)):
+            if other != row:
+                table[other] -= table[other, column] * table[row]
+        row += 1
+    fractions = [[Fraction(x).limit_denominator(DENOMINATOR) for x in line] for line in table.tolist()]
+    near = np.array([[float(x) for x in line] for line in fractions]).reshape(table.shape)
+    if table.size and np.abs(near - table).max() > CLOSE * max(1.0, float(np.abs(table).max())):
+        return None
+    return np.array(fractions, dtype=object).reshape(table.shape)

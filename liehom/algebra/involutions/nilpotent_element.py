@@ -1,0 +1,237 @@
+"""Nilpotent elements of a semisimple algebra over QQ, sought among short vectors of a lattice; their sl2-triples.
+
+A lattice that is closed under brackets and reduced for -K(x, theta y) holds many short nilpotent elements, if the
+algebra has any with rational coefficients.  For e nilpotent, every h in [e, g] with [h, e] = 2 e belongs to a triple
+[h, e] = 2 e, [h, f] = -2 f, [e, f] = h (Jacobson, Morozov), and f is unique.  From e one comes to more generic ones:
+z(h) is a Levi factor of the parabolic subalgebra of the eigenvalues >= 0, and a nilpotent element of z(h) plus a random
+one of eigenvalue > 0 is nilpotent too.  It ends where z(h) is compact but for its centre: there the parabolic
+subalgebra is minimal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.algebra.involutions.approximate_involution import approximate_involution
+from liehom.algebra.involutions.lattice_order import lie_order
+from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
+from liehom.errors import SingularError
+from liehom.scalars import QQ, RR
+from liehom.scalars.lattices.lattice import reduced_rows
+from liehom.scalars.spaces.integral_basis import integral_basis
+
+Array = npt.NDArray[Any]
+TRIED = 80
+STEPS = 12
+ISOTROPIC = 1e-8
+PRIME = 33_554_393
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Triple:
+    """[h, e] = 2 e, [h, f] = -2 f, [e, f] = h in an algebra; rows (1, n).
+
+    Attributes
+    ----------
+    e, h, f : Matrix
+    """
+
+    e: Any
+    h: Any
+    f: Any
+
+
+def sl2_triple(algebra: LieAlgebra, e: Any) -> Triple:
+    """The triple through a nilpotent element (1, n) of a semisimple algebra.
+
+    Raises
+    ------
+    SingularError
+        If the element is not nilpotent, or zero.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.sl(2)
+    >>> sl2_triple(g, g.field.matrix([[1, 0, 0]])).h.to_strings()
+    [['0', '0', '1']]
+    """
+    field, n = algebra.field, algebra.dimension
+    if e.is_zero():
+        raise SingularError("there is no sl2-triple through 0; give a nilpotent element that is not 0")
+    action = algebra.ad(e.to_rows()[0]).T  # on rows: y @ action = [e, y]
+    h = _small_semisimple(algebra, e, action)
+    inner = algebra.ad(h.to_rows()[0]).T + field.identity(n).scale(field.convert(2))
+    joined = field.stack_columns([action, inner], n)
+    f = joined.T.solve(field.stack_columns([h, field.zeros(1, n)], 1).T).T
+    return Triple(e, h, f)
+
+
+def _small_semisimple(algebra: LieAlgebra, e: Any, action: Any) -> Any:
+    """An h in [e, g] with [h, e] = 2 e, of small numbers: w / s for a short integer w in [e, g] with [w, e] = 2 s e."""
+    field, n = algebra.field, algebra.dimension
+    z = (action @ action).T.solve(e.T.scale(-field.convert(2))).T
+    # x action lies in [e, g], and commutes with e where x action^2 = 0
+    commuting = (action @ action).T.null_space() @ action
+    place = next(i for i, x in enumerate(e.to_rows()[0]) if x != 0)
+    rows = integral_basis(field.stack_rows([z @ action, commuting], n))
+    values = [-x / (2 * e[0, place]) for x in (rows @ action).T.to_rows()[place]]
+    found = [(abs(s), i) for i, s in enumerate(values) if s != 0]
+    i = min(found)[1]
+    return rows.select(rows=[i]).scale(1 / values[i])
+
+
+def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> Triple | None:
+    """The triple of an element that is generic in the nilradical of a minimal parabolic subalgebra, or None.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        Semisimple, over QQ, in the basis of a lattice closed under brackets.
+    theta : (n, n) float array
+        A Cartan involution, on rows, approximately.
+
+    Notes
+    -----
+    None where no nilpotent element was found, in g or in a z(h) that is not compact but for its centre.
+    Random choices are made from a fixed seed.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.algebra.involutions.approximate_involution import approximate_involution
+    >>> g = lh.sl(3)
+    >>> triple = generic_nilpotent(g, approximate_involution(g, 2))
+    >>> g.centralizer(triple.h).dimension
+    2
+    """
+    rng = np.random.default_rng(algebra.dimension)
+    e = _longest_nilpotent(algebra, theta)
+    if e is None:
+        return None
+    for _ in range(STEPS):
+        triple = sl2_triple(algebra, e)
+        levi = algebra.centralizer(triple.h)
+        inside = _nilpotent_inside(levi)
+        if inside is None and _is_even(algebra, triple):
+            return triple
+        if inside is False:
+            return None
+        e = _random_element(_positive_part(algebra, triple), rng)
+        if inside is not None:
+            e = (e + inside).primitive()
+    return None
+
+
+def eigenspace(algebra: LieAlgebra, h: Any, value: int) -> Any:
+    """The rows x with [h, x] = value x.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.sl(2)
+    >>> eigenspace(g, g.field.matrix([[0, 0, 1]]), 2).to_strings()
+    [['1', '0', '0']]
+    """
+    field, n = algebra.field, algebra.dimension
+    return (algebra.ad(h.to_rows()[0]) - field.identity(n).scale(field.convert(value))).null_space()
+
+
+def positive_eigenvalues(algebra: LieAlgebra, h: Any) -> list[int]:
+    """The eigenvalues k > 0 of ad h, h from a triple: integers.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.sl(2)
+    >>> positive_eigenvalues(g, g.field.matrix([[0, 0, 1]]))
+    [2]
+    """
+    values = np.linalg.eigvals(algebra.ad(h.to_rows()[0]).to_numpy()).real
+    return [k for k in sorted({int(x) for x in np.rint(values)}) if k > 0]
+
+
+def _positive_part(algebra: LieAlgebra, triple: Triple) -> Any:
+    spaces = [eigenspace(algebra, triple.h, k) for k in positive_eigenvalues(algebra, triple.h)]
+    return integral_basis(algebra.field.stack_rows(spaces, algebra.dimension))
+
+
+def _random_element(space: Any, rng: np.random.Generator) -> Any:
+    weights = rng.integers(-1, 2, space.nrows)
+    weights[rng.integers(space.nrows)] = 1
+    return space.field.from_integers(weights.tolist(), 1, space.nrows) @ space
+
+
+def _is_even(algebra: LieAlgebra, triple: Triple) -> bool:
+    return all(k % 2 == 0 for k in positive_eigenvalues(algebra, triple.h))
+
+
+def _is_compact(levi: Subalgebra, derived: Any) -> bool:
+    return bool((-(derived @ levi.algebra.killing_form() @ derived.T)).is_positive_definite())
+
+
+def _nilpotent_inside(levi: Subalgebra) -> Any:
+    """A nilpotent element of [z(h), z(h)] in the algebra around; None if that is compact; False if none was found."""
+    algebra = levi.algebra
+    inner = levi.as_algebra()
+    rows = inner.derived_subalgebra().basis @ levi.basis
+    if rows.nrows == 0 or _is_compact(levi, rows):
+        return None
+    rows = integral_basis(rows)
+    inner = Subalgebra(algebra, rows, check=False).as_algebra()  # derived, so closed
+    theta = approximate_involution(inner, cartan_subalgebra(inner).dimension)
+    if theta is None:
+        return False
+    e = _longest_nilpotent(inner, theta)
+    if e is None:
+        order = lie_order(inner, _frame(inner, theta))
+        inner, rows = inner.change_of_basis(order), order @ rows
+        e = _longest_nilpotent(inner, order.to_numpy() @ theta @ order.inverse().to_numpy())
+    return False if e is None else e @ rows
+
+
+def _frame(algebra: LieAlgebra, theta: Array) -> Array:
+    form = -algebra.killing_form().to_numpy() @ theta.T
+    return np.linalg.cholesky((form + form.T) / 2)
+
+
+def _longest_nilpotent(algebra: LieAlgebra, theta: Array) -> Any:
+    """The nilpotent element of the largest rank among short vectors, (1, n), or None."""
+    n, field = algebra.dimension, QQ
+    change = reduced_rows(field.identity(n), _frame(algebra, theta))
+    constants = algebra.change_of_basis(change).over(RR).table.dense().array.reshape(n, n, n)
+    if np.abs(constants - np.rint(constants)).max() > 0:
+        return None
+    u, v = change.to_numpy(), change.inverse().to_numpy()
+    killing = u @ algebra.killing_form().to_numpy() @ u.T
+    form = -killing @ (u @ theta @ v).T
+    i, j = np.triu_indices(n, 1)
+    one = np.eye(n)
+    vectors = np.concatenate([one, one[i] + one[j], one[i] - one[j], constants.reshape(-1, n)])
+    sizes = np.einsum("ai,ij,aj->a", vectors, form, vectors, optimize=True)
+    squares = np.einsum("ai,ij,aj->a", vectors, killing, vectors, optimize=True)
+    places = np.flatnonzero((np.abs(squares) < ISOTROPIC * sizes) & (sizes > 0))
+    best, largest = None, 0
+    for a in places[np.argsort(sizes[places], kind="stable")][:TRIED]:
+        action = np.einsum("i,ijk->jk", vectors[a], constants)
+        size = int(np.linalg.matrix_rank(action, tol=1e-6))
+        if size > largest and _is_nilpotent(action):
+            best, largest = vectors[a], size
+    if best is None:
+        return None
+    return field.from_integers([int(x) for x in best], 1, n) @ change
+
+
+def _is_nilpotent(action: Array) -> bool:
+    """Whether an integer matrix is nilpotent modulo a prime."""
+    power, exponent = np.rint(action).astype(np.int64) % PRIME, 1
+    while exponent < len(action):
+        power, exponent = power @ power % PRIME, 2 * exponent
+    return not power.any()

@@ -1,0 +1,203 @@
+"""New linear Lie algebras from given ones: tensor sums, powers, the action on symmetric matrices.
+
+The derived action of A on the tensor product is A (x) 1 + 1 (x) A, and on Sym^k and Lambda^k it is what this
+induces, in the basis of monomials and of wedge products.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations, combinations_with_replacement
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from liehom.algebra.matrices.matrix_basis import IntegerArray, as_matrices, require_size, stack
+from liehom.errors import InputError
+
+
+def tensor_sum(first: ArrayLike, second: ArrayLike) -> IntegerArray:
+    """The sum of two linear Lie algebras on the tensor product: A (x) 1, then 1 (x) B.
+
+    Parameters
+    ----------
+    first : (a, p, p) integers
+        A matrix basis.
+    second : (b, q, q) integers
+        Another one.  If both contain the identity, the result is linearly dependent.
+
+    Returns
+    -------
+    (a + b, p * q, p * q) int64
+
+    Examples
+    --------
+    sl(4, R) + sl(2, R) on R^8:
+
+    >>> from liehom.algebra.matrices.matrices_linear import sl
+    >>> tensor_sum(sl(4), sl(2)).shape
+    (18, 8, 8)
+    """
+    left, right = as_matrices(first), as_matrices(second)
+    p, q = left.shape[1], right.shape[1]
+    one_p, one_q = np.eye(p, dtype=np.int64), np.eye(q, dtype=np.int64)
+    return stack([*(np.kron(a, one_q) for a in left), *(np.kron(one_p, b) for b in right)], p * q)
+
+
+def symmetric_power(matrices: ArrayLike, k: int) -> IntegerArray:
+    """Action on Sym^k, polynomials of degree k in the basis vectors, in lexicographic monomials.
+
+    Parameters
+    ----------
+    matrices : (dim, n, n) integers
+        A matrix basis.
+    k : int
+        Degree, at least 0.
+
+    Returns
+    -------
+    (dim, m, m) int64 with m = binomial(n + k - 1, k)
+        A maps the monomial ``x_i1 ... x_ik`` to ``sum_r x_i1 ... (A x_ir) ... x_ik``.
+
+    Raises
+    ------
+    InputError
+        If k is not an integer at least 0.
+
+    Examples
+    --------
+    sl(2, R) on binary quadratic forms, basis x^2, xy, y^2:
+
+    >>> from liehom.algebra.matrices.matrices_linear import sl
+    >>> symmetric_power(sl(2), 2)[0].tolist()
+    [[0, 1, 0], [0, 0, 2], [0, 0, 0]]
+    """
+    basis = as_matrices(matrices)
+    require_size("k", k, 0)
+    return _induced(basis, list(combinations_with_replacement(range(basis.shape[1]), k)), alternating=False)
+
+
+def exterior_power(matrices: ArrayLike, k: int) -> IntegerArray:
+    """Action on Lambda^k, in the basis of the wedges ``e_i1 ^ ... ^ e_ik``, i1 < ... < ik, lexicographically.
+
+    Parameters
+    ----------
+    matrices : (dim, n, n) integers
+        A matrix basis.
+    k : int
+        Degree, from 0 to n.
+
+    Returns
+    -------
+    (dim, m, m) int64 with m = binomial(n, k)
+
+    Raises
+    ------
+    InputError
+        If k is not an integer from 0 to n.
+
+    Examples
+    --------
+    On the top power a matrix acts by its trace:
+
+    >>> exterior_power([[[1, 7], [0, 2]]], 2).tolist()
+    [[[3]]]
+    """
+    basis = as_matrices(matrices)
+    require_size("k", k, 0)
+    n = basis.shape[1]
+    if k > n:
+        raise InputError(f"Lambda^k of a space of dimension {n} needs k <= {n}; got k = {k}")
+    return _induced(basis, list(combinations(range(n), k)), alternating=True)
+
+
+def congruence(matrices: ArrayLike) -> IntegerArray:
+    """Action ``S -> A S + S A^T`` on the symmetric matrices.
+
+    For skew A this is the conjugation ``S -> A S - S A``.
+
+    Parameters
+    ----------
+    matrices : (dim, n, n) integers
+        A matrix basis.
+
+    Returns
+    -------
+    (dim, m, m) int64 with m = n (n + 1) / 2
+        In the basis E_ij + E_ji (i < j), E_ii, ordered by (i, j), i <= j: coordinates are the entries of S.
+
+    Examples
+    --------
+    so(3) on Sym(3) = R^6 by conjugation:
+
+    >>> from liehom.algebra.matrices.matrices_forms import so
+    >>> congruence(so(3)).shape
+    (3, 6, 6)
+    """
+    basis = as_matrices(matrices)
+    n = basis.shape[1]
+    rows, columns = np.triu_indices(n)
+    m = len(rows)
+    elements = np.zeros((m, n, n), dtype=np.int64)
+    elements[np.arange(m), rows, columns] = 1
+    elements[np.arange(m), columns, rows] = 1
+    images = basis[:, None] @ elements
+    images = images + images.transpose(0, 1, 3, 2)
+    return np.ascontiguousarray(images[:, :, rows, columns].transpose(0, 2, 1))
+
+
+def companion_powers(coefficients: Sequence[int]) -> IntegerArray:
+    """The regular representation of Q[t]/(f): the powers 1, C, ..., C^{n-1} of the companion matrix of f.
+
+    Parameters
+    ----------
+    coefficients : integers
+        ``f = t**n + sum_i coefficients[i] t**i``; the leading one is not given.
+
+    Returns
+    -------
+    (n, n, n) int64
+
+    Raises
+    ------
+    InputError
+        If no coefficient is given.
+
+    Examples
+    --------
+    The cyclotomic field Q(zeta_5), with f = t^4 + t^3 + t^2 + t + 1:
+
+    >>> companion_powers([1, 1, 1, 1])[1].tolist()
+    [[0, 0, 0, -1], [1, 0, 0, -1], [0, 1, 0, -1], [0, 0, 1, -1]]
+    """
+    n = len(coefficients)
+    if n == 0:
+        raise InputError("the polynomial must have degree at least 1; got no coefficient")
+    companion: IntegerArray = np.eye(n, k=-1, dtype=np.int64)
+    companion[:, -1] = -np.asarray(coefficients, dtype=np.int64)
+    return stack((np.linalg.matrix_power(companion, k) for k in range(n)), n)
+
+
+def _induced(basis: IntegerArray, words: list[tuple[int, ...]], *, alternating: bool) -> IntegerArray:
+    """Action on the words: one letter after the other is replaced, e_i by sum_j A[j, i] e_j."""
+    n = basis.shape[1]
+    position = {word: index for index, word in enumerate(words)}
+    result = np.zeros((len(basis), len(words), len(words)), dtype=np.int64)
+    for column, word in enumerate(words):
+        for place, letter in enumerate(word):
+            for new in range(n):
+                image = [*word[:place], new, *word[place + 1 :]]
+                row = position.get(tuple(sorted(image)))
+                if row is None:
+                    continue
+                sign = _sorting_sign(image, place) if alternating else 1
+                result[:, row, column] += sign * basis[:, new, letter]
+    return result
+
+
+def _sorting_sign(word: list[int], place: int) -> int:
+    """Sign of the permutation that sorts a word in which only the letter at `place` is out of order."""
+    letter = word[place]
+    greater_before = sum(other > letter for other in word[:place])
+    smaller_after = sum(other < letter for other in word[place + 1 :])
+    return -1 if (greater_before + smaller_after) % 2 else 1

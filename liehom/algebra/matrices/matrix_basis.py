@@ -1,0 +1,284 @@
+"""A matrix basis: a list of integer matrices that is the basis of a linear Lie algebra.
+
+Everywhere in this package such a list is one int64 array of shape (dim, N, N).  This file has what all the
+families share: checked parameters, stacking, sums of commuting families, and the stabiliser of a vector or of
+the line through it,
+
+    {c : sum_i c_i A_i v = 0}     and     {c : sum_i c_i A_i v in R v},
+
+as rows of coefficients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from math import gcd, lcm
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from liehom.errors import InputError, ShapeError
+
+IntegerArray: TypeAlias = NDArray[np.int64]
+
+
+def combine(rows: ArrayLike, matrices: ArrayLike) -> IntegerArray:
+    """Matrices of the combinations that the rows of coefficients name.
+
+    Parameters
+    ----------
+    rows : (m, dim) integers
+        Coefficients.
+    matrices : (dim, N, N) integers
+        A matrix basis.
+
+    Returns
+    -------
+    (m, N, N) int64
+        ``sum_i rows[a, i] matrices[i]``.
+
+    Raises
+    ------
+    ShapeError
+        If the shapes do not fit.
+
+    Examples
+    --------
+    >>> combine([[1, 1]], [[[0, 1], [0, 0]], [[0, 0], [1, 0]]]).tolist()
+    [[[0, 1], [1, 0]]]
+    """
+    basis = as_matrices(matrices)
+    coefficients = np.asarray(rows, dtype=np.int64)
+    if coefficients.ndim != 2 or coefficients.shape[1] != len(basis):
+        raise ShapeError(f"rows of shape (m, {len(basis)}) are needed; got shape {coefficients.shape}")
+    combinations: IntegerArray = np.tensordot(coefficients, basis, 1)
+    return combinations
+
+
+def join(*families: ArrayLike) -> IntegerArray:
+    """One matrix basis after the other, on the same space.
+
+    Parameters
+    ----------
+    *families : (dim_a, N, N) integers
+        Matrix bases on the same R^N, meant to be linearly independent together.
+
+    Returns
+    -------
+    (sum of dim_a, N, N) int64
+
+    Raises
+    ------
+    ShapeError
+        If the matrices do not all have the same size, or nothing is given.
+
+    Examples
+    --------
+    >>> join([[[0, -1], [1, 0]]], [[[1, 0], [0, 1]]]).shape
+    (2, 2, 2)
+    """
+    bases = [as_matrices(family) for family in families]
+    sizes = sorted({basis.shape[1] for basis in bases})
+    if len(sizes) != 1:
+        raise ShapeError(f"families on the same space are needed; got matrices of sizes {sizes}")
+    return np.concatenate(bases)
+
+
+def stabilizer_rows(matrices: ArrayLike, point: ArrayLike, *, up_to_scale: bool = False) -> IntegerArray:
+    """Basis of the combinations of the matrices that kill a vector, or keep the line through it.
+
+    Parameters
+    ----------
+    matrices : (dim, N, N) integers
+        A matrix basis.
+    point : (N,) integers
+        The vector v.
+    up_to_scale : bool
+        Ask for ``A v`` in the line R v instead of ``A v = 0``; v must then not be zero.
+
+    Returns
+    -------
+    (m, dim) int64
+        Primitive rows of coefficients, a basis of the stabiliser; exact.
+
+    Raises
+    ------
+    ShapeError
+        If the vector does not have length N.
+    InputError
+        If the line of the zero vector is asked for.
+
+    Examples
+    --------
+    The stabiliser of e_0 in so(3) is the rotation of the other two coordinates:
+
+    >>> from liehom.algebra.matrices.matrices_forms import so
+    >>> stabilizer_rows(so(3), [1, 0, 0]).tolist()
+    [[0, 0, 1]]
+    """
+    basis = as_matrices(matrices)
+    vector = np.asarray(point, dtype=np.int64)
+    if vector.shape != basis.shape[1:2]:
+        raise ShapeError(f"the point must have length {basis.shape[1]}; got an array of shape {vector.shape}")
+    system = (basis @ vector).T
+    if not up_to_scale:
+        return null_space(system)
+    if not vector.any():
+        raise InputError("the zero vector spans no line; give a point that is not zero")
+    rows = null_space(np.column_stack([system, -vector]))[:, :-1]
+    return np.array([primitive(row) for row in rows], dtype=np.int64).reshape(-1, len(basis))
+
+
+def null_space(matrix: ArrayLike) -> IntegerArray:
+    """Basis of {x : M x = 0} by exact elimination, as primitive integer rows.
+
+    Parameters
+    ----------
+    matrix : (m, n) integers
+        The matrix M.
+
+    Returns
+    -------
+    (n - rank, n) int64
+        One row for each column without a pivot, in increasing order of that column.
+
+    Examples
+    --------
+    >>> null_space([[1, 2, 0], [0, 0, 2]]).tolist()
+    [[-2, 1, 0]]
+    """
+    system = np.asarray(matrix, dtype=np.int64)
+    n = system.shape[1]
+    pivots: dict[int, dict[int, Fraction]] = {}
+    for values in system:
+        _insert({int(j): Fraction(int(values[j])) for j in np.flatnonzero(values)}, pivots)
+    rows = []
+    for free in (j for j in range(n) if j not in pivots):
+        entries = {free: Fraction(1)} | {p: -row[free] for p, row in pivots.items() if free in row}
+        scale = lcm(*(value.denominator for value in entries.values()))
+        rows.append(primitive([int(entries.get(j, 0) * scale) for j in range(n)]))
+    return np.array(rows, dtype=np.int64).reshape(-1, n)
+
+
+def primitive(values: ArrayLike) -> IntegerArray:
+    """The integer array divided by the greatest common divisor of its entries.
+
+    Examples
+    --------
+    >>> primitive([4, -6, 0]).tolist()
+    [2, -3, 0]
+    """
+    array = np.asarray(values, dtype=np.int64)
+    divisor = gcd(*(int(value) for value in array[array != 0]))
+    return array // divisor if divisor > 1 else array
+
+
+def as_matrices(matrices: ArrayLike) -> IntegerArray:
+    """The matrices as one int64 array of shape (dim, N, N).
+
+    Raises
+    ------
+    ShapeError
+        If this is not a list of square matrices of one size.
+
+    Examples
+    --------
+    >>> as_matrices([[[1, 0], [0, 1]]]).shape
+    (1, 2, 2)
+    """
+    array = np.asarray(matrices)
+    if array.ndim != 3 or array.shape[1] != array.shape[2]:
+        raise ShapeError(f"an array of shape (dim, N, N) is needed; got shape {array.shape}")
+    if array.size and not np.issubdtype(array.dtype, np.integer):
+        raise InputError(f"integer matrices are needed; got entries of type {array.dtype}")
+    return array.astype(np.int64, copy=False)
+
+
+def stack(matrices: Iterable[IntegerArray], size: int) -> IntegerArray:
+    """The matrices, all (size, size), as one array; right also when there are none.
+
+    Examples
+    --------
+    >>> stack([], 3).shape
+    (0, 3, 3)
+    """
+    return np.array(list(matrices), dtype=np.int64).reshape(-1, size, size)
+
+
+def unit(size: int, i: int, j: int) -> IntegerArray:
+    """The elementary matrix with a one in row i and column j.
+
+    Examples
+    --------
+    >>> unit(2, 0, 1).tolist()
+    [[0, 1], [0, 0]]
+    """
+    matrix = np.zeros((size, size), dtype=np.int64)
+    matrix[i, j] = 1
+    return matrix
+
+
+def require_size(name: str, value: int, least: int = 1) -> None:
+    """Refuse a parameter that is not an integer at least `least`.
+
+    Raises
+    ------
+    InputError
+        With the name of the parameter, what was expected and what was given.
+
+    Examples
+    --------
+    >>> require_size("n", 0)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: n must be an integer >= 1; got 0
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise InputError(f"{name} must be an integer >= {least}; got {value!r}")
+
+
+def require_nonzero(name: str, values: Sequence[int]) -> None:
+    """Refuse a list in which not every entry is an integer different from zero.
+
+    Raises
+    ------
+    InputError
+        With the name of the parameter and what was given.
+
+    Examples
+    --------
+    >>> require_nonzero("diagonal", [1, 0])
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: the entries of diagonal must be non-zero integers; got [1, 0]
+    """
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value == 0:
+            raise InputError(f"the entries of {name} must be non-zero integers; got {list(values)!r}")
+
+
+def _insert(row: dict[int, Fraction], pivots: dict[int, dict[int, Fraction]]) -> None:
+    """Reduce the row by the pivot rows and, if something is left, add it; all stay fully reduced."""
+    for p in [p for p in row if p in pivots]:
+        _subtract(row, row[p], pivots[p])
+    if not row:
+        return
+    pivot = min(row)
+    inverse = 1 / row[pivot]
+    reduced = {j: value * inverse for j, value in row.items()}
+    for other in pivots.values():
+        if pivot in other:
+            _subtract(other, other[pivot], reduced)
+    pivots[pivot] = reduced
+
+
+def _subtract(row: dict[int, Fraction], factor: Fraction, other: dict[int, Fraction]) -> None:
+    """Subtract factor times the other row, in place, dropping zeros."""
+    for j, value in other.items():
+        difference = row.get(j, Fraction(0)) - factor * value
+        if difference:
+            row[j] = difference
+        else:
+            row.pop(j, None)

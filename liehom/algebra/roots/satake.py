@@ -1,0 +1,275 @@
+"""SatakeDiagram: the involution on a maximally split Cartan subalgebra, drawn on the Dynkin diagram.
+
+The involution theta fixes the black nodes; for a white node, -theta(alpha_i) = alpha_{tau i} + (black nodes), with
+tau the arrows.  So with w the longest element of the Weyl group of the black nodes
+
+    theta(alpha_i) = -w(alpha_{tau i})  (white),      theta(alpha_i) = alpha_i  (black),
+
+and the restricted roots are the differences (a - theta a) / 2 that are not 0.  From a Vogan diagram, whose Cartan
+subalgebra is maximally compact, one comes here by Cayley transforms: theta becomes theta s_b for a noncompact root b,
+until there is none.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.algebra.roots.dynkin import identify, isomorphisms, join_types
+from liehom.algebra.roots.root_system import Root, RootSystem
+from liehom.algebra.roots.vogan import VoganDiagram, generic, gram_to_cartan, simple_system
+from liehom.errors import InputError, InternalError
+
+IntArray = npt.NDArray[np.int64]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class SatakeDiagram:
+    """A Dynkin diagram with black nodes and arrows between white ones.
+
+    Parameters
+    ----------
+    type : str
+        The type of the complex algebra, numbered by Bourbaki from 0.
+    black : tuple of int
+        Nodes whose roots vanish on the split part of the Cartan subalgebra.
+    arrows : tuple of (int, int)
+        Pairs i < j of white nodes that have the same restriction.
+
+    Raises
+    ------
+    CatalogError
+        If there is no such type.
+    InputError
+        If black nodes and arrows define no involution of the root system.
+
+    Notes
+    -----
+    Every diagram that defines an involution is accepted; not each of them belongs to a real form.
+
+    Examples
+    --------
+    >>> so41 = SatakeDiagram("B2", black=(1,))
+    >>> so41.real_rank, so41.restricted_type, so41.multiplicities
+    (1, 'A1', {'all': 3})
+    """
+
+    type: str
+    black: tuple[int, ...] = ()
+    arrows: tuple[tuple[int, int], ...] = ()
+
+    def __post_init__(self) -> None:
+        rank = self.root_system().rank
+        touched = [i for arrow in self.arrows for i in arrow]
+        if len(set(touched)) < len(touched) or set(touched) & set(self.black):
+            raise InputError(f"arrows join different white nodes, each at most once; got {self.arrows}")
+        if not set(touched) | set(self.black) <= set(range(rank)):
+            raise InputError(f"the nodes of {self.type} are 0, ..., {rank - 1}; got {self.black}, {self.arrows}")
+        theta, cartan = self.involution(), np.array(self.root_system().cartan, dtype=np.int64).reshape(rank, rank)
+        gram = cartan * np.array(self.root_system().norms, dtype=np.int64)
+        if (theta @ theta != np.eye(rank, dtype=np.int64)).any() or (theta @ gram @ theta.T != gram).any():
+            raise InputError(f"black nodes {self.black} and arrows {self.arrows} define no involution of {self.type}")
+
+    @classmethod
+    def of(cls, vogan: VoganDiagram) -> SatakeDiagram:
+        """The Satake diagram of the real form with a given Vogan diagram.
+
+        Where the Dynkin diagram has symmetries, the picture with the last possible nodes black is taken.
+
+        Examples
+        --------
+        >>> SatakeDiagram.of(VoganDiagram("A3", painted=(0,)))
+        SatakeDiagram(type='A3', black=(1,), arrows=((0, 2),))
+        """
+        return _from_vogan(vogan)
+
+    # -- properties --------------------------------------------------------------------------------------
+    @property
+    def real_rank(self) -> int:
+        """The number of white nodes, those joined by an arrow counted once."""
+        return self.root_system().rank - len(self.black) - len(self.arrows)
+
+    @property
+    def anisotropic_dimension(self) -> int:
+        """The dimension of m, the centralizer in k of the split part of the Cartan subalgebra."""
+        zero = (0,) * self.root_system().rank
+        return self._projections()[zero] + self.root_system().rank - self.real_rank
+
+    @property
+    def compact_dimension(self) -> int:
+        """dim k, which is dim m plus the multiplicities of the positive restricted roots."""
+        return self.anisotropic_dimension + sum(self.restricted_roots().values()) // 2
+
+    @property
+    def restricted_type(self) -> str:
+        """The type of the restricted root system: 'A1', 'B2', 'BC1', ...; '0' for a compact algebra."""
+        return self._restricted()[0]
+
+    @property
+    def multiplicities(self) -> dict[str, int]:
+        """The multiplicities of the restricted roots by their length.
+
+        The keys are 'all' where there is one length, 'short' and 'long' where there are two, and 'short',
+        'middle', 'long' in BC_n, n > 1; in BC_1 they are 'short' and 'long', the double of a short root. There
+        are none, {}, where the restricted root system is empty or has several components.
+
+        Examples
+        --------
+        >>> SatakeDiagram("F4", black=(0, 1, 2)).multiplicities
+        {'short': 8, 'long': 7}
+        """
+        return self._restricted()[1]
+
+    # -- verbs -------------------------------------------------------------------------------------------
+    def root_system(self) -> RootSystem:
+        """The root system of the complex algebra."""
+        return VoganDiagram(self.type).root_system()
+
+    def involution(self) -> IntArray:
+        """theta on rows of coefficients in the simple roots, shape (r, r).
+
+        Examples
+        --------
+        >>> SatakeDiagram("B2", black=(1,)).involution().tolist()
+        [[-1, -2], [0, 1]]
+        """
+        roots = self.root_system()
+        tau = dict([*self.arrows, *((j, i) for i, j in self.arrows)])
+        rows = []
+        for i in range(roots.rank):
+            if i in self.black:
+                rows.append(roots.simple_roots[i])
+            else:
+                rows.append(tuple(-x for x in self._raised(roots.simple_roots[tau.get(i, i)])))
+        return np.array(rows, dtype=np.int64).reshape(roots.rank, roots.rank)
+
+    def restricted_roots(self) -> dict[Root, int]:
+        """The restricted roots with their multiplicities, as {a - theta a: multiplicity}, twice the restrictions.
+
+        Examples
+        --------
+        >>> SatakeDiagram("B2", black=(1,)).restricted_roots()
+        {(2, 2): 3, (-2, -2): 3}
+        """
+        return {root: times for root, times in self._projections().items() if any(root)}
+
+    def graph(self) -> Any:
+        """The diagram as a networkx graph.
+
+        Returns
+        -------
+        networkx.DiGraph
+            The Dynkin diagram of `liehom.algebra.dynkin_diagram`; nodes have the attribute ``black`` (bool) and
+            ``arrow`` (the node at the other end, or None).
+
+        Examples
+        --------
+        >>> SatakeDiagram("A3", (1,), ((0, 2),)).graph().nodes[0]
+        {'black': False, 'arrow': 2}
+        """
+        graph = self.root_system().dynkin_diagram()
+        other = dict([*self.arrows, *((j, i) for i, j in self.arrows)])
+        for i in graph.nodes:
+            graph.nodes[i].update(black=i in self.black, arrow=other.get(i))
+        return graph
+
+    # -- helpers -----------------------------------------------------------------------------------------
+    def _raised(self, weight: Root) -> Root:
+        """w(alpha) for alpha antidominant for the black nodes: reflect while some pairing is negative."""
+        cartan = self.root_system().cartan
+        row = list(weight)
+        while True:
+            pairings = {k: sum(x * cartan[i][k] for i, x in enumerate(row) if x) for k in self.black}
+            k = next((k for k, value in pairings.items() if value < 0), None)
+            if k is None:
+                return tuple(row)
+            row[k] -= pairings[k]
+
+    def _projections(self) -> Counter[Root]:
+        roots = self.root_system().root_matrix()
+        return Counter(map(tuple, (roots - roots @ self.involution()).tolist()))
+
+    def _restricted(self) -> tuple[str, dict[str, int]]:
+        return _restricted_system(self)
+
+
+@lru_cache(maxsize=256)
+def _restricted_system(diagram: SatakeDiagram) -> tuple[str, dict[str, int]]:
+    """The type of the restricted roots and their multiplicities by length."""
+    system, restricted = diagram.root_system(), diagram.restricted_roots()
+    projected = np.eye(system.rank, dtype=np.int64) - diagram.involution()
+    simple = list(dict.fromkeys(tuple(x) for x in projected.tolist() if any(x)))
+    doubled = [i for i, a in enumerate(simple) if tuple(2 * x for x in a) in restricted]
+    names = []
+    for name, nodes in identify(gram_to_cartan(system, simple)):
+        names.append(f"BC{len(nodes)}" if set(nodes) & set(doubled) else name)
+    if len(names) > 1:
+        return join_types(names), {}
+    by_norm = {system.norm(root): times for root, times in restricted.items()}
+    if any(by_norm[system.norm(root)] != times for root, times in restricted.items()):
+        raise InternalError(f"restricted roots of one length with several multiplicities in {diagram}")
+    labels = {0: (), 1: ("all",), 2: ("short", "long"), 3: ("short", "middle", "long")}[len(by_norm)]
+    return join_types(names), dict(zip(labels, (by_norm[norm] for norm in sorted(by_norm)), strict=True))
+
+
+@lru_cache(maxsize=256)
+def _from_vogan(vogan: VoganDiagram) -> SatakeDiagram:
+    system = vogan.root_system()
+    theta = _maximally_split(vogan)
+    rows = _simple_roots_for(system, theta)
+    images = [tuple(x) for x in (np.array(rows, dtype=np.int64).reshape(system.rank, system.rank) @ theta).tolist()]
+    black = {i for i, image in enumerate(images) if image == rows[i]}
+    tau = {i: _white_part(system, rows, black, images[i]) for i in range(len(rows)) if i not in black}
+    pictures = []
+    for order in isomorphisms(system.cartan, gram_to_cartan(system, rows)):
+        place = {row: node for node, row in enumerate(order)}
+        arrows = sorted((place[i], place[j]) for i, j in tau.items() if place[i] < place[j])
+        single = sorted(place[i] for i, j in tau.items() if i == j)
+        # black nodes as far to the end as possible, then arrows that leave the first nodes alone
+        pictures.append((sorted(-place[i] for i in black), single, arrows))
+    last_black, _, arrows = min(pictures)
+    return SatakeDiagram(vogan.type, tuple(sorted(-x for x in last_black)), tuple(arrows))
+
+
+def _maximally_split(vogan: VoganDiagram) -> IntArray:
+    """The involution on the root lattice after Cayley transforms by noncompact roots, until none is left."""
+    system, theta = vogan.root_system(), vogan.involution()
+    gram = np.array(system.cartan, dtype=np.int64).reshape(system.rank, system.rank) * np.array(system.norms) // 2
+    roots = system.root_matrix()
+    imaginary = (roots @ theta == roots).all(axis=1)
+    roots, signs = roots[imaginary], vogan.signs()[imaginary]
+    while (signs == -1).any():
+        b = roots[np.flatnonzero(signs == -1)[0]]
+        norm = int(b @ gram @ b)
+        reflection = np.eye(system.rank, dtype=np.int64) - np.outer(2 * (gram @ b) // norm, b)
+        theta = reflection @ theta
+        orthogonal = roots @ gram @ b == 0
+        roots, signs = roots[orthogonal], signs[orthogonal]
+        # a root that is orthogonal, but not strongly orthogonal, to b changes its kind
+        signs = np.array([-s if system.is_root(x) else s for s, x in zip(signs, (roots + b).tolist(), strict=True)])
+    return theta
+
+
+def _simple_roots_for(system: RootSystem, theta: IntArray) -> list[Root]:
+    """Simple roots for an order in which the part of a root in the (-1)-eigenspace of theta decides first."""
+    roots = system.root_matrix()
+    split = dict(zip(system.roots, (roots - roots @ theta).tolist(), strict=True))
+    return simple_system(system.roots, lambda a: (generic(split[a]), generic(a)))
+
+
+def _white_part(system: RootSystem, simple: Sequence[Root], black: set[int], image: Root) -> int:
+    """The j with -image = simple[j] + (black simple roots): simple roots are taken off while a root remains."""
+    rest = tuple(-x for x in image)
+    while rest not in simple:
+        lower = (tuple(x - y for x, y in zip(rest, s, strict=True)) for s in simple)
+        rest, taken = next((low, i) for i, low in enumerate(lower) if system.is_root(low))
+        if taken not in black:
+            return taken
+    return simple.index(rest)

@@ -1,0 +1,211 @@
+"""VoganDiagram: a Cartan involution on the Dynkin diagram, from which a real form is built.
+
+On a Chevalley basis of the complex algebra the involution is theta e_a = s(a) e_{sigma a}, where sigma is an
+automorphism of the diagram with sigma^2 = 1 and, modulo 2, for a = sum_i a_i alpha_i
+
+    s(a) = (-1)^q(a),    q(a) = sum_{i painted} a_i + sum_{i < j} a_i a_j (B(sigma i, sigma j) - B(i, j)),
+
+with the bilinear form B of `liehom.algebra.chevalley`.  Roots with sigma a = a are compact for s(a) = 1 and
+noncompact for s(a) = -1; the others, complex, come in pairs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.algebra.roots.dynkin import identify, join_types
+from liehom.algebra.roots.root_system import RootSystem
+from liehom.errors import InputError
+
+IntArray = npt.NDArray[np.int64]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class VoganDiagram:
+    """A Dynkin diagram with an involutive automorphism and painted nodes: a real form of a semisimple algebra.
+
+    Parameters
+    ----------
+    type : str
+        The type of the complex algebra, numbered by Bourbaki from 0.
+    painted : tuple of int
+        Nodes fixed by the automorphism whose root vectors are noncompact.
+    automorphism : tuple of int, optional
+        The image of each node; () for the identity.
+
+    Raises
+    ------
+    CatalogError
+        If there is no such type.
+    InputError
+        If the automorphism is no involution of the diagram, or a painted node is not fixed by it.
+
+    Examples
+    --------
+    The split form of G2, and the rank-one form of E6:
+
+    >>> VoganDiagram("G2", painted=(1,)).character, VoganDiagram("E6", (), (5, 1, 4, 3, 2, 0)).character
+    (2, -26)
+    """
+
+    type: str
+    painted: tuple[int, ...] = ()
+    automorphism: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        cartan = self.root_system().cartan
+        sigma = self.automorphism or tuple(range(len(cartan)))
+        if sorted(sigma) != list(range(len(cartan))) or any(sigma[sigma[i]] != i for i in sigma):
+            raise InputError(f"{sigma} is no involution of the {len(cartan)} nodes 0, ..., {len(cartan) - 1}")
+        if any(cartan[sigma[i]][sigma[j]] != cartan[i][j] for i in sigma for j in sigma):
+            raise InputError(f"{sigma} does not preserve the Dynkin diagram of {self.type}")
+        wrong = [i for i in self.painted if not 0 <= i < len(cartan) or sigma[i] != i]
+        if wrong:
+            raise InputError(f"painted nodes are nodes that the automorphism {sigma} fixes; got {wrong}")
+        object.__setattr__(self, "automorphism", sigma)
+        object.__setattr__(self, "painted", tuple(sorted(set(self.painted))))
+
+    # -- properties --------------------------------------------------------------------------------------
+    @property
+    def compact_dimension(self) -> int:
+        """The dimension of k, the fixed algebra of the involution."""
+        fixed, signs = self._fixed(), self.signs()
+        orbits = sum(i <= j for i, j in enumerate(self.automorphism))
+        return orbits + int((fixed & (signs == 1)).sum()) + int((~fixed).sum()) // 2
+
+    @property
+    def character(self) -> int:
+        """dim p - dim k."""
+        roots = self.root_system()
+        return roots.rank + roots.number_of_roots - 2 * self.compact_dimension
+
+    # -- verbs -------------------------------------------------------------------------------------------
+    def root_system(self) -> RootSystem:
+        """The root system of the type."""
+        return _root_system(self.type)
+
+    def involution(self) -> IntArray:
+        """The matrix (r, r) of the involution on rows of coefficients in the simple roots."""
+        return np.eye(len(self.automorphism), dtype=np.int64)[list(self.automorphism)]
+
+    def signs(self) -> IntArray:
+        """s(a) for each root a, in the order of `RootSystem.roots`.
+
+        Examples
+        --------
+        The involution of A2 changes the sign of the highest root vector:
+
+        >>> VoganDiagram("A2", (), (1, 0)).signs().tolist()
+        [1, 1, -1, 1, 1, -1]
+        """
+        roots = self.root_system().root_matrix()
+        b = bilinear_form(self.root_system())
+        sigma = list(self.automorphism)
+        change = np.triu(b[np.ix_(sigma, sigma)] - b, 1)
+        q = np.einsum("ai,ij,aj->a", roots, change, roots) + roots[:, list(self.painted)].sum(axis=1)
+        signs: IntArray = 1 - 2 * (q % 2)
+        return signs
+
+    def maximal_compact_type(self) -> tuple[str, int]:
+        """The type of the semisimple part of k, and the dimension of its centre.
+
+        Notes
+        -----
+        The roots of k are the restrictions (a + sigma a) / 2 of compact roots and of one of each pair of complex
+        roots to the fixed part of the Cartan subalgebra.
+
+        Examples
+        --------
+        >>> VoganDiagram("E7", painted=(6,)).maximal_compact_type()
+        ('E6', 1)
+        """
+        system = self.root_system()
+        roots = system.root_matrix()
+        kept = ~self._fixed() | (self.signs() == 1)
+        restricted = {tuple(x) for x in (roots + roots @ self.involution())[kept].tolist()}
+        simple = simple_system(restricted, lambda a: (generic(a),))
+        orbits = sum(i <= j for i, j in enumerate(self.automorphism))
+        return join_types(name for name, _ in identify(gram_to_cartan(system, simple))), orbits - len(simple)
+
+    def _fixed(self) -> Any:
+        roots = self.root_system().root_matrix()
+        return (roots[:, list(self.automorphism)] == roots).all(axis=1)
+
+
+def bilinear_form(system: RootSystem) -> IntArray:
+    """B with B(a, a) = (a, a) / 2 and B(a, b) + B(b, a) = (a, b) for a simply laced system, in the simple roots.
+
+    B(i, j) is 1 for i = j, -1 for neighbours i < j, else 0.  For other systems it is the same with norms as weights,
+    of use only for the identical automorphism.
+
+    Examples
+    --------
+    >>> bilinear_form(RootSystem.of_type("A2")).tolist()
+    [[1, -1], [0, 1]]
+    """
+    rank = system.rank
+    norms = np.array(system.norms, dtype=np.int64)
+    gram = np.array(system.cartan, dtype=np.int64).reshape(rank, rank) * norms // 2
+    return np.triu(gram, 1) + np.diag(norms // 2)
+
+
+def simple_system(roots: Any, key: Any) -> list[tuple[int, ...]]:
+    """The simple roots of the positive system {a : key(a) > 0}, for an additive, injective key on the roots.
+
+    Parameters
+    ----------
+    roots : collection of tuples of int
+        Closed under -1.
+    key : callable
+        Additive with values in tuples, compared lexicographically, none of them zero.
+
+    Examples
+    --------
+    >>> simple_system([(1, 0), (0, 1), (1, 1), (-1, 0), (0, -1), (-1, -1)], lambda a: (3 * a[0] - a[1],))
+    [(0, -1), (1, 1)]
+    """
+    keys = {tuple(a): key(a) for a in roots}
+    positive = {a for a, value in keys.items() if value > (0,) * len(value)}
+    simple: list[tuple[int, ...]] = []
+    for a in sorted(positive, key=keys.__getitem__):
+        # a positive root that is not simple is the sum of a simple root and a positive root, both smaller
+        if not any(tuple(x - y for x, y in zip(a, s, strict=True)) in positive for s in simple):
+            simple.append(a)
+    return simple
+
+
+def gram_to_cartan(system: RootSystem, vectors: Any) -> list[list[int]]:
+    """The matrix 2 (u, v) / (v, v) of vectors of the root lattice that are simple roots of some root system.
+
+    Examples
+    --------
+    >>> gram_to_cartan(RootSystem.of_type("G2"), [(0, 1), (1, 0)])
+    [[2, -3], [-1, 2]]
+    """
+    norms = [system.norm(v) for v in vectors]
+    return [[2 * system.inner(u, v) // norm for v, norm in zip(vectors, norms, strict=True)] for u in vectors]
+
+
+def generic(a: Any, base: int = 1024) -> int:
+    """A linear form without zeros on non-zero vectors whose coordinates are less than base / 2 in absolute value.
+
+    Examples
+    --------
+    >>> generic((1, -1))
+    1023
+    """
+    value = 0
+    for x in a:
+        value = value * base + int(x)
+    return value
+
+
+@lru_cache(maxsize=64)
+def _root_system(name: str) -> RootSystem:
+    return RootSystem.of_type(name)

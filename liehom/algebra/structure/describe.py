@@ -1,0 +1,110 @@
+"""The card of a Lie algebra: what a mathematician asks first, every line of it computed exactly."""
+
+from __future__ import annotations
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.algebra.roots.dynkin import join_types
+from liehom.algebra.roots.real_form import RealForm
+from liehom.algebra.roots.real_form_names import join_real_forms
+from liehom.algebra.structure.identification import simple_parts
+from liehom.errors import UndecidedError
+
+
+def describe(algebra: LieAlgebra) -> str:
+    """A short card: the kind of algebra, real form, ranks, radical, series, Killing form.
+
+    Over float64 only what is numerical: dimensions, the Killing form, with the tolerance that decided.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(describe(lh.so(4, 1)))
+    so(4,1), dimension 10 over QQ
+      simple, real form so(4,1), rank 2, real rank 1, maximal compact so(4)
+      complex type B2, restricted roots A1 with multiplicity 3
+      Killing form of signature (4, 6, 0) (positive, negative, zero)
+    """
+    title = algebra.name or "Lie algebra"
+    lines = [f"{title}, dimension {algebra.dimension} over {algebra.field.name}"]
+    killing = algebra.killing_signature()
+    if not algebra.field.exact:
+        lines += _series(algebra)
+        lines.append(f"Killing form of signature {killing} (positive, negative, zero), numerically")
+        lines.append("structure theory is exact: build the algebra over QQ or a number field for more")
+        return "\n  ".join(lines)
+    if algebra.dimension == 0:
+        return "\n  ".join([*lines, "the zero algebra"])
+    if killing[2] == 0:
+        lines += semisimple_lines(algebra)
+    else:
+        lines += _with_radical(algebra)
+    lines.append(f"Killing form of signature {killing} (positive, negative, zero)")
+    return "\n  ".join(lines)
+
+
+def semisimple_lines(algebra: LieAlgebra) -> list[str]:
+    """The lines on a semisimple algebra."""
+    parts = simple_parts(algebra)
+    kind = join_types(part.type for part in parts for _ in range(part.centre.degree))
+    try:
+        forms = [form for part in parts for form in part.real_forms()]
+    except UndecidedError as undecided:
+        return [f"semisimple of complex type {kind}; {undecided}"]
+    forms.sort(key=lambda form: (form.dimension, form.real_rank > 0, form.name))  # in the order of the name of the sum
+    rank = sum(form.rank for form in forms)
+    real_rank = sum(form.real_rank for form in forms)
+    compact = "+".join(form.maximal_compact for form in forms if form.maximal_compact != "0") or "0"
+    word = "simple" if len(forms) == 1 else "semisimple"
+    name = join_real_forms(form.name for form in forms)
+    first = f"{word}, real form {name}, rank {rank}, real rank {real_rank}, maximal compact {compact}"
+    return [first, f"complex type {kind}, {_restricted(forms)}"]
+
+
+def _restricted(forms: list[RealForm]) -> str:
+    if all(form.real_rank == 0 for form in forms):
+        return "compact"
+    shown = []
+    for form in forms:
+        if form.real_rank == 0:
+            continue
+        multiplicities = form.multiplicities
+        if set(multiplicities) == {"all"}:
+            text = f"multiplicity {multiplicities['all']}"
+        else:
+            text = "multiplicities " + ", ".join(f"{m} ({length})" for length, m in multiplicities.items())
+        shown.append(f"{form.restricted_type} with {text}")
+    return "restricted roots " + "; ".join(shown)
+
+
+def _with_radical(algebra: LieAlgebra) -> list[str]:
+    found = algebra.levi_decomposition()
+    radical, center, nilradical = found.radical, algebra.center(), algebra.nilradical()
+    lines = []
+    if radical.dimension == algebra.dimension:
+        lines.append(_solvable_kind(algebra, nilradical))
+    else:
+        kind = "reductive" if center.dimension == radical.dimension else "neither solvable nor semisimple"
+        levi = found.levi.as_algebra()
+        lines.append(f"{kind}: Levi factor of dimension {levi.dimension}, radical of dimension {radical.dimension}")
+        lines.append(f"Levi factor: {semisimple_lines(levi)[0]}")
+    lines.append(f"nilradical of dimension {nilradical.dimension}, centre of dimension {center.dimension}")
+    return lines + _series(algebra)
+
+
+def _solvable_kind(algebra: LieAlgebra, nilradical: Subalgebra) -> str:
+    if algebra.is_abelian():
+        return "abelian"
+    if nilradical.dimension == algebra.dimension:
+        return f"nilpotent of class {len(algebra.lower_central_series()) - 1}"
+    return "solvable, not nilpotent"
+
+
+def _series(algebra: LieAlgebra) -> list[str]:
+    derived = [term.dimension for term in algebra.derived_series()]
+    lower = [term.dimension for term in algebra.lower_central_series()]
+    return [f"derived series {_arrows(derived)}, lower central series {_arrows(lower)}"]
+
+
+def _arrows(dimensions: list[int]) -> str:
+    return " > ".join(map(str, dimensions))

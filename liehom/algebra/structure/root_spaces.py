@@ -1,0 +1,124 @@
+"""The root space decomposition g = h + sum of V_alpha over the field of the algebra.
+
+For a generic x in a Cartan subalgebra h each irreducible factor f of the characteristic polynomial of ad x on g/h gives
+the subspace ker f(ad x), which h preserves.  A linear factor gives a root space: [h_j, v] = alpha(h_j) v with exact
+values.  Another one gives the sum of the root spaces of conjugate roots, which the field does not tell apart.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any, final
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
+from liehom.errors import InputError, InternalError
+from liehom.scalars import Polynomial, Scalar, Subspace
+
+ATTEMPTS = 12
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class RootSpace:
+    """A root space, or the sum of the root spaces of roots that are conjugate over the field.
+
+    Attributes
+    ----------
+    space : Subspace
+        Of the algebra; of dimension 1 for a root with values in the field.
+    values : tuple of scalars, or None
+        alpha(h_j) on the basis of the Cartan subalgebra; None for several conjugate roots.
+    polynomial : Polynomial
+        The irreducible polynomial whose roots are the alpha(x), x the generic element.
+    """
+
+    space: Subspace
+    values: tuple[Scalar, ...] | None
+    polynomial: Polynomial
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class RootSpaceDecomposition:
+    """g = h + the root spaces.
+
+    Attributes
+    ----------
+    cartan : Subalgebra
+    element : tuple of scalars
+        The generic x in h, in the basis of the algebra.
+    spaces : tuple of RootSpace
+    """
+
+    cartan: Subalgebra
+    element: tuple[Scalar, ...]
+    spaces: tuple[RootSpace, ...]
+
+    @property
+    def is_split(self) -> bool:
+        """Whether all roots have values in the field."""
+        return all(space.values is not None for space in self.spaces)
+
+
+def root_space_decomposition(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootSpaceDecomposition:
+    """The root space decomposition of a semisimple algebra for a Cartan subalgebra (by default the one that is found).
+
+    Raises
+    ------
+    InputError
+        If the algebra is not semisimple, or `cartan` is no Cartan subalgebra of it.
+    FieldError
+        Over float64.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> found = root_space_decomposition(lh.sl(2))
+    >>> found.is_split, [space.values for space in found.spaces]
+    (True, [(-2,), (2,)])
+    >>> [space.space.dimension for space in root_space_decomposition(lh.so(3)).spaces]
+    [2]
+    """
+    h = cartan_subalgebra(algebra) if cartan is None else algebra.own(cartan)
+    field, n = algebra.field, algebra.dimension
+    if not algebra.is_semisimple():
+        raise InputError("root spaces are those of a semisimple algebra; take the Levi factor of levi_decomposition()")
+    if not h.as_algebra().is_abelian() or algebra.normalizer(h).dimension != h.dimension:
+        raise InputError(f"{h!r} is no Cartan subalgebra: it is not abelian or not its own normalizer")
+    rng = random.Random(n)
+    for attempt in range(ATTEMPTS):
+        size = 3 << attempt
+        x = field.matrix([[rng.randint(-size, size) for _ in range(h.dimension)]], (1, h.dimension)) @ h.basis
+        action = algebra.ad(x)
+        factors = Polynomial(field, action.characteristic_coefficients()).factor()  # type: ignore[arg-type]
+        zero = Polynomial(field, [0, 1])  # type: ignore[arg-type]
+        if all(k == 1 or f.monic() == zero for f, k in factors) and sum(k for f, k in factors if f.monic() == zero) == (
+            h.dimension
+        ):
+            others = [f.monic() for f, _ in factors if f.monic() != zero]
+            spaces = [_space(algebra, h, action, f) for f in others]
+            return RootSpaceDecomposition(h, tuple(x.row(0)), tuple(sorted(spaces, key=_order)))
+    raise InternalError("no element of the Cartan subalgebra tells the roots apart")
+
+
+def _space(algebra: LieAlgebra, h: Subalgebra, action: Any, f: Polynomial) -> RootSpace:
+    field, n = algebra.field, algebra.dimension
+    value = field.zeros(n, n)
+    for c in reversed(f.coefficients):
+        value = value @ action + field.identity(n).scale(c)
+    space = Subspace(field, value.null_space(), n)
+    if f.degree > 1:
+        return RootSpace(space, None, f)
+    (v,) = space.basis.to_rows()
+    place = next(i for i, c in enumerate(v) if c != 0)
+    images = (space.basis @ algebra.ad(row).T for row in h.rows())
+    return RootSpace(space, tuple(image[0, place] / v[place] for image in images), f)
+
+
+def _order(space: RootSpace) -> Any:
+    return space.polynomial.degree, [space.space.field.to_float(c) for c in reversed(space.polynomial.coefficients)][
+        ::-1
+    ]

@@ -1,0 +1,380 @@
+"""Conservation: the map chi_m from isotropy to changes of a first integral, section 7.
+
+    chi_m(zeta) = e DF(m) rho(zeta) rho(xi_1) m = -e DF(m) rho([xi_1, zeta]) m,    zeta in g_m,
+
+with e = 1/2 (Corollary 11), or 1 where the correction is an exponential of its own.  Adding t^(n-1) zeta to a step adds
+chi_m(zeta) to the coefficient of t^n of F(step(t)) - F(m), and nothing before.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.conserving.first_integral import FirstIntegral, conditioning
+from liehom.correctors.expansion import flow_series
+from liehom.correctors.isotropy.order_by_order import NOISE
+from liehom.correctors.step import Step
+from liehom.errors import InputError, TraceError
+from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
+from liehom.homogeneous.fields.field import check_point
+from liehom.series.arrays import as_values, is_exact
+from liehom.tracing import Traced
+
+RANK_RTOL = 1e-8
+
+
+@final
+class Conservation:
+    """chi_m: g_m -> W, by which isotropy changes first integrals, at a point or at several.
+
+    Parameters
+    ----------
+    action : Action
+    integral : FirstIntegral
+    frame : IsotropyFrame
+        At m.
+    m : array of shape (..., N)
+    generator : array of shape (..., dim g)
+        xi_1, any with rho(xi_1) m = X(m).
+    factor : float
+        e.
+
+    Attributes
+    ----------
+    moving : array of bool, shape (...,)
+        Whether X(m) is not 0, up to round-off.
+    value, gradient : arrays of shape (..., k) and (..., k, N)
+        F(m) and DF(m).
+    basis : array of shape (..., dim g, s)
+        An orthonormal basis of g_m (in compiled code a projector on it, or of g where nothing has to be projected).
+    matrix : array of shape (..., k, s)
+        chi_m in this basis.
+    scale : array of shape (..., k)
+        |F| + sum_i |dF/dm_i| |m_i|: F is rounded by this much times eps.
+
+    Notes
+    -----
+    (7.5) and Corollary 11 of the paper, with [ , ] the commutator. Singular values of `hat` below 1e-8 count as 0.
+
+    Examples
+    --------
+    See `conservation_map`.
+    """
+
+    __slots__ = (
+        "_bound",
+        "_on_tangents",
+        "_sizes",
+        "_velocity",
+        "action",
+        "basis",
+        "factor",
+        "gradient",
+        "integral",
+        "m",
+        "matrix",
+        "moving",
+        "scale",
+        "tangential",
+        "value",
+    )
+
+    def __init__(
+        self, action: Action, integral: FirstIntegral, frame: IsotropyFrame, m: Any, generator: Any, factor: float
+    ) -> None:
+        self.action, self.integral, self.m, self.factor = action, integral, m, factor
+        self.value, self.gradient = integral.gradient(m)
+        self.scale = conditioning(self.value, self.gradient, m)
+        noise = NOISE * float(np.finfo(m.dtype).eps)
+        self._on_tangents = self.gradient
+        if frame.basis is None:
+            tangential = self._on_even_orbit(frame)
+        else:
+            self.basis, tangential = frame.basis, self.gradient @ frame.tangent
+        sizes = _length(tangential)
+        kept = sizes > noise * _length(self.gradient)
+        self._sizes = np.where(kept, sizes, 0.0)
+        self.tangential = np.where(kept[..., None], tangential / np.where(kept, sizes, 1.0)[..., None], 0.0)
+        velocity = action.infinitesimal(generator, m)
+        self._take(velocity, _length(velocity) > noise * action.size * _length(generator) * _length(m))
+
+    def _on_even_orbit(self, frame: IsotropyFrame) -> Any:
+        """DF on the tangent space, for a frame without a basis of g_m: what lengths are taken of is the same."""
+        action, even = self.action, self.action.even
+        columns, basis = action.infinitesimal.right(self.m), action.inner_product.orthonormal_basis()
+        tangential = (self.gradient @ columns) @ frame.lift
+        if even is not None and even.symmetric:  # R(X)^T DF is in g_m if DF is tangential
+            self.basis, self._on_tangents = basis, tangential
+        else:
+            self.basis = basis - frame.lift @ (columns @ basis)
+        return tangential
+
+    def _take(self, velocity: Any, moving: Any) -> None:
+        self._velocity, self.moving = velocity, moving
+        pulled = self.action.infinitesimal.pulled(velocity[..., None, :], self._on_tangents)
+        self.matrix = self.factor * (pulled @ self.basis)
+        self._bound = self.factor * self.action.size * _length(velocity)[..., None] * self._sizes
+
+    @property
+    def hat(self) -> Any:
+        """chi_m with each row divided by its largest possible size, as its rank is decided, shape (..., k, s).
+
+        Its rows are at most of norm sqrt(s), and 0 where X or DF on the orbit vanish.
+        """
+        kept = self.moving[..., None] & (self._bound > 0)
+        return np.where(kept[..., None], self.matrix / np.where(kept, self._bound, 1.0)[..., None], 0.0)
+
+    def _of_one(self) -> tuple[Any, Any]:
+        """Of one integral: |chi_m|, and whether it counts as not 0, both (..., 1)."""
+        size = _length(self.matrix)
+        return size, self.moving[..., None] & (size > RANK_RTOL * self._bound)
+
+    def toward(self, displacement: Any) -> Conservation:
+        """The same with a displacement (..., N) of the step in place of X where X(m, t) = 0.
+
+        A time-dependent field that vanishes at t moves the point all the same; the displacement has the direction of
+        the leading coefficient of the flow. At an equilibrium it is round-off, and nothing changes.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-t*m0", "-t*m1/2", "-t*m2/4"])
+        >>> found = conservation_map(field, lh.Euler(), [0.6, 0.48, 0.64], "m0**2 + m1**2/2 + m2**2/4", t=0.0)
+        >>> int(found.rank), int(found.toward(field.vector(found.m, 1.0)).rank)
+        (0, 1)
+        """
+        made = copy(self)
+        moved = _length(displacement) > NOISE * float(np.finfo(self.m.dtype).eps) * _length(self.m)
+        made._take(np.where(self.moving[..., None], self._velocity, displacement), self.moving | moved)
+        return made
+
+    def needs_motion(self, displacement: Any) -> None:
+        """In compiled code: only steps are made for which `toward` would change nothing."""
+        moved = _length(displacement) > NOISE * float(np.finfo(np.float64).eps) * _length(self.m)
+        self.m.tape.required.append((self.moving | ~moved).entries[()])
+
+    @property
+    def dimension(self) -> int:
+        """Of g."""
+        return self.action.dimension
+
+    def along(self, displacement: Any, directions: Any = None) -> Any:
+        """e DF(m) rho(zeta) displacement for zeta in a basis of g_m (or the directions (..., dim g, q) given).
+
+        Shape (..., k, s). It is chi_m for the displacement rho(xi_1) m.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
+        >>> found = conservation_map(field, lh.Euler(), [0.6, 0.48, 0.64], "m0**2 + m1**2/2 + m2**2/4")
+        >>> found.along(np.ones(3)).shape
+        (1, 1)
+        """
+        pulled = self.action.infinitesimal.pulled(displacement[..., None, :], self.gradient)
+        return self.factor * (pulled @ (self.basis if directions is None else directions))
+
+    def __call__(self, zeta: Any) -> Any:
+        """chi_m(zeta) for zeta (..., dim g) in g_m, shape (..., k)."""
+        moved = self.action.infinitesimal(zeta, self._velocity)
+        return self.factor * (self.gradient @ moved[..., None])[..., 0]
+
+    @property
+    def singular_values(self) -> Any:
+        """Of `hat`, shape (..., min(k, s)), decreasing."""
+        if self.matrix.shape[-2] == 1:
+            return _length(self.hat)[..., : self.matrix.shape[-1]]
+        needs_one(self.hat)
+        return np.linalg.svd(_double(self.hat), compute_uv=False)
+
+    @property
+    def rank(self) -> Any:
+        """Of chi_m, shape (...,)."""
+        if self.matrix.shape[-2] == 1:
+            return self._of_one()[1][..., 0].astype(int)
+        return (self.singular_values > RANK_RTOL).sum(axis=-1)
+
+    @property
+    def wanted(self) -> Any:
+        """How many of the integrals are independent on the orbit at m: the rank of DF(m) on its tangent space."""
+        if self.tangential.shape[-2] == 1:
+            return (self._sizes[..., 0] > 0).astype(int)
+        needs_one(self.tangential)
+        return (np.linalg.svd(_double(self.tangential), compute_uv=False) > RANK_RTOL).sum(axis=-1)
+
+    @property
+    def onto(self) -> Any:
+        """Whether chi_m reaches all integrals that are not stationary on the orbit at m, shape (...,)."""
+        return self.rank == self.wanted
+
+    @property
+    def directions(self) -> Any:
+        """V_m: an orthonormal basis of the complement of ker chi_m in g_m, shape (..., dim g, q); zeros fill up."""
+        if self.matrix.shape[-2] == 1:
+            size, kept = (x[..., None] for x in self._of_one())
+            rows = np.where(kept, self.matrix / np.where(kept, size, 1.0), 0.0)
+        else:
+            needs_one(self.hat)
+            _, sizes, right = np.linalg.svd(_double(self.hat), full_matrices=False)
+            rows = right * (sizes > RANK_RTOL)[..., None]
+        return self.basis @ np.swapaxes(rows, -1, -2)
+
+    def preimage(self, target: Any) -> Any:
+        """The zeta in g_m of least norm with chi_m(zeta) = target (..., k); in least squares where there is none."""
+        directions = self.directions
+        matrix = self.along(self._velocity, directions)
+        units = np.where(self.scale > 0, self.scale, 1.0)
+        matrix = matrix / units[..., None]
+        if type(matrix) is Traced:  # of one integral
+            inverse = np.where(matrix == 0, 0.0, 1.0 / np.where(matrix == 0, 1.0, matrix))
+        else:
+            inverse = pseudo_inverse(matrix, 0.0)
+        return (directions @ (inverse @ (target / units)[..., None]))[..., 0]
+
+    def range(self, index: tuple[int, ...] = ()) -> Any:
+        """An orthonormal basis of chi_m(g_m) in W, columns, shape (k, rank); at the point of that index."""
+        left, sizes, _ = np.linalg.svd(_double(self.matrix[index]))
+        rank = int(np.asarray(self.rank)[index])
+        return left[:, : min(rank, len(sizes))]
+
+    def unreachable(self, index: tuple[int, ...] = ()) -> Any:
+        """Covectors z, rows of shape (j, k), with z chi_m = 0 although z DF does not vanish on the orbit.
+
+        The combination sum_i z_i F_i cannot be corrected by isotropy, at first order; j = wanted - rank.
+        """
+        hat, tangential = _double(self.hat[index]), _double(self.tangential[index])
+        left, sizes, _ = np.linalg.svd(hat)
+        null = left[:, int((sizes > RANK_RTOL).sum()) :]
+        turn, sizes, _ = np.linalg.svd(null.T @ tangential)
+        rows = (null @ turn[:, : int((sizes > RANK_RTOL).sum())]).T
+        # back from rows that were divided by |DF_j| on the orbit
+        sizes = self._sizes[index]
+        rows = np.where(sizes > 0, rows / np.where(sizes > 0, sizes, 1.0), 0.0)
+        largest = np.take_along_axis(rows, np.abs(rows).argmax(axis=-1)[:, None], axis=-1)
+        return rows / largest
+
+    def __str__(self) -> str:
+        if self.m.ndim > 1:
+            return f"chi_m at {self.m.shape[:-1]} points: rank {self.rank.tolist()} of {self.wanted.tolist()}"
+        state = f"chi_m has rank {int(self.rank)} of {int(self.wanted)}"
+        if self.onto:
+            return state
+        return state + "; isotropy does not reach " + ", ".join(combination(z) for z in self.unreachable())
+
+
+def needs_one(matrix: Any) -> None:
+    """Refuse several integrals where values are not known: a singular value decomposition branches on them."""
+    if type(matrix) is Traced:
+        raise TraceError(
+            "several first integrals at once need a singular value decomposition, which is not compiled: conserve one, "
+            "or integrate without compile="
+        )
+
+
+def combination(covector: Any) -> str:
+    """A covector on W as a combination of integrals, in words.
+
+    Examples
+    --------
+    >>> combination([1.0, 0.0, -0.25])
+    'F[0] - 0.25 F[2]'
+    >>> combination([1.0])
+    'F'
+    """
+    if len(covector) == 1:
+        return "F"
+    text = ""
+    for i, x in enumerate(covector):
+        if abs(x) > RANK_RTOL:
+            sign = (" - " if x < 0 else " + ") if text else "-" if x < 0 else ""
+            size = f"{abs(x):.6g}"
+            text += f"{sign}{'' if size == '1' else size + ' '}F[{i}]"
+    return text
+
+
+def pseudo_inverse(matrix: Any, cutoff: Any) -> Any:
+    """A^+ of matrices (..., k, q); singular values up to the cutoff (...,), or 1e-12 of the largest, count as 0.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> pseudo_inverse(np.array([[2.0, 0.0], [0.0, 1e-3]]), 1e-2).tolist()
+    [[0.5, 0.0], [0.0, 0.0]]
+    """
+    if matrix.shape[-2:] == (1, 1):
+        kept = np.abs(matrix) > np.asarray(cutoff)[..., None, None]
+        return np.where(kept, 1 / np.where(kept, matrix, 1.0), 0.0)
+    left, sizes, right = np.linalg.svd(_double(matrix), full_matrices=False)
+    kept = sizes > np.maximum(np.asarray(cutoff)[..., None], 1e-12 * sizes[..., :1])
+    inverse = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
+    return np.swapaxes(right, -1, -2) @ (inverse[..., None] * np.swapaxes(left, -1, -2))
+
+
+def conservation_map(
+    field: GeneratorField, step: Step, m: Any, F: Any, *, t: Any = 0.0, exponential: Any = "exp"
+) -> Conservation:
+    """chi_m: g_m -> W, the change of E_n by isotropy t^(n-1) zeta in a step.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    step : Step
+        It decides e alone: 1/2 for one exponential, 1 for several.
+    m : array_like of shape (..., N)
+    F : callable, text, sympy expression or list of these
+        See `FirstIntegral`.
+    t : float or array of shape (...,)
+    exponential : str, Exponential or callable
+
+    Returns
+    -------
+    Conservation
+        With the matrix on an orthonormal basis of g_m, its rank and range, and the combinations that it does not reach.
+
+    Raises
+    ------
+    InputError
+        If F is not a first integral at m, or the point is exact.
+    ShapeError
+        If m is not a point on an orbit of positive dimension.
+
+    Notes
+    -----
+    (7.5) and Corollary 11 of the paper; xi_1 may be any generator with rho(xi_1) m = X(m), such as psi(m).
+
+    Examples
+    --------
+    The free rigid body: chi_m(s m) = -(1/2) s |X|^2
+
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> w, m = np.array([1.0, 0.5, 0.25]), np.array([0.6, 0.48, 0.64])
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * w)
+    >>> found = conservation_map(field, lh.Euler(), m, lambda m: np.sum(m * m * w, axis=-1) / 2)
+    >>> x = field.vector(m)
+    >>> print(found, bool(np.isclose(found(m)[0], -x @ x / 2)))
+    chi_m has rank 1 of 1 True
+    """
+    point = as_values(m)
+    if is_exact(point):
+        raise InputError("chi is computed on an orthonormal basis: give the point in floats")
+    dimension = check_point(field.representation, point)
+    integral = FirstIntegral(F, field.representation.size)
+    integral.check(flow_series(field, point, 1, t), 1)
+    action = Action(field.representation, exponential)
+    factor = 0.5 if step.one_exponential else 1.0
+    return Conservation(action, integral, action.isotropy_frame(point, dimension), point, field.psi(point, t), factor)
+
+
+def _length(x: Any) -> Any:
+    return np.sqrt((x * x).sum(axis=-1))
+
+
+def _double(x: Any) -> Any:
+    """The precision in which linear algebra is available, and no NaN, for which it raises."""
+    return np.nan_to_num(np.asarray(x, dtype=np.float64), nan=0.0, posinf=0.0, neginf=0.0)

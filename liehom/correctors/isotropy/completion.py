@@ -1,0 +1,102 @@
+"""Terms of the flow's own generator, where isotropy cannot serve: next to zeros of a time-dependent field.
+
+Let w_l be the leading coefficient at (m, t).  At orders n <= l isotropy does not enter.  And where w_l is small next
+to the later w_k, as shortly after a time at which the field vanishes, zeta and c are series in h / t_1 with
+
+    t_1 = min over k > l of (l |w_l| / (k |w_k|))^(1/(k-l)),    the time in which the velocity changes by itself,
+
+so that they serve steps h << t_1 only.  t_1 is compared with the time scale of the generator, 1/rate, with
+rate = max_k |psi_k|^(1/(k+1)): isotropy takes the share s(rate t_1) of each correction, s = 0 up to 1/4, 1 from 1/2
+on and smooth between, and the rest is made by x t^n, rho(x) m = what is missing at order n, as in a Taylor step.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from liehom.correctors.expansion import Flow
+from liehom.homogeneous import Action, IsotropyFrame
+from liehom.series.arrays import namespace
+
+NONE_UP_TO, ALL_FROM = 1 / 4, 1 / 2
+REFINEMENTS = 2
+
+
+def isotropic_share(action: Action, flow: Flow, leading: int, order: int) -> Any:
+    """s(rate t_1), shape (...,): the share of the corrections that isotropy takes.
+
+    Parameters
+    ----------
+    action : Action
+    flow : Flow
+        At least to this order.
+    leading : int
+        l >= 1.
+    order : int
+        The last k.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> from liehom.correctors.expansion import flow_series
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
+    >>> times = np.array([0.0, 0.01, 0.3, 1.0])
+    >>> flow = flow_series(field, np.ones((4, 1)) * [1.0, 0.0], 3, times)
+    >>> isotropic_share(lh.Action(field.representation), flow, 1, 3).round(3).tolist()
+    [0.0, 0.0, 0.383, 1.0]
+    """
+    xp = namespace(flow.points.value)
+    first = leading * _norm(xp, flow.point(leading))
+    scale: Any = xp.zeros_like(first) + np.inf
+    for k in range(leading + 1, order + 1):
+        later = k * _norm(xp, flow.point(k))
+        ratio = xp.where(later > 0, first / xp.where(later > 0, later, 1.0), np.inf)
+        scale = xp.minimum(scale, ratio ** (1 / (k - leading)))
+    rate: Any = xp.zeros_like(first)
+    for k in range(order):
+        rate = xp.maximum(rate, generator_norm(action, flow.psi(k)) ** (1 / (k + 1)))
+    product = xp.where(rate > 0, rate * xp.minimum(scale, 1 / xp.where(rate > 0, rate, 1.0)), 1.0)
+    x = xp.clip((product - NONE_UP_TO) / (ALL_FROM - NONE_UP_TO), 0.0, 1.0)
+    return x * x * (3 - 2 * x)
+
+
+def generator_norm(action: Action, x: Any) -> Any:
+    """A bound of the norm of rho(x) for x (..., dim g), shape (...,).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> round(float(generator_norm(lh.Action(lh.defining(lh.so(3))), np.array([0.6, 0.0, 0.8]))), 12)
+    1.414213562373
+    """
+    xp = namespace(x)
+    square = xp.einsum("...a,ab,...b->...", x, xp.asarray(action.inner_product.matrix), x)
+    return action.size * xp.sqrt(xp.maximum(square, 0.0))
+
+
+def lifted(action: Action, frame: IsotropyFrame, m: Any, tangent: Any) -> Any:
+    """The generator x of least norm with rho(x) m = a tangent vector, shape (..., dim g).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([2.0, 0.0])
+    >>> lifted(action, action.isotropy_frame(m, 1), m, np.array([0.0, 1.0])).tolist()
+    [0.5]
+    """
+    xp = namespace(m)
+    down = xp.swapaxes(frame.tangent, -1, -2)
+    x = (frame.lift @ (down @ tangent[..., None]))[..., 0]
+    for _ in range(REFINEMENTS if tangent.dtype == np.longdouble else 0):  # the frame is of double precision
+        missing = tangent - action.infinitesimal(x, m)
+        x = x + (frame.lift @ (down @ missing[..., None]))[..., 0]
+    return x
+
+
+def _norm(xp: Any, x: Any) -> Any:
+    return xp.sqrt(xp.sum(x * x, axis=-1))

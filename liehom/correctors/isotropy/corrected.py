@@ -1,0 +1,140 @@
+"""Corrected(step, order): a step raised to any order by isotropy, with its clock."""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.isotropy.isotropy_corrector import Correction, correct
+from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.errors import InputError
+from liehom.homogeneous import Action
+
+
+@final
+class Corrected(Step):
+    """A step corrected along the isotropy of each point, so that it captures orbits to order n.
+
+    Parameters
+    ----------
+    step : Step
+        The base, of any order p >= 1.
+    order : int
+        n. For n = p + 1 this is Theorem 5; for more it is the tower: p + 1, p + 2, ..., n. For n <= p nothing is
+        corrected.
+    weight : float, optional
+        Which of several corrections at each order: that of least |zeta|^2 + weight^2 c^2. None (default) is
+        infinite: the least change of the clock, then the least zeta.
+
+    Raises
+    ------
+    InputError
+        If the order is less than 1, the weight not positive, or the step is itself corrected.
+
+    Notes
+    -----
+    Along the step's own clock the trajectory, not only the orbit, has order n, at every point where the range
+    condition (6.2) holds; where a linear system has no solution the order stays what it was and the residual says so.
+
+    A field psi(m, t) may vanish at some time t_0, as t f(m) does at 0. Isotropy and clock then serve at t_0 itself
+    (leading order l > 1), but shortly after it they are series in h / (t - t_0): by isotropy alone the global order
+    through such a point is 2 for Euler's base, 3 for Heun's, 4 for LieTaylor(3) and 5 for RKMK("rk4"), one more than
+    the base has, for any n (measured on S^2; 2, 2.9, 4 and 5). Therefore a smooth share of each correction is left
+    to terms of the flow's own generator there (`liehom.correctors.isotropy.completion`), and the order is n again:
+    4.0, 4.0, 5.0 and 5.0 were measured for n = 4, 4, 5, 5 with steps from t_0 = 0 and across it. Away from zeros the
+    share of isotropy is 1, and for autonomous fields it is 1 everywhere.
+
+    Next to equilibria of an autonomous field the corrections stay bounded; points that are equilibria up to
+    round-off stay where they are.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.Corrected(lh.Euler(), order=4)
+    Corrected(Euler(), order=4)
+    """
+
+    def __init__(self, step: Step, order: int, *, weight: float | None = None) -> None:
+        if not isinstance(step, Step):
+            raise InputError(f"expected a step such as liehom.Euler(), got {step!r}")
+        if isinstance(step, Corrected):
+            raise InputError("the step is corrected already: give its base and the higher order")
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:
+            raise InputError(f"the order is an integer at least 1, got {order!r}")
+        if weight is not None and not weight > 0:
+            raise InputError(f"the weight of the clock is a positive number, got {weight!r}")
+        self.step = step
+        self.weight = weight
+        self._order = max(int(order), step.order)
+
+    @property
+    def order(self) -> int:
+        return self._order
+
+    @property
+    def one_exponential(self) -> bool:
+        return self.step.one_exponential
+
+    def factors(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
+        return self.at(action, psi, m, t).factors(h)
+
+    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> CorrectedStep:
+        local = self.step.at(action, psi, m, t)
+        found = correct(
+            action,
+            psi.field,
+            local,
+            m,
+            t[..., 0] if np.ndim(t) else t,
+            base_order=self.step.order,
+            order=self._order,
+            orbit_dimension=psi.orbit_dimension,
+            weight=self.weight,
+            one_exponential=self.step.one_exponential,
+            error_terms=error_terms,
+        )
+        return CorrectedStep(local, found, self.step.one_exponential)
+
+    def __repr__(self) -> str:
+        weight = "" if self.weight is None else f", weight={self.weight!r}"
+        return f"Corrected({self.step!r}, order={self._order}{weight})"
+
+
+@final
+class CorrectedStep(LocalStep):
+    """A corrected step at one point, as a function of h, with its clock.
+
+    Parameters
+    ----------
+    base : LocalStep
+    correction : Correction
+    one_exponential : bool
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m * [1.0, 2.0, 3.0])
+    >>> action, psi = lh.Action(field.representation), Generator(field, 2)
+    >>> local = lh.Corrected(lh.Euler(), order=3).at(action, psi, np.array([0.6, 0.0, 0.8]), 0.0)
+    >>> int(local.correction.reached), float(local.time(0.0))
+    (3, 0.0)
+    """
+
+    def __init__(self, base: LocalStep, correction: Correction, one_exponential: bool) -> None:
+        self.base = base
+        self.correction = correction
+        self.defects = correction.defects
+        self._one_exponential = one_exponential
+
+    def factors(self, h: Any) -> tuple[Any, ...]:
+        made = self.base.factors(h)
+        zeta = self.correction.generator(h)
+        if zeta is None:
+            return made
+        return (made[0] + zeta,) if self._one_exponential else (*made, zeta)
+
+    def time(self, h: Any) -> Any:
+        """tau(h), for h of shape (...,)."""
+        return self.correction.time(h)

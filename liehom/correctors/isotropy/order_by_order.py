@@ -1,0 +1,266 @@
+"""The iteration over the orders at a point (or at one point of each trajectory) that `correct` runs.
+
+At level n the corrected step agrees with F_tau through order n - 1; the difference r at order n is removed by zeta
+and c (`range_solver`), or by terms of the flow itself where isotropy does not enter (`completion`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.expansion import Clock, Flow, at_rest, flow_series, leading_order, vanishing
+from liehom.correctors.isotropy.completion import generator_norm, isotropic_share, lifted
+from liehom.correctors.isotropy.range_solver import EvenRangeSolver, RangeSolver
+from liehom.correctors.step import LocalStep, apply_factors, step_variable
+from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
+from liehom.series.arrays import is_jax, is_lazy, namespace
+from liehom.series.jet import Jet
+from liehom.tracing.array import Traced
+
+SOLVED_RTOL = 1e-6
+NOISE = 64
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The trajectories with one leading order.
+
+    Attributes
+    ----------
+    leading : int
+        l; beyond the order of the expansion where all coefficients of a time-dependent field's flow vanish.
+    here : array of bool, shape (...,), or None
+        Which they are; None for all.
+    solver : RangeSolver or None
+        None where isotropy cannot enter at any order.
+    share : array of shape (...,), or None
+        What isotropy takes of a correction; None is everything, everywhere.
+    """
+
+    leading: int
+    here: Any
+    solver: RangeSolver | EvenRangeSolver | None
+    share: Any
+
+
+@final
+class Tower:
+    """The state of the iteration: the corrections so far, and what is left.
+
+    Parameters
+    ----------
+    action, field, local, m, t
+        As for `liehom.correctors.isotropy.isotropy_corrector.correct`.
+    total : int
+        The order to which everything can be expanded.
+    orbit_dimension : int or array of shape (...,)
+    one_exponential : bool
+    weight : float or None
+
+    Attributes
+    ----------
+    zeta : Jet
+        The correction, values of shape (..., dim g).
+    clock : Clock
+    leading, levels, residual : arrays of shape (...,)
+        l, the last level that was solved (0 if none), the largest relative residual.
+    defects : list of (int, array)
+    parts : list of Part
+    """
+
+    def __init__(
+        self,
+        action: Action,
+        field: GeneratorField,
+        local: LocalStep,
+        m: Any,
+        t: Any,
+        *,
+        total: int,
+        orbit_dimension: Any,
+        one_exponential: bool = True,
+        weight: float | None = None,
+    ) -> None:
+        self.xp = namespace(m)
+        self.action, self.m, self.total = action, m, total
+        self.shape = tuple(m.shape[:-1])
+        self.flow: Flow = flow_series(field, m, total, t)
+        self.zeta = self._no_correction()
+        self._factors = with_correction(local.factors(step_variable(total, m)), self.zeta, one_exponential)
+        self.step: Jet = apply_factors(action, self._factors, m)
+        self.clock = Clock(self.flow, total, self.shape)
+        self._orbit_dimension = orbit_dimension
+        # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
+        if is_lazy(m):
+            self.leading = np.ones(self.shape, dtype=int)
+        elif action.even is not None and not field.time_dependent:
+            self.leading = np.where(at_rest(action, self.flow), 0, 1)
+        else:
+            self.leading = leading_order(self.flow, total)
+        # None is all of them, which spares masks
+        self.active: Any = None
+        self.moving: Any = None
+        if is_lazy(m) and not field.time_dependent:
+            still = at_rest(action, self.flow) if type(m) is Traced else vanishing(self.flow, 1)
+            self.active = self.moving = ~still
+        elif not field.time_dependent and not bool(np.all(self.leading)):
+            self.active = self.leading > 0
+        self.parts = self._split(0.5 if one_exponential else 1.0, weight)
+        self.levels = 0 * self.xp.asarray(self.leading)
+        self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
+        self.defects: list[tuple[int, Any]] = []
+
+    @cached_property
+    def frame(self) -> IsotropyFrame:
+        """At m, when it is first asked for: on even orbits mostly never."""
+        return self.action.isotropy_frame(self.m, self._orbit_dimension)
+
+    def _no_correction(self) -> Jet:
+        zero = self.xp.zeros((*self.shape, self.action.dimension), dtype=self.m.dtype)
+        zeta = Jet.growing(zero, self.total, zero=True)
+        for _ in range(self.total):
+            zeta.extend(None)
+        return zeta
+
+    def _split(self, factor: float, weight: float | None) -> list[Part]:
+        parts = []
+        some = self.leading.flat[:1]
+        alike = bool(np.all(self.leading == some))  # the common case, in which nothing has to be sorted
+        for l in [int(x) for x in (some if alike else np.unique(self.leading))]:
+            here = None if alike else self.leading == l
+            if l == 0:
+                if self.flow.time_dependent:
+                    parts.append(Part(self.total + 1, here, None, None))
+                continue
+            velocity = _masked(self.xp, here, self.flow.point(l))
+            solver: RangeSolver | EvenRangeSolver
+            if self.action.even is not None and not is_jax(self.m):
+                solver = EvenRangeSolver(self.action, self.m, self._orbit_dimension, velocity, l, factor, self.moving)
+            else:
+                solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
+            share = isotropic_share(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
+            if share is not None and not is_lazy(share) and bool(np.all(share == 1)):
+                share = None
+            parts.append(Part(l, here, solver, share))
+        return parts
+
+    # -- one order ---------------------------------------------------------------------------------------
+    def level(self, n: int) -> None:
+        """Make the step agree with F_tau at order n."""
+        difference = self.difference(n)
+        changed: dict[int, Any] = {}
+        for part in self.parts:
+            here = _both(self.active, part.here)
+            if part.solver is None or n <= part.leading:
+                self._complete(changed, n, here, difference)
+                self._reach(n, here)
+                continue
+            own = difference if part.share is None else part.share[..., None] * difference
+            zeta, c, residual = part.solver.solve(own)
+            if residual is None:  # it is 0 where nothing moves
+                here = None
+            _add(changed, n - part.leading, _masked(self.xp, here, zeta))
+            self.clock.set(n - part.leading + 1, c if here is None else self.xp.where(here, c, 0.0))
+            if part.share is not None:
+                self._complete(changed, n, here, difference - own)
+            self._judge(n, here, difference, residual)
+        for k in sorted(changed):
+            old = self.zeta.node.known[k]
+            self.zeta.replace(k, changed[k] if old is None else old + changed[k], self.step)
+
+    def difference(self, n: int) -> Any:
+        """[t^n] (F_tau - step), shape (..., N)."""
+        return self.clock.point(n) - self.step.coefficient(n)
+
+    def _complete(self, changed: dict[int, Any], n: int, here: Any, difference: Any) -> None:
+        made = lifted(self.action, self.frame, self.m, difference)
+        _add(changed, n, _masked(self.xp, here, made))
+
+    def _reach(self, n: int, where: Any) -> None:
+        self.levels = 0 * self.levels + n if where is None else self.xp.where(where, n, self.levels)
+
+    def _judge(self, n: int, here: Any, difference: Any, residual: Any) -> None:
+        """Record the residual; where the system was not solved, the order stays and no more is corrected."""
+        xp = self.xp
+        if residual is None:  # it always has a solution
+            self._reach(n, here)
+            return
+        largest = xp.max(xp.abs(difference), axis=-1)
+        scale = xp.where(largest > 0, largest, 1.0)
+        relative = xp.max(xp.abs(residual), axis=-1) / scale
+        if is_lazy(relative) or bool(np.any(relative > SOLVED_RTOL / 10)):
+            # scaled, so that squares do not underflow
+            left = norm(xp, residual / scale[..., None])
+            relative = left / xp.maximum(norm(xp, difference / scale[..., None]), 1.0)
+            relative = _masked(xp, here, relative[..., None])[..., 0]
+            noise = round_off(self.action, self.m, self.flow, self._factors, n)
+            relative = xp.where(left * scale > noise, relative, 0.0)
+            solved = relative <= SOLVED_RTOL
+            self.defects.append((n, xp.where(solved, 0.0, left * scale)))
+            self._reach(n, _both(here, solved))
+            self.active = solved if here is None else _both(self.active, solved | ~here)
+        else:
+            self.defects.append((n, xp.zeros_like(relative)))
+            self._reach(n, here)
+        self.residual = xp.maximum(self.residual, relative)
+
+
+def with_correction(factors: tuple[Any, ...], zeta: Jet | None, one_exponential: bool) -> tuple[Any, ...]:
+    """The factors of a corrected step: zeta is added to the generator, or is an outermost factor.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, zeta = Jet([[0.0], [1.0]]), Jet([[0.0], [2.0]])
+    >>> len(with_correction((x,), zeta, True)), len(with_correction((x, x), zeta, False))
+    (1, 3)
+    """
+    if zeta is None:
+        return factors
+    return (factors[0] + zeta,) if one_exponential else (*factors, zeta)
+
+
+def round_off(action: Action, m: Any, flow: Flow, factors: tuple[Any, ...], n: int) -> Any:
+    """What may be round-off in [t^n] (F_tau - step), shape (...,): that of the terms of exp(|xi| + |psi| t) |m|.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field, m = lh.GeneratorField(lh.defining(lh.so(2)), [1]), np.array([1.0, 0.0])
+    >>> xi = Jet([[0.0], [1.0], [0.0]])
+    >>> bool(round_off(lh.Action(field.representation), m, flow_series(field, m, 2), (xi,), 2) < 1e-12)
+    True
+    """
+    xp = namespace(m)
+    rates = [xp.zeros(m.shape[:-1], dtype=m.dtype)]
+    for k in range(1, n + 1):
+        step = sum(generator_norm(action, x.coefficient(k)) for x in factors)
+        rates.append(k * step + generator_norm(action, flow.psi(k - 1)))
+    terms = [norm(xp, m)]
+    for k in range(1, n + 1):
+        terms.append(sum(rates[i] * terms[k - i] for i in range(1, k + 1)) / k)
+    return NOISE * np.finfo(m.dtype).eps * terms[n]
+
+
+def _add(changed: dict[int, Any], k: int, value: Any) -> None:
+    changed[k] = value if k not in changed else changed[k] + value
+
+
+def _both(a: Any, b: Any) -> Any:
+    """a and b, where None is everywhere."""
+    return b if a is None else a if b is None else a & b
+
+
+def _masked(xp: Any, here: Any, value: Any) -> Any:
+    return value if here is None else xp.where(here[..., None], value, 0.0)
+
+
+def norm(xp: Any, x: Any) -> Any:
+    """The Euclidean norms of (..., N)."""
+    return xp.sqrt(xp.sum(x * x, axis=-1))

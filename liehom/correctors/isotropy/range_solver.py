@@ -1,0 +1,282 @@
+"""The linear system of Theorem 5 at a point, solved for any right-hand side.
+
+    e rho(zeta) w_l - l c w_l = r,    zeta in g_m, c real,    e = 1/2 (1 where the correction is a factor of its own)
+
+Scaled by |w_l|, so that it is well posed next to equilibria; in least squares where it has no solution; of several
+solutions that of least |c| and then of least |zeta|, or that of least |zeta|^2 + weight^2 c^2.
+
+In an orthonormal basis of the tangent space the unknowns are split: with M = e rho(g_m) u, u = w_l / |w_l|, and
+p = u - M M^+ u the part of u that isotropy does not reach, c is determined by r if p is not 0 and free if it is;
+then zeta = M^+ (r + l c u).
+"""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+import numpy as np
+
+from liehom.errors import InternalError
+from liehom.homogeneous import Action, IsotropyFrame
+from liehom.homogeneous.frames.branch_free_frames import decomposed
+from liehom.series.arrays import across_lanes, namespace
+from liehom.tracing.array import Traced
+
+RANK_RTOL = 1e-8
+REACHED_RTOL = 1e-7
+REFINEMENTS = 3
+
+
+@final
+class RangeSolver:
+    """The map r -> (zeta, c) at a point with a given w_l.
+
+    Parameters
+    ----------
+    action : Action
+    frame : IsotropyFrame
+        At m.
+    velocity : array of shape (..., N)
+        w_l; where it vanishes, `solve` gives zeta = 0 and c = 0.
+    leading : int
+        l.
+    factor : float
+        e.
+    weight : float, optional
+        Relative weight of c where it is free; None is infinite: least |c| first.
+
+    Notes
+    -----
+    Section 6 of the paper, (6.1) and (6.2), with the factor e in front of zeta and l in front of c. Singular values
+    of M below 1e-8 of the largest possible count as 0.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> action, m = lh.Action(lh.defining(lh.so(3))), np.array([0, 0, 1.0])
+    >>> solver = RangeSolver(action, action.isotropy_frame(m, 2), np.array([1.0, 0, 0]), 1, 0.5)
+    >>> zeta, c, residual = solver.solve(np.array([0.25, 0.5, 0.0]))
+    >>> float(c), np.abs(zeta).round(12).tolist(), bool(abs(residual).max() < 1e-12)
+    (-0.25, [1.0, 0.0, 0.0], True)
+    >>> int(solver.rank), round(float(solver.singular_value), 12)  # of [rho(g_m) u / 2, u]
+    (2, 0.353553390593)
+    """
+
+    def __init__(
+        self,
+        action: Action,
+        frame: IsotropyFrame,
+        velocity: Any,
+        leading: int,
+        factor: float,
+        weight: float | None = None,
+    ) -> None:
+        xp = self._xp = namespace(velocity)
+        self._frame, self._leading, self._weight = frame, leading, weight
+        self._size, unit = _normalized(xp, velocity)
+        self._down = xp.swapaxes(frame.tangent, -1, -2)
+        self._basis = frame.basis
+        if unit.dtype == np.longdouble:
+            self._basis = _polished(frame.basis, action.inner_product.matrix)
+        moved = action.infinitesimal(xp.swapaxes(self._basis, -1, -2), unit[..., None, :])
+        self._moves = factor * (self._down @ xp.swapaxes(moved, -1, -2))
+        self._unit = _apply(self._down, unit)
+        self._cutoff = factor * RANK_RTOL * action.size
+        self._inverse = _pseudo_inverse(xp, self._moves, self._cutoff)
+        self._reaching = self._generator(self._unit)  # M^+ u
+        rest = self._unit - _apply(self._moves, self._reaching)
+        square = xp.sum(rest * rest, axis=-1, keepdims=True)
+        self._determined = square > REACHED_RTOL**2
+        self._rest = xp.where(self._determined, rest / xp.where(self._determined, square, 1.0), 0.0)
+        self._values: Any = None
+
+    @property
+    def singular_value(self) -> Any:
+        """The d-th singular value of [e rho(g_m) u, u], shape (...,): (6.2) holds where it is not 0."""
+        return _entry(self._xp, self._singular_values(), self._frame.orbit_dimension)
+
+    @property
+    def rank(self) -> Any:
+        """The rank of this matrix, shape (...,); the range condition asks for d."""
+        return (self._singular_values() > self._cutoff).sum(axis=-1)
+
+    @property
+    def matrix(self) -> Any:
+        """[e rho(g_m) u, u] in orthonormal bases, shape (..., d, s + 1)."""
+        return self._xp.concatenate([self._moves, self._unit[..., None]], axis=-1)
+
+    def _singular_values(self) -> Any:
+        if self._values is None:
+            self._values = self._xp.linalg.svd(_single(self.matrix), compute_uv=False)
+        return self._values
+
+    def solve(self, right: Any) -> tuple[Any, Any, Any]:
+        """zeta (..., dim g), c (...,) and the residual r - (e rho(zeta) w - l c w), tangential, shape (..., N)."""
+        target = _apply(self._down, right / self._size)
+        c = self._clock(target)
+        moved = target + self._leading * c[..., None] * self._unit
+        zeta = self._generator(moved)
+        residual = moved - _apply(self._moves, zeta)
+        return _apply(self._basis, zeta), c, _apply(self._frame.tangent, residual * self._size)
+
+    def _clock(self, target: Any) -> Any:
+        c = -self._xp.sum(self._rest * target, axis=-1) / self._leading
+        if self._weight is None:
+            return c
+        # zeta = a + l c b with a = M^+ r, b = M^+ u: the least |a + l c b|^2 + weight^2 c^2
+        xp, l = self._xp, self._leading
+        a, b = self._generator(target) / self._weight, self._reaching / self._weight
+        free = -l * xp.sum(a * b, axis=-1) / (1 + l**2 * xp.sum(b * b, axis=-1))
+        return xp.where(self._determined[..., 0], c, free)
+
+    def _generator(self, target: Any) -> Any:
+        """M^+ r, in the basis of the frame."""
+        if target.dtype != np.longdouble:
+            return _apply(self._inverse, target)
+        # M^T G^2 M M^T with G = (M M^T)^+ is M^+ in whatever precision G is known: it ends in the range of M^T, and
+        # rests where M^T (r - M y) = 0
+        turned = np.swapaxes(self._moves, -1, -2)
+        found = np.zeros((*np.broadcast_shapes(target.shape[:-1], turned.shape[:-2]), turned.shape[-2]), target.dtype)
+        for _ in range(REFINEMENTS):
+            left = _apply(self._moves, _apply(turned, target - _apply(self._moves, found)))
+            found = found + _apply(turned, _apply(self._inverse, left))
+        return found
+
+
+@final
+class EvenRangeSolver:
+    """The same map where the orbits are even (`branch_free_frames`): it always has a solution.
+
+    With w = w_l and mu of the evenness: c = -<w, r> / (l <w, w>), and zeta is the part in g_m of
+    G^-1 R^T r / (e mu <w, w>), R = [rho(e_1) w, ...].
+
+    Parameters
+    ----------
+    action : Action
+        With its `even` set.
+    m : array of shape (..., N)
+    orbit_dimension : int or array
+    velocity : array of shape (..., N)
+    leading : int
+    factor : float
+    moving : truth value, optional
+        Where it does not hold, zeta and c are 0; by default where w is 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.homogeneous.frames.branch_free_frames import evenness
+    >>> from liehom.tracing import Tape, Traced
+    >>> action = lh.Action(lh.defining(lh.so(3)))
+    >>> action = action.on_even_orbits(evenness(action, np.eye(3), 2))
+    >>> tape = Tape()
+    >>> m, w, r = (Traced(tape, x) for x in ([0, 0, 1.0], [1.0, 0, 0], [0.25, 0.5, 0]))
+    >>> zeta, c, _ = EvenRangeSolver(action, m, 2, w, 1, 0.5).solve(r)
+    >>> float(c), [round(abs(float(x)), 12) for x in zeta]
+    (-0.25, [1.0, 0.0, 0.0])
+    """
+
+    def __init__(
+        self,
+        action: Action,
+        m: Any,
+        orbit_dimension: Any,
+        velocity: Any,
+        leading: int,
+        factor: float,
+        moving: Any = None,
+    ) -> None:
+        square = inner(velocity, velocity)
+        moves = square > 0 if moving is None else moving
+        self._over = np.where(moves, 1.0 / (square if type(square) is Traced else np.where(moves, square, 1.0)), 0.0)
+        self._action, self._m, self._dimension, self._velocity = action, m, orbit_dimension, velocity
+        self._leading, self._factor = leading, factor
+
+    def solve(self, right: Any) -> tuple[Any, Any, None]:
+        """zeta (..., dim g), c (...,) and None for no residual."""
+        action, even, w = self._action, self._action.even, self._velocity
+        if even is None:
+            raise InternalError("the orbits of an EvenRangeSolver are not known to be even")
+        share = inner(w, right) * self._over
+        # r in place of r + l c w: R^T w has no part in g_m
+        turned = action.infinitesimal.pulled(w, right)
+        y = across_lanes(turned, even.inverse / (self._factor * even.isotropy)) * self._over[..., None]
+        if not even.symmetric:
+            lift = action.isotropy_frame(self._m, self._dimension).lift
+            y = y - _apply(lift, action.infinitesimal(y, self._m))
+        return y, -share / self._leading, None
+
+    @property
+    def singular_value(self) -> Any:
+        """As of a `RangeSolver`: the least of e mu^(1/2), d - 1 times, and 1."""
+        isotropy = self._action.even.isotropy if self._action.even is not None else 0.0
+        return np.full(np.shape(self._over), min(self._factor * isotropy**0.5, 1.0))
+
+    @property
+    def rank(self) -> Any:
+        """The dimension of the orbit."""
+        return np.broadcast_to(self._dimension, np.shape(self._over))
+
+
+def inner(a: Any, b: Any) -> Any:
+    """The inner products of (..., N), arrays of numpy or traced ones.
+
+    Examples
+    --------
+    >>> inner(np.ones((2, 3)), np.ones((2, 3))).tolist()
+    [3.0, 3.0]
+    """
+    return np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
+
+
+def _polished(basis: Any, gram: Any) -> Any:
+    """A basis that is orthonormal to double precision, orthonormal to that of extended floats."""
+    square = np.swapaxes(basis, -1, -2) @ gram @ basis
+    return basis @ (1.5 * np.eye(basis.shape[-1], dtype=basis.dtype) - square / 2)
+
+
+def _apply(matrix: Any, vector: Any) -> Any:
+    return (matrix @ vector[..., None])[..., 0]
+
+
+def _normalized(xp: Any, vector: Any) -> tuple[Any, Any]:
+    """|v| (1 where v = 0), shape (..., 1), and v / |v|; without underflow of squares."""
+    largest = xp.max(xp.abs(vector), axis=-1, keepdims=True)
+    largest = xp.where(largest > 0, largest, 1.0)
+    unit = vector / largest
+    size = xp.sqrt(xp.sum(unit * unit, axis=-1, keepdims=True))
+    size = xp.where(size > 0, size, 1.0)
+    return size * largest, unit / size
+
+
+def _entry(xp: Any, values: Any, d: Any) -> Any:
+    """values[d - 1], 0 where there are fewer."""
+    wide = xp.concatenate([0 * values[..., :1], values], axis=-1)
+    index = np.where(d <= values.shape[-1], d, 0)
+    return xp.take_along_axis(wide, np.broadcast_to(index, wide.shape[:-1])[..., None], axis=-1)[..., 0]
+
+
+def _single(x: Any) -> Any:
+    """The precision in which linear algebra is available."""
+    return x.astype(np.float64) if x.dtype == np.longdouble else x
+
+
+def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float, rank: int | None = None) -> Any:
+    """M^+ (..., s, d); for extended floats ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
+    turned = xp.swapaxes(matrix, -1, -2)
+    extended = matrix.dtype == np.longdouble
+    if type(matrix) is Traced:
+        found = decomposed(matrix, min(matrix.shape[-2:]) if rank is None else rank, cutoff)
+        return found.lift @ xp.swapaxes(found.image, -1, -2)
+    if matrix.shape[-1] == 0:
+        return matrix @ turned if extended else turned
+    if matrix.shape[-1] == 1 and not extended:  # a column, as on every two-dimensional orbit of so(3)
+        square = xp.sum(matrix * matrix, axis=-2, keepdims=True)
+        kept = square > cutoff * cutoff
+        return xp.where(kept, turned / xp.where(kept, square, 1.0), 0.0)
+    left, values, right = xp.linalg.svd(_single(matrix), full_matrices=False)
+    kept = values > cutoff
+    inverse = xp.where(kept, 1 / xp.where(kept, values, 1.0), 0.0)[..., None, :]
+    back = xp.swapaxes(left, -1, -2)
+    return (left * inverse**4) @ back if extended else (xp.swapaxes(right, -1, -2) * inverse) @ back

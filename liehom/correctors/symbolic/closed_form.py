@@ -1,0 +1,410 @@
+"""From symbols to formula: the isotropy correction and the clock of a step as simplified expressions.
+
+The point, the parameters and the time are elements of a field of rational functions modulo the constraints, such as
+|m|^2 = 1.  Flow and step are expanded over it by the code that expands them in numbers, so that what a formula belongs
+to is the step itself; the system of Theorem 5 is solved by normal equations (`symbolic_range`); that the corrected step
+agrees with the flow is proved, coefficient by coefficient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.expansion import Clock, Flow, flow_series, step_series
+from liehom.correctors.step import Generator, Step
+from liehom.correctors.symbolic.symbolic_output import ansatz, compiled_function
+from liehom.correctors.symbolic.symbolic_problem import Symbols, read_symbols
+from liehom.correctors.symbolic.symbolic_range import SymbolicRange, array, simple
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous import Action, GeneratorField
+from liehom.representations import Representation
+from liehom.series.jet import Jet
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class ClosedForm:
+    """The correction of a step as a formula.
+
+    Attributes
+    ----------
+    order : int
+        n, the order to which the corrected step captures the orbit (at times tau(h) the trajectory).
+    leading : int
+        l, the order of the first coefficient of the flow that is not identically zero.
+    zeta : dict of int to tuple of sympy expressions
+        zeta_k, the coefficients in g of h^k in the generator; the ones that are not identically zero.
+    clock : dict of int to sympy expression
+        c_k for k >= 2, with tau(h) = h + c_2 h^2 + ...; all of them, also zeros.
+    isotropy : tuple of sympy expressions, or None
+        Where the isotropy has dimension 1, the generator of it that was given, or found (for at most one constraint),
+        such as m -> hat(m) on the sphere.
+    factor : dict of int to sympy expression
+        Where there is such a generator, the scalars with zeta_k = factor[k] isotropy.
+    orbit_dimension : int
+    residual_is_zero : bool
+        Whether the corrected step was proved to agree with F_tau through order n wherever the constraints hold.
+    reached : int
+        The order to which it agrees.
+    nonvanishing : sympy expression
+        Where this is not 0 the formulas are defined: the product of the different factors of denominators.
+    representation, step, exponential, symbols
+        What they belong to.
+
+    Examples
+    --------
+    A symmetric top, with (h - Om) m as its generator; the coordinates of hat(m) in the basis of so(3) are m2, -m1, m0:
+
+    >>> import liehom as lh
+    >>> from liehom.correctors import closed_form
+    >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
+    >>> found = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
+    >>> print(found.factor[1])
+    -a*m2**2
+    """
+
+    order: int
+    leading: int
+    zeta: dict[int, tuple[Any, ...]]
+    clock: dict[int, Any]
+    isotropy: tuple[Any, ...] | None
+    factor: dict[int, Any]
+    orbit_dimension: int
+    residual_is_zero: bool
+    reached: int
+    nonvanishing: Any
+    representation: Representation
+    step: str
+    exponential: str
+    symbols: Symbols
+    _elements: dict[tuple[str, int], Any] = field(repr=False)
+
+    def equal(self, a: Any, b: Any) -> bool:
+        """Whether two expressions in the symbols are equal wherever the constraints hold: a proof, no sampling.
+
+        Raises
+        ------
+        InputError
+            If they are not rational functions of the symbols.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> from liehom.correctors import closed_form
+        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
+        >>> found = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
+        >>> found.equal(found.factor[1], "a*(m0**2 + m1**2 - 1)")
+        True
+        """
+        return bool(self.symbols.element(a) == self.symbols.element(b))
+
+    def in_terms_of(self, invariants: Mapping[Any, Any], k: int | str | None = None, *, degree: int = 3) -> Any:
+        """factor[k] (or the clock's c_k, for k = "clock 2" and so on) as a polynomial in named functions.
+
+        Parameters
+        ----------
+        invariants : mapping from symbol or name to expression
+            Rational functions of the coordinates and parameters, such as {"h": "w1*m0**2 + ...", "R": ...}.
+        k : int or str, optional
+            Which coefficient; by default the last factor.
+        degree : int
+            The largest degree of the polynomial.
+
+        Raises
+        ------
+        InputError
+            If there is no such polynomial with rational coefficients.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> from liehom.correctors import closed_form
+        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
+        >>> found = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
+        >>> found.in_terms_of({"a": "a", "s": "m0**2 + m1**2"})
+        a*s - a
+        """
+        return ansatz(self.symbols, invariants, self._chosen(k), degree)
+
+    def _chosen(self, k: int | str | None) -> Any:
+        if isinstance(k, str) and k.startswith("clock "):
+            key: tuple[str, int] = ("clock", int(k.removeprefix("clock ")))
+        else:
+            last = max((i for name, i in self._elements if name == "factor"), default=0)
+            key = ("factor", last if k is None else int(k))
+        if key not in self._elements:
+            raise InputError(f"there is no {key[0]} with index {key[1]}: there are {sorted(self._elements)}")
+        return self._elements[key]
+
+    def function(self, k: int | None = None) -> Callable[..., Any]:
+        """zeta_k as a compiled function (m, t=0, **parameters) -> array of shape (..., dim g).
+
+        Parameters
+        ----------
+        k : int, optional
+            Default: the last one that is not identically zero.
+
+        Returns
+        -------
+        callable
+            For m (..., N), numpy of any precision or JAX; parameters are numbers or arrays (...,). Where a denominator
+            is 0, as at equilibria, the value is 0.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> from liehom.correctors import closed_form
+        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
+        >>> found = closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2)
+        >>> found.function()([0.6, 0.0, 0.8], a=2.0).round(12).tolist()  # -a m2^2 (m2, -m1, m0)
+        [-1.024, 0.0, -0.768]
+        """
+        if k is None:
+            k = max(self.zeta, default=0)
+        if k not in self.zeta:
+            zeros = [self.symbols.field.zero] * self.representation.algebra.dimension
+            return compiled_function(self.symbols, zeros)
+        return compiled_function(self.symbols, self._elements["zeta", k])
+
+    def clock_function(self, k: int | None = None) -> Callable[..., Any]:
+        """c_k as a compiled function (m, t=0, **parameters) -> array of shape (...,); by default the last.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> from liehom.correctors import closed_form
+        >>> found = closed_form(lh.defining(lh.so(3)), ["a*m0", "0", "0"], lh.Euler(), 2)
+        >>> float(found.clock_function()([0.6, 0.48, 0.64], a=2.0).round(12))
+        0.48
+        """
+        chosen = self._chosen(f"clock {max(self.clock) if k is None else k}")
+        made = compiled_function(self.symbols, [chosen])
+        return lambda m, t=0.0, **parameters: made(m, t, **parameters)[..., 0]
+
+    def latex(self) -> str:
+        """The formulas in LaTeX, an aligned display without its environment.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> from liehom.correctors import closed_form
+        >>> top = ["a*m2**3 - a*m2", "-a*m1*m2**2", "a*m0*m2**2"]
+        >>> print(closed_form(lh.defining(lh.so(3)), top, lh.Euler(), 2).latex())
+        \\zeta_{1} &= - a m_{2}^{2} \\begin{pmatrix} m_{2} \\\\ - m_{1} \\\\ m_{0} \\end{pmatrix} \\\\
+        c_{2} &= 0
+        """
+        import sympy
+
+        def column(entries: Sequence[Any]) -> str:
+            return r"\begin{pmatrix} " + r" \\ ".join(sympy.latex(x) for x in entries) + r" \end{pmatrix}"
+
+        lines = []
+        for k, value in self.zeta.items():
+            if k in self.factor:
+                scalar = sympy.latex(self.factor[k])
+                scalar = rf"\left({scalar}\right)" if self.factor[k].is_Add else scalar
+                lines.append(rf"\zeta_{{{k}}} &= {scalar} {column(self.isotropy or ())}")
+            else:
+                lines.append(rf"\zeta_{{{k}}} &= {column(value)}")
+        lines += [rf"c_{{{k}}} &= {sympy.latex(value)}" for k, value in self.clock.items()]
+        return " \\\\\n".join(lines)
+
+    def __str__(self) -> str:
+        lines = [f"{self.step} corrected to order {self.reached} ({self.exponential}), {self._state()}"]
+        for k, value in self.zeta.items():
+            shown = f"({self.factor[k]}) * {self.isotropy}" if k in self.factor else str(value)
+            lines.append(f"  zeta_{k} = {shown}")
+        lines += [f"  c_{k} = {value}" for k, value in self.clock.items()]
+        lines.append(f"  where {self.nonvanishing} != 0")
+        return "\n".join(lines)
+
+    def _state(self) -> str:
+        constraints = " and ".join(f"{c} = 0" for c in self.symbols.constraints)
+        return ("proved" if self.residual_is_zero else "not solvable beyond") + (
+            f" where {constraints}" * bool(constraints)
+        )
+
+    def __repr__(self) -> str:
+        return f"<closed form of order {self.order} for {self.step}>"
+
+
+def closed_form(
+    representation: Representation,
+    psi: Sequence[Any],
+    step: Step,
+    order: int,
+    *,
+    exponential: Any = "exp",
+    constraints: Sequence[Any] | None = None,
+    isotropy: Sequence[Any] | None = None,
+    parameters: Sequence[Any] | None = None,
+) -> ClosedForm:
+    """The isotropy correction and the clock that raise a step to a given order, as formulas.
+
+    Parameters
+    ----------
+    representation : Representation
+        rho, over QQ.
+    psi : sequence of sympy expressions, texts or rational numbers
+        The generator: rational functions of m0, ..., m(N-1), the time t and parameters, which are all other symbols.
+    step : Step
+        The base, such as ``Euler()``, ``Heun()``, ``LieTaylor(4)`` or a step of the user's.
+    order : int
+        n. Where the base has an order lower than n - 1, all orders between are corrected in turn.
+    exponential : str, Exponential or callable
+    constraints : sequence of sympy expressions or texts, optional
+        Polynomials that vanish on the orbits; they should define an irreducible variety. Default: |m|^2 - 1 where rho
+        is by skew-symmetric matrices, none else.
+    isotropy : sequence of dim g expressions, optional
+        Where g_m has dimension 1, the generator of it in which to write the correction; by default one is computed.
+    parameters : sequence of symbols or names, optional
+        The parameters; then all other symbols are refused.
+
+    Raises
+    ------
+    FieldError
+        If the representation is not over QQ, or a coefficient is a float.
+    InputError
+        If psi has unknown symbols or is no rational function of them; if the constraints are not invariant; if
+        `isotropy` does not generate g_m; if the flow has only equilibria, or the step is not consistent with it.
+    ShapeError
+        If psi or `isotropy` has the wrong length.
+
+    Notes
+    -----
+    Theorem 5 with its factor, one order after the other. The solution is that of least |c| and then of least |zeta|,
+    which `liehom.correction` computes in numbers; where the system has no solution, `reached` is less than `order`.
+    With several constraints there are no unique factors: formulas are less short, and lose digits next to equilibria.
+    The order that counts for the first correction is that of the orbit: a base whose orbits are better than its
+    trajectories has zeta_k = 0 for the orders between, with c_k that are not 0.
+
+    Examples
+    --------
+    The correction of Euler's step for the rigid body, proved to be the paper's sigma_i:
+
+    >>> import liehom as lh
+    >>> from liehom.correctors import closed_form
+    >>> h = "(w1*m0**2 + w2*m1**2 + w3*m2**2)"
+    >>> psi = [f"m2*({h} - w3)", f"-m1*({h} - w2)", f"m0*({h} - w1)"]  # (h - Om) m in the basis of so(3)
+    >>> found = closed_form(lh.defining(lh.so(3)), psi, lh.Euler(), 2)
+    >>> v2 = "((w3 - w2)**2*m1**2*m2**2 + (w1 - w3)**2*m0**2*m2**2 + (w2 - w1)**2*m0**2*m1**2)"
+    >>> found.equal(found.factor[1], f"({h} - w1)*({h} - w2)*({h} - w3)/{v2}"), found.residual_is_zero
+    (True, True)
+    """
+    symbols, components = read_symbols(representation, psi, constraints, parameters, isotropy or ())
+    generator = GeneratorField(representation, symbols.generator(components))
+    action = Action(representation, exponential)
+    solver = SymbolicRange(action, symbols.field, array(symbols.point))
+    if isotropy is not None:
+        solver.row = _given_isotropy(symbols, solver, isotropy, action.dimension)
+    tower = _Tower(action, generator, step, symbols, solver, order)
+    tower.run(step.order)
+    return _result(tower, step)
+
+
+@final
+class _Tower:
+    """The iteration over the orders; values have one leading axis of length 1."""
+
+    def __init__(
+        self, action: Action, generator: GeneratorField, step: Step, symbols: Symbols, solver: SymbolicRange, order: int
+    ) -> None:
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order <= step.order:
+            raise InputError(f"the order is an integer above {step.order}, the order of {step!r}; got {order!r}")
+        self.action, self.symbols, self.solver, self.order = action, symbols, solver, int(order)
+        point = array(symbols.point)[None]
+        time = array([symbols.time])
+        self.flow: Flow = flow_series(generator, point, self.order, time)
+        psi = Generator(generator, solver.orbit_dimension)
+        local = step.at(action, psi, point, time[:, None])
+        self.zeta = Jet.growing(array([symbols.field.zero] * action.dimension)[None], self.order, zero=True)
+        for _ in range(self.order):
+            self.zeta.extend(None)
+        self.step = step_series(action, local, point, self.order, self.zeta)
+        self.clock = Clock(self.flow, self.order, (1,))
+        self.factor = symbols.field.one / 2 if step.one_exponential else symbols.field.one
+        self.leading = next((k for k in range(1, self.order + 1) if any(self.flow.point(k)[0])), 0)
+        self.reached, self.found_zeta, self.found_clock = 0, {}, {}  # type: ignore[var-annotated]
+
+    def in_algebra(self, solution: Any) -> Any:
+        """What the solver found as dim g coefficients."""
+        row = self.solver.row
+        return solution if row is None else simple(solution[0] * row)
+
+    def difference(self, n: int) -> Any:
+        """[t^n] (F_tau - corrected step)."""
+        return simple((self.clock.point(n) - self.step.coefficient(n))[0])
+
+    def run(self, base_order: int) -> None:
+        if self.leading == 0:
+            raise InputError(
+                "rho(psi(m)) m is identically 0: every point is an equilibrium, there is nothing to correct"
+            )
+        for n in range(1, max(base_order, self.leading) + 1):
+            if any(self.difference(n)):
+                raise InputError(
+                    f"the step does not agree with the flow at order {n}, at which isotropy does not enter "
+                    f"(order of the step {base_order}, leading order of the flow {self.leading})"
+                )
+        self.reached = max(base_order, self.leading)
+        self.solver.prepare(self.flow.point(self.leading)[0], self.leading, self.factor)
+        for n in range(self.reached + 1, self.order + 1):
+            zeta, c = self.solver.solve(self.difference(n))
+            k = n - self.leading
+            self.found_zeta[k], self.found_clock[k + 1] = zeta, c
+            self.zeta.replace(k, self.in_algebra(zeta)[None], self.step)
+            self.clock.set(k + 1, array([c]))
+            if any(self.difference(n)):
+                return
+            self.reached = n
+
+
+def _given_isotropy(symbols: Symbols, solver: SymbolicRange, isotropy: Sequence[Any], dimension: int) -> Any:
+    left = dimension - solver.orbit_dimension
+    if left != 1:
+        raise InputError(f"isotropy can be given where g_m has dimension 1; here it has dimension {left}")
+    row = array([symbols.element(x) for x in isotropy])
+    if len(row) != dimension:
+        raise ShapeError(f"isotropy has {len(row)} coefficients, the algebra has dimension {dimension}")
+    if not any(row) or not solver.fixes(row):
+        raise InputError(f"isotropy = {list(isotropy)} does not generate g_m where the constraints hold")
+    return row
+
+
+def _result(tower: _Tower, step: Step) -> ClosedForm:
+    symbols, row = tower.symbols, tower.solver.row
+    elements: dict[tuple[str, int], Any] = {("clock", k): c for k, c in tower.found_clock.items()}
+    for k, value in sorted(tower.found_zeta.items()):
+        if any(value):
+            if row is not None:
+                elements["factor", k] = value[0]
+            elements["zeta", k] = list(tower.in_algebra(value))
+    factor = {k: symbols.expression(x) for (name, k), x in elements.items() if name == "factor"}
+    generator = None if row is None else tuple(map(symbols.expression, row))
+    zeta = {}
+    for k in sorted(k for name, k in elements if name == "zeta"):
+        shown = (
+            map(symbols.expression, elements["zeta", k]) if generator is None else (factor[k] * x for x in generator)
+        )
+        zeta[k] = tuple(shown)
+    return ClosedForm(
+        order=tower.order,
+        leading=tower.leading,
+        zeta=zeta,
+        clock={k: symbols.expression(c) for k, c in sorted(tower.found_clock.items())},
+        isotropy=generator,
+        factor=factor,
+        orbit_dimension=tower.solver.orbit_dimension,
+        residual_is_zero=tower.reached == tower.order,
+        reached=tower.reached,
+        nonvanishing=symbols.nonvanishing(elements.values()),
+        representation=tower.action.representation,
+        step=repr(step),
+        exponential=tower.action.exponential.name,
+        symbols=symbols,
+        _elements=elements,
+    )

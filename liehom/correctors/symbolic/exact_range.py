@@ -1,0 +1,139 @@
+"""The linear system of Theorem 5 at a point with exact coordinates, over QQ or a number field.
+
+    e rho(zeta) w_l - l c w_l = r,    zeta in g_m, c in the field
+
+Solvability is a rank; of several solutions that of least |c| and then of least |zeta|, in least squares where there
+is none.  Nothing passes through a float.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.representations import Representation
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class ExactSolution:
+    """The solution of the linear system.
+
+    Attributes
+    ----------
+    solvable : bool
+    zeta : array of shape (dim g,), of exact numbers
+    c : number
+    residual : array of shape (N,)
+        r - (e rho(zeta) w_l - l c w_l); exactly 0 where the system is solvable.
+    rank : int
+        Of [rho(g_m) w_l, w_l].
+    dimension : int
+        Of the orbit.
+    """
+
+    solvable: bool
+    zeta: Any
+    c: Any
+    residual: Any
+    rank: int
+    dimension: int
+
+
+def solve_exactly(
+    representation: Representation, m: Any, velocity: Any, right: Any, leading: int, factor: Any
+) -> ExactSolution:
+    """Solve the linear system at one point.
+
+    Parameters
+    ----------
+    representation : Representation
+        Over an exact field.
+    m, velocity, right : sequences of N numbers of the field
+        The point, w_l and r.
+    leading : int
+        l.
+    factor : number of the field
+        e.
+
+    Raises
+    ------
+    FieldError
+        If a coordinate is not in the field.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> QQ = lh.QQ
+    >>> rho, half = lh.defining(lh.so(3)), QQ.convert("1/2")
+    >>> found = solve_exactly(rho, [0, 0, 1], [1, 0, 0], [QQ.convert("1/4"), half, 0], 1, half)
+    >>> found.solvable, found.c, sorted(map(abs, found.zeta.tolist())), found.rank, found.dimension
+    (True, -1/4, [0, 0, 1], 2, 2)
+    """
+    field, n = representation.field, representation.size
+    isotropy = representation.isotropy(m)
+    basis = isotropy.basis
+    velocity_column, right_column = (field.matrix([list(x)], (1, n)).T for x in (velocity, right))
+    images = [(representation(row) @ velocity_column).scale(factor).T for row in isotropy.rows()]
+    moves = field.stack_rows(images, n).T if images else field.zeros(n, 0)
+    full = field.stack_columns([moves, velocity_column.scale(field.convert(-leading))], n)
+    rank, moved = full.rank(), moves.rank()
+    solvable = field.stack_columns([full, right_column], n).rank() == rank
+    # in least squares: A^T A x = A^T r has solutions, all with the same A x
+    both = full.solve(right_column) if solvable else (full.T @ full).solve(full.T @ right_column)
+    reached = full @ both
+    c = field.zero if moved == rank else both[both.nrows - 1, 0]
+    target = reached + velocity_column.scale(c * leading)
+    zeta = basis.T @ _least(moves, target, basis @ gram_matrix(representation) @ basis.T)
+    left = right_column - reached
+    return ExactSolution(
+        solvable,
+        _array([row[0] for row in zeta.to_rows()]),
+        c,
+        _array([row[0] for row in left.to_rows()]),
+        int(rank),
+        representation.algebra.dimension - isotropy.dimension,
+    )
+
+
+def _least(moves: Any, target: Any, gram: Any) -> Any:
+    """The y with moves y = target of least y^T gram y: y = gram^-1 moves^T u."""
+    if moves.ncols == 0:
+        return moves.T @ target
+    turned = gram.solve(moves.T)
+    return turned @ (moves @ turned).solve(target)
+
+
+def gram_matrix(representation: Representation) -> Any:
+    """The inner product on g by which zeta is least, exactly: `liehom.homogeneous.inner_product` over the field.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(gram_matrix(lh.defining(lh.so(2))))
+    [2]
+    """
+    field, n = representation.field, representation.algebra.dimension
+    size = representation.size**2
+    flat = field.stack_rows([a.reshape(1, size) for a in representation.matrices], size)
+    turned = field.stack_rows([a.T.reshape(1, size) for a in representation.matrices], size)
+    trace = -(flat @ turned.T)
+    if trace.is_positive_definite():
+        return trace
+    killing = -representation.algebra.killing_form()
+    if killing.is_positive_definite():
+        return killing
+    product = flat @ flat.T
+    if product.is_positive_definite() and field.stack_rows([flat, turned], size).rank() == flat.rank():
+        return product
+    return field.identity(n)
+
+
+def _array(values: list[Any]) -> Any:
+    """An array of objects: numpy must not look into the numbers."""
+    made = np.empty(len(values), dtype=object)
+    for i, value in enumerate(values):
+        made[i] = value
+    return made

@@ -1,0 +1,326 @@
+"""The condition of Theorem 5 at a point: chi, and whether one order more can be had for a given step.
+
+With zeta(t) = zeta_1 t + zeta_2 t^2 + ... in g_m added to the generator of a step (an outermost factor for a step
+with several exponentials),
+
+    chi^(n)(zeta) = (d/dt)^n [step_zeta(t) - F_t(m)] at t = 0,    (5.5): c w_l in the range of chi^(n) for some c
+
+Exact where point and field are exact; in floats with the singular values that decided.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import factorial
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.expansion import Clock, Flow, flow_series, leading_order
+from liehom.correctors.isotropy.completion import generator_norm
+from liehom.correctors.isotropy.order_by_order import round_off, with_correction
+from liehom.correctors.isotropy.range_solver import RangeSolver
+from liehom.correctors.points import read_point
+from liehom.correctors.step import Generator, Step, apply_factors, step_variable
+from liehom.correctors.symbolic.exact_range import ExactSolution, solve_exactly
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous import Action, GeneratorField
+from liehom.scalars import RankDecision
+from liehom.series.arrays import as_values, is_exact, zeros
+from liehom.series.jet import Jet
+from liehom.series.node import Node
+
+SOLVED_RTOL = 1e-8
+ISOTROPY_RTOL = 1e-9
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class OrderCondition:
+    """Whether a step that agrees with the flow to order n - 1 can be made to agree to order n at a point.
+
+    Attributes
+    ----------
+    order : int
+        n.
+    leading : int
+        l, the order of the first non-zero coefficient of the flow; 0 at an equilibrium.
+    chi : array of shape (N,)
+        chi^(n)(0), the n-th derivative of step - flow.
+    solvable : bool
+        Whether (5.5) holds for this step.
+    zeta : array of shape (dim g,)
+        The coefficient of t^(n-l) that serves (in least squares where (5.5) fails).
+    c : number
+        The coefficient of t^(n-l+1) in tau.
+    residual : array of shape (N,)
+        What remains of [t^n] (F_tau - step): 0 where (5.5) holds.
+    range_holds : bool
+        Whether the range condition (6.1) holds at m: (5.5) would then hold for every step.
+    rank, dimension : int
+        Of [rho(g_m) w_l, w_l] and of the orbit; (6.1) holds if they are equal.
+    singular_value : float or None
+        In floats, the smallest singular value that decides (6.1).
+    numerical : RankDecision or None
+        In floats, the singular values that decided the rank; None for an exact answer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), ["m0", "2*m1", "3*m2"])
+    >>> print(order_condition(field, lh.Euler(), [0.6, 0.48, 0.64], 2))
+    order 2 at m (l = 1): (5.5) holds for this step; the range condition (6.2) holds for every step (rank 2 of 2)
+    """
+
+    order: int
+    leading: int
+    chi: Any
+    solvable: bool
+    zeta: Any
+    c: Any
+    residual: Any
+    range_holds: bool
+    rank: int
+    dimension: int
+    singular_value: float | None = None
+    numerical: RankDecision | None = None
+
+    def __bool__(self) -> bool:
+        return self.solvable
+
+    def __str__(self) -> str:
+        if self.leading == 0:
+            state = "and so is it of the step" if self.solvable else "but the step moves it"
+            return f"order {self.order} at m: an equilibrium of the flow, {state}"
+        head = f"order {self.order} at m (l = {self.leading}): (5.5) {'holds' if self.solvable else 'fails'}"
+        own = "for this step"
+        if not self.solvable:
+            size = float(np.linalg.norm(np.asarray([float(x) for x in self.residual])))
+            own += f" (a residual of size {size:.3g} is left)"
+        name = "(6.2)" if self.leading == 1 else "(6.1)"
+        every = "holds for every step" if self.range_holds else "does not hold for every step"
+        return f"{head} {own}; the range condition {name} {every} (rank {self.rank} of {self.dimension})"
+
+
+def chi(
+    field: GeneratorField,
+    step: Step,
+    m: Any,
+    n: int,
+    zeta: Any = None,
+    *,
+    t: Any = 0,
+    exponential: Any = "exp",
+) -> Any:
+    """chi_m^(n)(zeta), equation (5.4): the n-th derivative of step - flow, with zeta added to the step.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    step : Step
+    m : array_like of shape (..., N)
+        Floats, or exact numbers of the representation's field in an array of objects.
+    n : int
+        At least 1.
+    zeta : array_like of shape (k, ..., dim g), optional
+        zeta_1, ..., zeta_k in g_m, the (plain Taylor) coefficients of a polynomial without constant term.
+    t : number or array of shape (...,)
+    exponential : str, Exponential or callable
+
+    Returns
+    -------
+    array of shape (..., N)
+
+    Raises
+    ------
+    InputError
+        If n is less than 1, or a coefficient of zeta is not in g_m.
+    ShapeError
+        If zeta has another shape.
+    FieldError
+        If an exact coordinate is not in the representation's field.
+
+    Notes
+    -----
+    By definition, from the expansions. If all z_j = w_j for j < n and zeta begins with t^(n-l), it is
+    n! (rho(zeta_(n-l)) w_l / 2 + z_n - w_n), affine in zeta, with w and z the Taylor coefficients of flow and step;
+    for a step with several exponentials without the 1/2. For a step with a clock the flow is F_tau.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> m = np.array([lh.QQ.convert("3/5"), lh.QQ.convert("4/5")])
+    >>> chi(field, lh.Euler(), m, 1).tolist(), chi(field, lh.Euler(), m, 2).tolist()
+    ([0, 0], [-48/125, 36/125])
+    """
+    expansion = _Expansion(field, step, m, n, zeta, t, exponential)
+    return -factorial(n) * expansion.difference(n)
+
+
+def order_condition(
+    field: GeneratorField, step: Step, m: Any, n: int, *, t: Any = 0, exponential: Any = "exp"
+) -> OrderCondition:
+    """Whether Theorem 5 gives order n at a point: (5.5) for this step, and the range condition for all steps.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    step : Step
+        It must agree with the flow (along its own clock, if it has one) through order n - 1 at m.
+    m : array_like of shape (N,)
+        Floats, or exact numbers of the representation's field in an array of objects.
+    n : int
+    t : number
+    exponential : str, Exponential or callable
+
+    Raises
+    ------
+    InputError
+        If the step agrees with the flow to a lower order only.
+    ShapeError
+        If m is not one point.
+    FieldError
+        If an exact coordinate is not in the representation's field.
+
+    Notes
+    -----
+    The system (1/2) rho(zeta) w_l - l c w_l = w_n - z_n in Taylor coefficients, with zeta in g_m; of its solutions
+    the one of least |c| and then of least |zeta|. For n <= l isotropy does not enter: (5.5) asks for z_n = w_n.
+
+    Examples
+    --------
+    Three different eigenvalues: the isotropy is trivial, and Euler's step cannot be raised
+
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> psi = ["m0 + m4", "m1*m5", "1 - m2"]
+    >>> m = np.array([lh.QQ.convert(x) for x in [1, 0, 0, 2, 0, 3]])
+    >>> found = order_condition(lh.GeneratorField(lh.sym_conjugation(3), psi), lh.Euler(), m, 2)
+    >>> found.solvable, found.rank, found.dimension, found.numerical
+    (False, 1, 3, None)
+    """
+    if np.ndim(m) != 1:
+        raise ShapeError(f"the order condition is decided at one point, got an array of shape {np.shape(m)}")
+    expansion = _Expansion(field, step, m, n, None, t, exponential)
+    expansion.require_agreement(n)
+    leading = int(leading_order(expansion.flow, n))
+    right = expansion.difference(n)
+    derivative = -factorial(n) * right
+    if leading == 0:
+        return _at_equilibrium(expansion, n, right, derivative)
+    return (_exactly if expansion.exact else _numerically)(expansion, leading, n, right, derivative)
+
+
+class _Expansion:
+    """Flow, step and clock at a point, expanded to order n."""
+
+    def __init__(self, field: GeneratorField, step: Step, m: Any, n: int, zeta: Any, t: Any, exponential: Any) -> None:
+        if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
+            raise InputError(f"the order is an integer at least 1, got {n!r}")
+        self.representation = field.representation
+        self.point, self.orbit_dimension = read_point(field.representation, m)
+        self.exact = is_exact(self.point)
+        self.one_exponential = step.one_exponential
+        self.action = Action(field.representation, exponential)
+        self.flow: Flow = flow_series(field, self.point, n, t)
+        psi = Generator(field, self.orbit_dimension)
+        local = step.at(self.action, psi, self.point, np.asarray(t)[..., None])
+        h = step_variable(n, self.point)
+        self.factors = with_correction(local.factors(h), self._polynomial(zeta, n), step.one_exponential)
+        self.step: Jet = apply_factors(self.action, self.factors, self.point)
+        self.clock = Clock(self.flow, n, tuple(self.point.shape[:-1]))
+        tau = local.time(h[..., 0])
+        for k in range(2, n + 1):
+            if tau.node.coefficient(k) is not None:
+                self.clock.set(k, tau.coefficient(k))
+
+    def _polynomial(self, zeta: Any, n: int) -> Jet | None:
+        if zeta is None:
+            return None
+        values = as_values(zeta)
+        if values.ndim < 2 or values.shape[-1] != self.action.dimension:
+            expected = f"(k, ..., {self.action.dimension})"
+            raise ShapeError(f"zeta has shape {values.shape}, expected coefficients of shape {expected}")
+        for k, x in enumerate(values):
+            self._require_isotropy(x, k + 1)
+        known = [None, *values[:n], *[None] * (n - len(values))]
+        return Jet.from_node(Node(n, zeros(values, values.shape[1:]), known))
+
+    def _require_isotropy(self, x: Any, k: int) -> None:
+        moved = self.action.infinitesimal(x, self.point)
+        if self.exact:
+            wrong = any(value != 0 for value in moved.flat)
+        else:
+            size = np.max(generator_norm(self.action, x)) * np.max(np.linalg.norm(self.point, axis=-1))
+            wrong = bool(np.abs(moved).max(initial=0.0) > ISOTROPY_RTOL * size)
+        if wrong:
+            raise InputError(f"zeta_{k} = {x} is not in the isotropy subalgebra: rho(zeta_{k}) m = {moved}")
+
+    def difference(self, n: int) -> Any:
+        """[t^n] (F_tau - step)."""
+        return self.clock.point(n) - self.step.coefficient(n)
+
+    def require_agreement(self, n: int) -> None:
+        for k in range(1, n):
+            if not self.vanishes(self.difference(k), k):
+                raise InputError(
+                    f"the step agrees with the flow at m to order {k - 1} only, not to {n - 1}: ask for order {k}"
+                )
+
+    def vanishes(self, difference: Any, k: int) -> bool:
+        if self.exact:
+            return all(x == 0 for x in difference.flat)
+        return bool(np.linalg.norm(difference) <= round_off(self.action, self.point, self.flow, self.factors, k))
+
+
+def _solve(expansion: _Expansion, leading: int, right: Any) -> ExactSolution:
+    """The solution over the field of the point."""
+    field = expansion.representation.field
+    factor = field.one / 2 if expansion.one_exponential else field.one
+    return solve_exactly(
+        expansion.representation, expansion.point, expansion.flow.point(leading), right, leading, factor
+    )
+
+
+def _exactly(expansion: _Expansion, leading: int, n: int, right: Any, derivative: Any) -> OrderCondition:
+    found = _solve(expansion, leading, right if n > leading else 0 * right)
+    solvable, residual = (found.solvable, found.residual) if n > leading else (expansion.vanishes(right, n), right)
+    holds = found.rank == found.dimension
+    return OrderCondition(
+        n, leading, derivative, solvable, found.zeta, found.c, residual, holds, found.rank, found.dimension
+    )
+
+
+def _numerically(expansion: _Expansion, leading: int, n: int, right: Any, derivative: Any) -> OrderCondition:
+    frame = expansion.action.isotropy_frame(expansion.point, expansion.orbit_dimension)
+    factor = 0.5 if expansion.one_exponential else 1.0
+    solver = RangeSolver(expansion.action, frame, expansion.flow.point(leading), leading, factor)
+    zeta, c, residual = solver.solve(right if n > leading else 0 * right)
+    if n <= leading:
+        residual = right
+    small = np.linalg.norm(residual) <= SOLVED_RTOL * np.linalg.norm(right) and n > leading
+    rank, dimension = int(solver.rank), int(expansion.orbit_dimension)
+    values = np.linalg.svd(np.asarray(solver.matrix, dtype=float), compute_uv=False)
+    relative = np.concatenate([values / values[0], [0.0]])
+    return OrderCondition(
+        n,
+        leading,
+        derivative,
+        bool(small) or expansion.vanishes(residual, n),
+        zeta,
+        c,
+        residual,
+        rank == dimension,
+        rank,
+        dimension,
+        float(solver.singular_value),
+        RankDecision(rank, float(relative[rank - 1]), float(relative[rank])),
+    )
+
+
+def _at_equilibrium(expansion: _Expansion, n: int, right: Any, derivative: Any) -> OrderCondition:
+    zeta, c = zeros(expansion.point, (expansion.action.dimension,)), zeros(expansion.point, ())[()]
+    dimension = int(expansion.orbit_dimension)
+    return OrderCondition(n, 0, derivative, expansion.vanishes(right, n), zeta, c, right, False, 0, dimension)

@@ -1,0 +1,58 @@
+"""The eta that a certificate of NOT FULL shows: exact with its rank, or rounded to floats."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.scalars import QQ, Field, NumberField
+
+
+def eta_of_witness(
+    action: IsotropyAlgebra, certificate: Certificate
+) -> tuple[list[Any] | None, Field | None, int | None]:
+    """eta, its field and the exact rank of [rho(h) eta, eta] there; Nones where the field would be a tower.
+
+    Over a number field k, an eta in k(theta) with theta outside k is left as the certificate states it.
+    """
+    coordinates = certificate.fields["eta"]
+    if all(isinstance(c, str) or len(c) == 1 for c in coordinates):
+        values = [action.field.convert(c if isinstance(c, str) else c[0]) for c in coordinates]
+        row = action.field.matrix([values]) @ action.quotient.projection
+        return values, action.field, action.rank_at(row.T)
+    if action.field != QQ:
+        return None, None, None
+    minpoly = [QQ.convert(c) for c in certificate.fields["minpoly"]]
+    ends = [QQ.convert(c) for c in certificate.fields["interval"]]
+    extension = NumberField("theta", minpoly, (ends[0], ends[1]))
+    theta = extension.generator
+    values = []
+    for c in coordinates:
+        total = extension.zero
+        for text in reversed([c] if isinstance(c, str) else list(c)):
+            total = total * theta + extension.convert(text)
+        values.append(total)
+    row = extension.matrix([values]) @ extension.matrix(action.quotient.projection.to_rows())
+    moved = [row, *[row @ extension.matrix(a.T.to_rows()) for a in action.matrices]]
+    return values, extension, extension.stack_rows(moved, action.size).rank()
+
+
+def numerical_eta(action: IsotropyAlgebra, x: npt.NDArray[np.float64] | None) -> list[float] | None:
+    """A vector of V, rounded, as an element of g; None where numbers are too large for floats."""
+    lift = action.quotient.lift.to_numpy()
+    return [float(v) for v in x @ lift] if x is not None and np.isfinite(lift).all() else None
+
+
+def numerical_eta_of_commutant(action: IsotropyAlgebra, certificate: Certificate) -> list[float] | None:
+    """A vector of the invariant subspace where the commuting matrix has its larger real parts, rounded, or None."""
+    matrix = certificate.matrix("matrix", action.size, action.size).to_numpy()
+    if not np.isfinite(matrix).all():
+        return None
+    values, vectors = np.linalg.eig(matrix)
+    vector = vectors[:, int(values.real.argmax())]
+    real = vector.real if np.abs(vector.real).max() > 1e-6 else vector.imag
+    return numerical_eta(action, real / np.abs(real).max())

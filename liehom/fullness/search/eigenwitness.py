@@ -1,0 +1,87 @@
+"""Exact witnesses from eigenvectors: top eigenvectors of elements of L0, over k or over QQ(theta).
+
+Tried after dominance has proved that the pair is not full; nothing rests on success.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from typing import Any
+
+from liehom.fullness.certificates import certificate_writer
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.representations.invariants.irreducibility import combination
+from liehom.scalars import QQ, NumberField, Polynomial
+from liehom.scalars.roots.roots import largest_real_root_interval
+
+MAX_DEGREE = 6
+
+
+def eigenvector_witness(action: IsotropyAlgebra, extra: list[Any], tries: int = 30) -> Certificate | None:
+    """A witness x in ker(X - theta), theta the largest real eigenvalue of some X in L0 of degree at most 6; or None.
+
+    Parameters
+    ----------
+    extra : list
+        Coefficient lists of elements of L0 to try first.
+    """
+    pending: list[tuple[Any, Polynomial]] = []
+    for x in _elements(action, extra, tries):
+        for f, _ in Polynomial(action.field, x.characteristic_coefficients()).factor():
+            if f.degree == 1:
+                found = _rational(action, x, -f.coefficients[0])
+                if found is not None:
+                    return found
+            elif f.degree <= MAX_DEGREE and action.field == QQ and f.count_real_roots():
+                pending.append((x, f))
+    for x, f in sorted(pending, key=lambda pair: pair[1].degree)[:20]:
+        found = _algebraic(action, x, f)
+        if found is not None:
+            return found
+    return None
+
+
+def _elements(action: IsotropyAlgebra, extra: list[Any], tries: int) -> Iterator[Any]:
+    basis = action.traceless
+    yield from basis
+    for coefficients in extra:
+        yield combination(basis, coefficients)
+    rng = random.Random(3)
+    for _ in range(tries):
+        a, b = rng.choice(basis), rng.choice(basis)
+        bracket = a @ b - b @ a
+        yield bracket if not bracket.is_zero() else a + b
+        yield a + b.scale(rng.choice((-1, 1, 2)))
+
+
+def _rational(action: IsotropyAlgebra, x: Any, value: Any) -> Certificate | None:
+    kernel = (x - action.field.identity(action.size).scale(value)).null_space()
+    for i in range(min(kernel.nrows, 6)):
+        v = kernel.select(rows=[i]).T
+        if action.rank_at(v) < action.size:
+            return certificate_writer.rational_witness(action, v, action.action_rows(v).null_space().select(rows=[0]))
+    return None
+
+
+def _algebraic(action: IsotropyAlgebra, x: Any, f: Polynomial) -> Certificate | None:
+    interval = largest_real_root_interval(f)
+    extension = NumberField("theta", f.coefficients, interval)
+    lifted = extension.matrix(x.to_rows())
+    kernel = (lifted - extension.identity(action.size).scale(extension.generator)).null_space()
+    for i in range(min(kernel.nrows, 3)):
+        v = kernel.select(rows=[i])
+        moved = [v, *[v @ extension.matrix(a.T.to_rows()) for a in action.matrices]]
+        annihilator = extension.stack_rows(moved, action.size).null_space()
+        if annihilator.nrows:
+            xs = [part.T for part in _powers(action, extension, v)]
+            phis = _powers(action, extension, annihilator.select(rows=[0]))
+            return certificate_writer.algebraic_witness(action, f.coefficients, interval, xs, phis)
+    return None
+
+
+def _powers(action: IsotropyAlgebra, extension: NumberField, row: Any) -> list[Any]:
+    """A row over QQ(theta) as rational rows, one per power of theta."""
+    coordinates = [extension.coordinates(v) for v in row.row(0)]
+    return [action.field.matrix([[c[j] * extension.leading**j for c in coordinates]]) for j in range(extension.degree)]

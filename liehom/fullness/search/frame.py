@@ -1,0 +1,108 @@
+"""Frames: coordinates of V and a basis of L0 in which float64 sees the weights of L0.
+
+Conjugation by a matrix with large entries hides the spectrum of L0 from floats; `balanced_frame` undoes it.
+Frames only propose: what is found in one is counted exactly in the given coordinates.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.representations.invariants.irreducibility import combination
+from liehom.scalars import QQ
+from liehom.scalars.lattices.fixed_point import balancing_rows, fixed_point, lattice_reduction, power_of_two
+
+Array = npt.NDArray[np.float64]
+GENERATORS = 4
+BITS = (256, 1024, 4096, 16384)
+ROUNDS = 5
+LARGE, ILL_CONDITIONED, WELL_CONDITIONED = 1e100, 1e5, 30
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Matrices of a basis of L0 in some coordinates of V, rounded to floats.
+
+    Attributes
+    ----------
+    matrices : Array
+        Shape (k, d, d).
+    members : ExactMatrix
+        Row i holds the coefficients of that basis element in ``action.traceless``.
+    vectors : Array
+        Shape (d, d): the columns are the basis vectors of the frame in coordinates of V.
+    """
+
+    matrices: Array
+    members: Any
+    vectors: Array
+
+    def element(self, action: IsotropyAlgebra, coefficients: Array) -> tuple[list[Any], Any]:
+        """Integer coefficients in the frame's basis as coefficients in that of L0, and the exact matrix."""
+        row = action.field.from_integers([int(c) for c in coefficients], 1, len(coefficients)) @ self.members
+        numbers = row.row(0)
+        return numbers, combination(action.traceless, numbers)
+
+
+def plain_frame(action: IsotropyAlgebra) -> Frame | None:
+    """The given coordinates; None where numbers are too large for floats."""
+    matrices = np.array([a.to_numpy() for a in action.traceless])
+    if not np.abs(matrices).max() < LARGE:
+        return None
+    return Frame(matrices, action.field.identity(len(matrices)), np.eye(action.size))
+
+
+def balanced_frame(action: IsotropyAlgebra) -> Frame | None:
+    """Coordinates that do not depend on the given ones up to rotation, and a reduced basis of L0; or None."""
+    return next((frame for frame in (_balanced(action, bits) for bits in BITS) if frame is not None), None)
+
+
+def _balanced(action: IsotropyAlgebra, bits: int) -> Frame | None:
+    """In rounds: the sizes of the generators, taken from the coordinates, are better in better coordinates."""
+    rng, d, k = random.Random(5), action.size, len(action.traceless)
+    basis, flat, members = QQ.identity(d), None, None
+    matrices = action.traceless
+    for _ in range(ROUNDS):
+        sized = [fixed_point(a, bits)[0] for a in matrices]
+        chosen = [combination(sized, [rng.choice((-3, -2, -1, 1, 2, 3)) for _ in sized]) for _ in range(GENERATORS)]
+        rows = balancing_rows(chosen, bits)
+        if rows is None:
+            return None
+        integers, scale = fixed_point(rows @ basis, 2 * bits)
+        basis = integers.scale(scale)
+        flat, members = _in_frame(action, basis, bits)
+        matrices = flat.split_rows(d, d)
+        turned = rows.to_numpy()
+        if np.isfinite(turned).all() and np.linalg.cond(turned) < WELL_CONDITIONED:
+            break
+    if flat is None or members is None:
+        return None
+    vectors = basis.T.to_numpy()
+    return Frame(flat.to_numpy().reshape(k, d, d), action.field.matrix(members.to_rows(), (k, k)), vectors)
+
+
+def _in_frame(action: IsotropyAlgebra, basis: Any, bits: int) -> tuple[Any, Any]:
+    """A well-conditioned basis of L0 as matrices in the basis of the rows, flat, and in terms of the given one."""
+    d, k = action.size, len(action.traceless)
+    left, left_scale = fixed_point(basis.T.inverse(), 2 * bits)
+    right, right_scale = fixed_point(basis.T, 2 * bits)
+    table, scales = [], []
+    for a in action.traceless:
+        middle, scale = fixed_point(a, 2 * bits)
+        moved = (left @ middle @ right).reshape(1, d * d)
+        size = power_of_two(max(abs(x) for x in moved.entries()))
+        table.append(moved.scale(1 / size))
+        scales.append(1 / (size * left_scale * right_scale * scale))
+    flat = QQ.stack_rows(table, d * d)
+    members = QQ.stack_rows([QQ.unit(k, i).scale(s) for i, s in enumerate(scales)], k)
+    if np.linalg.cond(flat.to_numpy()) > ILL_CONDITIONED:
+        change = lattice_reduction(flat, bits // 2)
+        flat, members = change @ flat, change @ members
+    return flat, members

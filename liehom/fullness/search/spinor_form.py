@@ -1,0 +1,106 @@
+"""The definite form of spin(9,1) on R^16, from the vector representation inside Sym^2 of the dual.
+
+Under so(10, C) the symmetric forms on a half-spin module are 10 + 126, told apart by the Casimir operator of
+the trace form.  On the 10 the algebra keeps one form; if its signature is (9,1) a timelike vector is a
+definite form on V.  The half-spin module of so(5,5) has the same dimensions and signature (5,5): no form.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.representations.invariants.intertwiners import invariant_forms
+from liehom.representations.invariants.irreducibility import combination, trace_form
+from liehom.scalars.spaces.forms import orthogonal_basis
+
+
+def vector_module_form(action: IsotropyAlgebra) -> Any:
+    """A definite symmetric form on V = K^16 whose stabiliser in L0 is so(9), or None if L0 is not spin(9,1)."""
+    module = _small_module(action)
+    if module is None:
+        return None
+    field, d = action.field, action.size
+    flat = field.stack_rows([p.reshape(1, d * d) for p in module], d * d)
+    matrices = []
+    for a in action.traceless:
+        images = field.stack_rows([_moved(a, p).reshape(1, d * d) for p in module], d * d)
+        matrices.append(flat.T.solve(images.T))
+    symmetric = invariant_forms(matrices, len(module), field).symmetric
+    if len(symmetric) != 1:
+        return None
+    form = symmetric[0]
+    positive, negative, _ = form.signature()
+    if {positive, negative} != {1, 9}:
+        return None
+    sign = 1 if positive == 1 else -1
+    rows, values = orthogonal_basis(form)
+    timelike = next(r for r, v in zip(rows, values, strict=True) if field.sign(v) == sign)
+    candidate = combination(module, timelike.row(0))
+    return candidate if candidate.signature()[0] == d else -candidate
+
+
+def _moved(a: Any, p: Any) -> Any:
+    return a.T @ p + p @ a
+
+
+def _small_module(action: IsotropyAlgebra) -> list[Any] | None:
+    """A basis of the ten-dimensional invariant space of symmetric forms, or None."""
+    field, d = action.field, action.size
+    basis = action.traceless
+    gram = trace_form(basis)
+    if gram.rank() < len(basis):
+        return None
+    flat = field.stack_rows([a.reshape(1, d * d) for a in basis], d * d)
+    duals = (gram.inverse() @ flat).split_rows(d, d)
+
+    def casimir(p: Any) -> Any:
+        total = field.zeros(d, d)
+        for a, b in zip(basis, duals, strict=True):
+            total = total + _moved(a, _moved(b, p))
+        return total
+
+    # A random start has a part in both; a special one (the identity, say) may lie in one of them.
+    rng = random.Random(10)
+    half = field.from_integers([rng.randint(-3, 3) for _ in range(d * d)], d, d)
+    start = half + half.T
+    once = casimir(start)
+    twice = casimir(once)
+    values = _two_eigenvalues(start, once, twice)
+    if values is None:
+        return None
+    # The Casimir of the trace form is smaller on the vector representation than on the 126.
+    low, high = values
+    seed = once - start.scale(high)
+    if low == high or seed.is_zero():
+        return None
+    return _spanned(action, seed)
+
+
+def _two_eigenvalues(start: Any, once: Any, twice: Any) -> tuple[Any, Any] | None:
+    """low < high with twice = (low + high) once - low high start, if they exist in the field."""
+    field, d = start.field, start.nrows
+    table = field.stack_rows([m.reshape(1, d * d) for m in (once, start, twice)], d * d)
+    relation = table.left_null_space()
+    if relation.nrows != 1 or relation[0, 2] == 0:
+        return None
+    total, product = -relation[0, 0] / relation[0, 2], relation[0, 1] / relation[0, 2]
+    try:
+        root = field.sqrt(total * total - product * 4)
+    except ValueError:
+        return None
+    return (total - root) / 2, (total + root) / 2
+
+
+def _spanned(action: IsotropyAlgebra, seed: Any) -> list[Any] | None:
+    field, d = action.field, action.size
+    span, before = seed.reshape(1, d * d), 0
+    while before < span.nrows:
+        before = span.nrows
+        forms = span.split_rows(d, d)
+        images = [_moved(a, p).reshape(1, d * d) for p in forms for a in action.traceless]
+        span = field.stack_rows([span, *images], d * d).row_space()
+        if span.nrows > 10:
+            return None
+    return span.split_rows(d, d) if span.nrows == 10 else None

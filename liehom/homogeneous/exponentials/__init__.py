@@ -1,0 +1,13 @@
+"""Maps Exp from g to the group, acting on V: the exponential, Cayley, Rodrigues' formula, a user's own.
+
+`exponential_of` finds the exponential that a name denotes. Actions and integrators use them; see docs/notation.md.
+"""
+
+from liehom.homogeneous.exponentials.cayley import Cayley as Cayley
+from liehom.homogeneous.exponentials.exponential import Exponential as Exponential
+from liehom.homogeneous.exponentials.exponential import MatrixExponential as MatrixExponential
+from liehom.homogeneous.exponentials.exponential import SeriesExponential as SeriesExponential
+from liehom.homogeneous.exponentials.exponential import TrueExponential as TrueExponential
+from liehom.homogeneous.exponentials.own_exponential import OwnExponential as OwnExponential
+from liehom.homogeneous.exponentials.own_exponential import exponential_of as exponential_of
+from liehom.homogeneous.exponentials.rodrigues import Rodrigues as Rodrigues

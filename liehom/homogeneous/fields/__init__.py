@@ -1,0 +1,7 @@
+"""Vector fields X(m) = rho(psi(m)) m by their generator psi, and how a user may give one.
+
+`generator` and `expression` read functions, strings and sympy expressions; `least_norm` finds the minimal generator
+of a tangent vector field. Correctors and integrators start from a `GeneratorField`; see docs/theory/correctors.md.
+"""
+
+from liehom.homogeneous.fields.field import GeneratorField as GeneratorField

@@ -1,0 +1,192 @@
+"""Scope: in which numbers an expression is evaluated, and the nodes of expressions that are compiled to functions.
+
+A compiled expression is a function of a `Scope`, that is of m and t; its numbers are taken in the arithmetic of m,
+which may be floats, extended floats, exact scalars or Jets of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any, final
+
+import numpy as np
+
+from liehom.errors import FieldError, ParseError
+from liehom.homogeneous.maps import remainder
+from liehom.scalars.fields.algebraic_number import AlgebraicNumber
+from liehom.series.arrays import elementary, is_exact
+from liehom.series.jet import Jet
+
+
+@final
+class Scope:
+    """The coordinates of m, the time, and how numbers are written next to them, for one evaluation.
+
+    Parameters
+    ----------
+    m : array or Jet of shape (..., N)
+    t : float, array or Jet
+
+    Examples
+    --------
+    >>> scope = Scope(np.array([2.0, 3.0]), 0.0)
+    >>> float(scope.coordinate(1)), scope.rational(Fraction(1, 4))
+    (3.0, 0.25)
+    """
+
+    __slots__ = ("_coordinates", "_m", "_zero", "kind", "t")
+
+    def __init__(self, m: Any, t: Any) -> None:
+        value = m.value if isinstance(m, Jet) else m
+        self._m, self.t = m, t
+        self._coordinates: dict[int, Any] = {}
+        self._zero: Any = 0.0
+        self.kind = "float"
+        if is_exact(value):
+            self.kind, self._zero = "exact", 0 * value.flat[0] if value.size else Fraction(0)
+        elif value.dtype == np.longdouble:
+            self.kind, self._zero = "extended", np.longdouble(0)
+
+    def coordinate(self, i: int) -> Any:
+        """m_i, of shape (...,)."""
+        found = self._coordinates.get(i)
+        if found is None:
+            found = self._coordinates[i] = self._m[..., i]
+        return found
+
+    def rational(self, value: Fraction) -> Any:
+        """A rational number next to m."""
+        if self.kind == "float":
+            return value.numerator / value.denominator
+        return (self._zero + value.numerator) / value.denominator
+
+    def irrational(self, value: float, digits: str) -> Any:
+        """A number that is no rational, such as pi, from its float and from more of its digits."""
+        if self.kind == "exact":
+            raise FieldError(f"{value!r} stands next to exact numbers: write a fraction, or use floats throughout")
+        return value if self.kind == "float" else np.longdouble(digits)
+
+    def algebraic(self, value: AlgebraicNumber) -> Any:
+        """An element of a number field next to m."""
+        if self.kind == "exact":
+            return self._zero + value
+        near = value.field.to_float(value)
+        return (
+            near if self.kind == "float" else np.longdouble(near) + np.longdouble(remainder(value.field, value, near))
+        )
+
+
+Compiled = Callable[[Scope], Any]
+
+
+@final
+class Constant:
+    """A number, computed once for each arithmetic.
+
+    Examples
+    --------
+    >>> Constant(lambda s: s.rational(Fraction(1, 3)))(Scope(np.zeros(1), 0.0))
+    0.3333333333333333
+    """
+
+    __slots__ = ("_inner", "_known")
+
+    def __init__(self, inner: Compiled) -> None:
+        self._inner = inner
+        self._known: dict[str, Any] = {}
+
+    def __call__(self, scope: Scope) -> Any:
+        if scope.kind == "exact":
+            return self._inner(scope)
+        if scope.kind not in self._known:
+            self._known[scope.kind] = self._inner(scope)
+        return self._known[scope.kind]
+
+
+@final
+class Chain:
+    """a + b - c ... or a * b / c ..., from left to right.
+
+    Raises
+    ------
+    ParseError
+        When an exact number is divided by zero.
+
+    Examples
+    --------
+    >>> Chain(lambda s: 6.0, [("/", lambda s: 2.0), ("-", lambda s: 1.0)])(Scope(np.zeros(1), 0.0))
+    2.0
+    """
+
+    __slots__ = ("_first", "_steps")
+
+    def __init__(self, first: Compiled, steps: list[tuple[str, Compiled]]) -> None:
+        self._first, self._steps = first, steps
+
+    def __call__(self, scope: Scope) -> Any:
+        total = self._first(scope)
+        for operator, part in self._steps:
+            right = part(scope)
+            if operator == "+":
+                total = total + right
+            elif operator == "-":
+                total = total - right
+            elif operator == "*":
+                total = total * right
+            else:
+                try:
+                    total = total / right
+                except ZeroDivisionError:
+                    raise ParseError("division by zero in a value") from None
+        return total
+
+
+@final
+class Power:
+    """A power with a constant integer exponent.
+
+    Examples
+    --------
+    >>> Power(lambda s: 3.0, 2)(Scope(np.zeros(1), 0.0))
+    9.0
+    """
+
+    __slots__ = ("_base", "_exponent")
+
+    def __init__(self, base: Compiled, exponent: int) -> None:
+        self._base, self._exponent = base, exponent
+
+    def __call__(self, scope: Scope) -> Any:
+        try:
+            return self._base(scope) ** self._exponent
+        except ZeroDivisionError:
+            raise ParseError("a negative power of zero in a value") from None
+
+
+@final
+class Function:
+    """A function of one argument, by its numpy name.
+
+    Examples
+    --------
+    >>> float(Function("arctan", lambda s: 0.0)(Scope(np.zeros(1), 0.0)))
+    0.0
+    """
+
+    __slots__ = ("_argument", "_name")
+
+    def __init__(self, name: str, argument: Compiled) -> None:
+        self._name, self._argument = name, argument
+
+    def __call__(self, scope: Scope) -> Any:
+        x = self._argument(scope)
+        if isinstance(x, Jet):
+            return getattr(np, self._name)(x)
+        if self._name == "sqrt" and scope.kind == "exact":
+            return np.vectorize(_exact_root, otypes=[object])(x) if np.ndim(x) else _exact_root(np.asarray(x).item())
+        return elementary(self._name, x)
+
+
+def _exact_root(x: Any) -> Any:
+    return x.field.sqrt(x) if isinstance(x, AlgebraicNumber) else elementary("sqrt", x)

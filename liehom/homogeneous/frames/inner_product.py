@@ -1,0 +1,183 @@
+"""Which inner product on g measures "least norm": an Ad-invariant one where there is one.
+
+On a compact algebra -tr(rho(x) rho(y)), or minus the Killing form B with anything on the centre, is Ad-invariant and
+positive definite.  For matrices closed under transposition tr(rho(x)^T rho(y)) is the trace form of x and -theta y with
+the Cartan involution theta(x) = -x^T, invariant under the maximal compact subgroup; where rho does not show it,
+-B(x, theta y) with theta from the defining matrices.  Otherwise the coefficient product of the given basis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.algebra import LieAlgebra
+from liehom.errors import InputError
+from liehom.representations import Representation, defining
+
+RTOL = 1e-9
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class InnerProduct:
+    """A positive definite form on g.
+
+    Attributes
+    ----------
+    matrix : array of shape (dim, dim)
+        The Gram matrix in the basis of g.
+    name : str
+        The formula, as the report of a corrector prints it.
+    invariant : bool
+        Whether it is Ad-invariant: <[x, y], z> + <y, [x, z]> = 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> inner_product(lh.defining(lh.so(3))).name
+    '-tr(rho(x) rho(y)), Ad-invariant'
+    """
+
+    matrix: Any
+    name: str
+    invariant: bool
+
+    def orthonormal_basis(self) -> Any:
+        """A matrix whose columns are an orthonormal basis, shape (dim, dim).
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> product = inner_product(lh.defining(lh.sl(2)))
+        >>> basis = product.orthonormal_basis()
+        >>> bool(np.allclose(basis.T @ product.matrix @ basis, np.eye(3)))
+        True
+        """
+        return np.linalg.inv(np.linalg.cholesky(self.matrix)).T
+
+
+def inner_product(representation: Representation) -> InnerProduct:
+    """The inner product on g by which corrections are least: see the module's formula.
+
+    Parameters
+    ----------
+    representation : Representation
+
+    Notes
+    -----
+    Whether a form is positive definite is decided numerically, after its diagonal is scaled to 1; whether it is
+    Ad-invariant is checked on the bracket.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> inner_product(lh.defining(lh.so(3, 1))).name
+    'tr(rho(x)^T rho(y)) = -tr(rho(x) rho(theta y)), theta = minus transpose'
+    >>> inner_product(lh.adjoint(lh.u(2))).name
+    'minus the Killing form, plus the coefficients on the centre, Ad-invariant'
+    >>> inner_product(lh.trivial(lh.abelian(2))).name
+    'coefficients in the given basis, Ad-invariant'
+    """
+    algebra = representation.algebra
+    n = algebra.dimension
+    flat, turned = _rows(representation)
+    trace = -flat @ turned.T
+    if _is_positive(trace):
+        return _made(algebra, trace, "-tr(rho(x) rho(y))")
+    killing = np.asarray(algebra.killing_form().to_numpy()).reshape(n, n)
+    if _is_positive(-killing):
+        return _made(algebra, -killing, "minus the Killing form")
+    centre = _coefficients_on_the_centre(algebra) if _is_semidefinite(-killing) else None
+    if centre is not None and _is_positive(centre - killing):
+        return _made(algebra, centre - killing, "minus the Killing form, plus the coefficients on the centre")
+    if _is_positive(flat @ flat.T) and _contains(flat, turned):
+        return _made(algebra, flat @ flat.T, "tr(rho(x)^T rho(y)) = -tr(rho(x) rho(theta y)), theta = minus transpose")
+    conjugate = _by_the_defining_representation(algebra, killing)
+    if conjugate is not None:
+        return _made(
+            algebra, conjugate, "-B(x, theta y), B the Killing form, theta = minus transpose in the defining matrices"
+        )
+    return _made(algebra, np.eye(n), "coefficients in the given basis")
+
+
+def _made(algebra: LieAlgebra, form: Any, name: str) -> InnerProduct:
+    form = (form + form.T) / 2
+    invariant = _is_invariant(algebra, form)
+    return InnerProduct(form, name + ", Ad-invariant" * invariant, invariant)
+
+
+def _rows(representation: Representation) -> tuple[Any, Any]:
+    """The matrices rho(e_i) and their transposes as rows."""
+    n, size = representation.algebra.dimension, representation.size
+    a = np.array([m.to_numpy() for m in representation.matrices]).reshape(n, size, size)
+    return a.reshape(n, size * size), np.swapaxes(a, -1, -2).reshape(n, size * size)
+
+
+def _is_invariant(algebra: LieAlgebra, form: Any) -> bool:
+    """Whether <[x, y], z> + <y, [x, z]> = 0 on the basis, to round-off."""
+    n = algebra.dimension
+    bracket = np.zeros((n, n, n))
+    for i, j, k, value in algebra.structure_constants():
+        bracket[i, j, k] = algebra.field.to_float(value)
+        bracket[j, i, k] = -bracket[i, j, k]
+    scale = 1 / np.sqrt(np.diagonal(form))
+    lowered = scale[:, None, None] * scale[:, None] * scale * (bracket @ form)  # of basis elements of length 1
+    defect = np.abs(lowered + np.swapaxes(lowered, 1, 2)).max(initial=0.0)
+    return bool(defect <= RTOL * np.abs(lowered).max(initial=0.0))
+
+
+def _is_positive(form: Any) -> bool:
+    """Whether a symmetric form is positive definite, whatever the lengths of the basis elements."""
+    if form.size == 0:
+        return True
+    diagonal = np.diagonal(form)
+    if not bool(np.all(diagonal > 0)):
+        return False
+    scale = 1 / np.sqrt(diagonal)
+    values = np.linalg.eigvalsh(scale[:, None] * (form + form.T) / 2 * scale)
+    return bool(values[0] > RTOL * abs(values[-1]))
+
+
+def _is_semidefinite(form: Any) -> bool:
+    """Whether a symmetric form has no negative eigenvalue."""
+    values = np.linalg.eigvalsh((form + form.T) / 2)
+    return bool(values[0] >= -RTOL * np.abs(values).max())
+
+
+def _contains(rows: Any, others: Any) -> bool:
+    """Whether the span of the rows contains the others."""
+    if rows.size == 0:
+        return True
+    found = np.linalg.lstsq(rows.T, others.T, rcond=None)[0]
+    return bool(np.abs(rows.T @ found - others.T).max(initial=0.0) <= RTOL * np.abs(rows).max(initial=1.0))
+
+
+def _coefficients_on_the_centre(algebra: LieAlgebra) -> Any:
+    """x, y -> <Px, Py> with P the projector on the centre along [g, g], if g is their direct sum and not either."""
+    n = algebra.dimension
+    centre, derived = algebra.center(), algebra.derived_series()[-1]  # of a reductive algebra it is [g, g]
+    if not 0 < centre.dimension < n or centre.dimension + derived.dimension != n:
+        return None
+    rows = np.concatenate([centre.basis.to_numpy(), derived.basis.to_numpy()])
+    if not np.linalg.cond(rows) < 1 / RTOL:
+        return None
+    # y = rows^T c, and the first c are the coordinates on the centre
+    coordinates = np.linalg.inv(rows.T)[: centre.dimension]
+    projector = rows[: centre.dimension].T @ coordinates
+    return projector.T @ projector
+
+
+def _by_the_defining_representation(algebra: LieAlgebra, killing: Any) -> Any:
+    """-B(x, theta y) with theta(x) = -D(x)^T for the standard matrices D of a semisimple algebra."""
+    try:
+        flat, turned = _rows(defining(algebra))
+    except InputError:
+        return None
+    if not _contains(flat, turned):
+        return None
+    theta = -np.linalg.lstsq(flat.T, turned.T, rcond=None)[0]
+    form = -killing @ theta
+    return form if _is_positive(form) and np.allclose(form, form.T, rtol=0, atol=RTOL * np.abs(form).max()) else None

@@ -1,0 +1,12 @@
+"""Orbit types: the isotropy of points, of strata, and short names for both.
+
+Used by the instances and by `liehom.orbit_types`; see docs/notation.md.
+"""
+
+from liehom.homogeneous.orbits.orbit_types import OrbitType as OrbitType
+from liehom.homogeneous.orbits.orbit_types import orbit_types as orbit_types
+from liehom.homogeneous.orbits.strata import Stratum as Stratum
+from liehom.homogeneous.orbits.strata import adjoint_strata as adjoint_strata
+from liehom.homogeneous.orbits.strata import hermitian_strata as hermitian_strata
+from liehom.homogeneous.orbits.strata import symmetric_strata as symmetric_strata
+from liehom.homogeneous.orbits.structure_name import structure_name as structure_name

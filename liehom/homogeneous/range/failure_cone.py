@@ -1,0 +1,156 @@
+"""Certified subsets of the cone on which the range condition fails.
+
+The cone is Z = {psi in g : [h, psi] + R psi + h is not g}, described in V = g/h.  Each part below is a subset of Z
+for a reason that is checked here, except where numerical vectors only illustrate it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, RelativeInvariant, relative_invariant
+from liehom.representations import Pair
+from liehom.scalars import QQ
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class FailureSet:
+    """A subset of the cone on which the range condition fails.
+
+    Attributes
+    ----------
+    kind : {'hypersurface', 'null cone', 'subspace', 'eigenspace'}
+    description : str
+        The set in a sentence, in the coordinates x of ``pair.coordinates``.
+    data : RelativeInvariant, Matrix or array
+        f; the matrix P of the form; rows of coordinates x that span the subspace (for 'eigenspace' as floats).
+    covers : bool
+        Whether Z is this set up to a set of codimension at least 2.
+    """
+
+    kind: str
+    description: str
+    data: Any
+    covers: bool = False
+
+
+def failure_cone(
+    pair: Pair, *, forms: Sequence[Any] = (), subspaces: Sequence[Any] = (), certificate: Any = None
+) -> list[FailureSet]:
+    """Certified subsets of the cone of psi at which the range condition fails.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over an exact field, not of dimension 0.
+    forms : sequence of matrices (d, d)
+        Symmetric forms on g/h that h preserves up to scalars, in the coordinates of ``pair.coordinates``.
+    subspaces : sequence of matrices or rows (m, d)
+        Subspaces of g/h that h maps to themselves, other than 0 and g/h.
+    certificate : optional
+        A verified certificate of kind 'dominance' or 'commutant'; its eigenspace W is listed with a numerical basis.
+
+    Returns
+    -------
+    list of FailureSet
+        Of a full pair that has an invariant form, the zeros of the form, which are 0 alone.
+
+    Raises
+    ------
+    InputError
+        If a form or a subspace is not invariant, or is zero or everything.
+
+    Notes
+    -----
+    If A^T P + P A = 2 c P for the A in rho(h) and x^T P x = 0, then P x annihilates rho(h) x and x: the condition
+    fails at x if P x is not 0, and if it is 0, x lies in ker P, a proper invariant subspace. On a proper invariant
+    subspace rho(h) x and x stay inside.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [part.description for part in failure_cone(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0]))]
+    ['the zeros of x0^2 + x1^2 - x2^2, and nothing else up to codimension 2']
+    """
+    found: list[FailureSet] = []
+    if 0 < pair.dimension <= MAX_DIMENSION and pair.field == QQ:
+        invariant = relative_invariant(pair)
+        if invariant is not None and invariant.degree:
+            found.append(_hypersurface(invariant))
+    found += [_null_cone(pair, form) for form in forms]
+    found += [_subspace(pair, rows) for rows in subspaces]
+    if certificate is not None and certificate.kind in ("dominance", "commutant"):
+        found.append(_eigenspace(pair, certificate))
+    return found
+
+
+def _hypersurface(invariant: RelativeInvariant) -> FailureSet:
+    text = f"the zeros of {invariant}, and nothing else up to codimension 2"
+    return FailureSet("hypersurface", text, invariant, covers=True)
+
+
+def _matrix(pair: Pair, rows: Any) -> Any:
+    d = pair.dimension
+    made = pair.field.read(rows) if hasattr(rows, "nrows") else pair.field.matrix(rows, (len(rows), d))
+    if made.ncols != d:
+        raise ShapeError(f"expected rows of length {d} (coordinates on g/h), got {made.ncols}")
+    return made
+
+
+def _null_cone(pair: Pair, form: Any) -> FailureSet:
+    p = _matrix(pair, form)
+    if p.nrows != p.ncols or p != p.T or p.is_zero():
+        raise InputError("an invariant form is a symmetric matrix that is not zero")
+    place = next(x for x, v in enumerate(p.entries()) if v != 0)
+    i, j = divmod(place, p.ncols)
+    for a in pair.isotropy_matrices():
+        moved = a.T @ p + p @ a
+        if moved != p.scale(moved[i, j] / p[i, j]):
+            raise InputError("the form is not invariant under h up to scalars")
+    return FailureSet("null cone", f"the zeros of the invariant form of signature {p.signature()}", p)
+
+
+def _subspace(pair: Pair, rows: Any) -> FailureSet:
+    made = _matrix(pair, rows)
+    basis = made.row_space()
+    m, d = basis.nrows, pair.dimension
+    if not 0 < m < d:
+        raise InputError(f"a proper subspace of g/h has dimension between 1 and {d - 1}, got {m}")
+    for a in pair.isotropy_matrices():
+        if pair.field.stack_rows([basis, basis @ a.T], d).rank() != m:
+            raise InputError("the subspace is not invariant under h")
+    return FailureSet("subspace", f"an invariant subspace of dimension {m} of g/h", basis)
+
+
+def _eigenspace(pair: Pair, certificate: Any) -> FailureSet:
+    """The sum W of the generalised eigenspaces with real part above the cut, with a numerical basis."""
+    from scipy.linalg import schur
+
+    d = pair.dimension
+    cut = pair.field.to_float(certificate.number("cut"))
+    if certificate.kind == "dominance":
+        row = pair.algebra.row(certificate.vector("element", pair.algebra.dimension))
+        operator = _isotropy_of(pair, row)
+        operator = operator - np.eye(d) * np.trace(operator) / d
+        frame, what = np.eye(d), "rho(X) without its trace, X the element of the dominance certificate"
+    else:
+        operator = certificate.matrix("matrix", d, d).to_numpy()
+        complement = certificate.matrix("complement", d, pair.algebra.dimension)
+        frame = (complement @ pair.subalgebra.quotient().projection).to_numpy().T
+        what = "the commuting matrix of the certificate"
+    *_, vectors, size = schur(operator, sort=lambda re, im: re > cut)
+    basis = (frame @ vectors[:, :size]).T
+    text = f"the sum of the eigenspaces of {what} with real part above {cut:g}, of dimension {size} (basis numerical)"
+    return FailureSet("eigenspace", text, basis)
+
+
+def _isotropy_of(pair: Pair, row: Any) -> Any:
+    """rho(X) on g/h for X in h, as floats."""
+    data = pair.subalgebra.quotient()
+    return pair.algebra.table.contract(row, data.lift, data.projection)[0].T.to_numpy()

@@ -1,0 +1,236 @@
+"""The range condition at a generator: [h, psi] + R psi + h = g.
+
+With x = psi mod h in V = g/h it reads rank [rho(z_1) x, ..., rho(z_k) x, x] = d = dim V.  For one psi it is a
+rank; for generic psi it holds as soon as it holds for one, and that it never holds is proved by the rank of
+this matrix over the field of rational functions of x, or by an invariant definite form.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any, final
+
+from liehom.errors import InputError, ShapeError, UndecidedError
+from liehom.representations import Pair
+from liehom.representations.invariants.intertwiners import invariant_forms
+from liehom.representations.invariants.irreducibility import traceless
+from liehom.scalars import FloatMatrix, RankDecision
+from liehom.scalars.spaces.linear_forms import LinearForms
+
+SAMPLES = 6
+MAX_PROOF_DIMENSION = 10
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class RangeCondition:
+    """Whether [h, psi] + R psi + h = g, for one psi or for a generic one.
+
+    Attributes
+    ----------
+    holds : bool or None
+        For one psi: whether it holds there. Generic: True if it holds for all psi off a proper closed cone,
+        False if it holds for no psi, None if that could not be proved.
+    rank : int
+        The rank of [rho(h) x, x] at `psi`.
+    dimension : int
+        d = dim g/h, the rank that is needed.
+    psi : list
+        The element tested: the given one, or the sample that decided.
+    missing : list or None
+        Where the rank at `psi` is less than d: a covector on g that vanishes on h, on psi and on [h, psi].
+    equilibrium : bool
+        Whether psi lies in h; the condition then fails unless h = g.
+    generic : bool
+        Whether the question was about generic psi.
+    message : str
+        The reason in a sentence.
+    numerical : RankDecision or None
+        Over floats: the singular values that decided the rank at `psi`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pair = lh.defining(lh.so(3)).pair([0, 0, 1])
+    >>> bool(range_condition(pair))
+    True
+    """
+
+    holds: bool | None
+    rank: int
+    dimension: int
+    psi: list[Any]
+    missing: list[Any] | None
+    equilibrium: bool
+    generic: bool
+    message: str
+    numerical: RankDecision | None = None
+
+    def __bool__(self) -> bool:
+        if self.holds is None:
+            raise UndecidedError(f"the range condition is not decided: {self.message}; ask for .holds")
+        return self.holds
+
+    def __str__(self) -> str:
+        state = {True: "holds", False: "fails", None: "is not decided"}[self.holds]
+        return f"the range condition {state} {'for generic psi' if self.generic else 'at psi'}: {self.message}"
+
+    def __repr__(self) -> str:
+        where = "generically" if self.generic else "at psi"
+        state = {True: f"holds {where}", False: f"fails {where}", None: "undecided"}[self.holds]
+        return f"<range condition: {state}, rank {self.rank} of {self.dimension}>"
+
+
+def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
+    """Decide the range condition [h, psi] + R psi + h = g, at one psi or for generic psi.
+
+    Parameters
+    ----------
+    pair : Pair
+    psi : sequence of n coefficients, optional
+        An element of g. Without it the question is whether the condition holds for generic psi.
+
+    Returns
+    -------
+    RangeCondition
+        Exact over an exact field; over floats with the singular values that decided.
+
+    Raises
+    ------
+    ShapeError
+        If psi does not have n coefficients.
+    FieldError
+        If a coefficient is not in the pair's field.
+    InputError
+        If `pair` is no pair.
+
+    Notes
+    -----
+    One psi at which the rank is d proves that it is d on a dense open cone. That it is less than d everywhere is
+    proved by dim(rho(h) + R) < d; by a definite form on g/h that h preserves up to scale, for then one psi outside
+    h decides for all of them; or, for d <= 10, by the rank over the field of rational functions in x. Beyond that
+    the answer is honest: `holds` is None. Where h acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with
+    both signs, the condition holds generically without the pair being full.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> sphere = lh.Pair(lh.so(3), [[1, 0, 0]])
+    >>> range_condition(sphere, [1, 0, 0]).message
+    'psi lies in h: an equilibrium'
+    >>> print(range_condition(sphere, [1, 1, 0]))
+    the range condition holds at psi: [h, psi] + R psi has rank 2 of 2 in g/h
+    >>> range_condition(lh.Pair(lh.abelian(2), []))
+    <range condition: fails generically, rank 1 of 2>
+    """
+    if not isinstance(pair, Pair):
+        raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
+    if psi is not None:
+        return _at(pair, pair.algebra.row(psi), generic=False)
+    if pair.dimension == 0:
+        return _at(pair, pair.algebra.field.zeros(1, pair.algebra.dimension), generic=True)
+    best = _best_sample(pair)
+    if best.holds or not pair.field.exact:
+        return best
+    forms = pencil(pair)
+    if forms.shape[1] < pair.dimension:
+        return _never(best, f"it never holds: rho(h) + R has dimension {forms.shape[1]} < {pair.dimension}")
+    if pair.dimension > MAX_PROOF_DIMENSION:
+        if _keeps_a_definite_form(pair):
+            return _never(best, "it never holds: h keeps a definite form up to scale, so that one psi decides for all")
+        return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi")
+    at = forms.at((pair.algebra.row(best.psi) @ pair.subalgebra.quotient().projection).row(0))
+    columns = at.echelon()[1]
+    rows = at.select(columns=columns).T.echelon()[1]
+    if forms.rank_is_at_most(best.rank, rows, columns):
+        return _never(best, f"it never holds: the rank over the rational functions of psi is {best.rank}")
+    return _decided(best, None, f"it fails at {SAMPLES} random points but the generic rank is larger; try again")
+
+
+def pencil(pair: Pair) -> LinearForms:
+    """The matrix of linear forms x -> [A_1 x, ..., A_m x], A_i a basis of rho(h) + R, over an exact field.
+
+    x are the coordinates of ``pair.coordinates``; there is at least one (d >= 1).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pencil(lh.Pair(lh.so(3), [[0, 0, 1]])).shape
+    (2, 2)
+    """
+    d = pair.dimension
+    if d < 1:
+        raise ShapeError("g/h is zero: there is no matrix of linear forms")
+    matrices = [pair.field.identity(d), *pair.isotropy_matrices()]
+    flat = pair.field.stack_rows([a.reshape(1, d * d) for a in matrices], d * d)
+    chosen = [matrices[i] for i in flat.T.echelon()[1]]
+    # Column j of part i is A_j e_i.
+    return LinearForms(
+        [pair.field.stack_columns([a.select(columns=[i]) for a in chosen], d) for i in range(d)],
+    )
+
+
+def _at(pair: Pair, row: Any, *, generic: bool) -> RangeCondition:
+    d, field = pair.dimension, pair.field
+    psi = row.row(0)
+    if d == 0:
+        return RangeCondition(True, 0, 0, psi, None, not generic, generic, "h = g: nothing to reach")
+    x = row @ pair.subalgebra.quotient().projection
+    equilibrium = _vanishes(x, row)
+    images = [(a @ x.T).T for a in pair.isotropy_matrices()]
+    table = field.stack_rows([x, *images], d)
+    numerical = None
+    if equilibrium:
+        rank, kernel = 0, field.unit(d, 0)
+    elif isinstance(table, FloatMatrix):
+        numerical = table.rank_decision()
+        rank = numerical.rank
+        kernel = table.null_space()
+    else:
+        kernel = table.null_space()
+        rank = d - kernel.nrows
+    missing = None if rank == d else (kernel.select(rows=[0]) @ pair.subalgebra.quotient().projection.T).row(0)
+    message = "psi lies in h: an equilibrium" if equilibrium else f"[h, psi] + R psi has rank {rank} of {d} in g/h"
+    return RangeCondition(rank == d, rank, d, psi, missing, equilibrium, generic, message, numerical)
+
+
+def _vanishes(x: Any, row: Any) -> bool:
+    """Whether psi lies in h; over floats, up to the field's tolerance times the largest coefficient of psi."""
+    if isinstance(x, FloatMatrix):
+        return float(abs(x.array).max()) <= x.field.rtol * float(abs(row.array).max())
+    return bool(x.is_zero())
+
+
+def _best_sample(pair: Pair) -> RangeCondition:
+    """The answer at the random point, out of a few, with the largest rank."""
+    rng = random.Random(pair.algebra.dimension)
+    best: RangeCondition | None = None
+    lift = pair.subalgebra.quotient().lift
+    for size in range(SAMPLES):
+        values = [[rng.randint(-3 - 4 * size, 3 + 4 * size) or 1 for _ in range(pair.dimension)]]
+        found = _at(pair, pair.field.matrix(values) @ lift, generic=True)
+        if found.holds:
+            return _decided(found, True, "one psi at which it holds proves it")
+        best = found if best is None or found.rank > best.rank else best
+    if best is None:
+        raise UndecidedError("no sample was taken")
+    return _decided(best, False, f"the numerical rank is at most {best.rank} of {best.dimension} at {SAMPLES} points")
+
+
+def _keeps_a_definite_form(pair: Pair) -> bool:
+    """Whether a basis element of the symmetric forms on g/h that h preserves up to scale is definite."""
+    d = pair.dimension
+    reduced = traceless(pair.isotropy_matrices(), d, pair.field)
+    found = invariant_forms(reduced, d, pair.field).symmetric
+    return any(d in form.signature()[:2] for form in found)
+
+
+def _never(best: RangeCondition, message: str) -> RangeCondition:
+    return _decided(best, False, message)
+
+
+def _decided(best: RangeCondition, holds: bool | None, message: str) -> RangeCondition:
+    return RangeCondition(
+        holds, best.rank, best.dimension, best.psi, best.missing, best.equilibrium, True, message, best.numerical
+    )

@@ -1,0 +1,132 @@
+"""The relative invariant of a pair: the equation of the hypersurface where the range condition fails.
+
+M(x) = [A_1 x, ..., A_m x], A_i a basis of L = rho(h) + R.  If rank M(x) = d for generic x, an irreducible p
+divides all d x d minors exactly if it divides one of them and is a relative invariant of L:
+the zeros of a common divisor are permuted by the connected group of L, so p is; conversely grad p annihilates
+L x on p = 0, so the rank is less than d there.  Hence the product below is exact, from one minor.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any, final
+
+from liehom.errors import FieldError, InputError
+from liehom.homogeneous.range.range_condition import pencil, range_condition
+from liehom.representations import Pair
+from liehom.scalars import QQ, ExactField, Scalar
+
+MAX_DIMENSION = 8
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class RelativeInvariant:
+    """The product f of the distinct irreducible polynomials over QQ that divide all d x d minors of M(x).
+
+    Attributes
+    ----------
+    pair : Pair
+    factors : tuple of flint.fmpq_mpoly
+        In the variables x0, ..., x(d-1), the coordinates of psi mod h by ``pair.coordinates``.
+
+    Notes
+    -----
+    The range condition fails where f vanishes, and the rest of where it fails has codimension at least 2 (over the
+    complex numbers too). f is the radical of the greatest common divisor of the minors; of a full pair it may be
+    a definite form, whose only real zero is 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(relative_invariant(lh.Pair(lh.so(3), [[0, 0, 1]])))
+    x0^2 + x1^2
+    """
+
+    pair: Pair
+    factors: tuple[Any, ...]
+
+    @property
+    def degree(self) -> int:
+        """The degree; 0 where the failures have codimension at least 2."""
+        return sum(int(p.total_degree()) for p in self.factors)
+
+    def __call__(self, psi: Any) -> Scalar:
+        """The value at an element psi of g."""
+        x = self.pair.coordinates(psi).row(0)
+        total = self.pair.field.one
+        for p in self.factors:
+            value = self.pair.field.zero
+            for exponents, c in p.to_dict().items():
+                term = c
+                for v, e in zip(x, exponents, strict=True):
+                    term = term * v**e
+                value = value + term
+            total = total * value
+        return total
+
+    def __str__(self) -> str:
+        texts = [str(p) for p in self.factors]
+        return texts[0] if len(texts) == 1 else "*".join(f"({t})" for t in texts) or "1"
+
+    def __repr__(self) -> str:
+        return f"<relative invariant {self}>"
+
+
+def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> RelativeInvariant | None:
+    """The reduced equation of the hypersurface on which the range condition fails.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over QQ.
+    max_dimension : int
+        Refuse above this dimension of g/h: the minors have degree d in d variables.
+
+    Returns
+    -------
+    RelativeInvariant or None
+        None if the range condition holds for no psi, or if d = 0.
+
+    Raises
+    ------
+    FieldError
+        Over a number field or floats.
+    InputError
+        If g/h has dimension above `max_dimension`.
+
+    Examples
+    --------
+    The failures of so(3,1)/so(2,1) are the null cone:
+
+    >>> import liehom as lh
+    >>> print(relative_invariant(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0])))
+    x0^2 + x1^2 - x2^2
+    """
+    if not isinstance(pair.field, ExactField) or pair.field != QQ:
+        raise FieldError(f"the relative invariant is computed over QQ only, not over {pair.field.name}")
+    d = pair.dimension
+    if d > max_dimension:
+        raise InputError(f"g/h has dimension {d}; the relative invariant is computed up to {max_dimension}")
+    if d == 0 or not range_condition(pair).holds:
+        return None
+    forms = pencil(pair)
+    rng = random.Random(d)
+    first, second = (_generic_minor(forms, rng) for _ in range(2))
+    factors = forms.invariant_factors(first, second, pair.isotropy_matrices())
+    return RelativeInvariant(pair, tuple(sorted((_signed(p) for p in factors), key=str)))
+
+
+def _generic_minor(forms: Any, rng: random.Random) -> Any:
+    """The determinant of M(x) T for a random constant T, not the zero polynomial."""
+    d, m = forms.shape
+    while True:
+        mix = QQ.matrix([[rng.randint(-2, 2) for _ in range(d)] for _ in range(m)])
+        minor = forms.times(mix).minor(range(d), range(d))
+        if not minor.is_zero():
+            return minor
+
+
+def _signed(polynomial: Any) -> Any:
+    return polynomial if polynomial.leading_coefficient() > 0 else -polynomial

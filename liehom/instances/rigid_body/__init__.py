@@ -1,0 +1,13 @@
+"""The free rigid body: its exact motion, the updates of Figure 6, closed forms, the attitude.
+
+`RigidBody` is the field that everything here is about. See docs/reproduction.md for what the paper does with it.
+"""
+
+from liehom.instances.rigid_body.closed_forms import ClosedForm as ClosedForm
+from liehom.instances.rigid_body.exact_orbit import ExactOrbit as ExactOrbit
+from liehom.instances.rigid_body.exact_orbit import ExactOrbitUpdate as ExactOrbitUpdate
+from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor as GeneratorTaylor
+from liehom.instances.rigid_body.nominal_time_corrected import OnTime as OnTime
+from liehom.instances.rigid_body.rigid_body import RigidBody as RigidBody
+from liehom.instances.rigid_body.updates import Update as Update
+from liehom.instances.rigid_body.updates import update_names as update_names

@@ -1,0 +1,240 @@
+"""The step on the orbit itself: xi = t (omega_o + s m) with the Cayley transform and s such that the energy stays.
+
+At unit vectors, with sigma_i and R, h, v as in `closed_forms`, w = omega_o, rho = <X, Om w>/v^2, b = <w, Om w>/v^2,
+
+    H(cay(xi) m) - H(m) = (t^2 v^2 / (2 d^2)) f(s),   d = 1 + t^2 (v^2 + s^2)/4,
+    f(s) = sigma_i + (t rho - 1 + t^2 v^2/4) s + (t^2/4)(b - h) s^2 - (t^2/4) s^3,
+
+a cubic whose root next to t = 0 is sigma_i (1 + t rho + ...).  It always has a real root.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from liehom.correctors.step import Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.errors import InputError
+from liehom.homogeneous import Action
+from liehom.instances.rigid_body.closed_forms import Ingredients, dot
+from liehom.instances.rigid_body.updates import step_sizes
+from liehom.integrators.run.points import points_of
+from liehom.series.jet import Jet
+from liehom.tracing import Traced
+
+if TYPE_CHECKING:
+    from liehom.instances.rigid_body.rigid_body import RigidBody
+
+ITERATIONS = 8
+# |f'| below which the root is about to meet another one
+LEAST_SLOPE = 0.1
+HALVINGS = 12
+
+
+@final
+class ExactOrbit(OneExponential):
+    """The step of a rigid body that stays on the orbit to round-off, for `liehom.integrate` with exponential="cayley".
+
+    Parameters
+    ----------
+    body : RigidBody
+        The field to integrate is ``body.field("o")``.
+
+    Notes
+    -----
+    Its clock is tau(t) = t (1 + t rho / 2), with which trajectories have order 2. With the true exponential the
+    energy has order 2 only.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> body, m = lh.instances.RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64])
+    >>> step = ExactOrbit(body)
+    >>> sol = lh.integrate(body.field("o"), (0, 50), m, step=step, dt=1.0, exponential="cayley")
+    >>> bool(np.abs(body.energy(sol.y.T) - body.energy(m)).max() < 3e-15)
+    True
+    """
+
+    def __init__(self, body: RigidBody) -> None:
+        self.body = body
+
+    @property
+    def order(self) -> int:
+        return 2
+
+    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+        return self.at(action, psi, m, t).factors(h)[0]
+
+    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> OrbitStep:
+        return OrbitStep(self.body, m)
+
+    def __repr__(self) -> str:
+        return f"ExactOrbit({self.body!r})"
+
+
+@final
+class OrbitStep(LocalStep):
+    """The step at one point, as a function of its size.
+
+    Parameters
+    ----------
+    body : RigidBody
+    m : array of shape (..., 3)
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> local = OrbitStep(lh.instances.RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64]))
+    >>> s, kept = local.root(np.array([1.0]))
+    >>> bool(abs(local.value(s, np.array([1.0]))[0]) < 1e-15), bool(kept[0])
+    (True, True)
+    """
+
+    def __init__(self, body: RigidBody, m: Any) -> None:
+        self._size = np.sqrt(dot(m, m))
+        self._size = np.where(self._size > 0, self._size, 1)
+        at = self._at = Ingredients(body, m / self._size)
+        self.omega = at.h * at.n - body.apply(at.n)
+        moves = at.v2 > 0
+        below = np.where(moves, at.v2, 1)
+        turned = body.apply(self.omega)
+        self.rho = np.where(moves, dot(at.X, turned) / below, 0)
+        self._square = np.where(moves, dot(self.omega, turned) / below - at.h, 0)
+
+    def factors(self, h: Any) -> tuple[Any, ...]:
+        t = h * self._size
+        return (t * (self.omega + self._root(t) * self._at.n),)
+
+    def time(self, h: Any) -> Any:
+        """t (1 + t rho / 2), for h of shape (...,)."""
+        return h * (1 + h * (self._size * self.rho)[..., 0] / 2)
+
+    def root(self, h: Any) -> tuple[Any, Any]:
+        """s for the step sizes h (..., 1), and where it is the root that grows out of sigma_i, both (..., 1).
+
+        Newton's method from sigma_i; where it does not lead to a root with f' < -0.1, the root with f' <= 0 that is
+        nearest to sigma_i: the first one is then close to vanishing in a double root, or has vanished.
+        """
+        t = h * self._size
+        start = self._at.sigma_i + 0 * t
+        s = start
+        for _ in range(ITERATIONS):
+            slope = self._slope(s, t)
+            s = np.where(slope < -LEAST_SLOPE / 2, s - self._value(s, t) / np.where(slope < 0, slope, -1), s)
+        eps = float(np.finfo(s.dtype).eps)
+        kept = (np.abs(self._value(s, t)) <= 16 * eps * (1 + np.abs(s))) & (self._slope(s, t) < -LEAST_SLOPE)
+        if isinstance(s, Traced):  # where it does not hold the step is not made by compiled code
+            s.tape.required.append(Traced(s.tape, np.all(kept)).entries[()])
+            return s, kept
+        if not bool(kept.all()):
+            s = np.where(kept, s, self._nearest(start, t, kept))
+        return s, kept
+
+    def value(self, s: Any, h: Any) -> Any:
+        """f(s) for steps of the size h (..., 1)."""
+        return self._value(s, h * self._size)
+
+    def _root(self, t: Any) -> Any:
+        if not isinstance(t, Jet):
+            return self.root(t / self._size)[0]
+        at = self._at
+
+        def rest(d: Any) -> Any:
+            s = at.sigma_i + d
+            return t * s * (self.rho + t / 4 * (at.v2 + s * (self._square - s)))
+
+        return at.sigma_i + solve_implicitly(rest, np.zeros_like(at.h), t)
+
+    def _value(self, s: Any, t: Any) -> Any:
+        at = self._at
+        return at.sigma_i + s * (t * self.rho - 1 + t * t / 4 * (at.v2 + s * (self._square - s)))
+
+    def _slope(self, s: Any, t: Any) -> Any:
+        return t * self.rho - 1 + t * t / 4 * (self._at.v2 + s * (2 * self._square - 3 * s))
+
+    def _nearest(self, start: Any, t: Any, kept: Any) -> Any:
+        """The root with f' <= 0 that is nearest to sigma_i, where it is needed."""
+        found = start.copy()
+        constant, linear = self._at.sigma_i, t * self.rho - 1 + t * t / 4 * self._at.v2
+        square, cube = t * t / 4 * self._square, -t * t / 4
+        rows = np.broadcast_arrays(cube, square, linear, constant, found)
+        for index in np.argwhere(~np.broadcast_to(kept, found.shape)):
+            place = tuple(index)
+            *polynomial, near = (float(x[place]) for x in rows)
+            roots = np.roots(polynomial)
+            real = roots[np.abs(roots.imag) <= 1e-6 * (1 + np.abs(roots))].real
+            outer = real[np.polyval(np.polyder(polynomial), real) <= 1e-6]
+            found[place] = min(outer if len(outer) else real, key=lambda x: abs(x - near))
+        for _ in range(2):
+            slope = self._slope(found, t)
+            far = np.abs(slope) > 1e-3
+            found = found - np.where(far, self._value(found, t) / np.where(far, slope, 1), 0)
+        return found
+
+
+@final
+class ExactOrbitUpdate:
+    """The step as an update (m, dt) -> m; made by ``RigidBody.exact_orbit()``.
+
+    Where the root that grows out of sigma_i is lost (from dt |m| of about 3 times the moments on), the only root left
+    may lie on the other of the two closed orbits of the same energy: there the step is made in two halves.
+
+    Parameters
+    ----------
+    body : RigidBody
+    step : ExactOrbit
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> update = lh.instances.RigidBody([1, 2, 3]).exact_orbit()
+    >>> m = np.array([0.6, 0.48, 0.64])
+    >>> update(m, 0.5).round(3).tolist(), round(float(update.time(m, 0.5)), 3)
+    ([0.572, 0.601, 0.558], 0.514)
+    """
+
+    def __init__(self, body: RigidBody, step: ExactOrbit) -> None:
+        self.body, self.step = body, step
+        self._action = Action(body.representation, "cayley")
+
+    def __call__(self, m: Any, dt: Any) -> Any:
+        """The next point, shape (..., 3)."""
+        return self.advance(m, dt)[0]
+
+    def time(self, m: Any, dt: Any) -> Any:
+        """The time that passes, with which trajectories have order 2, shape (...,)."""
+        return self.advance(m, dt)[1]
+
+    def advance(self, m: Any, dt: Any) -> tuple[Any, Any]:
+        """The next point and the time that passes, shapes (..., 3) and (...,).
+
+        Raises
+        ------
+        InputError
+            If a step size is not finite.
+        """
+        point = points_of(m)
+        h = step_sizes(dt, point)
+        if not bool(np.isfinite(h).all()):
+            raise InputError(f"the step size is {dt!r}, expected finite numbers")
+        return self._advance(point, h, HALVINGS)
+
+    def _advance(self, m: Any, h: Any, halvings: int) -> tuple[Any, Any]:
+        local = OrbitStep(self.body, m)
+        after, passed = self._action.act(local.factors(h)[0], m), local.time(h[..., 0])
+        kept = local.root(h)[1][..., 0]
+        if bool(kept.all()) or not halvings:
+            return after, passed
+        lost = ~kept
+        between, first = self._advance(m[lost], h[lost] / 2, halvings - 1)
+        last, second = self._advance(between, h[lost] / 2, halvings - 1)
+        after, passed = after.copy(), np.asarray(passed).copy()
+        after[lost], passed[lost] = last, first + second
+        return after, passed
+
+    def __repr__(self) -> str:
+        return f"<exact-orbit update of {self.body!r}>"

@@ -1,0 +1,117 @@
+"""OnTime(step, n): a step raised to order n as a trajectory at the nominal time, by isotropy and multiples of psi.
+
+The system of Theorem 5, (1/2) rho(zeta) w_1 - c w_1 = w_n - z_n, has two unknowns.  `liehom.Corrected` lets c change
+the clock; here the generator makes up for it: adding zeta t^(n-1) - c psi(m) t^n changes the coefficient of t^n by
+(1/2) rho(zeta) w_1 - c w_1, and the clock stays.  From xi = sum psi^(j-1) t^j / j! this makes the paper's xi_o^sy4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.expansion import flow_series
+from liehom.correctors.isotropy.isotropy_corrector import correct
+from liehom.correctors.step import Generator, LocalStep, OneExponential
+from liehom.errors import InputError
+from liehom.homogeneous import Action
+
+
+@final
+@dataclass(frozen=True)
+class GeneratorTaylor(OneExponential):
+    """xi = sum_(j <= n) psi^(j-1) t^j / j!, the Taylor series of the integral of psi along the flow: order at most 2.
+
+    Parameters
+    ----------
+    n : int
+
+    Examples
+    --------
+    >>> GeneratorTaylor(4).order
+    2
+    """
+
+    n: int
+
+    @property
+    def order(self) -> int:
+        return min(self.n, 2)
+
+    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+        flow = flow_series(psi.field, m, self.n, t[..., 0] if np.ndim(t) else t)
+        total = flow.psi(self.n - 1) / self.n * h
+        for j in range(self.n - 1, 0, -1):
+            total = (total + flow.psi(j - 1) / j) * h
+        return total
+
+
+@final
+class OnTime(OneExponential):
+    """A step raised in order by isotropy and by multiples of psi(m), without a clock.
+
+    Parameters
+    ----------
+    step : OneExponential
+    order : int
+
+    Raises
+    ------
+    InputError
+        If the step has several exponentials.
+
+    Notes
+    -----
+    For autonomous fields, where the range condition (6.2) holds.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> OnTime(lh.Euler(), 3)
+    OnTime(Euler(), order=3)
+    """
+
+    def __init__(self, step: OneExponential, order: int) -> None:
+        if not step.one_exponential:
+            raise InputError(f"{step!r} has several exponentials, expected one")
+        self.step = step
+        self._order = order
+
+    @property
+    def order(self) -> int:
+        return max(self._order, self.step.order)
+
+    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+        return self.at(action, psi, m, t).factors(h)[0]
+
+    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+        local = self.step.at(action, psi, m, t)
+        velocity = psi(m, t)
+        time = t[..., 0] if np.ndim(t) else t
+        for n in range(self.step.order + 1, self.order + 1):
+            found = correct(
+                action, psi.field, local, m, time, base_order=n - 1, order=n, orbit_dimension=psi.orbit_dimension
+            )
+            zeta, c = found.zeta[n - 1], found.clock[n]
+            if zeta is not None and c is not None:  # they are where no trajectory moves
+                local = _Raised(local, n, zeta, -c[..., None] * velocity)
+        return local
+
+    def __repr__(self) -> str:
+        return f"OnTime({self.step!r}, order={self.order})"
+
+
+@final
+class _Raised(LocalStep):
+    """xi + zeta h^(n-1) + x h^n."""
+
+    def __init__(self, base: LocalStep, n: int, zeta: Any, x: Any) -> None:
+        self.base, self.n, self.zeta, self.x = base, n, zeta, x
+
+    def factors(self, h: Any) -> tuple[Any, ...]:
+        power = h
+        for _ in range(self.n - 2):
+            power = power * h
+        return (self.base.factors(h)[0] + (self.zeta + self.x * h) * power,)

@@ -1,0 +1,427 @@
+"""RigidBody: the reduced free rigid body m' = m x Om m, Om = I^-1, on spheres in R^3.
+
+    X(m) = omega(m) x m,   omega_b = -Om m,   omega_o = -Om m + h m,   h = <m, Om m> / |m|^2
+
+omega_b is the generator of the body representation, omega_o the one orthogonal to m; g_m is spanned by m.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, final
+
+import numpy as np
+
+from liehom.algebra import so
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous import GeneratorField
+from liehom.homogeneous.maps import FieldMatrix, remainder
+from liehom.instances.rigid_body.attitude import attitude
+from liehom.instances.rigid_body.closed_forms import ClosedForm
+from liehom.instances.rigid_body.exact_orbit import ExactOrbit, ExactOrbitUpdate
+from liehom.instances.rigid_body.free_motion import free_motion
+from liehom.instances.rigid_body.updates import Update
+from liehom.integrators.run.points import points_of
+from liehom.representations import Representation, adjoint
+from liehom.scalars import QQ
+
+SYMMETRY_RTOL = 1e-10
+
+
+@final
+class RigidBody:
+    """A free rigid body with any inertia tensor, on spheres of any radius.
+
+    Parameters
+    ----------
+    inertia : three positive numbers, or a symmetric positive definite (3, 3) matrix
+        Principal moments, or the tensor. Numbers, fractions, or texts such as "3/2"; floats count as the rational
+        numbers that they are, so that Om = I^-1 is known exactly. Moments need not satisfy the triangle inequality.
+
+    Attributes
+    ----------
+    representation : Representation
+        so(3) on R^3: e_a acts by the cross product with e_a, on generators and points alike.
+    inertia, inverse : arrays of shape (3, 3)
+        I and Om in floats.
+    moments : array of shape (3,)
+        The principal moments, the largest first.
+    axes : array of shape (3, 3)
+        Principal axes in columns, in the order of `moments`, right-handed.
+
+    Raises
+    ------
+    ShapeError, InputError
+        If the inertia tensor is not of this kind.
+
+    Notes
+    -----
+    Section 4 of the paper with X = omega x m throughout. Names of updates are those of Figure 6; `liehom.instances.
+    update_names` lists them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> body = RigidBody([1, 2, 3])
+    >>> m = np.array([0.6, 0.48, 0.64])
+    >>> body.vector(m).round(4).tolist()
+    [-0.0512, 0.256, -0.144]
+    >>> after = body.update("eul_i")(m, 0.1)
+    >>> bool(abs(body.energy(after) - body.energy(m)) < 1e-6), bool(abs(body.casimir(after) - 1) < 1e-14)
+    (True, True)
+    """
+
+    def __init__(self, inertia: Any) -> None:
+        tensor = _tensor(inertia)
+        self._inverse = tensor.inverse()
+        self._apply = FieldMatrix(self._inverse)
+        self.representation: Representation = adjoint(so(3))
+        self.inertia = tensor.to_numpy()
+        self.inverse = self._inverse.to_numpy()
+        for array in (self.inertia, self.inverse):
+            array.flags.writeable = False
+        self._diagonal = all(tensor.to_rows()[i][j] == 0 for i in range(3) for j in range(3) if i != j)
+
+    # -- the field ---------------------------------------------------------------------------------------
+    def apply(self, m: Any) -> Any:
+        """Om m for m (..., 3): floats of either precision, exact numbers, or a Jet.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> RigidBody([1, 2, 4]).apply(np.array([1.0, 1.0, 1.0])).tolist()
+        [1.0, 0.5, 0.25]
+        """
+        return self._apply(m)
+
+    def rayleigh(self, m: Any) -> Any:
+        """h = <m, Om m> / |m|^2, twice the energy on the unit sphere, shape (...,)."""
+        return _dot(m, self.apply(m)) / _dot(m, m)
+
+    def field(self, kind: str = "o") -> GeneratorField:
+        """The vector field with the generator omega_b ("b") or omega_o ("o").
+
+        Raises
+        ------
+        InputError
+            If the kind is another one.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> body, m = RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64])
+        >>> bool(abs(body.field("o").psi(m) @ m) < 1e-15), bool(np.allclose(body.field("b").vector(m), body.vector(m)))
+        (True, True)
+        """
+        if kind not in _GENERATORS:
+            raise InputError(f"the kind of a generator is {kind!r}, expected 'b' (omega = -Om m) or 'o' (orthogonal)")
+        return self._fields[kind]
+
+    @cached_property
+    def _fields(self) -> dict[str, GeneratorField]:
+        def body(m: Any) -> Any:
+            return -self.apply(m)
+
+        def orthogonal(m: Any) -> Any:
+            turned = self.apply(m)
+            h = np.sum(m * turned, axis=-1, keepdims=True) / np.sum(m * m, axis=-1, keepdims=True)
+            return h * m - turned
+
+        return {
+            kind: GeneratorField(self.representation, psi)
+            for kind, psi in zip(_GENERATORS, (body, orthogonal), strict=True)
+        }
+
+    def vector(self, m: Any) -> Any:
+        """X(m) = m x Om m."""
+        return np.cross(m, self.apply(m))
+
+    def energy(self, m: Any) -> Any:
+        """H(m) = <m, Om m> / 2, shape (...,)."""
+        return _dot(m, self.apply(m)) / 2
+
+    def casimir(self, m: Any) -> Any:
+        """|m|^2, shape (...,)."""
+        return _dot(m, m)
+
+    # -- principal axes ----------------------------------------------------------------------------------
+    @cached_property
+    def _principal(self) -> tuple[list[Any], Any]:
+        """w_1 <= w_2 <= w_3 (exactly, for a diagonal tensor) and axes in columns."""
+        if self._diagonal:
+            rows = self._inverse.to_rows()
+            order = sorted(range(3), key=lambda i: rows[i][i])
+            axes = np.eye(3)[:, order]
+            values = [rows[i][i] for i in order]
+        else:
+            found, axes = np.linalg.eigh(self.inverse)
+            values = [QQ.convert(Fraction(float(x))) for x in found]
+        axes[:, 1] *= np.sign(np.linalg.det(axes))
+        axes.flags.writeable = False
+        return values, axes
+
+    @property
+    def moments(self) -> Any:
+        """The principal moments, the largest first, shape (3,)."""
+        return np.array([1 / QQ.to_float(x) for x in self._principal[0]])
+
+    @property
+    def axes(self) -> Any:
+        """Principal axes in columns, in the order of `moments`, shape (3, 3)."""
+        return self._principal[1]
+
+    def invariants(self, dtype: Any = np.float64) -> tuple[Any, Any, Any]:
+        """e_1, e_2, e_3, the elementary symmetric functions of the inverse moments.
+
+        Examples
+        --------
+        >>> [float(x) for x in RigidBody([1, 2, 4]).invariants()]
+        [1.75, 0.875, 0.125]
+        """
+        om, square = self._inverse, self._inverse @ self._inverse
+        trace = om.trace()
+        second = (trace**2 - square.trace()) / 2
+        return number(trace, dtype), number(second, dtype), number(om.determinant(), dtype)
+
+    def equilibria(self, radius: float = 1.0) -> Any:
+        """The points +-e_j on the principal axes, the axis of the largest moment first, shape (6, 3).
+
+        Where two moments agree every point between their axes is an equilibrium too.
+
+        Examples
+        --------
+        >>> RigidBody([1, 2, 3]).equilibria()[:2].tolist()
+        [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
+        """
+        return radius * np.stack([self.axes.T, -self.axes.T], axis=1).reshape(6, 3) + 0.0
+
+    def separatrix(self, angle: Any, branch: int = 1, radius: float = 1.0) -> Any:
+        """Points on the separatrix h = w_2: two great circles through the middle axis.
+
+        Parameters
+        ----------
+        angle : array of shape (...,)
+            From the middle axis; 0 and pi are the unstable equilibria.
+        branch : 1 or -1
+            Which of the two circles.
+        radius : float
+
+        Returns
+        -------
+        array of shape (..., 3)
+
+        Raises
+        ------
+        InputError
+            If two moments agree: there is no separatrix.
+
+        Examples
+        --------
+        >>> body = RigidBody([1, 2, 3])
+        >>> bool(abs(body.rayleigh(body.separatrix(0.3)) - 1 / 2) < 1e-15)
+        True
+        """
+        if branch not in (1, -1):
+            raise InputError(f"the branch of a separatrix is 1 or -1, got {branch!r}")
+        a1, a2, a3 = self._gaps(np.float64)
+        if min(a1, a3) <= 0:
+            raise InputError(
+                f"a body with the moments {self.moments} has no separatrix: three different ones are needed"
+            )
+        first, middle, third = self.axes.T
+        across = (np.sqrt(a1) * first + branch * np.sqrt(a3) * third) / np.sqrt(a2)
+        angle = np.asarray(angle, dtype=float)[..., None]
+        return radius * (np.cos(angle) * middle + np.sin(angle) * across)
+
+    def _gaps(self, dtype: Any) -> tuple[Any, Any, Any]:
+        w1, w2, w3 = self._principal[0]
+        return number(w3 - w2, dtype), number(w3 - w1, dtype), number(w2 - w1, dtype)
+
+    # -- exact motion ------------------------------------------------------------------------------------
+    def exact(self, m0: Any, t: Any) -> Any:
+        """The point at time t of the motion through m0 at time 0, by Jacobi elliptic functions.
+
+        Parameters
+        ----------
+        m0 : array_like of shape (..., 3)
+            Of any length; numpy.longdouble is kept (for a tensor that is not diagonal the axes are in double
+            precision).
+        t : array_like of shape (...,)
+            Broadcasts against the leading axes of m0.
+
+        Returns
+        -------
+        array of shape (..., 3)
+
+        Raises
+        ------
+        ShapeError, InputError
+            If m0 is not an array of points.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> body, m = RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64])
+        >>> there = body.exact(m, 7.0)
+        >>> bool(np.allclose(body.exact(there, -7.0), m, rtol=0, atol=1e-14))
+        True
+        """
+        m = point_of(m0)
+        time = np.asarray(t, dtype=m.dtype)
+        axes = self.axes.astype(m.dtype)
+        return free_motion(m @ axes, self._gaps(m.dtype.type), time) @ axes.T
+
+    def attitude(self, m0: Any, t: Any, start: Any = None) -> Any:
+        """The rotations Q(t) from the body to space, Q' = Q hat(Om m), with Q m, the momentum in space, constant.
+
+        Parameters
+        ----------
+        m0 : array_like of shape (3,) or (..., 3)
+            Body angular momentum at time 0.
+        t : array_like of shape (k,)
+            Sorted, all of one sign.
+        start : array_like of shape (3, 3), optional
+            Q(0); by default the identity.
+
+        Returns
+        -------
+        array of shape (..., k, 3, 3)
+
+        Raises
+        ------
+        ShapeError, InputError
+            If an argument is not of this form, or Q(0) is no rotation.
+
+        Notes
+        -----
+        m and the rows of Q are moved by one rotation, that of the generator omega_b.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> body, m = RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64])
+        >>> q = body.attitude(m, [1.0, 5.0])[1]
+        >>> bool(np.allclose(q @ body.exact(m, 5.0), m, rtol=0, atol=1e-12)), round(float(np.linalg.det(q)), 12)
+        (True, 1.0)
+        """
+        return attitude(self.apply, point_of(m0), t, start)
+
+    # -- updates -----------------------------------------------------------------------------------------
+    def update(self, name: str, exponential: Any = "cayley") -> Update:
+        """The update of Figure 6 with this name, (m, dt) -> m, from its base scheme and the generic corrector.
+
+        Raises
+        ------
+        InputError
+            If there is none; lists the names.
+
+        Examples
+        --------
+        >>> RigidBody([1, 2, 3]).update("rk2_ib")
+        <update rk2_ib with Cayley: Corrected(Heun(), order=4)>
+        """
+        return Update(self, name, exponential)
+
+    def closed_form(self, name: str, exponential: str = "cayley") -> ClosedForm:
+        """The same update in closed form, (m, dt) -> m.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> body, m = RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64])
+        >>> difference = body.closed_form("sy4_io")(m, 0.1) - body.update("sy4_io")(m, 0.1)
+        >>> bool(np.abs(difference).max() < 1e-15)
+        True
+        """
+        return ClosedForm(self, name, exponential)
+
+    def exact_orbit(self) -> ExactOrbitUpdate:
+        """The Cayley step that keeps the energy to round-off, (m, dt) -> m, with a clock of order 2.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> body, m = RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64])
+        >>> after = body.exact_orbit()(m, 2.0)
+        >>> bool(abs(body.energy(after) - body.energy(m)) < 1e-15)
+        True
+        """
+        return ExactOrbitUpdate(self, ExactOrbit(self))
+
+    def __repr__(self) -> str:
+        shown = np.diag(self.inertia) if self._diagonal else self.inertia
+        return f"RigidBody({shown.tolist()})"
+
+
+_GENERATORS = ("b", "o")
+
+
+def number(x: Any, dtype: Any) -> Any:
+    """A rational number in floats of a type.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> number(lh.QQ.convert("1/2"), np.float64)
+    np.float64(0.5)
+    """
+    near = QQ.to_float(x)
+    return dtype(near) + dtype(remainder(QQ, x, near)) if dtype == np.longdouble else dtype(near)
+
+
+def point_of(m: Any) -> Any:
+    """Points of R^3 as floats, shape (..., 3).
+
+    Raises
+    ------
+    ShapeError, InputError
+        If they are not points of R^3.
+
+    Examples
+    --------
+    >>> point_of([1, 0, 0]).tolist()
+    [1.0, 0.0, 0.0]
+    """
+    point = points_of(m)
+    if point.ndim == 0 or point.shape[-1] != 3:
+        raise ShapeError(f"a point has shape {point.shape}, expected (..., 3)")
+    return point
+
+
+def _dot(a: Any, b: Any) -> Any:
+    return np.sum(a * b, axis=-1)
+
+
+def _tensor(inertia: Any) -> Any:
+    """The inertia tensor over QQ."""
+    given = np.asarray(inertia, dtype=object)
+    if given.shape == (3,):
+        given = np.diag(given)
+    if given.shape != (3, 3):
+        raise ShapeError(f"the inertia has shape {given.shape}, expected three moments or a (3, 3) matrix")
+    exact = [[_rational(x) for x in row] for row in given]
+    largest = max(abs(x) for row in exact for x in row)
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        gap = abs(exact[i][j] - exact[j][i])
+        if gap > SYMMETRY_RTOL * largest:
+            raise InputError(
+                f"the inertia tensor is not symmetric: I[{i}, {j}] = {given[i, j]}, I[{j}, {i}] = {given[j, i]}"
+            )
+        exact[i][j] = exact[j][i] = (exact[i][j] + exact[j][i]) / 2
+    tensor = QQ.matrix(exact)
+    if not tensor.is_positive_definite():
+        raise InputError(f"the inertia {inertia} is not positive definite: principal moments are positive")
+    return tensor
+
+
+def _rational(x: Any) -> Fraction:
+    try:
+        if isinstance(x, str | int | Fraction):
+            return Fraction(x)
+        if hasattr(x, "p") and hasattr(x, "q"):
+            return Fraction(int(x.p), int(x.q))
+        return Fraction(*np.float64(x).as_integer_ratio())
+    except (TypeError, ValueError, OverflowError, ZeroDivisionError):
+        raise InputError(f"a moment of inertia is {x!r}, expected a finite real number") from None

@@ -1,0 +1,97 @@
+"""JointSpins: all spins of a lattice as one point of R^(3n), on which so(3)^n acts; for few spins.
+
+    rho(x_1, ..., x_n)(m_1, ..., m_n) = (x_1 x m_1, ..., x_n x m_n)
+
+The representation has 3n matrices of size 3n: good up to some dozen spins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, final
+
+import numpy as np
+
+from liehom.algebra import direct_sum, so
+from liehom.homogeneous import GeneratorField
+from liehom.instances.spins.spin_lattice import SpinLattice
+from liehom.representations import Representation, adjoint
+
+
+@final
+class JointSpins:
+    """A product of spheres as one space.
+
+    Parameters
+    ----------
+    lattice : SpinLattice
+    generator : callable
+        psi(m, t) of spins (..., *shape, 3) and times (..., *shape), of the same shape.
+    time_dependent : bool
+
+    Attributes
+    ----------
+    representation : Representation
+        so(3)^n on R^(3n).
+    field : GeneratorField
+        For points (..., 3n), the spins one after the other.
+
+    Examples
+    --------
+    >>> from liehom.instances import LandauLifshitz
+    >>> spins = LandauLifshitz((3,), exchange=1.0).joint()
+    >>> spins.representation.orbit_dimension([0, 0, 1, 0, 1, 0, 1, 0, 0])
+    6
+    """
+
+    __slots__ = ("field", "lattice", "representation")
+
+    def __init__(self, lattice: SpinLattice, generator: Callable[..., Any], time_dependent: bool) -> None:
+        self.lattice = lattice
+        self.representation = product_of_spheres(lattice.count)
+        axes = (1,) * len(lattice.shape)
+
+        def psi(m: Any, t: Any) -> Any:
+            # t of every lattice, at each of its spins
+            times = np.reshape(t, (*np.shape(t), *axes)) + 0 * self.spins(m)[..., 0]
+            return self.point(generator(self.spins(m), times))
+
+        self.field = GeneratorField(
+            self.representation,
+            psi if time_dependent else lambda m: self.point(generator(self.spins(m))),
+            time_dependent=time_dependent,
+        )
+
+    def point(self, m: Any) -> Any:
+        """The points (..., 3n) of spins (..., *shape, 3), arrays or Jets."""
+        m = m if hasattr(m, "shape") else np.asarray(m, dtype=float)
+        self.lattice.check(m)
+        return m.reshape((*m.shape[: len(m.shape) - 1 - len(self.lattice.shape)], 3 * self.lattice.count))
+
+    def spins(self, point: Any) -> Any:
+        """The spins (..., *shape, 3) of points (..., 3n), arrays or Jets.
+
+        Examples
+        --------
+        >>> from liehom.instances import LandauLifshitz
+        >>> LandauLifshitz((3, 4)).joint().spins([0.0] * 36).shape
+        (3, 4, 3)
+        """
+        point = point if hasattr(point, "shape") else np.asarray(point, dtype=float)
+        return point.reshape((*point.shape[:-1], *self.lattice.shape, 3))
+
+
+def product_of_spheres(n: int) -> Representation:
+    """so(3)^n on R^(3n).
+
+    Examples
+    --------
+    >>> product_of_spheres(2)
+    <representation 'n spins' of <Lie algebra so(3)+so(3) of dimension 6 over QQ> on QQ^6>
+    """
+    single = np.array([a.to_numpy() for a in adjoint(so(3)).matrices]).astype(int)
+    matrices = np.zeros((3 * n, 3 * n, 3 * n), dtype=int)
+    for i in range(n):
+        matrices[3 * i : 3 * i + 3, 3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = single
+    # a sum of representations of the summands
+    return Representation(direct_sum(*[so(3)] * n), matrices, name="n spins", check=False)

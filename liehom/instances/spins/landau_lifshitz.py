@@ -1,0 +1,310 @@
+"""LandauLifshitz: the Landau-Lifshitz-Gilbert equation of single spins, and of chains and grids of spins.
+
+    m_i' = -gamma m_i x h_i + alpha m_i x m_i',   h_i = -dE/dm_i = J sum_{j ~ i} m_j + 2 K <m_i, e> e + H
+    E = -J sum_{i ~ j} <m_i, m_j> - K sum_i <m_i, e>^2 - sum_i <H, m_i>,     |m_i| = 1
+
+Solved for m_i' it is m_i' = psi_i x m_i with the generator psi_i = gamma/(1 + alpha^2) (h_i + alpha m_i x h_i) in
+so(3): spins turn counterclockwise about the field (for gamma > 0) and, for alpha > 0, towards it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, final
+
+import numpy as np
+
+from liehom.algebra import so
+from liehom.correctors import Conserving, Corrected, Step
+from liehom.errors import InputError, ShapeError
+from liehom.homogeneous import GeneratorField
+from liehom.homogeneous.fields.generator import joined
+from liehom.instances.spins.joint_spins import JointSpins
+from liehom.instances.spins.spin_lattice import SpinLattice
+from liehom.integrators import Solution, integrate
+from liehom.representations import adjoint
+
+UNIT_RTOL = 1e-6
+
+
+@final
+class LandauLifshitz:
+    """Spins on a lattice with exchange, uniaxial anisotropy, an applied field and damping.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        (): single spins, however many; (n,): a chain; (n1, n2): a grid.
+    exchange : float
+        J: positive for a ferromagnet.
+    anisotropy : float or array_like of the lattice's shape
+        K: positive for an easy axis, negative for an easy plane.
+    axis : (3,) or (*shape, 3) array_like
+        e, of any length but 0.
+    applied : (3,) or (*shape, 3) array_like, or callable
+        H; or a function of t, written with numpy functions, of t (...,) to (..., 3), or a list of 3 of shape (...,).
+    damping : float or array_like of the lattice's shape
+        alpha, not negative.
+    gyromagnetic : float
+        gamma. The form of Landau and Lifshitz, m' = -m x h - alpha m x (m x h), is gamma = 1 + alpha^2.
+    periodic : bool or tuple of bool
+        The boundary along each axis: see `SpinLattice`.
+
+    Attributes
+    ----------
+    field : GeneratorField
+        On so(3) and R^3, for states m (..., *shape, 3): every spin is a trajectory, and psi couples them along the axes
+        of the lattice. It is right as long as all spins of a lattice are at one time: with fixed steps by the nominal
+        time. `integrate` sees to that.
+
+    Raises
+    ------
+    InputError, ShapeError
+        If an argument is not right.
+
+    Notes
+    -----
+    A single spin, and spins that are not coupled, are on S^2, where isotropy is full: a corrected step has any order,
+    each spin by its own clock. Coupled spins are on a product of n spheres, of dimension 2n; n directions of isotropy
+    and one clock do not suffice (rank 3 of 4 for two spins). There the order comes from `LieTaylor` and `RKMK`, and
+    isotropy conserves first integrals: see `joint`.
+
+    Examples
+    --------
+    A spin turns about the field and into it:
+
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> spin = LandauLifshitz(applied=[0.0, 0.0, 1.0], damping=0.1)
+    >>> sol = spin.integrate((0, 20), [1.0, 0.0, 0.0], step=lh.Corrected(lh.Euler(), 4), dt=0.1)
+    >>> bool(abs(sol.y[2, -1] - np.tanh(20 * 0.1 / 1.01)) < 1e-5)
+    True
+
+    A closed chain of 100 spins loses energy:
+
+    >>> chain = LandauLifshitz((100,), exchange=1.0, anisotropy=0.1, damping=0.2)
+    >>> m = np.random.default_rng(0).normal(size=(100, 3))
+    >>> m = m / np.linalg.norm(m, axis=-1, keepdims=True)
+    >>> sol = chain.integrate((0, 2), m, step=lh.RKMK("rk4"), dt=0.1, t_eval=[0, 1, 2])
+    >>> bool((np.diff(chain.energy(np.moveaxis(sol.y, -1, 0))) < 0).all())
+    True
+    """
+
+    __slots__ = (
+        "_applied", "_axis", "anisotropy", "damping", "exchange", "field", "gyromagnetic", "lattice", "time_dependent",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        shape: tuple[int, ...] = (),
+        *,
+        exchange: float = 0.0,
+        anisotropy: Any = 0.0,
+        axis: Any = (0.0, 0.0, 1.0),
+        applied: Any = (0.0, 0.0, 0.0),
+        damping: Any = 0.0,
+        gyromagnetic: float = 1.0,
+        periodic: bool | tuple[bool, ...] = True,
+    ) -> None:
+        self.lattice = SpinLattice(shape, periodic)
+        self.exchange = float(self._given("exchange", exchange, ()))
+        self.anisotropy: Any = self._given("anisotropy", anisotropy, self.lattice.shape)
+        self.damping: Any = self._given("damping", damping, self.lattice.shape)
+        self.gyromagnetic = float(self._given("gyromagnetic", gyromagnetic, ()))
+        if np.any(self.damping < 0):
+            raise InputError(f"the damping is {damping!r}, expected at least 0")
+        e = self._given("axis", axis, (*self.lattice.shape, 3))
+        length = np.linalg.norm(e, axis=-1, keepdims=True)
+        if e.shape[-1:] != (3,) or not bool(np.all(length > 0)):
+            raise InputError(f"the axis is {axis!r}, expected vectors of R^3 other than 0")
+        self._axis = e / length
+        self.time_dependent = callable(applied)
+        self._applied: Any = applied if callable(applied) else self._given("applied", applied, (*self.lattice.shape, 3))
+        if not self.time_dependent and self._applied.shape[-1:] != (3,):
+            raise ShapeError(f"the applied field has shape {self._applied.shape}, expected (..., 3)")
+        psi: Callable[..., Any] = self.generator if self.time_dependent else lambda m: self.generator(m)
+        self.field = GeneratorField(adjoint(so(3)), psi, time_dependent=self.time_dependent)
+
+    # -- properties --------------------------------------------------------------------------------------
+    @property
+    def coupled(self) -> bool:
+        """Whether spins act on each other."""
+        return self.exchange != 0 and self.lattice.bonds > 0
+
+    # -- physics -----------------------------------------------------------------------------------------
+    def effective_field(self, m: Any, time: Any = 0.0) -> Any:
+        """h = -dE/dm at m (..., *shape, 3), array or Jet of that shape; time (..., *shape) or a number.
+
+        Examples
+        --------
+        >>> LandauLifshitz((3,), exchange=2.0, periodic=False).effective_field([[0, 0, 1.0]] * 3)[:, 2].tolist()
+        [2.0, 4.0, 2.0]
+        """
+        m = self._spins(m)
+        h = self._field_at(m, time)
+        if np.any(self.anisotropy):
+            h = h + self._along(m) * (2 * self.anisotropy[..., None] * self._axis)
+        if self.coupled:
+            h = h + self.exchange * self.lattice.neighbour_sum(m)
+        return h
+
+    def generator(self, m: Any, t: Any = 0.0) -> Any:
+        """psi = gamma/(1 + alpha^2) (h + alpha m x h), with m' = psi x m; shape (..., *shape, 3).
+
+        Examples
+        --------
+        >>> LandauLifshitz(applied=[0.0, 0.0, 2.0], damping=0.5).generator([1.0, 0.0, 0.0]).tolist()
+        [0.0, -0.8, 1.6]
+        """
+        m = self._spins(m)
+        h = self.effective_field(m, t)
+        rate = (self.gyromagnetic / (1 + self.damping**2))[..., None]
+        if not np.any(self.damping):
+            return rate * h + 0 * m
+        return rate * (h + self.damping[..., None] * np.cross(m, h))
+
+    def energy(self, m: Any, time: Any = 0.0) -> Any:
+        """E of the lattices m (..., *shape, 3), shape (...,), arrays or Jets.
+
+        Examples
+        --------
+        >>> LandauLifshitz((4,), exchange=1.0, applied=[0, 0, 0.5]).energy([[0, 0, 1.0]] * 4)
+        np.float64(-6.0)
+        """
+        m = self._spins(m)
+        density = -np.sum(m * self._field_at(m, time), axis=-1)
+        if np.any(self.anisotropy):
+            density = density - self.anisotropy * self._along(m)[..., 0] ** 2
+        if self.coupled:
+            density = density - self.exchange / 2 * np.sum(m * self.lattice.neighbour_sum(m), axis=-1)
+        return self.lattice.total(density)
+
+    def energy_rate(self, m: Any, time: Any = 0.0) -> Any:
+        """dE/dt = -gamma sum_i alpha/(1 + alpha^2) |m_i x h_i|^2 in a constant field, shape (...,).
+
+        Examples
+        --------
+        >>> LandauLifshitz(applied=[0, 0, 2.0], damping=0.5).energy_rate([1.0, 0, 0])
+        np.float64(-1.6)
+        """
+        m = self._spins(m)
+        turning = np.cross(m, self.effective_field(m, time))
+        rate = self.gyromagnetic * self.damping / (1 + self.damping**2)
+        return -self.lattice.total(rate * np.sum(turning * turning, axis=-1))
+
+    # -- integration -------------------------------------------------------------------------------------
+    def integrate(self, t_span: Any, m0: Any, *, step: Step | None = None, dt: Any = None, **options: Any) -> Solution:
+        """The spins along time, by `liehom.integrate`.
+
+        Parameters
+        ----------
+        t_span : (float, float)
+        m0 : (..., *shape, 3) array_like
+            Unit vectors.
+        step : Step, optional
+            Default `LieTaylor(6)`. Coupled spins: no corrected step.
+        dt : float, optional
+            The step size. Coupled spins need one; others without it have one each, adapted.
+        **options
+            Those of `liehom.integrate`.
+
+        Returns
+        -------
+        Solution
+            y has shape (..., *shape, 3, n), t shape (..., *shape, n).
+
+        Raises
+        ------
+        ShapeError
+            If m0 has another shape.
+        InputError
+            If a spin is not of length 1; for coupled spins, if their step sizes or clocks would differ.
+
+        Examples
+        --------
+        >>> LandauLifshitz((3,), exchange=1.0).integrate((0, 1), [[0, 0, 1.0], [0, 1.0, 0], [1.0, 0, 0]])
+        Traceback (most recent call last):
+        ...
+        liehom.errors.InputError: the spins are coupled, so they need one step size: give dt, or take joint() ...
+        """
+        m0 = np.asarray(m0)
+        self.lattice.check(m0)
+        if m0.dtype.kind not in "iuf" or not bool(np.all(np.abs(np.linalg.norm(m0, axis=-1) - 1) <= UNIT_RTOL)):
+            raise InputError("the spins are not of length 1: divide them by their norms")
+        if self.coupled:
+            self._check_together(step, dt, options)
+        return integrate(self.field, t_span, m0, step=step, dt=dt, **options)
+
+    def joint(self) -> JointSpins:
+        """All spins of a lattice as one point on a product of spheres, for few spins.
+
+        There step sizes are adapted for all spins together, events stop all of them, and isotropy conserves the
+        energy (`liehom.correctors.Conserving`).
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> pair = LandauLifshitz((2,), exchange=1.0, periodic=False).joint()
+        >>> sol = lh.integrate(pair.field, (0, 1), pair.point([[0, 0, 1.0], [0, 0.6, 0.8]]))
+        >>> pair.spins(sol.y.T).shape[1:]
+        (2, 3)
+        """
+        return JointSpins(self.lattice, self.generator, self.time_dependent)
+
+    # -- private -----------------------------------------------------------------------------------------
+    def _check_together(self, step: Step | None, dt: Any, options: dict[str, Any]) -> None:
+        if dt is None or np.ndim(dt):
+            raise InputError(
+                "the spins are coupled, so they need one step size: give dt, or take joint() for adapted steps"
+            )
+        if isinstance(step.step if isinstance(step, Conserving) else step, Corrected):
+            raise InputError(
+                "the spins are coupled: isotropy and clock do not correct a step on a product of spheres, and clocks "
+                "of their own would bring the spins to different times; take LieTaylor(order) or RKMK(...)"
+            )
+        if options.get("events") is not None:
+            raise InputError("the spins are coupled: an event would stop one of them; take joint() for events")
+
+    def _given(self, name: str, value: Any, shape: tuple[int, ...]) -> Any:
+        try:
+            array = np.asarray(value, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"{name} is {value!r}, expected real numbers") from None
+        if not bool(np.isfinite(array).all()):
+            raise InputError(f"{name} is {value!r}, expected finite numbers")
+        try:
+            fits = np.broadcast_shapes(array.shape, shape) == shape
+        except ValueError:
+            fits = False
+        if not fits:
+            raise ShapeError(f"{name} has shape {array.shape}, expected one that broadcasts to {shape}")
+        return array
+
+    def _spins(self, m: Any) -> Any:
+        m = m if hasattr(m, "shape") else np.asarray(m, dtype=float)
+        self.lattice.check(m)
+        return m
+
+    def _along(self, m: Any) -> Any:
+        return np.sum(m * self._axis, axis=-1)[..., None]
+
+    def _field_at(self, m: Any, t: Any) -> Any:
+        if not self.time_dependent:
+            return self._applied
+        h = self._applied(t)
+        if isinstance(h, list | tuple):
+            zero = 0 * (t if hasattr(t, "shape") else np.asarray(t, dtype=float))
+            h = np.stack([zero + x for x in h], axis=-1)
+        h = joined(h, m)
+        if h.shape[-1:] != (3,):
+            raise ShapeError(f"the applied field has shape {h.shape} at t of shape {np.shape(t)}, expected (..., 3)")
+        return h
+
+    def __repr__(self) -> str:
+        shape = f"{self.lattice.shape}, " if self.lattice.shape else ""
+        k, damping = _shown(self.anisotropy), _shown(self.damping)
+        return f"<LandauLifshitz {shape}J = {self.exchange}, K = {k}, alpha = {damping}>"
+
+
+def _shown(value: Any) -> str:
+    return str(float(value)) if value.ndim == 0 else f"array of shape {value.shape}"

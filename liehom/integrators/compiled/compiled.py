@@ -1,0 +1,313 @@
+"""Runs of plain steps made ahead by compiled code; what is not plain is left to the run itself.
+
+The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
+before a time of t_eval, and before a step that fails in any way.  Where step sizes are adapted, each lane has its own.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, final
+
+import numpy as np
+
+from liehom.correctors.conserving.conserving import Conserving
+from liehom.errors import InputError
+from liehom.integrators.compiled.jax_kernel import JaxKernel
+from liehom.integrators.compiled.traced_size import Limits
+from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.run.clock import SLACK
+from liehom.tracing import Kernel, StepGraph, needed, padded
+
+if TYPE_CHECKING:
+    from liehom.integrators.run.run import Run
+
+BACKENDS = ("numba", "jax")
+WIDTH, NARROW = 16, 8
+LONG = 700
+"""Operations between two loops, from which on blocks are narrow."""
+PATH_BYTES = 64_000_000
+BREATH = 4_000_000_000
+"""Operations, of all lanes together, between two looks at progress, checkpoints and interruptions."""
+ITERATIONS = 5
+"""For so many iterations a loop in a step is taken."""
+LEAST = 8
+"""Steps that are made in any case, as a pause takes as long as some steps."""
+SHARED = 50_000
+"""From so many steps of lanes on, threads share the blocks."""
+
+
+def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
+    """What makes the plain steps of a run ahead, and says whether it can go on at once.
+
+    Parameters
+    ----------
+    run : Run
+    backend : str
+
+    Raises
+    ------
+    InputError
+        If the backend is unknown, or the run has something that is not compiled.
+    TraceError
+        If the step is not compiled.
+    """
+    if backend not in BACKENDS:
+        raise InputError(f"compile is {backend!r}, expected one of {', '.join(map(repr, BACKENDS))}, or None")
+    if run.events is not None:
+        raise InputError(f"compile={backend!r} does not look for events: integrate without compile=")
+    if run.dtype != np.float64:
+        raise InputError(f"compile={backend!r} computes in float64, the start is of type {run.dtype}")
+    dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
+    points = run.start.reshape(-1, run.start.shape[-1])
+    groups, kept_order = [], None
+    if isinstance(run.step, Conserving) and run.options.dt is None and not run.step.linear:
+        kept_order = run.step.kept_order(run.action, run.psi, run.m, run.t)
+    for d in np.unique(dimensions):
+        lanes = np.flatnonzero(dimensions == d)
+        graph = traced_step(
+            run.action,
+            run.field,
+            run.step,
+            points[lanes],
+            int(d),
+            nominal=run.options.nominal,
+            limits=_limits(run) if run.options.dt is None else None,
+            kept_order=kept_order,
+        )
+        groups.append(Group(graph, lanes, backend, points[lanes]))
+    return Compiled(groups)
+
+
+def _limits(run: Run) -> Limits:
+    o = run.options
+    return Limits(o.rtol, o.atol, o.max_step, float(run.end), float(run.direction), float(run.tiny))
+
+
+@final
+class Group:
+    """The lanes with orbits of one dimension, and their kernel.
+
+    Parameters
+    ----------
+    graph : StepGraph
+    lanes : array of int
+        Places in the flattened ensemble.
+    backend : str
+    points : array of shape (L, N)
+        Their starts.
+    """
+
+    def __init__(self, graph: StepGraph, lanes: Any, backend: str, points: Any) -> None:
+        self.graph, self.lanes = graph, lanes
+        self.kernel: Kernel | JaxKernel
+        self.width = 1 if len(lanes) < NARROW // 2 else NARROW if len(lanes) < 4 * WIDTH else _width(graph)
+        if backend == "jax":
+            self.width, self.kernel = 1, JaxKernel(graph)
+        else:
+            self.kernel = Kernel(graph, self.width)
+        self.blocks = padded(len(lanes), self.width) // self.width
+        rows = [self.padded_row(x) for x in graph.constants(points)]
+        self.constants = np.array(rows) if rows else None
+
+    def padded_row(self, values: Any) -> Any:
+        """Values of these lanes, in whole blocks."""
+        out = np.ones(self.blocks * self.width)
+        out[: len(values)] = values
+        return out
+
+    def packed(self, values: Any, fill: float = 0.0) -> Any:
+        """Values (..., L of the ensemble) of these lanes, in whole blocks."""
+        count = self.blocks * self.width
+        if len(self.lanes) == values.shape[-1] == count:
+            return np.array(values, dtype=np.float64, order="C")
+        out = np.full((*values.shape[:-1], count), fill)
+        out[..., : len(self.lanes)] = values[..., self.lanes]
+        return out
+
+    def run(self, arrays: list[Any], steps: int, origin: float, direction: float) -> None:
+        """Step all blocks, in threads where that is worth while."""
+        count = self.blocks * self.width
+        shared = count * steps >= SHARED and isinstance(self.kernel, Kernel)
+        workers = min(_cores(), self.blocks) if shared else 1
+        if workers == 1:
+            self.kernel(arrays, count, (0, self.blocks), steps, (origin, direction))
+            return
+        cuts = np.linspace(0, self.blocks, 4 * workers + 1 if self.blocks >= 8 * workers else workers + 1).astype(int)
+        with ThreadPoolExecutor(workers) as pool:
+            jobs = [
+                pool.submit(self.kernel, arrays, count, (int(a), int(b)), steps, (origin, direction))
+                for a, b in pairwise(cuts)
+                if b > a
+            ]
+            for job in jobs:
+                job.result()
+
+
+@final
+class Compiled:
+    """The plain steps of a run, made ahead between steps of its own.
+
+    How many are made in one call is of no effect on the results: where a call has to pause, the next one goes on.
+
+    Parameters
+    ----------
+    groups : list of Group
+    """
+
+    def __init__(self, groups: list[Group]) -> None:
+        self.groups = groups
+        self.work = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
+        self.calls: Any = 0
+
+    def __call__(self, run: Run) -> bool:
+        """Make plain steps until every trajectory rests, or for a while; whether there are more to be made."""
+        lanes = int(np.prod(run.shape, dtype=int))
+        if not run.active.any() or (run.tried is None and not run.taken.any()):
+            return False  # the first step is that of the run
+        pace = max(LEAST, BREATH // (self.work * lanes))
+        steps = int(min(run.options.max_steps - 1 - int(np.max(run.taken)), pace))
+        if run.keeps:
+            steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 2))))
+        if steps < 1:
+            return False
+        state = _State(run)
+        for group in self.groups:
+            state.step(group, steps)
+        # psi is counted for the trajectory that calls it most, over all calls
+        before, self.calls = np.max(self.calls), self.calls + state.calls
+        run.calls += int(np.max(self.calls) - before)
+        state.hand_back()
+        return bool((state.going > 0).any())
+
+
+def _operations(graph: StepGraph) -> int:
+    """About how many operations a step has."""
+    rows = needed(graph.outputs)
+    return len(rows) + ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop")
+
+
+class _State:
+    """The lanes of a run as rows, while kernels change them."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        size = run.start.shape[-1]
+        self.m = run.m.reshape(-1, size).T.astype(np.float64, order="C", copy=True)
+        self.t = np.array(run.t, dtype=np.float64).reshape(-1)
+        self.adaptive = run.options.dt is None
+        if self.adaptive:  # proposed sizes, without a sign
+            self.h = np.array(run.h, dtype=np.float64).reshape(-1)
+        else:
+            self.h = (run.direction * np.broadcast_to(run.options.dt, run.shape)).reshape(-1)
+        self.limit = np.full(self.t.shape, float(run.end))
+        if run.samples is not None and len(run.samples.times):
+            done, times = run.samples.done.reshape(-1), run.samples.times
+            ahead = times[np.minimum(done, len(times) - 1)]
+            self.limit = np.where(done < len(times), ahead, self.limit)
+        # without a proposal the first size is for the run to find
+        self.alive = run.active.reshape(-1) & np.isfinite(self.h)
+        self.going = np.zeros(self.t.shape)
+        self.before = run.taken.reshape(-1).astype(np.float64)
+        self.count = self.before.copy()
+        self.tries = np.zeros(self.t.shape)
+        self.paths: list[tuple[Any, Any, Any, Any]] = []
+        self.accounts: list[tuple[Any, dict[str, Any]]] = []
+        self.calls = np.zeros(self.t.shape)
+
+    def step(self, group: Group, steps: int) -> None:
+        """Let a kernel step its lanes."""
+        run, graph, lanes = self.run, group.graph, group.lanes
+        m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
+        limit = self.limit
+        if graph.passed is None:  # so many steps end before it
+            whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
+            total: Any = run.total  # no step is made of a rest below the round-off of times
+            limit = np.minimum(np.ceil(whole - SLACK), np.broadcast_to(total, run.shape).reshape(-1)) - 1
+        h, limit = group.packed(self.h), group.packed(limit)
+        alive, tries = group.packed(self.alive.astype(np.float64)), group.packed(self.tries)
+        extra = np.zeros((max(1, len(graph.largest) + len(graph.summed)), m.shape[-1]))
+        path = path_t = path_h = None
+        if run.keeps:
+            path, path_t = np.empty((steps, *m.shape)), np.empty((steps, m.shape[-1]))
+            path_h = np.zeros(path_t.shape) if self.adaptive else None
+        group.run(
+            [m, t, h, limit, count, alive, extra, group.constants, path, path_t, tries, path_h],
+            steps,
+            float(run.span[0]),
+            float(run.direction),
+        )
+        used = slice(0, len(lanes))
+        self.m[:, lanes], self.t[lanes], self.count[lanes] = m[:, used], t[used], count[used]
+        self.going[lanes] = alive[used]
+        self.tries[lanes] = tries[used] if self.adaptive else count[used] - self.before[lanes]
+        if self.adaptive:
+            self.h[lanes] = h[used]
+        if path is not None and path_t is not None:
+            made = slice(0, int(self.tries[lanes].max(initial=0)))
+            sizes = None if path_h is None else path_h[made, used]
+            self.paths.append((lanes, path[made, :, used], path_t[made, used], sizes))
+        rows: dict[str, Any] = {}
+        if graph.summed:
+            rows = dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))
+            self.accounts.append((lanes, rows))
+        # where steps iterate, each trajectory has its own number
+        self.calls[lanes] = self.tries[lanes] * graph.calls if graph.calls is not None else rows["calls"]
+
+    def hand_back(self) -> None:
+        """The new state of the run."""
+        run, shape = self.run, self.run.shape
+        new = (self.count - self.before).astype(int)
+        most = int(self.tries.max(initial=0))
+        if most == 0:
+            return
+        run.m = self.m.T.copy().reshape(run.start.shape)
+        run.t = self.t.reshape(shape) if shape else np.asarray(self.t[0])
+        if self.adaptive:
+            run.h = self.h.reshape(shape)
+        run.taken = run.taken + new.reshape(shape)
+        for lanes, extra in self.accounts:
+            run.account.add_compiled(lanes, extra)
+        if run.keeps:
+            self._keep(new, most)
+
+    def _keep(self, new: Any, most: int) -> None:
+        run, shape = self.run, self.run.shape
+        if len(self.paths) == 1 and len(self.paths[0][0]) == len(new):
+            points, times, sizes = np.swapaxes(self.paths[0][1], 1, 2), *self.paths[0][2:]
+        else:
+            points, times = np.zeros((most, len(new), run.start.shape[-1])), np.zeros((most, len(new)))
+            sizes = np.zeros(times.shape)
+            for lanes, path, path_t, path_h in self.paths:
+                points[: len(path), lanes] = np.swapaxes(path, 1, 2)
+                times[: len(path_t), lanes] = path_t
+                if path_h is not None:
+                    sizes[: len(path_t), lanes] = path_h
+        if self.adaptive:
+            moved = sizes != 0
+        else:
+            moved = np.arange(most)[:, None] < new
+            sizes = np.where(moved, self.h, 0.0)
+        run.path.extend(
+            times.reshape(most, *shape),
+            points.reshape(most, *run.start.shape),
+            sizes.reshape(most, *shape),
+            moved.reshape(most, *shape),
+        )
+
+
+def _width(graph: StepGraph) -> int:
+    """Lanes of a block: wide ones hide how long operations take, in long code they run out of registers."""
+    ops = needed(graph.outputs)
+    return WIDTH if len(ops) < LONG * (1 + sum(x.op in ("expv", "loop") for x in ops)) else NARROW
+
+
+def _cores() -> int:
+    """How many threads may run at once."""
+    given = os.environ.get("LIEHOM_NUM_THREADS")
+    if given and given.isdigit() and int(given) > 0:
+        return int(given)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,97 @@
+"""Adapted step sizes of a traced step: the rules of `control`, run on numbers that are not known."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.homogeneous import Action
+from liehom.integrators.run.control import (
+    GROWTH,
+    Tolerance,
+    defects_of,
+    is_large_enough,
+    judged,
+    largest_size,
+    length,
+    size_from_defects,
+    time_scale,
+)
+
+
+class Limits(NamedTuple):
+    """What sizes are adapted to: numbers of a run, the same or not for all trajectories.
+
+    Attributes
+    ----------
+    rtol, atol : float
+    max_step : float
+    end : float
+        The time at the end.
+    direction : float
+        1 or -1.
+    tiny : float
+        Below this size, steps make no sense.
+    """
+
+    rtol: Any
+    atol: Any
+    max_step: Any
+    end: Any
+    direction: Any
+    tiny: Any
+
+
+def tried_size(
+    limits: Limits, action: Action, psi: Generator, local: LocalStep, step: Step, m: Any, t: Any, proposal: Any
+) -> tuple[Any, Any]:
+    """The signed size of the next step, and whether it is one that a run would not fail by.
+
+    Parameters
+    ----------
+    limits : Limits
+    action, psi
+    local : LocalStep
+        ``step.at(action, psi, m, t)``
+    step : Step
+    m : array of shape (..., N)
+    t, proposal : array of shape (...,)
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> action, psi, m = lh.Action(field.representation), Generator(field, 1), np.array([1.0, 0.0])
+    >>> local = lh.RKMK("heun").at(action, psi, m, np.array([0.0]))
+    >>> limits = Limits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
+    >>> h, certain = tried_size(limits, action, psi, local, lh.RKMK("heun"), m, np.array(1.0), np.array(8.0))
+    >>> float(h), bool(certain)
+    (-0.5, True)
+    """
+    left = np.abs(limits.end - t)
+    h = np.minimum(proposal, largest_size(limits.max_step, left))
+    if getattr(local, "estimate", None) is None:
+        speed = length(m) / time_scale(psi.field, m, t)
+        defects = defects_of(action, psi, local, m, t, step.order)
+        h = size_from_defects(defects, Tolerance(limits.rtol, limits.atol).norm(m), speed, h)
+    return limits.direction * h, is_large_enough(h, limits.tiny, left)
+
+
+def judgement(limits: Limits, local: LocalStep, m: Any, size: Any) -> tuple[Any, Any]:
+    """Whether a step is accepted, and the size that is proposed for the next one, for a signed size (..., 1).
+
+    Examples
+    --------
+    >>> limits = Limits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
+    >>> accepted, proposal = judgement(limits, LocalStep(lambda h: ()), np.zeros(3), np.array([-0.25]))
+    >>> bool(accepted), float(proposal)
+    (True, 2.0)
+    """
+    h = size[..., 0]
+    estimate = getattr(local, "estimate", None)
+    if estimate is None:
+        return True, GROWTH * np.abs(h)
+    allowed = Tolerance(limits.rtol, limits.atol).norm(m)
+    return judged(estimate(size), allowed, h, local.estimate_order)  # type: ignore[attr-defined]

@@ -1,0 +1,175 @@
+"""A step of the library as a graph of scalar operations: the step's own code, run on numbers that are not known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from liehom.correctors.conserving.conserving import Conserving, ConservingStep
+from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
+from liehom.correctors.isotropy.range_solver import EvenRangeSolver
+from liehom.correctors.step import Generator, Step, apply_factors
+from liehom.errors import LiehomError, TraceError
+from liehom.homogeneous import Action, GeneratorField
+from liehom.homogeneous.frames.branch_free_frames import evenness
+from liehom.integrators.compiled.traced_size import Limits, judgement, tried_size
+from liehom.integrators.run.clock import has_clock, pace
+from liehom.integrators.run.conservation_account import REACHED
+from liehom.integrators.run.control import ERROR_TERMS
+from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
+
+CALM = 0.8
+"""A clock certainly runs if tau' is that close to 1 over the whole step."""
+
+
+def traced_step(
+    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, *, nominal: bool,
+    limits: Limits | None = None, kept_order: int | None = None,
+) -> StepGraph:  # fmt: skip
+    """The graph of a step on orbits of one dimension.
+
+    Parameters
+    ----------
+    action, field, step
+    points : array of shape (L, N)
+        On the orbits of the run: what is special about them may be used.
+    orbit_dimension : int
+    nominal : bool
+        Whether time advances by the step size rather than by the step's own clock.
+    limits : Limits, optional
+        Adapt the step size to them.
+    kept_order : int, optional
+        ``Conserving.kept_order``, which the sizes of a conserving step depend on.
+
+    Raises
+    ------
+    TraceError
+        If the step or psi does something with values that compiled code cannot.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> graph = traced_step(lh.Action(field.representation), field, lh.Euler(), np.eye(2), 1, nominal=True)
+    >>> len(graph.point), graph.passed
+    (2, None)
+    """
+    try:
+        return _traced(action, field, step, points, orbit_dimension, nominal, limits, kept_order)
+    except TraceError as error:
+        raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
+    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
+        raise TraceError(
+            f"{step!r} cannot be compiled for this field, because its code does not run on traced numbers "
+            f"({type(error).__name__}: {error}): write psi with numpy functions, or integrate without compile="
+        ) from error
+
+
+def _traced(
+    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool,
+    limits: Limits | None, kept_order: int | None,
+) -> StepGraph:  # fmt: skip
+    tape, n = Tape(), field.representation.size
+    even = action.even
+    if even is None and isinstance(step, Corrected | Conserving):  # others ask for no isotropy
+        even = evenness(action, points, orbit_dimension)
+    if even is not None and action.inner_product.invariant:
+        form = even.trace
+        over = tape.given_number(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
+        even = even._replace(over=Traced(tape, over))
+    action = action.on_even_orbits(even)
+    m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
+    psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
+    psi.prepared[step] = kept_order
+    local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
+    given_limits: Limits | None = None
+    certain: Any = True
+    if limits is not None:
+        given_limits = Limits._make(Traced(tape, tape.given_number(_everywhere(x))) for x in limits)
+        h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
+    size = h[..., None]
+    made = apply_factors(action, local.factors(size), m)
+    passed, runs = None, None
+    clock: tuple[tuple[int, Expr], ...] = ()
+    if has_clock(local) and not nominal:
+        passed, inner = _number(tape, local.time(h)), local.base if isinstance(local, ConservingStep) else local
+        runs, clock = _runs(tape, inner, h), _coefficients(tape, inner)
+        if limits is not None:  # larger steps than fixed ones: the clock is looked at as closely as it can be
+            runs = _number(tape, pace(local, h)[0])
+    sizes = None
+    if given_limits is not None:
+        passed = _number(tape, h) if passed is None else passed
+        sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
+    worst, summed = _account(tape, local, step, size)
+    solved = reduce(tape.both, tape.required) if tape.required else None
+    plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
+    runs = reduce(tape.both, plain) if plain else None
+    point = [_number(tape, made[i]) for i in range(n)]
+    calls = int(tape.calls.value) if tape.calls.constant else None
+    if calls is None:
+        summed["calls"] = tape.calls
+    return StepGraph(point, passed, runs, worst, summed, tuple(tape.given), clock, solved, sizes, calls)
+
+
+def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
+    def psi(m: Any, t: Any = 0.0) -> Any:
+        tape.calls = tape.calls + tape.one
+        return field.psi(m, t)
+
+    return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
+
+
+def _everywhere(x: float) -> Callable[[Any], Any]:
+    return lambda points: np.full(len(points), x)
+
+
+def _number(tape: Tape, x: Any) -> Expr:
+    made: Expr = Traced(tape, x).entries[()]
+    return made
+
+
+def _coefficients(tape: Tape, local: Any) -> tuple[tuple[int, Expr], ...]:
+    return tuple((k, _number(tape, c)) for k, c in enumerate(local.correction.clock) if k > 1 and c is not None)
+
+
+def _runs(tape: Tape, local: Any, h: Any) -> Expr | None:
+    """Whether |tau' - 1| is small over the step, by the sizes of the coefficients."""
+    if not isinstance(local, CorrectedStep):
+        raise TraceError("a clock that is not that of a corrected step is not compiled")
+    size, power, total = abs(h), None, None
+    for k, c in enumerate(local.correction.clock):
+        if k < 2:
+            continue
+        power = size if power is None else power * size
+        if c is not None:
+            term = k * abs(c) * power
+            total = term if total is None else total + term
+    return None if total is None else _number(tape, total < CALM)
+
+
+def _account(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str, Expr], dict[str, Expr]]:
+    """What the report has of a step: numbers of which the largest is kept, and numbers that are summed up."""
+    largest: dict[str, Any] = {}
+    summed: dict[str, Any] = {}
+    if isinstance(local, ConservingStep):
+        made = local.conserved(size)
+        tape.required.append(_number(tape, made.left | (made.rank >= made.wanted)))
+        largest |= {"iterations": made.iterations, "defect": made.defect}
+        summed |= {
+            "missed": np.where(made.units > REACHED, 1.0, 0.0),
+            "left": np.where(made.left, 1.0, 0.0),
+            "usual": np.where(made.left, 0.0, 1.0),
+        }
+        local = local.base
+    if isinstance(local, CorrectedStep):
+        found = local.correction
+        rest = Traced(tape, found.leading) == 0
+        summed["equilibria"] = np.where(rest, 1.0, 0.0)
+        if not all(isinstance(part.solver, EvenRangeSolver) for part in found.parts):
+            short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
+            largest |= {"residual": found.residual, "short": short}
+            summed["failed"] = np.where(short > 0, 1.0, 0.0)
+    return ({k: _number(tape, x) for k, x in largest.items()}, {k: _number(tape, x) for k, x in summed.items()})

@@ -1,0 +1,167 @@
+"""observed_order: the order of a method as it is measured, on orbits and on trajectories.
+
+    orbit error = min over s near T of |y - F_s(m_0)|,   trajectory error = |y - F_T(m_0)|,   y after steps of size h,
+
+root mean squares over an ensemble; the order is the slope of log(error) over log(h).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from liehom.correctors.step import Step
+from liehom.errors import ConvergenceError, InputError
+from liehom.homogeneous import GeneratorField
+from liehom.integrators.convergence.convergence_table import MARGIN, NAN, ConvergenceTable
+from liehom.integrators.convergence.orbit_error import orbit_distance
+from liehom.integrators.convergence.reference import Reference
+from liehom.integrators.ensembles.ensemble_problem import Problem, all_solved
+from liehom.integrators.run.points import points_of
+from liehom.integrators.run.solution import Solution
+from liehom.parallel import Source
+
+
+def observed_order(
+    field: GeneratorField,
+    y0: Any,
+    step: Step,
+    dts: Sequence[float],
+    *,
+    t_span: tuple[float, float] = (0.0, 1.0),
+    exponential: Any = "exp",
+    clock: str = "corrected",
+    compile: str | None = None,
+    reference: Reference | None = None,
+    executor: Source = None,
+    store: str | os.PathLike[str] | None = None,
+    retries: int = 2,
+) -> ConvergenceTable:
+    """Measure the order of a step on a problem.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    y0 : array_like of shape (N,) or (..., N)
+        The start, or those of an ensemble. numpy.longdouble shows errors below 1e-12.
+    step : Step
+    dts : sequence of float
+        Step sizes; halvings are best.
+    t_span : (float, float)
+        Errors are measured at its end, by default t = 1 from t = 0: choose it so that the solution moves by about
+        its own size.
+    exponential, clock, compile
+        As for `integrate`. With clock="nominal" the trajectory is compared at the nominal time.
+    reference : Reference, optional
+        The exact solution through (t_span[0], y0); by default it is made in extended precision.
+    executor, store, retries
+        As for `integrate_ensemble`: the runs with the different step sizes go to an executor, and are kept.
+
+    Returns
+    -------
+    ConvergenceTable
+
+    Raises
+    ------
+    InputError, ShapeError
+        If an argument is not right: there are no two different step sizes, or the reference belongs to another start.
+    ConvergenceError
+        If the run fails for every step size, or there is no solution until the end.
+
+    Notes
+    -----
+    Definition 1 of the paper: a method captures orbits to order n if its orbit error is O(h^n). That holds for any
+    time-step control; with the clock of the correctors, trajectories have the same order.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
+    >>> step = lh.Corrected(lh.Euler(), order=3)
+    >>> orbit, trajectory = observed_order(field, [0.6, 0.0, 0.8], step, [0.1, 0.05, 0.025]).orders
+    >>> abs(orbit - 3) < 0.1, abs(trajectory - 3) < 0.1
+    (True, True)
+    """
+    start = points_of(y0)
+    sizes = _sizes(dts)
+    first, last = _ends(t_span, start.dtype)
+    if sizes[0] > abs(last - first):
+        raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
+    if reference is not None and not isinstance(reference, Reference):
+        raise InputError(f"reference is {reference!r}, expected a liehom.integrators.Reference")
+    options = {"step": step, "exponential": exponential, "clock": clock, "compile": compile}
+    problems = [Problem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
+    runs = all_solved(problems, executor, store, retries)
+    if not any(run.success for run in runs):
+        raise ConvergenceError(f"no step size came through; the smallest, {sizes[-1]}: {runs[-1].message}")
+    if reference is None:
+        reference = Reference(field, start.astype(np.longdouble), first)
+    elif not np.array_equal(reference.start, start) or reference.t0 != first:
+        raise InputError("the reference goes through another point or starts at another time than y0 at t_span[0]")
+    accuracy = float(np.max(reference.accuracy(last)))
+    has_orbits = not (field.time_dependent and clock == "nominal")
+    errors = [_errors(reference, run, last, has_orbits) for run in runs]
+    report = runs[0].report
+    return ConvergenceTable(
+        step=repr(step),
+        exponential=report.exponential,
+        clock=report.clock,
+        order=step.order,
+        t_span=(float(first), float(last)),
+        trajectories=math.prod(start.shape[:-1]),
+        precision=start.dtype.name if start.dtype == np.float64 else "longdouble",
+        dts=sizes,
+        orbit_errors=tuple(e[0] for e in errors),
+        trajectory_errors=tuple(e[1] for e in errors),
+        floors=tuple(_floor(reference(last), start.dtype, run, accuracy) for run in runs),
+        reference_accuracy=accuracy,
+        messages=tuple("" if run.success else run.message for run in runs),
+    )
+
+
+def _sizes(dts: Sequence[float]) -> tuple[float, ...]:
+    try:
+        sizes = sorted({float(h) for h in dts}, reverse=True)
+    except (TypeError, ValueError):
+        sizes = []
+    if len(sizes) < 2 or not all(0 < h < math.inf for h in sizes):
+        raise InputError(f"dts is {dts!r}, expected two or more different positive step sizes, e.g. [0.1, 0.05]")
+    return tuple(sizes)
+
+
+def _ends(t_span: Any, dtype: Any) -> tuple[Any, Any]:
+    try:
+        first, last = (dtype.type(t) for t in t_span)
+    except (TypeError, ValueError):
+        raise InputError(f"t_span is {t_span!r}, expected two numbers (start, end)") from None
+    return first, last
+
+
+def _errors(reference: Reference, run: Solution, end: Any, has_orbits: bool) -> tuple[float, float]:
+    """(orbit error, trajectory error) at the end of a run."""
+    if not run.success:
+        return NAN, NAN
+    last = _end_points(run)
+    trajectory = _mean(np.linalg.norm(last - reference(end), axis=-1))
+    orbit = _mean(orbit_distance(reference, last, end)[0]) if has_orbits else NAN
+    return orbit, trajectory
+
+
+def _end_points(run: Solution) -> Any:
+    """The last points (..., N): behind them rows of ensembles are filled up with NaN."""
+    count = np.isfinite(run.t).sum(axis=-1)
+    return np.take_along_axis(run.y, (count - 1)[..., None, None], axis=-1)[..., 0]
+
+
+def _mean(distances: Any) -> float:
+    return float(np.sqrt(np.mean(distances**2)))
+
+
+def _floor(points: Any, dtype: Any, run: Solution, accuracy: float) -> float:
+    """Ten times what cannot be seen: the reference's accuracy, or the rounding of every step, added up at random."""
+    unit = float(np.finfo(dtype).eps) * float(np.max(np.linalg.norm(points, axis=-1), initial=0.0))
+    return MARGIN * max(accuracy, unit * math.sqrt(float(np.max(run.n_steps, initial=1))))

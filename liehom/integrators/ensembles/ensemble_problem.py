@@ -1,0 +1,163 @@
+"""Problem: one call of `integrate`, as a value that can be cut into rows, sent to a worker and told from others."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from liehom.errors import InputError, LiehomError, ShapeError
+from liehom.homogeneous import GeneratorField
+from liehom.homogeneous.fields.field import check_point
+from liehom.integrators.ensembles.merging import from_shard, to_shard
+from liehom.integrators.integration import integrate
+from liehom.integrators.run.checkpoint import digest
+from liehom.integrators.run.solution import Solution
+from liehom.parallel import Source, completed, open_store
+
+ARRAYS = ("dt", "t_eval")
+"""The options of `integrate` that are arrays."""
+
+Fields = GeneratorField | Callable[..., GeneratorField]
+
+
+class Problem(NamedTuple):
+    """One call of `integrate`, or of an ensemble that is cut into such calls: the tasks that workers get.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> Problem(field, (0, 1), np.eye(2), {}, {"dt": 0.5}).task((1, 2)).start
+    array([[0., 1.]])
+    """
+
+    field: Fields
+    t_span: Any
+    start: Any
+    parameters: dict[str, Any]
+    options: dict[str, Any]
+
+    def task(self, rows: tuple[int, int]) -> Problem:
+        """The problem of some rows."""
+        here = slice(*rows)
+        options = self.options
+        dt: Any = options.get("dt")
+        if np.ndim(dt):
+            try:
+                options = {**options, "dt": np.broadcast_to(np.asarray(dt), self.start.shape[:-1])[here]}
+            except ValueError:
+                raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
+        mine = {name: array[here] for name, array in self.parameters.items()}
+        return Problem(self.field, self.t_span, self.start[here], mine, options)
+
+    def ends(self) -> tuple[float, float]:
+        """Start and end as floats; what is no time is refused by `integrate`."""
+        try:
+            first, last = (float(t) for t in self.t_span)
+        except (TypeError, ValueError):
+            return 0.0, 0.0
+        return first, last
+
+    def made(self) -> GeneratorField:
+        """The field of these trajectories."""
+        found = self.field if isinstance(self.field, GeneratorField) else self.field(**self.parameters)
+        if not isinstance(found, GeneratorField):
+            raise InputError(f"field(**parameters) returned {found!r}, expected a GeneratorField")
+        return found
+
+    def check(self, bounds: list[tuple[int, int]]) -> GeneratorField:
+        """The field of the whole ensemble, if psi of a chunk is what it is within the whole."""
+        whole = self.made()
+        time = self.ends()[0]
+        # here rather than by the workers, who would count trajectories from the first of their chunk
+        check_point(whole.representation, self.start)
+        whole.check(self.start, np.full(self.start.shape[:-1], time))
+        with np.errstate(all="ignore"):
+            values = np.asarray(whole.psi(self.start, np.full(self.start.shape[:-1], time)))
+            for rows in {bounds[0], bounds[-1]} if len(bounds) > 1 else ():
+                part = self.task(rows)
+                try:
+                    mine = np.asarray(part.made().psi(part.start, np.full(part.start.shape[:-1], time)))
+                    same = np.allclose(mine, values[slice(*rows)], rtol=1e-6, equal_nan=True)
+                except (ValueError, LiehomError) as error:
+                    raise _whole_only(rows) from error
+                if not same:
+                    raise _whole_only(rows)
+        return whole
+
+    def fingerprint(self, whole: GeneratorField, bounds: list[tuple[int, int]]) -> str:
+        """What tells the problem from others: numbers, texts, and psi at the start and next to it."""
+        texts = [f"{name}={_text(value)}" for name, value in sorted(self.options.items()) if name not in ARRAYS]
+        numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
+        parameters = [self.parameters[name] for name in sorted(self.parameters)]
+        matrices = [a.to_numpy() for a in whole.representation.matrices]
+        first, last = self.ends()
+        lead, ahead = self.start.shape[:-1], 1e-3 * (last - first)
+        here = np.asarray(whole.psi(self.start, np.full(lead, first)))
+        near = self.start + ahead * np.asarray(whole.vector(self.start, np.full(lead, first)))
+        there = np.asarray(whole.psi(near, np.full(lead, first + ahead)))
+        span = np.array([first, last])
+        return digest(repr(texts), repr(bounds), span, self.start, *numbers, *parameters, *matrices, here, there)
+
+
+def solved(task: Problem) -> Solution:
+    """The solution of a problem: what workers do.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> solved(Problem(field, (0, 1), np.array([1.0, 0.0]), {}, {"dt": 0.5})).n_steps
+    2
+    """
+    return integrate(task.made(), task.t_span, task.start, **task.options)
+
+
+def all_solved(
+    problems: Sequence[Problem], executor: Source, store: str | os.PathLike[str] | None, retries: int = 2
+) -> list[Solution]:
+    """The solutions of some problems in their order, on an executor; kept in a store, if one is given.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> problems = [Problem(field, (0, 1), np.eye(2), {}, {"dt": dt}) for dt in (0.5, 0.25)]
+    >>> [solution.y.shape for solution in all_solved(problems, None, None)]
+    [(2, 2, 3), (2, 2, 5)]
+    """
+    names = [f"run-{number:04d}" for number in range(len(problems))]
+    kept = None
+    if store is not None:
+        marks = [problem.fingerprint(problem.made(), []) for problem in problems]
+        kept = open_store(store, digest(repr(marks)))
+    done = frozenset() if kept is None else kept.names()
+    found = {i: from_shard(*kept.load(names[i])) for i in range(len(names)) if kept is not None and names[i] in done}
+    todo = [i for i in range(len(problems)) if i not in found]
+    for number, solution in completed(solved, [problems[i] for i in todo], executor, retries=retries):
+        if kept is not None:
+            kept.save(names[todo[number]], *to_shard(solution))
+        found[todo[number]] = solution
+    return [found[i] for i in range(len(problems))]
+
+
+# -- private helpers ---------------------------------------------------------------------------------------
+def _whole_only(rows: tuple[int, int]) -> ShapeError:
+    return ShapeError(
+        f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
+        "carry one parameter for each trajectory? Pass a function that makes the field, and parameters={'name': array}"
+    )
+
+
+def _text(value: Any) -> str:
+    """A text for an option, the same in every process."""
+    if isinstance(value, list | tuple):
+        return repr([_text(x) for x in value])
+    if callable(value) and hasattr(value, "__qualname__"):
+        marks = [repr(getattr(value, name, None)) for name in ("terminal", "direction")]
+        return f"{value.__module__}.{value.__qualname__} {marks}"
+    return re.sub(" at 0x[0-9a-f]+", "", repr(value))

@@ -1,0 +1,18 @@
+"""Steps of Lie group methods: Euler, Heun, Lie-Taylor, RKMK, Crouch-Grossman, commutator-free.
+
+Each is a `Step` of `liehom.correctors`; `named` finds them by name for files and the command line. How to write
+another is in docs/extending.md.
+"""
+
+from liehom.integrators.methods.named import step_named as step_named
+from liehom.integrators.methods.named import step_names as step_names
+from liehom.integrators.methods.products import CommutatorFree4 as CommutatorFree4
+from liehom.integrators.methods.products import CrouchGrossman3 as CrouchGrossman3
+from liehom.integrators.methods.products import ProductStep as ProductStep
+from liehom.integrators.methods.products import Scheme as Scheme
+from liehom.integrators.methods.rkmk import RKMK as RKMK
+from liehom.integrators.methods.rkmk import EmbeddedStep as EmbeddedStep
+from liehom.integrators.methods.steps import BackwardEuler as BackwardEuler
+from liehom.integrators.methods.steps import Euler as Euler
+from liehom.integrators.methods.steps import Heun as Heun
+from liehom.integrators.methods.steps import LieTaylor as LieTaylor

@@ -1,0 +1,102 @@
+"""Steps by name, as files and the command line give them: "euler", "heun", "lietaylor", "rk4", "cg3", ...
+
+A name with an order above the method's own stands for the corrected step, Corrected(step, order).
+"""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+
+import numpy as np
+
+from liehom.correctors import Corrected, Step
+from liehom.errors import InputError
+from liehom.integrators.methods.products import CommutatorFree4, CrouchGrossman3
+from liehom.integrators.methods.rkmk import RKMK
+from liehom.integrators.methods.steps import BackwardEuler, Euler, Heun, LieTaylor
+from liehom.integrators.tableaux.tableaux import tableau, tableau_names
+
+DEFAULT_ORDER = 6
+_OWN = ("euler", "backward euler", "heun", "lietaylor", "cg3", "cf4")
+_TAYLOR = re.compile(r"lietaylor([0-9]{1,3})", re.ASCII)
+_ALIASES = {"impliciteuler": "backwardeuler", "expliciteuler": "euler", "forwardeuler": "euler"}
+
+
+def step_named(base: str, order: int | None = None) -> Step:
+    """The step that a name stands for, corrected where the order is above its own.
+
+    Parameters
+    ----------
+    base : str
+        One of `step_names`; case, spaces, hyphens and underscores do not matter. "lietaylor" takes any order
+        itself, 6 by default; "lietaylor4" is `LieTaylor(4)`, which a higher order corrects. Every name of a tableau
+        stands for the Runge-Kutta-Munthe-Kaas step with that tableau.
+    order : int, optional
+        The order to reach: above that of the base it gives `Corrected(step, order)`, else the base itself.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown (the message lists those that are known), or the order is no integer from 1.
+
+    Examples
+    --------
+    >>> step_named("euler", 4), step_named("Heun"), step_named("lietaylor", 8)
+    (Corrected(Euler(), order=4), Heun(), LieTaylor(n=8))
+    >>> step_named("backward euler", 1)
+    BackwardEuler()
+    """
+    if not isinstance(base, str):
+        raise InputError(f"a base is a name such as 'euler' or 'rk4', got {base!r}; known: {', '.join(step_names())}")
+    if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
+        raise InputError(f"the order is an integer at least 1, got {order!r}")
+    key = _key(base)
+    if key == "lietaylor":
+        return LieTaylor(DEFAULT_ORDER if order is None else int(order))
+    step = _plain(_ALIASES.get(key, key), base)
+    return step if order is None or order <= step.order else Corrected(step, int(order))
+
+
+def step_names() -> tuple[str, ...]:
+    """The names that `step_named` knows.
+
+    Examples
+    --------
+    >>> step_names()[:6]
+    ('euler', 'backward euler', 'heun', 'lietaylor', 'cg3', 'cf4')
+    >>> "rk4" in step_names()
+    True
+    """
+    return (*_OWN, *(name for name in tableau_names() if _key(name) not in {*map(_key, _OWN), *_ALIASES}))
+
+
+def _key(name: str) -> str:
+    return re.sub(r"[\s_-]+", "", name.lower())
+
+
+def _plain(key: str, base: str) -> Step:
+    """The uncorrected step of a name without spaces."""
+    own: dict[str, type[Step]] = {
+        "euler": Euler,
+        "backwardeuler": BackwardEuler,
+        "heun": Heun,
+        "cg3": CrouchGrossman3,
+        "cf4": CommutatorFree4,
+    }
+    if key in own:
+        return own[key]()
+    if found := _TAYLOR.fullmatch(key):
+        return LieTaylor(int(found[1]))
+    try:
+        return RKMK(tableau(base))
+    except InputError:
+        raise _unknown(base) from None
+
+
+def _unknown(base: str) -> InputError:
+    names = step_names()
+    near = get_close_matches(base.lower(), names, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    shown = repr(base) if len(base) <= 60 else repr(base[:57] + "...")
+    return InputError(f"no step is called {shown}; {hint}known: {', '.join(names)}")

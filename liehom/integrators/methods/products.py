@@ -1,0 +1,249 @@
+"""Steps with several exponentials: Crouch-Grossman of order 3, and the commutator-free method of order 4.
+
+Each stage has a point Y_i, reached from an earlier one by exponentials of combinations of F_j = psi(Y_j, t + c_j h):
+
+    Y_i = Exp(h sum_j a_i2j F_j) Exp(h sum_j a_i1j F_j) Y_s(i),    c_i = c_s(i) + sum of its coefficients,
+
+from m = Y_1 on, and so has the result.  No differential of Exp enters; the orders hold for the true exponential.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple, final
+
+import numpy as np
+
+from liehom.correctors.step import Generator, Step, apply_factors, step_variable
+from liehom.errors import InputError
+from liehom.homogeneous import Action
+from liehom.homogeneous.exponentials.exponential import TrueExponential
+from liehom.integrators.methods.rkmk import exact_like
+from liehom.series.arrays import is_exact
+
+RTOL = 1e-10
+
+
+class Point(NamedTuple):
+    """How a point is reached: from which earlier one, by rows of coefficients, first applied first."""
+
+    start: int
+    rows: tuple[tuple[Fraction, ...], ...]
+
+
+@final
+@dataclass(frozen=True)
+class Scheme:
+    """A method with several exponentials as data.
+
+    Parameters
+    ----------
+    points : tuple of (int, str)
+        For each point after Y_1 = m the index (from 0) of the point it starts from, and its rows of coefficients,
+        as fractions separated by spaces, rows by ``;``. The last point is the result.
+
+    Raises
+    ------
+    InputError
+        If the result does not start from m, or its weights do not sum to 1.
+
+    Examples
+    --------
+    >>> scheme = Scheme(((0, "1/2"), (1, "0 1/2"), (0, "0 1/2; 0 0 1/2")))
+    >>> [str(c) for c in scheme.nodes], len(scheme.result.rows)
+    (['0', '1/2', '1'], 2)
+    """
+
+    points: tuple[tuple[int, str], ...]
+
+    def __post_init__(self) -> None:
+        if self.result.start != 0 or self._times[-1] != 1:
+            raise InputError(
+                f"the result of a product of exponentials starts from m (0) with weights that sum to 1, got "
+                f"{self.points[-1]!r}"
+            )
+
+    @property
+    def stages(self) -> tuple[Point, ...]:
+        """How Y_1 = m, Y_2, ... are reached."""
+        return self._read[:-1]
+
+    @property
+    def result(self) -> Point:
+        """How the result is reached."""
+        return self._read[-1]
+
+    @property
+    def nodes(self) -> tuple[Fraction, ...]:
+        """c_i, one for each stage."""
+        return self._times[:-1]
+
+    @cached_property
+    def _read(self) -> tuple[Point, ...]:
+        rest = (
+            Point(s, tuple(tuple(map(Fraction, row.split())) for row in rows.split(";"))) for s, rows in self.points
+        )
+        return (Point(0, ()), *rest)
+
+    @cached_property
+    def _times(self) -> tuple[Fraction, ...]:
+        found = [Fraction(0)]
+        for start, rows in self._read[1:]:
+            found.append(sum((x for row in rows for x in row), found[start]))
+        return tuple(found)
+
+
+class ProductStep(Step, ABC):
+    """A step given by a `Scheme`; a new one needs `order` and `scheme`.
+
+    Examples
+    --------
+    The midpoint method, in two halves of which the second starts at the midpoint:
+
+    >>> import liehom as lh
+    >>> class Halves(ProductStep):
+    ...     order = 2
+    ...     scheme = Scheme(((0, "1/2"), (0, "0 1/2; 0 1/2")))
+    >>> Halves().one_exponential
+    False
+    """
+
+    @property
+    @abstractmethod
+    def scheme(self) -> Scheme:
+        """The coefficients."""
+
+    def factors(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
+        """The generators of the result.
+
+        Raises
+        ------
+        InputError
+            If the exponential differs from exp at a power of h that the order counts.
+        """
+        check_exponential(action, self.order)
+        scheme = self.scheme
+        points: list[Any] = []
+        velocities: list[Any] = []
+        for (start, rows), c in zip(scheme.stages, scheme.nodes, strict=True):
+            points.append(apply_factors(action, _combined(rows, velocities, m), points[start]) if rows else m)
+            velocities.append(h * psi(points[-1], t + h * _number(c, m) if c else t))
+        return _combined(scheme.result.rows, velocities, m)
+
+
+@final
+@dataclass(frozen=True)
+class CrouchGrossman3(ProductStep):
+    """Three exponentials of single velocities, order 3.
+
+    The coefficients are those of B. Owren and A. Marthinsen, Runge-Kutta methods adapted to manifolds and based on
+    rigid frames, BIT 39 (1999).  The conditions for order 3 are more than those of a Runge-Kutta method.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["2*t"])
+    >>> action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 1)
+    >>> made = CrouchGrossman3().factors(action, psi, np.array([1.0, 0.0]), np.array([0.0]), np.array([0.5]))
+    >>> len(made), sum(made).round(12)
+    (3, array([0.25]))
+    """
+
+    @property
+    def order(self) -> int:
+        return 3
+
+    @property
+    def scheme(self) -> Scheme:
+        return CROUCH_GROSSMAN_3
+
+
+@final
+@dataclass(frozen=True)
+class CommutatorFree4(ProductStep):
+    """Two exponentials of combinations of four velocities, order 4.
+
+    E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group methods, Future Gener. Comput. Syst. 19 (2003):
+    the classical Runge-Kutta method where all velocities commute.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["4*t**3"])
+    >>> action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 1)
+    >>> made = CommutatorFree4().factors(action, psi, np.array([1.0, 0.0]), np.array([0.0]), np.array([1.0]))
+    >>> len(made), sum(made).round(12)
+    (2, array([1.]))
+    """
+
+    @property
+    def order(self) -> int:
+        return 4
+
+    @property
+    def scheme(self) -> Scheme:
+        return COMMUTATOR_FREE_4
+
+
+CROUCH_GROSSMAN_3 = Scheme(((0, "3/4"), (0, "119/216; 0 17/108"), (0, "13/51; 0 -2/3; 0 0 24/17")))
+COMMUTATOR_FREE_4 = Scheme(
+    ((0, "1/2"), (0, "0 1/2"), (1, "-1/2 0 1"), (0, "1/4 1/6 1/6 -1/12; -1/12 1/6 1/6 1/4")),
+)
+
+
+@lru_cache(maxsize=64)
+def check_exponential(action: Action, order: int) -> None:
+    """Refuse an exponential that is not exp through a given order, found on a series at a generic point.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> check_exponential(lh.Action(lh.defining(lh.so(3))), 4)
+    >>> check_exponential(lh.Action(lh.defining(lh.so(3)), "cayley"), 3)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: Cayley differs from exp at h^3, so a product of exponentials cannot have order 3 with \
+it: take exponential='exp', or an RKMK or LieTaylor step
+    """
+    exponential = action.exponential
+    if order <= 2 or isinstance(exponential, TrueExponential):
+        return
+    rng = np.random.default_rng(0)
+    x, m = rng.normal(size=action.dimension), rng.normal(size=action.representation.size)
+    made = action.act(x * step_variable(order, x), m)
+    term = m
+    for k in range(1, order + 1):
+        term = action.infinitesimal(x, term) / k
+        if float(np.abs(made.coefficient(k) - term).max()) > RTOL * (1 + float(np.abs(term).max())):
+            raise InputError(
+                f"{exponential.name} differs from exp at h^{k}, so a product of exponentials cannot have order {order} "
+                "with it: take exponential='exp', or an RKMK or LieTaylor step"
+            )
+
+
+# -- private helpers -------------------------------------------------------------------------------------
+def _combined(rows: tuple[tuple[Fraction, ...], ...], velocities: list[Any], m: Any) -> tuple[Any, ...]:
+    """The generators sum_j row[j] velocities[j], one for each row."""
+    made = []
+    for row in rows:
+        terms = [velocity * _number(x, m) for x, velocity in zip(row, velocities, strict=False) if x]
+        made.append(sum(terms[1:], terms[0]))
+    return tuple(made)
+
+
+def _number(value: Fraction, like: Any) -> Any:
+    """A fraction in the numbers of the array `like`, rounded once."""
+    if is_exact(like):
+        return exact_like(value, like)
+    if like.dtype == np.longdouble:
+        return np.longdouble(value.numerator) / np.longdouble(value.denominator)
+    return float(value)

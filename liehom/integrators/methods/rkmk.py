@@ -1,0 +1,299 @@
+"""RKMK: Runge-Kutta-Munthe-Kaas steps, any Runge-Kutta method carried to homogeneous spaces, with one exponential.
+
+u(t) in g with Exp(u(t)) m = F_t(m) solves u' = dExp^-1_u psi(Exp(u) m, t), u(0) = 0.  A Runge-Kutta method for it is
+
+    k_i = h dExp^-1_{u_i} psi(Exp(u_i) m, t + c_i h),   u_i = sum_j a_ij k_j,   xi = sum_i b_i k_i
+
+(H. Munthe-Kaas, High order Runge-Kutta methods on manifolds, Appl. Numer. Math. 29, 1999).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from fractions import Fraction
+from typing import Any, NamedTuple, final
+
+import numpy as np
+
+from liehom.correctors.step import Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.errors import InputError
+from liehom.homogeneous import Action
+from liehom.integrators.tableaux.tableau import Tableau
+from liehom.integrators.tableaux.tableaux import tableau as tableau_of
+from liehom.scalars import QQ
+from liehom.series.arrays import is_exact, is_jax, namespace, zeros
+
+Row = tuple[tuple[int, Any], ...]
+"""The entries of a row of coefficients that are not zero, with their places."""
+
+
+class Coefficients(NamedTuple):
+    """A tableau in the numbers of a computation; `difference` is b - embedded_b."""
+
+    a: tuple[Row, ...]
+    b: Row
+    c: tuple[Any, ...]
+    difference: Row
+
+
+@final
+@dataclasses.dataclass(frozen=True, init=False, repr=False)
+class RKMK(OneExponential):
+    """The Runge-Kutta-Munthe-Kaas step of a tableau, explicit or implicit, of the order of the tableau.
+
+    Parameters
+    ----------
+    tableau : Tableau or str
+        A name such as "rk4", "gauss2", "dop853": see `tableau_names`.
+
+    Raises
+    ------
+    InputError
+        If no tableau has this name. When it steps: if the order is above 2 and the inverse differential of the
+        exponential is not known, or the point is exact and the coefficients are floats.
+    ConvergenceError
+        When an implicit step does not converge: the step size is too large.
+
+    Notes
+    -----
+    A method of order p uses the terms ad_u^0, ..., ad_u^(p-2) of dexp^-1_u (`terms`).  That is enough: along the
+    solution ad_u psi = O(h^2), as u = h psi + O(h^2), so what is left out changes the equation by
+    ad_u^(p-1) psi = O(h^p).  For order at most 2 the differential is not needed and every Exp will do.
+
+    Where the tableau has an embedded method, ``at(...)`` returns an `EmbeddedStep`, whose ``estimate(h)`` is the
+    difference of the two methods as a vector in V, of the order ``estimate_order`` in h; both methods share their
+    stages, and stages with zero weight are computed only for the estimate.
+
+    Coefficients are rounded once to the type of m. Over exact scalars they are exact, so that expansions in h are.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> RKMK("rk4"), RKMK("gauss2").order
+    (RKMK('rk4'), 4)
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["2*t"])
+    >>> action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 1)
+    >>> local = RKMK("rk45").at(action, psi, np.array([1.0, 0.0]), np.array([0.0]))
+    >>> local.factors(np.array([0.5]))[0].round(12), local.estimate(np.array([0.5])).round(12) + 0.0
+    (array([0.25]), array([0., 0.]))
+    """
+
+    tableau: Tableau
+    _floating: dict[str, Coefficients] = dataclasses.field(compare=False)
+
+    def __init__(self, tableau: Tableau | str) -> None:
+        object.__setattr__(self, "tableau", tableau_of(tableau))
+        object.__setattr__(self, "_floating", {})
+
+    @property
+    def order(self) -> int:
+        return self.tableau.order
+
+    @property
+    def terms(self) -> int:
+        """How many terms of the series of dexp^-1 it uses: the order minus 1, at least 1.
+
+        Examples
+        --------
+        >>> RKMK("heun").terms, RKMK("rk4").terms
+        (1, 3)
+        """
+        return max(self.order - 1, 1)
+
+    def coefficients(self, like: Any) -> Coefficients:
+        """The tableau in the numbers of the array `like`, without its zeros.
+
+        Raises
+        ------
+        InputError
+            If `like` is exact and the tableau is in floats.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> RKMK("kutta3").coefficients(np.zeros(1)).a
+        ((), ((0, 0.5),), ((0, -1.0), (1, 2.0)))
+        """
+        if is_exact(like):
+            return self._exact(like)
+        kind = "g" if like.dtype == np.longdouble and not is_jax(like) else "d"
+        if kind not in self._floating:
+            a, b, c, embedded = self.tableau.to_numpy(np.dtype(kind))
+            number = np.longdouble if kind == "g" else float
+            self._floating[kind] = _coefficients(
+                [[number(x) for x in row] for row in (*a, b, c, b if embedded is None else embedded)]
+            )
+        return self._floating[kind]
+
+    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+        stages = _Stages(self, action, psi, m, t)
+        return stages.combined(stages.numbers.b, h)
+
+    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+        if self.tableau.embedded_b is None:
+            return super().at(action, psi, m, t, error_terms=error_terms)
+        return EmbeddedStep(_Stages(self, action, psi, m, t))
+
+    def __repr__(self) -> str:
+        return f"RKMK({self.tableau.name!r})"
+
+    def _exact(self, like: Any) -> Coefficients:
+        tableau = self.tableau
+        if not tableau.exact:
+            raise InputError(
+                f"the coefficients of {tableau.name!r} are floats and the point is exact: take an exact tableau, or "
+                "the point in floats"
+            )
+        embedded = tableau.b if tableau.embedded_b is None else tableau.embedded_b
+        rows = (*tableau.a, tableau.b, tableau.c, embedded)
+        if tableau.field == QQ:
+            return _coefficients([[exact_like(Fraction(int(x.p), int(x.q)), like) for x in row] for row in rows])
+        return _coefficients([list(row) for row in rows])
+
+
+@final
+class EmbeddedStep(LocalStep):
+    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error.
+
+    Made by `RKMK.at`. Stages for the last h are kept, for `factors` and `estimate` alike.
+
+    Attributes
+    ----------
+    estimate_order : int
+        The estimate is O(h^estimate_order): the lower of the orders of the pair, plus 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
+    >>> psi = lh.correctors.Generator(field, 1)
+    >>> local = RKMK("heun").at(lh.Action(field.representation), psi, np.array([1.0, 0.0]), np.array([0.0]))
+    >>> local.estimate(np.array([0.2])).round(12), local.estimate_order
+    (array([0.  , 0.02]), 2)
+    """
+
+    estimate_order: int
+
+    def __init__(self, stages: _Stages) -> None:
+        tableau = stages.method.tableau
+        self.estimate_order = min(tableau.order, tableau.embedded_order or tableau.order) + 1
+        self._stages = stages
+
+    def factors(self, h: Any) -> tuple[Any, ...]:
+        return (self._stages.combined(self._stages.numbers.b, h),)
+
+    def estimate(self, h: Any) -> Any:
+        """rho(xi - xi_embedded) m for h (..., 1) or a Jet: the error of the step to leading order, shape (..., N)."""
+        stages = self._stages
+        return stages.action.infinitesimal(stages.combined(stages.numbers.difference, h), stages.m)
+
+
+@final
+class _Stages:
+    """The stages k_i of a method at one point, as far as they were asked for, for the last h."""
+
+    def __init__(self, method: RKMK, action: Action, psi: Generator, m: Any, t: Any) -> None:
+        self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
+        self.numbers = method.coefficients(m)
+        # a row without entries beyond its diagonal needs no later stage
+        self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
+        self._shape = (*np.shape(m)[:-1], action.dimension)
+        self._start: Any = None
+        self._h: Any = None
+        self._kept: Any = None
+        self._known: list[Any] = []
+
+    def combined(self, weights: Row, h: Any) -> Any:
+        """sum_i weights[i] k_i."""
+        return _combined(weights, self._through(h, weights[-1][0] + 1))
+
+    def _through(self, h: Any, count: int) -> list[Any]:
+        """The stages before `count`, and no others where the method allows it."""
+        if not self._is_kept(h):
+            self._h, self._kept, self._known = h, h.copy() if isinstance(h, np.ndarray) else None, []
+        if not self._sequential:
+            self._known = self._known or self._solved(h)
+        while len(self._known) < count:
+            self._known.append(self._next(h))
+        return self._known
+
+    def _is_kept(self, h: Any) -> bool:
+        """Arrays are compared by value, as their owner may have changed them."""
+        if isinstance(h, np.ndarray) and isinstance(self._kept, np.ndarray):
+            return h.dtype == self._kept.dtype and np.array_equal(h, self._kept)
+        return h is self._h and self._kept is None
+
+    def _next(self, h: Any) -> Any:
+        """The stage after those that are known; alone implicit where a_ii is not zero."""
+        i = len(self._known)
+        row = self.numbers.a[i]
+        if not row or row[-1][0] < i:
+            return self._stage(i, _combined(row, self._known), h)
+        before, (_, diagonal) = _combined(row[:-1], self._known), row[-1]
+
+        def stage(k: Any) -> Any:
+            return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
+
+        return solve_implicitly(stage, zeros(self.m, self._shape), h)
+
+    def _solved(self, h: Any) -> list[Any]:
+        """All stages of an implicit method, as one array with a first axis for the stages."""
+        rows = self.numbers.a
+
+        def stages(k: Any) -> Any:
+            made = [self._stage(i, _combined(row, k), h) for i, row in enumerate(rows)]
+            return namespace(*made).stack(made)
+
+        k = solve_implicitly(stages, zeros(self.m, (len(rows), *self._shape)), h, stacked=True)
+        return [k[i] for i in range(len(rows))]
+
+    def _stage(self, i: int, u: Any, h: Any) -> Any:
+        c = self.numbers.c[i]
+        if u is None and c == 0:
+            if self._start is None:
+                self._start = self.psi(self.m, self.t)
+            return h * self._start
+        time = self.t + h * c
+        if u is None:
+            return h * self.psi(self.m, time)
+        velocity = self.psi(self.action.act(u, self.m), time)
+        if self.method.terms > 1:
+            velocity = self.action.exponential.differential_inverse(u, velocity, self.method.terms)
+        return h * velocity
+
+
+# -- private helpers -------------------------------------------------------------------------------------
+def exact_like(value: Fraction, like: Any) -> Any:
+    """A fraction in the exact numbers of the array `like`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> exact_like(Fraction(2, 4), np.array([lh.QQ.convert("1/3")]))
+    1/2
+    """
+    one = zeros(like, ())[()] + 1
+    return one * value.numerator / value.denominator
+
+
+def _coefficients(rows: list[list[Any]]) -> Coefficients:
+    """From the rows of a, b, c and the embedded weights."""
+    *a, b, c, embedded = rows
+    difference = [x - y for x, y in zip(b, embedded, strict=True)]
+    return Coefficients(tuple(_sparse(row) for row in a), _sparse(b), tuple(c), _sparse(difference))
+
+
+def _sparse(row: list[Any]) -> Row:
+    return tuple((j, x) for j, x in enumerate(row) if x != 0)
+
+
+def _combined(row: Row, terms: Any) -> Any:
+    """sum_j row[j] terms[j]; None if the row has no entries."""
+    total = None
+    for j, weight in row:
+        term = terms[j] * weight
+        total = term if total is None else total + term
+    return total

@@ -1,0 +1,121 @@
+"""DenseSolution: the solution as a function of time, on the manifold and to the order of the step.
+
+Within a step it is s -> Exp(xi(m, s)) m at time tau(s); the step is prepared again where it is asked for, so
+that only points and step sizes are kept.
+"""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.errors import ConvergenceError, ShapeError
+from liehom.homogeneous import Action
+from liehom.integrators.run.clock import size_for
+
+
+@final
+class DenseSolution:
+    """The solution of one trajectory or of an ensemble as a function of t.
+
+    Parameters
+    ----------
+    action, psi, step
+        What was integrated.
+    times : array (n + 1, ...)
+        Every trajectory from its start on without gaps, filled up with NaN.
+    points : array (n + 1, ..., N)
+    sizes : array (n, ...)
+        Step sizes in the step's own parameter, filled up with 0.
+    nominal : bool
+        Whether time is the parameter of the step rather than its clock.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> sol = lh.integrate(field, (0, 1), [1.0, 0.0], dt=0.25, dense_output=True).sol
+    >>> bool(np.allclose(sol(0.3), [np.cos(0.3), np.sin(0.3)])), sol([0.1, 0.2, 0.3]).shape
+    (True, (2, 3))
+    """
+
+    def __init__(
+        self, action: Action, psi: Generator, step: Step, times: Any, points: Any, sizes: Any, *, nominal: bool
+    ) -> None:
+        self._action, self._psi, self._step = action, psi, step
+        self._times, self._points, self._sizes, self._nominal = times, points, sizes, nominal
+        self._shape = points.shape[1:-1]
+        count = np.isfinite(times).sum(axis=0)  # points of each trajectory
+        self._last_point = np.reshape(count - 1, -1)
+        last = np.take_along_axis(times, (count - 1)[None], axis=0)[0]
+        self._direction = np.where(last >= times[0], 1, -1)
+        # times in the direction of integration, trajectory by trajectory, for searches
+        rows = (self._direction * times).reshape(len(times), -1).T
+        self._rows = [np.ascontiguousarray(row[:k]) for row, k in zip(rows, count.reshape(-1), strict=True)]
+        self._prepared: tuple[Any, LocalStep] | None = None
+
+    @property
+    def t_min(self) -> Any:
+        """The earliest time, (...,)."""
+        return np.nanmin(self._times, axis=0)
+
+    @property
+    def t_max(self) -> Any:
+        """The latest time, (...,)."""
+        return np.nanmax(self._times, axis=0)
+
+    def __call__(self, t: Any) -> Any:
+        """The points at times t: a number gives (..., N), an array (k,) gives (..., N, k).
+
+        Outside the interval of integration the first or last step is continued, as solve_ivp's dense output does.
+        """
+        queries = np.asarray(t, dtype=self._times.dtype)
+        if queries.ndim > 1:
+            raise ShapeError(f"t has shape {queries.shape}, expected a number or a list of times")
+        flat = queries.reshape(-1)
+        out = np.full((*self._points.shape[1:], flat.size), np.nan, dtype=self._points.dtype)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            for k in np.argsort(flat, kind="stable"):
+                if np.isfinite(flat[k]):
+                    out[..., k] = self._at(flat[k])
+        return out[..., 0] if queries.ndim == 0 else out
+
+    def _at(self, time: Any) -> Any:
+        """The points at one time, every trajectory in the step that contains it."""
+        if not len(self._sizes):
+            return self._points[0]
+        aim = (self._direction * time).reshape(-1)
+        found = [np.searchsorted(row, x, side="right") - 1 for row, x in zip(self._rows, aim, strict=True)]
+        index = np.clip(np.array(found, dtype=int), 0, np.maximum(self._last_point - 1, 0)).reshape(self._shape)
+        start, point = _rows(self._times, index), _rows(self._points, index[..., None])
+        local = self._prepare(index, start, point)
+        size = _rows(self._sizes, index)
+        elapsed = np.where(size != 0, time - start, 0)
+        ends = _rows(self._times, index + 1) == time
+        s = elapsed if self._nominal else size_for(local, elapsed, size)
+        made = self._step_to(local, np.where(ends, size, s), size, point)
+        made = np.where((elapsed == 0)[..., None], point, made)
+        return np.where(ends[..., None], _rows(self._points, (index + 1)[..., None]), made)
+
+    def _step_to(self, local: LocalStep, s: Any, size: Any, point: Any) -> Any:
+        try:
+            return apply_factors(self._action, local.factors(s[..., None]), point)
+        except (ConvergenceError, np.linalg.LinAlgError):
+            # an implicit step that is continued beyond its ends need not have a solution
+            outside = (s * np.sign(size) < 0) | (np.abs(s) > np.abs(size))
+            made = apply_factors(self._action, local.factors(np.where(outside, 0, s)[..., None]), point)
+            return np.where(outside[..., None], np.nan, made)
+
+    def _prepare(self, index: Any, start: Any, point: Any) -> LocalStep:
+        """The steps of numbers `index`; those of the last call are kept, as times come in order."""
+        if self._prepared is None or not np.array_equal(self._prepared[0], index):
+            self._prepared = (index, self._step.at(self._action, self._psi, point, start[..., None]))
+        return self._prepared[1]
+
+
+def _rows(array: Any, index: Any) -> Any:
+    """array[index[...], ...]: for each trajectory its own row."""
+    return np.take_along_axis(array, index[None], axis=0)[0]

@@ -1,0 +1,60 @@
+"""Options: what a run is asked for; and how a trajectory can end, with the message that says so."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+END, EVENT, NOT_FINITE, PSI, CLOCK, TOO_SMALL, IMPLICIT, LINEAR, TOO_MANY = 0, 1, -1, -2, -3, -4, -5, -6, -7
+MESSAGES = {
+    END: "The solver successfully reached the end of the integration interval.",
+    EVENT: "A termination event occurred.",
+    NOT_FINITE: "The solution is not finite after a step; take smaller steps.",
+    PSI: "psi or one of its derivatives is not finite.",
+    CLOCK: "The clock of the corrected step does not run at this step size; take a smaller dt.",
+    TOO_SMALL: "The step size that the tolerance asks for is below round-off.",
+    IMPLICIT: "The equations of an implicit step could not be solved; take a smaller step size.",
+    LINEAR: "The linear algebra of a step failed.",
+    TOO_MANY: "The end was not reached in max_steps steps.",
+}
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Options:
+    """The options of a run, checked: see `integrate`.
+
+    Attributes
+    ----------
+    dt : array of shape (...,) or None
+    t_eval : array of shape (k,) or None
+        In the direction of integration.
+    nominal : bool
+        Whether time advances by the parameter of the step rather than by its clock.
+    """
+
+    dt: Any
+    rtol: float
+    atol: float
+    t_eval: Any
+    dense_output: bool
+    events: Any
+    nominal: bool
+    max_step: float
+    first_step: float | None
+    max_steps: float
+    checkpoint_every: float
+
+    def texts(self) -> str:
+        """What of it is not an array, and not free to change when a run is continued.
+
+        Examples
+        --------
+        >>> Options(None, 1e-6, 1e-9, None, False, None, False, 1.0, None, 10, 30.0).texts()
+        'adaptive 1e-06 1e-09 steps False corrected 1.0 None'
+        """
+        return (
+            f"{'adaptive' if self.dt is None else 'fixed'} {self.rtol} {self.atol} "
+            f"{'steps' if self.t_eval is None else 't_eval'} {self.dense_output} "
+            f"{'nominal' if self.nominal else 'corrected'} {self.max_step} {self.first_step}"
+        )

@@ -1,0 +1,259 @@
+"""What a run keeps besides its path: points at requested times, events, and the corrector's account.
+
+Each has its state as named arrays, for checkpoints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.conserving.conserving import Conserving, ConservingStep
+from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
+from liehom.correctors.isotropy.isotropy_corrector import Correction
+from liehom.correctors.step import LocalStep, Step
+from liehom.homogeneous import Action
+from liehom.integrators.run.conservation_account import ConservationAccount
+from liehom.integrators.run.solution import Report
+
+NO_RANK = int(np.iinfo(np.int64).max)
+
+
+@final
+class Account:
+    """The extremes of what the corrector reported, over all steps.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> account = Account(lh.Euler(), (3,))
+    >>> account.arrays()["reached"].tolist()
+    [1, 1, 1]
+    """
+
+    def __init__(self, step: Step, shape: tuple[int, ...]) -> None:
+        self._step = step
+        self._wanted = step.order
+        inner = step.step if isinstance(step, Conserving) else step
+        self._base = inner.step.order if isinstance(inner, Corrected) else step.order
+        self._conservation = ConservationAccount(step, shape)
+        self._seen = {
+            "reached": np.full(shape, step.order),
+            "residual": np.zeros(shape),
+            "singular": np.full(shape, np.inf),
+            "rank": np.full(shape, NO_RANK),
+            "failed": np.zeros(shape, dtype=int),
+            "equilibria": np.zeros(shape, dtype=int),
+        }
+        self._where: tuple[float, tuple[float, ...]] | None = None
+
+    def take(self, local: LocalStep, h: Any, t: Any, m: Any, active: Any) -> None:
+        """Take in what a step of size h (...,) reports where trajectories are active."""
+        if isinstance(local, ConservingStep):
+            self._conservation.add(local, h, t, m, active)
+            local = local.base
+        if isinstance(local, CorrectedStep):
+            self.add(local.correction, t, m, active)
+
+    def add(self, found: Correction, t: Any, m: Any, active: Any) -> None:
+        """Take in the correction of one step where trajectories are active."""
+        seen = dict(self._seen)  # the arrays are replaced, never written into: older states stay whole
+        moving = active & (found.leading > 0)
+        if not bool(moving.all()):
+            seen["equilibria"] = seen["equilibria"] + (active & ~moving)
+        short = active & (found.reached < self._wanted)
+        if bool(short.any()):
+            seen["reached"] = np.where(short, np.minimum(seen["reached"], found.reached), seen["reached"])
+            seen["failed"] = seen["failed"] + short
+        worse = active & (found.residual > seen["residual"])
+        if bool(worse.any()):
+            seen["residual"] = np.where(worse, found.residual, seen["residual"])
+        rank, singular = found.rank, found.singular_value
+        less = moving & (rank < seen["rank"])
+        if bool(less.any()):
+            seen["rank"] = np.where(less, rank, seen["rank"])
+        lower = moving & (singular < seen["singular"])
+        if bool(lower.any()):
+            self._note_where(np.where(lower, singular, np.inf), t, m)
+            seen["singular"] = np.where(lower, singular, seen["singular"])
+        self._seen = seen
+
+    def add_compiled(self, lanes: Any, extra: Any) -> None:
+        """Take in what compiled steps summed up, for some lanes of the flattened ensemble.
+
+        Parameters
+        ----------
+        lanes : array of int
+        extra : dict of arrays of shape (L,)
+            The largest residual and number of orders missed ("short"), how many steps missed the order or were at
+            equilibria, and what a `ConservationAccount` takes.
+        """
+        seen = {name: np.array(x).reshape(-1) for name, x in self._seen.items()}
+        if "short" in extra:
+            seen["residual"][lanes] = np.maximum(seen["residual"][lanes], extra["residual"])
+            seen["reached"][lanes] = np.minimum(seen["reached"][lanes], self._wanted - extra["short"].astype(int))
+            seen["failed"][lanes] += extra["failed"].astype(int)
+        if "equilibria" in extra:
+            seen["equilibria"][lanes] += extra["equilibria"].astype(int)
+        self._seen = {name: x.reshape(np.shape(self._seen[name])) for name, x in seen.items()}
+        if "usual" in extra:
+            self._conservation.add_compiled(lanes, extra)
+
+    def _note_where(self, lowest: Any, t: Any, m: Any) -> None:
+        """Where the smallest singular value of all trajectories was met."""
+        if float(lowest.min()) < float(self._seen["singular"].min()):
+            index = np.unravel_index(int(np.argmin(lowest)), np.shape(lowest))
+            self._where = (float(t[index]), tuple(float(x) for x in m[index]))
+
+    def report(self, action: Action, clock: str, orbit_dimension: Any) -> Report:
+        """The account as a report."""
+        seen = self._seen
+        rank = int(np.min(seen["rank"], initial=NO_RANK))
+        return Report(
+            step=repr(self._step),
+            exponential=action.exponential.name,
+            clock=clock,
+            base_order=self._base,
+            order=int(np.min(seen["reached"], initial=self._wanted)),
+            wanted_order=self._wanted,
+            worst_residual=float(np.max(seen["residual"], initial=0.0)),
+            singular_value=float(np.min(seen["singular"], initial=np.inf)),
+            singular_at=self._where,
+            rank=0 if rank == NO_RANK else rank,
+            orbit_dimension=int(np.max(orbit_dimension, initial=0)),
+            failed_steps=int(seen["failed"].sum()),
+            equilibria=int(seen["equilibria"].sum()),
+            inner_product=action.inner_product.name,
+            conservation=self._conservation.report(),
+        )
+
+    def arrays(self) -> dict[str, Any]:
+        """The state, for a checkpoint."""
+        where = [] if self._where is None else [self._where[0], *self._where[1]]
+        kept = {f"conservation_{name}": x for name, x in self._conservation.arrays().items()}
+        return {**self._seen, "where": np.array(where), **kept}
+
+    def restore(self, arrays: dict[str, Any]) -> None:
+        """Take a state back."""
+        self._seen = {name: arrays[name] for name in self._seen}
+        where = [float(x) for x in arrays["where"]]
+        self._where = (where[0], tuple(where[1:])) if where else None
+        start = "conservation_"
+        self._conservation.restore({name[len(start) :]: x for name, x in arrays.items() if name.startswith(start)})
+
+
+@final
+class Samples:
+    """The points at requested times, filled in as steps pass them.
+
+    Parameters
+    ----------
+    times : array of shape (k,)
+        In the direction of integration.
+    shape : tuple of int
+        (..., N)
+    dtype : dtype
+    direction : float
+        1 or -1.
+
+    Examples
+    --------
+    >>> samples = Samples(np.array([0.5]), (2,), float, 1.0)
+    >>> samples.fill(lambda t, here: np.array([t, -t]), np.array(1.0), np.array(True))
+    >>> samples.points[..., 0].tolist()
+    [0.5, -0.5]
+    """
+
+    def __init__(self, times: Any, shape: tuple[int, ...], dtype: Any, direction: float) -> None:
+        self.times = times
+        self.points = np.full((*shape, len(times)), np.nan, dtype=dtype)
+        self.done = np.zeros(shape[:-1], dtype=int)
+        self._direction = direction
+        self._ascending = direction * times
+
+    def start(self, t: Any, m: Any) -> None:
+        """The requested times that are the starting time."""
+        if len(self.times) and self.times[0] == t:
+            self.points[..., 0] = m
+            self.done = self.done + 1
+
+    def fill(self, at: Callable[[Any, Any], Any], after: Any, moves: Any) -> None:
+        """Take the times up to `after` from at(time, here), where trajectories move."""
+        upto = np.searchsorted(self._ascending, self._direction * after, side="right")
+        new = moves & (upto > self.done)
+        if not bool(np.any(new)):
+            return
+        first, last = np.min(self.done, where=new, initial=len(self.times)), np.max(upto, where=new, initial=0)
+        for k in range(int(first), int(last)):
+            here = new & (self.done <= k) & (k < upto)
+            if bool(np.any(here)):
+                self.points[..., k] = np.where(here[..., None], at(self.times[k], here), self.points[..., k])
+        self.done = np.where(new, upto, self.done)
+
+    def arrays(self) -> dict[str, Any]:
+        """The state, for a checkpoint."""
+        return {"points": self.points, "done": self.done}
+
+    def restore(self, arrays: dict[str, Any]) -> None:
+        """Take a state back."""
+        self.points, self.done = arrays["points"], arrays["done"]
+
+
+@final
+class Found:
+    """The events that occurred: (event, trajectory, time, point), for each trajectory in the order of time.
+
+    Examples
+    --------
+    >>> found = Found(1, (), 2)
+    >>> found.add(0, np.array(True), np.array(0.5), np.array([1.0, 0.0]))
+    >>> found.lists()[0][0]
+    array([0.5])
+    """
+
+    def __init__(self, count: int, shape: tuple[int, ...], size: int) -> None:
+        self._count, self._shape, self._size = count, shape, size
+        self.occurrences = np.zeros((count, *shape), dtype=int)
+        self.rows: list[tuple[int, int, Any, Any]] = []
+
+    def add(self, i: int, here: Any, t: Any, y: Any, *, counted: bool = True) -> None:
+        """Event i at times t where `here`; `counted` towards the number that ends the integration."""
+        if counted:
+            more = np.zeros_like(self.occurrences)
+            more[i] = here
+            self.occurrences = self.occurrences + more
+        times, points = np.reshape(t, -1), np.reshape(y, (-1, self._size))
+        self.rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
+
+    def lists(self) -> tuple[list[Any], list[Any]]:
+        """t_events, y_events as a `Solution` has them."""
+        size = int(np.prod(self._shape, dtype=int))
+        groups: list[list[list[tuple[Any, Any]]]] = [[[] for _ in range(size)] for _ in range(self._count)]
+        for i, b, t, y in self.rows:
+            groups[i][b].append((t, y))
+        times, points = [], []
+        for group in groups:
+            t_row, y_row = np.empty(size, dtype=object), np.empty(size, dtype=object)
+            for b, mine in enumerate(group):
+                t_row[b] = np.array([t for t, _ in mine])
+                y_row[b] = np.array([y for _, y in mine]).reshape(-1, self._size)
+            times.append(t_row[0] if self._shape == () else t_row.reshape(self._shape))
+            points.append(y_row[0] if self._shape == () else y_row.reshape(self._shape))
+        return times, points
+
+    def arrays(self) -> dict[str, Any]:
+        """The state, for a checkpoint."""
+        return {
+            "occurrences": self.occurrences,
+            "index": np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2),
+            "t": np.array([row[2] for row in self.rows]),
+            "y": np.array([row[3] for row in self.rows]),
+        }
+
+    def restore(self, arrays: dict[str, Any]) -> None:
+        """Take a state back."""
+        self.occurrences = arrays["occurrences"]
+        rows = zip(arrays["index"], arrays["t"], arrays["y"], strict=True)
+        self.rows = [(int(i), int(b), t, y) for (i, b), t, y in rows]

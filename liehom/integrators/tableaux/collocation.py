@@ -1,0 +1,119 @@
+"""Collocation methods, made from their nodes alone: Gauss, Radau IIA, the trapezoidal rule.
+
+The polynomial u of degree s with u(t) = y and u'(t + c_i h) = f(t + c_i h, u(t + c_i h)) for i = 1, ..., s gives
+the Runge-Kutta method with a_ij = int_0^{c_i} l_j and b_j = int_0^1 l_j, l_j the Lagrange polynomials of c
+(E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, theorem II.1.4).  Written with the matrix
+W_ik = c_i^(k-1): a = (c_i^k / k) W^(-1), b = (1/k) W^(-1).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import comb
+from typing import Any
+
+import numpy as np
+
+from liehom.errors import InputError
+from liehom.integrators.tableaux.rooted_trees import MAX_ORDER
+from liehom.integrators.tableaux.tableau import Tableau
+from liehom.scalars import QQ, RR, Field, Scalar, common_field
+
+GAUSS_DIGITS = 60
+
+
+def collocation(name: str, nodes: Any, order: int, *, field: Field | None = None) -> Tableau:
+    """The collocation method with the given nodes.
+
+    Parameters
+    ----------
+    name : str
+    nodes : sequence (s,)
+        Different numbers: texts, integers, fractions.
+    order : int
+        The claimed order; s always holds, more where the nodes are a better quadrature formula.
+    field : Field, optional
+        An exact field that contains the nodes; the smallest where it is not given.
+
+    Raises
+    ------
+    InputError
+        If nodes coincide, or the order is not reached.
+    FieldError, ParseError
+        If a node is not in an exact field.
+
+    Examples
+    --------
+    >>> collocation("equal steps", [0, "1/2", 1], order=4)
+    <tableau 'equal steps' of order 4, 3 stages, over QQ>
+    """
+    texts = [x if isinstance(x, str) else str(x) for x in nodes]
+    numbers = common_field(texts) if field is None else field
+    if not numbers.exact:
+        raise InputError("collocation solves for its coefficients exactly; give nodes in an exact field")
+    c = [numbers.convert(x) for x in (texts if field is None else nodes)]
+    if len(set(c)) != len(c):
+        raise InputError(f"the nodes of a collocation method are different numbers, got {', '.join(texts)}")
+    *a, b = _coefficients(c, numbers)
+    return Tableau(name, a, b, order, c=c, field=numbers)
+
+
+def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
+    """The rows of a, and b as a last row (the integrals to 1)."""
+    powers = field.matrix([[x**k for k in range(len(c))] for x in c])
+    ends = [*c, field.one]
+    integrals = field.matrix([[x ** (k + 1) / (k + 1) for k in range(len(c))] for x in ends])
+    rows: list[list[Scalar]] = (integrals @ powers.inverse()).to_rows()
+    return rows
+
+
+def gauss(stages: int) -> Tableau:
+    """The Gauss method with s stages, of order 2 s: collocation at the zeros of the Legendre polynomial.
+
+    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)).  From 4 on the nodes are computed with
+    60 digits, and the coefficients rounded to float64.
+
+    Parameters
+    ----------
+    stages : int
+        From 1 to 7.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> gauss(2)
+    <tableau 'gauss2' of order 4, 2 stages, over QQ(sqrt(3))>
+    >>> gauss(4).order, gauss(4).residual < 1e-15
+    (8, True)
+    """
+    if isinstance(stages, bool) or not isinstance(stages, int) or not 1 <= stages <= MAX_ORDER // 2:
+        raise InputError(f"a Gauss method has 1 to {MAX_ORDER // 2} stages here, got {stages!r}")
+    exact = {
+        1: ["1/2"],
+        2: ["1/2 - sqrt(3)/6", "1/2 + sqrt(3)/6"],
+        3: ["1/2 - sqrt(15)/10", "1/2", "1/2 + sqrt(15)/10"],
+    }
+    name = f"gauss{stages}"
+    if stages in exact:
+        return collocation(name, exact[stages], 2 * stages)
+    c = _legendre_zeros(stages)
+    *a, b = [[QQ.to_float(x) for x in row] for row in _coefficients(c, QQ)]
+    return Tableau(name, a, b, 2 * stages, c=[QQ.to_float(x) for x in c], field=RR)
+
+
+def _legendre_zeros(n: int) -> list[Scalar]:
+    """The zeros of the Legendre polynomial on [0, 1], as rational numbers with `GAUSS_DIGITS` correct digits."""
+    ascending = [(-1) ** k * comb(n, k) * comb(n + k, k) for k in range(n + 1)]
+    scale = 10 ** (GAUSS_DIGITS + 5)
+    zeros = []
+    for start in np.polynomial.legendre.leggauss(n)[0]:
+        x = (1 + Fraction(float(start))) / 2
+        for _ in range(3):  # Newton: 15 digits become 30, 60, 120
+            value = sum(c * x**k for k, c in enumerate(ascending))
+            slope = sum(k * c * x ** (k - 1) for k, c in enumerate(ascending) if k)
+            x = Fraction(round((x - value / slope) * scale), scale)
+        zeros.append(QQ.convert(x))
+    return zeros

@@ -1,0 +1,376 @@
+"""Tableau: the coefficients of a Runge-Kutta method, with a proof of the order that is claimed for them.
+
+The method is k_i = f(t + c_i h, y + h sum_j a_ij k_j), y' = y + h sum_i b_i k_i, with c_i = sum_j a_ij.  The
+constructor evaluates the order conditions of all rooted trees up to the claimed order (`rooted_trees`): exactly
+over QQ and real number fields, which is a proof, and in float64 with the largest violation kept as `residual`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import islice, zip_longest
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.errors import FieldError, InputError, ShapeError
+from liehom.integrators.tableaux.order_conditions import Violation, order_checks
+from liehom.integrators.tableaux.rooted_trees import MAX_ORDER, checked_order
+from liehom.scalars import RR, AlgebraicNumber, Field, NumberField, Scalar, common_field
+
+Row = tuple[Scalar, ...]
+
+TOLERANCE = 1e-13
+"""How far a condition may be off in float64 before it counts as violated, unless the tableau says otherwise."""
+
+
+@final
+@dataclasses.dataclass(frozen=True, slots=True, init=False, repr=False)
+class Tableau:
+    """A Runge-Kutta method as data that proves its order.
+
+    Parameters
+    ----------
+    name : str
+    a : array-like (s, s)
+        Integers, fractions, texts such as '1/2' or 'sqrt(3)/6', field elements, or floats.  An explicit method
+        may give row i by its i entries below the diagonal.
+    b : array-like (s,)
+    order : int
+        The claimed order, from 1 to `rooted_trees.MAX_ORDER`: every condition up to it must hold.
+    c : array-like (s,), optional
+        The row sums of a, which is what c must be; given, they are checked.
+    embedded_b : array-like (s,), optional
+        The weights of a second method with the same stages, for estimates of the error.
+    embedded_order : int, optional
+        Its order; where it is not given, the highest that holds.
+    field : Field, optional
+        Where it is not given: float64 if an entry is a float, else the smallest exact field with all entries.
+    tolerance : float, optional
+        In float64, the largest violation that is accepted; without meaning over an exact field.
+
+    Attributes
+    ----------
+    a, b, c, embedded_b : tuples of numbers of the field
+    residual : float
+        The largest violation of a condition (row sums and order conditions of both methods); 0 where exact.
+
+    Raises
+    ------
+    ShapeError
+    FieldError, ParseError
+        If an entry is not a number, or not in the field.
+    InputError
+        If c is not the row sums, or an order condition fails: the message names the tree and the defect.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> method = Tableau("two thirds", a=[[], ["2/3"]], b=["1/4", "3/4"], order=2)
+    >>> method
+    <tableau 'two thirds' of order 2, 2 stages, over QQ>
+    >>> method.first_violation().order, method.to_numpy(np.float32)[1]
+    (3, array([0.25, 0.75], dtype=float32))
+    >>> Tableau("wrong", a=[[], ["2/3"]], b=["1/2", "1/2"], order=2)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: tableau 'wrong' is claimed to have order 2, but its order condition fails for the \
+tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, which holds, or correct the coefficients
+    """
+
+    name: str
+    a: tuple[Row, ...]
+    b: Row
+    c: Row
+    order: int
+    embedded_b: Row | None
+    embedded_order: int | None
+    field: Field
+    tolerance: float = dataclasses.field(compare=False)
+    residual: float = dataclasses.field(compare=False, init=False)
+
+    def __init__(
+        self,
+        name: str,
+        a: Any,
+        b: Any,
+        order: int,
+        *,
+        c: Any = None,
+        embedded_b: Any = None,
+        embedded_order: int | None = None,
+        field: Field | None = None,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        rows, weights = _square(name, a), _list(b, "b")
+        nodes = None if c is None else _list(c, "c")
+        embedded = None if embedded_b is None else _list(embedded_b, "embedded_b")
+        for what, values in (("b", weights), ("c", nodes), ("embedded_b", embedded)):
+            if values is not None and len(values) != len(rows):
+                raise ShapeError(f"tableau {name!r}: a has {len(rows)} rows, {what} has {len(values)} entries")
+        if embedded is None and embedded_order is not None:
+            raise InputError(f"tableau {name!r} has an embedded_order and no embedded_b: give its weights")
+        entries = [x for row in (*rows, weights, nodes or [], embedded or []) for x in row]
+        set_ = object.__setattr__  # the one place where a frozen object is filled
+        set_(self, "field", field := _field_of(entries) if field is None else field)
+        set_(self, "name", str(name))
+        set_(self, "a", tuple(_converted(row, field) for row in rows))
+        set_(self, "b", _converted(weights, field))
+        set_(self, "c", _converted(nodes, field) if nodes is not None else self._row_sums())
+        set_(self, "embedded_b", None if embedded is None else _converted(embedded, field))
+        set_(self, "tolerance", _checked_tolerance(tolerance))
+        set_(self, "order", checked_order(order))
+        self._prove(embedded_order)
+
+    # -- what it is --------------------------------------------------------------------------------------
+    @property
+    def stages(self) -> int:
+        """The number s of stages."""
+        return len(self.b)
+
+    @property
+    def exact(self) -> bool:
+        """Whether the order is proved, in exact arithmetic; else see `residual`."""
+        return self.field.exact
+
+    @property
+    def explicit(self) -> bool:
+        """Whether a is strictly lower triangular: each stage needs only the earlier ones."""
+        return all(x == 0 for i, row in enumerate(self.a) for x in row[i:])
+
+    # -- order conditions --------------------------------------------------------------------------------
+    def first_violation(self, through: int = MAX_ORDER, *, embedded: bool = False) -> Violation | None:
+        """The first order condition that fails, None where all hold for trees with at most `through` vertices.
+
+        Parameters
+        ----------
+        through : int
+        embedded : bool
+            Ask for the embedded method.
+
+        Examples
+        --------
+        >>> from liehom.integrators import tableau
+        >>> tableau("rk4").first_violation(4) is None, tableau("rk4").first_violation().order
+        (True, 5)
+        """
+        checks = self._checks(self._weights_of(embedded), checked_order(through, "number of vertices"))
+        return next((violation for violation, _ in checks if violation is not None), None)
+
+    def actual_order(self, *, embedded: bool = False) -> int:
+        """The highest order (at most `rooted_trees.MAX_ORDER`) whose conditions all hold; 0 if sum b is not 1.
+
+        Examples
+        --------
+        >>> Tableau("modest", a=[[], [1]], b=["1/2", "1/2"], order=1).actual_order()
+        2
+        """
+        violation = self.first_violation(embedded=embedded)
+        return MAX_ORDER if violation is None else violation.order - 1
+
+    # -- its numbers -------------------------------------------------------------------------------------
+    def to_numpy(
+        self, dtype: npt.DTypeLike = np.float64
+    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any] | None]:
+        """(a, b, c, embedded_b or None) as arrays of a real floating type.
+
+        Exact numbers are rounded to that type once, not through float64; coefficients that are float64 have no
+        more digits in ``longdouble``.
+
+        Raises
+        ------
+        InputError
+            If the type is not a real floating type.
+
+        Examples
+        --------
+        >>> from liehom.integrators import tableau
+        >>> a, b, c, embedded = tableau("rk23").to_numpy()
+        >>> a.shape, c, embedded
+        ((4, 4), array([0.  , 0.5 , 0.75, 1.  ]), array([0.29166667, 0.25      , 0.33333333, 0.125     ]))
+        """
+        kind = np.dtype(dtype)
+        if kind.kind != "f":
+            raise InputError(f"coefficients are real floating numbers, got dtype {kind}; use float64 or longdouble")
+
+        def array(values: Row) -> npt.NDArray[Any]:
+            return np.array([_rounded(x, self.field) for x in values], dtype=np.longdouble).astype(kind)
+
+        a = np.stack([array(row) for row in self.a])
+        return a, array(self.b), array(self.c), None if self.embedded_b is None else array(self.embedded_b)
+
+    def to_strings(self) -> dict[str, Any]:
+        """The coefficients in the grammar of values: a, b, c and, where there is one, embedded_b.
+
+        Examples
+        --------
+        >>> from liehom.integrators import tableau
+        >>> tableau("gauss2").to_strings()["c"]
+        ['1/2 - 1/6*sqrt(3)', '1/2 + 1/6*sqrt(3)']
+        """
+        shown = self.field.format
+        made: dict[str, Any] = {"a": [[shown(x) for x in row] for row in self.a]}
+        made |= {key: [shown(x) for x in row] for key, row in (("b", self.b), ("c", self.c))}
+        return made if self.embedded_b is None else made | {"embedded_b": [shown(x) for x in self.embedded_b]}
+
+    # -- printing ----------------------------------------------------------------------------------------
+    def __repr__(self) -> str:
+        stages = f"{self.stages} stage{'s' if self.stages > 1 else ''}"
+        embedded = "" if self.embedded_order is None else f", embedded order {self.embedded_order}"
+        residual = "" if self.exact else f", residual {self.residual:.1e}"
+        return f"<tableau {self.name!r} of order {self.order}, {stages}{embedded}, over {self.field.name}{residual}>"
+
+    def __str__(self) -> str:
+        def shown(x: Scalar) -> str:
+            return self.field.format(x) if self.exact else f"{x:.6g}"
+
+        below = [self.b] if self.embedded_b is None else [self.b, self.embedded_b]
+        cut = self.explicit
+        left = [*map(shown, self.c), *[""] * len(below)]
+        right = [[shown(x) for x in (row[:i] if cut else row)] for i, row in enumerate(self.a)]
+        right += [[shown(x) for x in row] for row in below]
+        widths = [max(map(len, column)) for column in zip_longest(*right, fillvalue="")]
+        edge = max(map(len, left))
+        lines = [
+            f"{c:<{edge}} | {'  '.join(f'{x:<{w}}' for x, w in zip(row, widths, strict=False))}".rstrip()
+            for c, row in zip(left, right, strict=True)
+        ]
+        lines.insert(self.stages, "-" * (edge + 1) + "+" + "-" * (sum(widths) + 2 * len(widths) - 1))
+        return "\n".join(lines)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies and other processes get the coefficients, and prove the order again."""
+        of_field: Any = self.field
+        convert = of_field.format if isinstance(of_field, NumberField) else _same
+        if isinstance(of_field, NumberField):
+            of_field = (of_field.symbol, of_field.minpoly, of_field.interval)
+        rows = [[convert(x) for x in row] for row in (*self.a, self.b, self.c, self.embedded_b or ())]
+        return _restored, (self.name, rows, self.order, self.embedded_order, of_field, self.tolerance)
+
+    # -- the proof ---------------------------------------------------------------------------------------
+    def _row_sums(self) -> Row:
+        return tuple(sum(row, self.field.zero) for row in self.a)
+
+    def _weights_of(self, embedded: bool) -> Row:
+        if not embedded:
+            return self.b
+        if self.embedded_b is None:
+            raise InputError(f"tableau {self.name!r} has no embedded method")
+        return self.embedded_b
+
+    def _checks(self, weights: Row, through: int) -> Iterator[tuple[Violation | None, float]]:
+        return islice(order_checks(self.a, weights, self.field, self.tolerance), through)
+
+    def _prove(self, embedded_order: int | None) -> None:
+        """Row sums, then the conditions of both methods; sets `embedded_order` and `residual`."""
+        sizes = [0.0]
+        for i, (c, total) in enumerate(zip(self.c, self._row_sums(), strict=True)):
+            sizes += [] if self.exact else [abs(c - total)]
+            if c != total if self.exact else not sizes[-1] <= self.tolerance:
+                shown = self.field.format
+                raise InputError(
+                    f"tableau {self.name!r}: c[{i}] = {shown(c)}, but row {i} of a sums to {shown(total)}; "
+                    "leave c out, or correct the row"
+                )
+        sizes += self._proved_order(self.b, self.order, "")
+        if self.embedded_b is not None:
+            if self.embedded_b == self.b:
+                raise InputError(f"tableau {self.name!r}: embedded_b equals b, so that it estimates no error")
+            if embedded_order is None:
+                embedded_order = max(self.actual_order(embedded=True), 1)  # order 0 is refused by the proof of 1
+            embedded_order = checked_order(embedded_order, "embedded order")
+            sizes += self._proved_order(self.embedded_b, embedded_order, "the embedded method of ")
+        object.__setattr__(self, "embedded_order", embedded_order)
+        object.__setattr__(self, "residual", max(sizes))
+
+    def _proved_order(self, weights: Row, order: int, which: str) -> list[float]:
+        sizes = []
+        for violation, size in self._checks(weights, order):
+            if violation is not None:
+                fine = violation.order - 1
+                advice = f"claim order {fine}, which holds, or" if fine else "its weights must sum to 1:"
+                tolerance = "" if self.exact else f" (tolerance {self.tolerance:.0e})"
+                raise InputError(
+                    f"{which}tableau {self.name!r} is claimed to have order {order}, but its order condition fails "
+                    f"for the {violation}{tolerance}; {advice} correct the coefficients"
+                )
+            sizes.append(size)
+        return sizes
+
+
+def _restored(
+    name: str, rows: list[list[Any]], order: int, embedded_order: int | None, field: Any, tolerance: float
+) -> Tableau:
+    *a, b, c, embedded = rows
+    return Tableau(
+        name,
+        a,
+        b,
+        order,
+        c=c,
+        embedded_b=embedded or None,
+        embedded_order=embedded_order,
+        field=NumberField(*field) if isinstance(field, tuple) else field,
+        tolerance=tolerance,
+    )
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _list(values: Any, what: str) -> list[Any]:
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise ShapeError(f"{what} must be a sequence of numbers, got {values!r}")
+    return list(values)
+
+
+def _square(name: str, a: Any) -> list[list[Any]]:
+    """The rows of a, filled up with zeros where only the entries below the diagonal are given."""
+    rows = [_list(row, f"row {i} of a") for i, row in enumerate(_list(a, "a"))]
+    lengths = [len(row) for row in rows]
+    if rows and lengths == list(range(len(rows))):
+        return [[*row, *[0] * (len(rows) - len(row))] for row in rows]
+    if not rows or any(length != len(rows) for length in lengths):
+        raise ShapeError(
+            f"tableau {name!r}: a has {len(rows)} rows of lengths {lengths}; expected s rows of length s, "
+            "or for an explicit method row i with its i entries below the diagonal"
+        )
+    return rows
+
+
+def _field_of(entries: list[Any]) -> Field:
+    """float64 if there is a float, else the field of the algebraic numbers, else the smallest for the texts."""
+    if any(isinstance(x, float | np.floating) for x in entries):
+        return RR
+    for x in entries:
+        if isinstance(x, AlgebraicNumber):
+            return x.field
+    return common_field(str(x) for x in entries if isinstance(x, str) or hasattr(x, "free_symbols"))
+
+
+def _converted(values: list[Any], field: Field) -> Row:
+    return tuple(field.convert(x) for x in values)
+
+
+def _checked_tolerance(tolerance: Any) -> float:
+    value = float(tolerance)
+    if not 0 < value < 1:
+        raise InputError(f"the tolerance of the order conditions lies between 0 and 1, got {tolerance!r}")
+    return value
+
+
+def _rounded(value: Scalar, field: Field) -> np.longdouble:
+    """The number as the sum of its float64 and what that leaves, often enough for any ``longdouble``."""
+    total, rest = np.longdouble(0), value
+    for _ in range(3):
+        part = field.to_float(rest)
+        if not math.isfinite(part):
+            raise FieldError(f"the coefficient {value} is too large for floating numbers")
+        total += np.longdouble(part)
+        rest = rest - field.convert(Fraction(part))
+    return total

@@ -1,0 +1,100 @@
+"""The socle of a representation, the largest completely reducible subspace; complete reducibility decided exactly.
+
+For matrices L on V: [L, rad L] acts nilpotently and is the radical of tr(x y) on [L, L] (a semisimple linear algebra
+has a nondegenerate trace form).  It kills a subspace W, not zero by Engel's theorem, which contains every irreducible
+one.  On W the radical of L is central, L is reductive, and a vector is in the socle exactly if every central z acts
+on it semisimply: f(z) v = 0, f the squarefree part of the characteristic polynomial.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from liehom.representations.analysis.submodules import restricted
+from liehom.representations.invariants.irreducibility import combination, evaluated, trace_form
+from liehom.scalars import Polynomial, Subspace
+
+if TYPE_CHECKING:
+    from liehom.representations.core.representation import Representation
+
+
+def socle(rho: Representation) -> Subspace:
+    """The sum of all irreducible invariant subspaces, over the reals (or over the field: it is the same).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> socle(lh.Representation.from_matrices([[[1, 1], [0, 1]]])).rows()
+    [[1, 0]]
+    """
+    field, size = rho.field, rho.size
+    whole = field.identity(size)
+    if not rho.matrices or size == 0 or is_visibly_semisimple(rho):
+        return Subspace(field, whole, size)
+    inside = nilpotent_rows(rho).null_space()
+    matrices = restricted(rho.matrices, inside)
+    kept = field.identity(inside.nrows)
+    for x in _central(rho, matrices):
+        z = combination(matrices, x)
+        f = Polynomial(field, z.characteristic_coefficients())  # type: ignore[arg-type]
+        value = evaluated(f // f.gcd(f.derivative()), z)
+        if not value.is_zero():
+            kept = (
+                Subspace(field, kept, inside.nrows)
+                .intersection(Subspace(field, value.null_space(), inside.nrows))
+                .basis
+            )
+    return Subspace(field, kept @ inside, size)
+
+
+def is_completely_reducible(rho: Representation) -> bool:
+    """Whether every invariant subspace has an invariant complement.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> is_completely_reducible(lh.adjoint(lh.so(4))), is_completely_reducible(lh.adjoint(lh.euclidean(2)))
+    (True, False)
+    """
+    return socle(rho).dimension == rho.size
+
+
+def is_visibly_semisimple(rho: Representation) -> bool:
+    """Whether the Killing form is nondegenerate modulo a prime: then everything is completely reducible (Weyl).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> is_visibly_semisimple(lh.defining(lh.so(3))), is_visibly_semisimple(lh.defining(lh.gl(2)))
+    (True, False)
+    """
+    return int(rho.algebra.killing_form().modulo().rank()) == rho.algebra.dimension
+
+
+def nilpotent_rows(rho: Representation) -> Any:
+    """Rows spanning the row spaces of [L, rad L], L the matrices of a representation."""
+    field, size = rho.field, rho.size
+    flat = field.stack_rows([a.reshape(1, size * size) for a in rho.matrices], size * size)
+    series = rho.algebra.derived_series()
+    derived = series[1].basis if len(series) > 1 else field.identity(rho.algebra.dimension)
+    if series[0].dimension == 0 or derived.nrows == 0:
+        return field.zeros(0, size)
+    images = (derived @ flat).row_space().split_rows(size, size)
+    if not images:
+        return field.zeros(0, size)
+    gram = trace_form(images)
+    if int(gram.modulo().rank()) == len(images):
+        return field.zeros(0, size)
+    radical = gram.null_space()
+    return field.stack_rows([combination(images, radical.row(i)) for i in range(radical.nrows)], size).row_space()
+
+
+def _central(rho: Representation, matrices: list[Any]) -> list[Any]:
+    """Coefficients of elements of g whose images span the centre of the span of the (restricted) matrices."""
+    field, n = rho.field, rho.algebra.dimension
+    k = matrices[0].nrows
+    flat = field.stack_rows([a.reshape(1, k * k) for a in matrices], k * k)
+    identity = field.identity(n)
+    brackets = rho.algebra.table.contract(identity, identity, flat)
+    rows = field.stack_rows([b.reshape(1, n * k * k) for b in brackets], n * k * k).left_null_space()
+    return [rows.row(i) for i in range(rows.nrows)]

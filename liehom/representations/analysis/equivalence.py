@@ -1,0 +1,116 @@
+"""Equivalence of representations: an invertible intertwiner, or the proof that there is none.
+
+Over an infinite field it does not matter whether the intertwiner is real or over the field (Noether-Deuring).  For
+completely reducible V = sum m_i V_i and W = sum n_i V_i with End(V_i) of dimension d_i,
+dim End V + dim End W - 2 dim Hom(V, W) = sum d_i (m_i - n_i)^2 vanishes exactly if V and W are equivalent.  In general
+Hom(V, W) is a module over End V; if T generates it and is not invertible, no T u is.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING, Any
+
+from liehom.errors import FieldError, InputError, UndecidedError
+from liehom.representations.analysis.complete_reducibility import is_completely_reducible
+from liehom.representations.core.generating_matrices import generating_matrices
+from liehom.representations.invariants.intertwiners import commutant, intertwiners
+
+if TYPE_CHECKING:
+    from liehom.representations.core.representation import Representation
+
+ATTEMPTS = 30
+
+
+def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
+    """A basis of the maps T, shape (M, N), with T rho(x) = sigma(x) T for all x.
+
+    Raises
+    ------
+    InputError
+        If they are representations of two algebras.
+    FieldError
+        If they are over two fields, or over float64.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.so(3)
+    >>> len(intertwining_maps(lh.defining(g).tensor(lh.defining(g)), lh.adjoint(g)))
+    1
+    """
+    for given in (rho, sigma):
+        if not hasattr(given, "algebra") or not hasattr(given, "matrices"):
+            raise InputError(f"expected a Representation of the same algebra, such as lh.adjoint(g); got {given!r}")
+    if rho.algebra is not sigma.algebra and rho.field != sigma.field:
+        raise FieldError(f"representations over {rho.field.name} and {sigma.field.name}: bring both over one field")
+    if rho.algebra is not sigma.algebra and rho.algebra != sigma.algebra:
+        raise InputError(f"representations of two algebras, {rho.algebra!r} and {sigma.algebra!r}")
+    if not rho.field.exact:
+        raise FieldError("intertwiners are computed exactly: build the representations over QQ or a number field")
+    if not rho.matrices:
+        return [
+            rho.field.unit(sigma.size, i).T @ rho.field.unit(rho.size, j)
+            for i in range(sigma.size)
+            for j in range(rho.size)
+        ]
+    size = max(rho.size, sigma.size)
+    left, right = generating_matrices(rho, size), generating_matrices(sigma, size)
+    return intertwiners(left, right, (sigma.size, rho.size), rho.field)
+
+
+def equivalence(rho: Representation, sigma: Representation) -> Any:
+    """An invertible T with T rho(x) = sigma(x) T for all x, or None: the representations are not equivalent.
+
+    Raises
+    ------
+    InputError, FieldError
+        As `intertwining_maps`.
+    UndecidedError
+        For representations that are not completely reducible, where neither an invertible map nor a reason was found.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.sl(2)
+    >>> equivalence(lh.defining(g), lh.defining(g).dual()) is None
+    False
+    >>> equivalence(lh.defining(g), lh.trivial(g, 2)) is None
+    True
+    """
+    maps = intertwining_maps(rho, sigma)
+    if rho.size != sigma.size:
+        return None
+    if rho.size == 0:
+        return rho.field.identity(0)
+    own = len(_endomorphisms(rho))
+    if len(maps) != own or len(maps) != len(_endomorphisms(sigma)):
+        return None
+    rng = random.Random(own)
+    for attempt in range(ATTEMPTS):
+        bound = attempt // 4 + 1
+        total = rho.field.zeros(rho.size, rho.size)
+        for t in maps:
+            total = total + t.scale(rng.randint(-bound, bound))
+        # invertible modulo a prime proves it; the rank decides otherwise
+        if total.rank() == rho.size:
+            return total
+        if attempt >= ATTEMPTS // 3 and _generates(rho, total, own):
+            return None
+    if is_completely_reducible(rho) and is_completely_reducible(sigma):
+        raise UndecidedError("the dimensions say equivalent, and no invertible intertwiner was found: try again")
+    raise UndecidedError(
+        "the representations are not completely reducible, all dimensions of intertwiners agree, and no random "
+        "intertwiner is invertible: they are very likely not equivalent, which is not proved"
+    )
+
+
+def _endomorphisms(rho: Representation) -> list[Any]:
+    return commutant(generating_matrices(rho), rho.size, rho.field)
+
+
+def _generates(rho: Representation, t: Any, dimension: int) -> bool:
+    """Whether u -> t u is injective on End(rho): then t generates Hom(rho, sigma), of the same dimension."""
+    n = rho.size
+    rows = [(t @ u).reshape(1, n * n) for u in _endomorphisms(rho)]
+    return int(rho.field.stack_rows(rows, n * n).rank()) == dimension

@@ -1,0 +1,138 @@
+"""Invariant Hermitian forms of a representation with a complex or quaternionic structure.
+
+With J in the commutant and J^2 = -1 a Hermitian form is h(u, v) = s(u, v) + i s(u, J v), linear in u and antilinear in
+v for i u = J u: s is symmetric and J is s-skew, s(J u, v) = -s(u, J v).  With three anticommuting units the same
+gives h = s(u, v) + i s(u, I v) + j s(u, J v) + k s(u, K v), s symmetric for the Hermitian and skew for the
+skew-Hermitian forms.  Invariance of h is that of s.  Units need only satisfy J^2 = -d, d > 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, final
+
+from liehom.errors import InputError
+from liehom.representations.analysis.commutant_type import complex_structure, imaginary_units
+from liehom.representations.invariants.irreducibility import combination
+from liehom.scalars import Polynomial
+from liehom.scalars.roots.extension import adjoin_root
+
+if TYPE_CHECKING:
+    from liehom.representations.core.representation import Representation
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class HermitianForms:
+    """The invariant Hermitian forms of a representation with a structure, by their real parts.
+
+    Attributes
+    ----------
+    kind : {'complex', 'quaternionic'}
+    units : tuple of (Matrix, scalar)
+        One or three anticommuting matrices J of the commutant with J^2 = -d, and d > 0.
+    hermitian : tuple of Matrix
+        A basis of the real parts s (symmetric) of the Hermitian forms: a real vector space.
+    skew_hermitian : tuple of Matrix
+        A basis of the real parts (skew) of the skew-Hermitian forms. In the complex case these are the forms i h.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> forms = lh.defining(lh.su(2, 1)).hermitian_forms()
+    >>> forms.kind, len(forms.hermitian), sorted(forms.signature(forms.hermitian[0]))
+    ('complex', 1, [0, 1, 2])
+    """
+
+    kind: Literal["complex", "quaternionic"]
+    units: tuple[tuple[Any, Any], ...]
+    hermitian: tuple[Any, ...]
+    skew_hermitian: tuple[Any, ...]
+
+    def signature(self, form: Any) -> tuple[int, int, int]:
+        """The signature (positive, negative, zero) over C or H of a Hermitian form, given by its real part."""
+        per = 2 if self.kind == "complex" else 4
+        positive, negative, zero = form.signature()
+        return positive // per, negative // per, zero // per
+
+    def imaginary_part(self, form: Any, unit: int = 0) -> Any:
+        """The matrix of the part s(u, J v) / sqrt(d) at the unit i (0), j (1) or k (2).
+
+        It is over the field of the representation, or over the one that has sqrt(d).
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> forms = lh.defining(lh.su(2)).hermitian_forms()
+        >>> part = forms.imaginary_part(forms.hermitian[0])
+        >>> part == -part.T
+        True
+        """
+        structure, square = self.units[unit]
+        value = form @ structure
+        f = Polynomial(value.field, [-square, 0, 1]).factor()[0][0]
+        up, root = adjoin_root(f, f.degree - 1)
+        root = root if up.field.sign(root) > 0 else -root
+        return up.matrix(value).scale(1 / root)
+
+
+def hermitian_forms(rho: Representation, structure: Any = None) -> HermitianForms:
+    """The invariant Hermitian forms with respect to a complex structure, or to the commutant of an irreducible rho.
+
+    Parameters
+    ----------
+    rho : Representation
+    structure : (N, N) array_like, optional
+        J, commuting with the action, with J^2 = -d for a number d > 0. By default rho must be irreducible of type C
+        (its commutant has J) or H (its commutant has three units: quaternionic forms).
+
+    Raises
+    ------
+    InputError
+        If J does not commute or its square is no negative number; without J, if rho is reducible or of type R.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.defining("so*(6)").hermitian_forms().kind
+    'quaternionic'
+    >>> len(hermitian_forms(lh.defining("so*(6)")).skew_hermitian)
+    1
+    """
+    matrices, size, field = rho.matrices, rho.size, rho.field
+    if structure is not None:
+        units = [_checked(rho, structure)]
+    else:
+        units = imaginary_units(matrices, size, field)
+        if not units:
+            complex_structure(matrices, size, field)  # says what is missing
+    forms = rho.invariant_forms()
+    hermitian = _adapted(forms.symmetric, units)
+    skew = _adapted(forms.skew, units)
+    return HermitianForms("complex" if len(units) == 1 else "quaternionic", tuple(units), hermitian, skew)
+
+
+def _checked(rho: Representation, structure: Any) -> tuple[Any, Any]:
+    size, field = rho.size, rho.field
+    j = field.read(structure, (size, size))
+    for i, a in enumerate(rho.matrices):
+        if j @ a != a @ j:
+            raise InputError(f"the structure does not commute with the matrix of basis element {i}")
+    square = j @ j
+    value = square[0, 0] if size else -field.one
+    if square != field.identity(size).scale(value) or field.sign(value) >= 0:
+        raise InputError("the square of a complex structure is a negative number times the identity")
+    return j, -value
+
+
+def _adapted(forms: Sequence[Any], units: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
+    """The combinations s of the forms with s(J u, v) = -s(u, J v) for all units."""
+    if not forms:
+        return ()
+    field, size = forms[0].field, forms[0].nrows
+    rows = []
+    for s in forms:
+        rows.append(field.stack_columns([(j.T @ s + s @ j).reshape(1, size * size) for j, _ in units], 1))
+    weights = field.stack_rows(rows, size * size * len(units)).left_null_space()
+    return tuple(combination(forms, weights.row(i)) for i in range(weights.nrows))

@@ -1,0 +1,176 @@
+"""Invariant subspaces: the one that vectors generate, sub- and quotient representations, invariant complements.
+
+Subspaces are given by rows b, on which a matrix A acts as b A^T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from liehom.errors import DependentRowsError, NotCompletelyReducibleError, NotInvariantError, ShapeError, SingularError
+from liehom.representations.core.generating_matrices import generating_matrices
+from liehom.representations.invariants.intertwiners import intertwiners
+from liehom.scalars import Subspace
+from liehom.scalars.modular.modular import independent_rows
+from liehom.scalars.spaces.quotient import quotient
+
+if TYPE_CHECKING:
+    from liehom.representations.core.representation import Representation
+
+
+def generated_submodule(rho: Representation, rows: Any) -> Subspace:
+    """The least invariant subspace that contains the rows.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> generated_submodule(lh.adjoint(lh.so(4)), [[1, 0, 0, 0, 0, 1]]).dimension
+    3
+    """
+    span, before = _rows(rho, rows).row_space(), -1
+    turned = [a.T for a in generating_matrices(rho)]
+    while before < span.nrows < rho.size:
+        before = span.nrows
+        span = rho.field.stack_rows([span, *(span @ a for a in turned)], rho.size).row_space()
+    return Subspace(rho.field, span, rho.size)
+
+
+def subrepresentation(rho: Representation, rows: Any) -> Representation:
+    """The restriction to an invariant subspace, in the basis of the rows as given.
+
+    Raises
+    ------
+    DependentRowsError
+        If the rows are dependent.
+    NotInvariantError
+        If their span is not invariant; names the row and the basis element that moves it out.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> rho = lh.adjoint(lh.gl(2))
+    >>> subrepresentation(rho, [[1, 0, 0, 1]]).matrices[0].is_zero()
+    True
+    """
+    from liehom.representations.core.representation import Representation
+
+    basis = _independent(rho, rows)
+    made = restricted(rho.matrices, basis)
+    # A homomorphism followed by restriction to an invariant subspace.
+    return Representation(rho.algebra, made, size=basis.nrows, check=False)
+
+
+def quotient_representation(rho: Representation, rows: Any) -> Representation:
+    """The representation on the quotient by an invariant subspace, in the basis of ``liehom.scalars.spaces.quotient``.
+
+    Raises
+    ------
+    DependentRowsError, NotInvariantError
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> quotient_representation(lh.adjoint(lh.heisenberg(1)), [[0, 0, 1]]).size
+    2
+    """
+    from liehom.representations.core.representation import Representation
+
+    data = quotient(_independent(rho, rows))
+    for i, a in enumerate(rho.matrices):
+        moved = data.subspace @ a.T @ data.projection
+        if not moved.is_zero():
+            restricted(rho.matrices, _independent(rho, rows))  # names the row as given
+            raise _not_invariant(data.subspace, i, moved)
+    made = [(data.lift @ a.T @ data.projection).T for a in rho.matrices]
+    # The action descends to the quotient by an invariant subspace.
+    return Representation(rho.algebra, made, size=data.lift.nrows, check=False)
+
+
+def invariant_complement(rho: Representation, rows: Any) -> Subspace:
+    """An invariant complement of an invariant subspace: the kernel of a projection that commutes with the action.
+
+    Raises
+    ------
+    NotCompletelyReducibleError
+        If there is none.
+    DependentRowsError, NotInvariantError
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> invariant_complement(lh.adjoint(lh.gl(2)), [[1, 0, 0, 1]]).rows()
+    [[1, 0, 0, -1], [0, 1, 0, 0], [0, 0, 1, 0]]
+    """
+    field, size = rho.field, rho.size
+    basis = _independent(rho, rows)
+    k = basis.nrows
+    if not rho.matrices or k in (0, size):
+        return Subspace(field, basis, size).complement()
+    generating = generating_matrices(rho)
+    maps = intertwiners(generating, restricted(generating, basis), (k, size), field)
+    flat = field.stack_rows([(t @ basis.T).reshape(1, k * k) for t in maps], k * k)
+    try:
+        weights = flat.T.solve(field.identity(k).reshape(k * k, 1))
+    except SingularError:
+        message = "the subspace has no invariant complement: no projection onto it commutes with the action"
+        raise NotCompletelyReducibleError(message) from None
+    total = field.zeros(k, size)
+    for t, c in zip(maps, weights.entries(), strict=True):
+        total = total + t.scale(c)
+    return Subspace(field, total.null_space(), size)
+
+
+def restricted(matrices: Sequence[Any], basis: Any, *, check: bool = True) -> list[Any]:
+    """The matrices (k, k) by which maps act on the invariant span of independent rows (k, N), on columns.
+
+    With ``check=False`` the invariance is the caller's knowledge.
+
+    Raises
+    ------
+    NotInvariantError
+        If it is not invariant.
+    """
+    field, k = basis.field, basis.nrows
+    if k == 0:
+        return [field.zeros(0, 0) for _ in matrices]
+    places = basis.echelon()[1]
+    # basis @ reading = 1
+    reading = field.identity(basis.ncols).select(columns=places) @ basis.select(columns=places).inverse()
+    found = []
+    for i, a in enumerate(matrices):
+        moved = basis @ a.T
+        inside = moved @ reading
+        defect = moved - inside @ basis if check else None
+        if defect is not None and not defect.is_zero():
+            raise _not_invariant(basis, i, defect)
+        found.append(inside.T)
+    return found
+
+
+def _not_invariant(basis: Any, element: int, defect: Any) -> NotInvariantError:
+    row = next(j for j in range(defect.nrows) if not defect.select(rows=[j]).is_zero())
+    shown = ", ".join(basis.select(rows=[row]).to_strings()[0])
+    return NotInvariantError(
+        row, element, f"the subspace is not invariant: basis element {element} moves row {row}, ({shown}), out of it"
+    )
+
+
+def _rows(rho: Representation, rows: Any) -> Any:
+    matrix = rows.basis if isinstance(rows, Subspace) else rows
+    if not hasattr(matrix, "nrows"):
+        table = [list(row) for row in matrix]
+        matrix = rho.field.matrix(table, (len(table), rho.size if not table else len(table[0])))
+    matrix = rho.field.read(matrix)
+    if matrix.ncols != rho.size:
+        raise ShapeError(f"rows of length {matrix.ncols}, the representation acts on {rho.size} coordinates")
+    return matrix
+
+
+def _independent(rho: Representation, rows: Any) -> Any:
+    matrix = _rows(rho, rows)
+    kept = independent_rows(matrix)
+    if len(kept) < matrix.nrows:
+        dependent = [i for i in range(matrix.nrows) if i not in set(kept)]
+        raise DependentRowsError(len(kept), dependent, "rows of the subspace")
+    return matrix

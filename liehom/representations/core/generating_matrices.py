@@ -1,0 +1,56 @@
+"""A few matrices of a representation that generate all of them: what commutes with these commutes with all.
+
+Random elements of the algebra generate it if the least space that holds them and is closed under their brackets is
+everything, which a rank modulo a prime proves.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import TYPE_CHECKING, Any
+
+from liehom.scalars.modular.modular import invariant_hull_rank
+
+if TYPE_CHECKING:
+    from liehom.representations.core.representation import Representation
+
+SMALL = 20_000
+MOST = 4
+
+
+def generating_matrices(rho: Representation, size: int | None = None) -> tuple[Any, ...]:
+    """Matrices with the same commutant, invariant forms, vectors and subspaces as all rho(x).
+
+    Parameters
+    ----------
+    rho : Representation
+        Over an exact field.
+    size : int, optional
+        Decide as for a representation of this size: with one size, representations of one algebra are given by
+        matrices of the same elements.
+
+    Returns
+    -------
+    tuple of Matrix
+        All matrices of the basis where they are few and small, or where two to four random elements do not generate;
+        else those of such elements.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> len(generating_matrices(lh.defining(lh.so(3)))), len(generating_matrices(lh.sym_conjugation(9)))
+    (3, 2)
+    """
+    n = rho.algebra.dimension
+    if n <= MOST or n * (rho.size if size is None else size) ** 2 <= SMALL:
+        return rho.matrices
+    rng = random.Random(n)
+    rows: list[Any] = []
+    adjoints: list[Any] = []
+    for _ in range(MOST):
+        x = rho.field.matrix([[rng.choice((-1, 0, 0, 1)) for _ in range(n)]])
+        rows.append(x)
+        adjoints.append(rho.algebra.ad(x.row(0)).T)
+        if len(rows) > 1 and invariant_hull_rank(rho.field.stack_rows(rows, n), adjoints) == n:
+            return tuple(rho(x.row(0)) for x in rows)
+    return rho.matrices

@@ -1,0 +1,119 @@
+"""Pair: a Lie algebra with a subalgebra, the infinitesimal homogeneous space G/H."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, final
+
+from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.errors import InputError, ShapeError
+from liehom.scalars import Field
+
+if TYPE_CHECKING:
+    from liehom.representations.core.representation import Representation
+
+
+@final
+class Pair:
+    """A pair (g, h) of a Lie algebra and a subalgebra.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+    subalgebra : Subalgebra, or rows of coefficients (k, n)
+    name : str, optional
+        A name to print, such as 'so(4)/so(3)'.
+
+    Raises
+    ------
+    NotASubalgebraError, DependentRowsError, ShapeError
+    InputError
+        If the first argument is no Lie algebra, or the subalgebra belongs to another one.
+
+    Notes
+    -----
+    The tangent space of G/H at the base point is V = g/h; h acts on it by the isotropy representation
+    rho(z) (x + h) = [z, x] + h.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pair = lh.Pair(lh.so(3), [[0, 0, 1]])
+    >>> pair.dimension, [str(m) for m in pair.isotropy_matrices()]
+    (2, ['[0, -1]\\n[1, 0]'])
+    """
+
+    __slots__ = ("_isotropy", "algebra", "name", "subalgebra")
+
+    def __init__(self, algebra: LieAlgebra, subalgebra: Any, *, name: str | None = None) -> None:
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(f"expected a LieAlgebra and a subalgebra of it, got {algebra!r}; names go to liehom.pair")
+        self.algebra = algebra
+        self.subalgebra = subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)
+        if self.subalgebra.algebra is not algebra and self.subalgebra.algebra != algebra:
+            raise InputError("the subalgebra belongs to another Lie algebra")
+        self.name = name
+        self._isotropy: list[Any] | None = None
+
+    @property
+    def field(self) -> Field:
+        """The field of the structure constants."""
+        return self.algebra.field
+
+    @property
+    def dimension(self) -> int:
+        """The dimension of G/H: dim g - dim h."""
+        return self.subalgebra.codimension
+
+    def isotropy_matrices(self) -> list[Any]:
+        """The matrices (d, d) of rho on g/h, acting on columns, one per row of ``subalgebra.quotient().subspace``.
+
+        Coordinates on g/h are those of ``subalgebra.quotient()``.
+        """
+        if self._isotropy is None:
+            data = self.subalgebra.quotient()
+            blocks = self.algebra.table.contract(data.subspace, data.lift, data.projection)
+            self._isotropy = [block.T for block in blocks]
+        return self._isotropy
+
+    def isotropy_representation(self) -> Representation:
+        """The representation of h on g/h, h as a Lie algebra in the basis of ``subalgebra``.
+
+        Coordinates on g/h are those of ``subalgebra.quotient()``.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.Pair(lh.so(3), [[0, 0, 1]]).isotropy_representation()
+        <representation of <Lie algebra of dimension 1 over QQ> on QQ^2>
+        """
+        from liehom.representations.core.representation import Representation
+
+        data = self.subalgebra.quotient()
+        blocks = self.algebra.table.contract(self.subalgebra.basis, data.lift, data.projection)
+        # [z, [w, x]] - [w, [z, x]] = [[z, w], x] in g, and all three maps descend to g/h.
+        matrices = [block.T for block in blocks]
+        return Representation(self.subalgebra.as_algebra(), matrices, size=self.dimension, check=False)
+
+    def coordinates(self, x: Any) -> Any:
+        """The coordinates of x mod h in the complement of ``subalgebra.quotient()``, a row matrix (1, d)."""
+        return self.algebra.row(x) @ self.subalgebra.quotient().projection
+
+    def change_of_basis(self, rows: Any) -> Pair:
+        """The same pair in the basis of g given by rows (n, n)."""
+        n = self.algebra.dimension
+        matrix = self.field.read(rows, (n, n))
+        if matrix.shape != (n, n):
+            raise ShapeError(f"a change of basis has shape {(n, n)}, got {matrix.shape}")
+        algebra = self.algebra.change_of_basis(matrix)
+        # The same subspace in other coordinates: still closed.
+        return Pair(algebra, Subalgebra(algebra, self.subalgebra.basis @ matrix.inverse(), check=False))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Pair) and self.algebra == other.algebra and self.subalgebra == other.subalgebra
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        if self.name:
+            return f"pair({self.name!r})"
+        return f"<pair of dimensions {self.algebra.dimension}/{self.subalgebra.dimension} over {self.field.name}>"

@@ -1,0 +1,108 @@
+"""The proof that matrices respect a bracket: rho([x, y]) = rho(x) rho(y) - rho(y) rho(x), exactly and quickly.
+
+Sparse rational matrices: every commutator, by dictionaries.  Dense ones: the elements x that satisfy the identity
+for all y form a subalgebra (of a Lie algebra, by the Jacobi identity on both sides), so a few x that generate
+are enough; that they generate is shown by a rank modulo a prime.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import numpy as np
+
+from liehom.algebra import LieAlgebra
+from liehom.algebra.closure.sparse_commutators import first_difference
+from liehom.scalars import ExactMatrix
+from liehom.scalars.modular.modular import invariant_hull_rank
+
+RANDOM_ELEMENTS = 4
+
+
+def failing_pair(algebra: LieAlgebra, matrices: tuple[Any, ...]) -> tuple[int, int] | None:
+    """The first (i, j) with rho([e_i, e_j]) different from the commutator of the matrices, or None.
+
+    Over floats entries may differ by the field's rtol times the square of the largest entry (or times 1).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.LieAlgebra({(0, 1): {1: 1}}, dimension=2)
+    >>> matrices = [lh.QQ.matrix([[1, 0], [0, 0]]), lh.QQ.matrix([[0, 1], [0, 0]])]
+    >>> failing_pair(g, tuple(matrices)), failing_pair(g, (matrices[0], lh.QQ.identity(2)))
+    (None, (0, 1))
+    """
+    if len(matrices) < 2 or matrices[0].nrows == 0:
+        return None
+    if not algebra.field.exact:
+        return _first_failure(algebra, matrices, _Stack(algebra, matrices))
+    if _is_sparse(matrices):
+        return first_difference(list(matrices), algebra.table)
+    stack = _Stack(algebra, matrices)
+    return None if _proved_by_generators(algebra, stack) else _first_failure(algebra, matrices, stack)
+
+
+def _is_sparse(matrices: tuple[ExactMatrix, ...]) -> bool:
+    if matrices[0].field.degree > 1:
+        return False
+    n = matrices[0].nrows
+    filled = sum(1 for a in matrices for x in a.parts[0].entries() if x)
+    return filled <= len(matrices) * max(2 * n, n * n // 6)
+
+
+class _Stack:
+    """The matrices side by side, one below the other, and flattened."""
+
+    def __init__(self, algebra: LieAlgebra, matrices: tuple[Any, ...]) -> None:
+        field, self.size = algebra.field, matrices[0].nrows
+        self.algebra, self.count = algebra, len(matrices)
+        self.flat = field.stack_rows([a.reshape(1, self.size**2) for a in matrices], self.size**2)
+        self.wide = field.stack_columns(matrices, self.size)
+        self.tall = field.stack_rows(matrices, self.size)
+        n, d = self.size, self.count
+        self._order = [a * d + j for j in range(d) for a in range(n)]
+        entries = self.flat.to_numpy() if not field.exact else np.zeros(0)
+        self.bound = getattr(field, "rtol", 0.0) * max(1.0, float(np.abs(entries).max(initial=0.0))) ** 2
+
+    def defects(self, x: Any) -> Any:
+        """Rows rho([x, e_j]) - [rho(x), rho(e_j)], flattened, for all j; and the rows [x, e_j]."""
+        n, d = self.size, self.count
+        image = (x @ self.flat).reshape(n, n)
+        left = (image @ self.wide).reshape(n * d, n).select(rows=self._order)
+        commutators = (left - self.tall @ image).reshape(d, n * n)
+        brackets = self.algebra.ad(x).T
+        return brackets @ self.flat - commutators, brackets
+
+    def vanishes(self, rows: Any) -> bool:
+        """Whether defects are zero (over floats: within the bound)."""
+        if self.algebra.field.exact:
+            return bool(rows.is_zero())
+        return float(np.abs(rows.array).max(initial=0.0)) <= self.bound
+
+
+def _proved_by_generators(algebra: LieAlgebra, stack: _Stack) -> bool:
+    """Whether the identity holds for all y with random x that are shown to generate."""
+    n = algebra.dimension
+    rng = random.Random(n)
+    elements: list[Any] = []
+    adjoints: list[Any] = []
+    for _ in range(RANDOM_ELEMENTS):
+        x = algebra.field.matrix([[rng.randint(-2, 2) for _ in range(n)]])
+        defects, brackets = stack.defects(x)
+        if not stack.vanishes(defects):
+            return False
+        elements.append(x)
+        adjoints.append(brackets)
+        if invariant_hull_rank(algebra.field.stack_rows(elements, n), adjoints) == n:
+            return True
+    return False
+
+
+def _first_failure(algebra: LieAlgebra, matrices: tuple[Any, ...], stack: _Stack) -> tuple[int, int] | None:
+    for i in range(len(matrices)):
+        defects = stack.defects(algebra.field.unit(len(matrices), i))[0]
+        if not stack.vanishes(defects):
+            bad = next(j for j in range(len(matrices)) if not stack.vanishes(defects.select(rows=[j])))
+            return (i, bad) if i < bad else (bad, i)
+    return None

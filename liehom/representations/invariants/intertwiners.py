@@ -1,0 +1,320 @@
+"""Intertwiners: all T with T A_i = B_i T; hence commutant, invariant forms, invariant vectors, irreducibility.
+
+A map that intertwines is fixed by its values on vectors that generate the space under the A_i.  Spinning a
+random vector gives a basis v_j = (word in A) x, and T v_j = (same word in B) T x: the unknown is T x alone,
+of dimension e instead of d e.  Candidates are verified exactly against every A_i, so nothing rests on the
+random choices.  Large spaces over QQ are found modulo a prime, where they are at least as large, and lifted.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, final
+
+from liehom.errors import InternalError, ShapeError
+from liehom.scalars import Field, Subspace
+from liehom.scalars.modular.modular import pivot_columns, primitive_residues
+from liehom.scalars.modular.modular_maps import intertwining_residues
+from liehom.scalars.modular.modular_span import rational_lifts
+
+BATCH = 8
+LIFTED_SIZE = 150
+MIXED = 3
+ROW_ENTRIES = 8
+ROUNDS = 4
+
+
+def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> list[Any]:
+    """A basis of the maps T, shape (e, d), with T A_i = B_i T for all i.
+
+    Parameters
+    ----------
+    source, target : sequences of Matrix
+        The A_i, (d, d), and the B_i, (e, e), over one exact field; equally many.
+    shape : (e, d)
+    over : Field
+
+    Returns
+    -------
+    list of Matrix
+        Proved: every T intertwines all A_i, and no other does (the conditions used are necessary).
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> J = QQ.matrix([[0, -1], [1, 0]])
+    >>> len(intertwiners([J], [J], (2, 2), QQ))
+    2
+    """
+    e, d = shape
+    if len(source) != len(target):
+        raise ShapeError(f"{len(source)} and {len(target)} matrices to intertwine")
+    if e == 0 or d == 0:
+        return []
+    if all(a.is_zero() for a in (*source, *target)):
+        return [_elementary(over, (e, d), i, j) for i in range(e) for j in range(d)]
+    if over.degree == 1 and e * d >= LIFTED_SIZE:
+        lifted = _lifted(source, target, shape, over)
+        if lifted is not None:
+            return lifted
+    spun = _spin(source, target, shape, over)
+    conditions: list[Any] = []
+    rng = random.Random(7)
+    for _ in range(3):
+        conditions.append(spun.condition(*_mixed(source, target, rng), rng))
+    for _ in range(10 * len(source) + 100):
+        unknown = over.stack_rows(conditions, e * spun.seeds).null_space()
+        candidates = [spun.map(unknown.select(rows=[i])) for i in range(unknown.nrows)]
+        failing = _first_failing(candidates, source, target)
+        if failing is None:
+            return candidates
+        conditions = [over.stack_rows(conditions, e * spun.seeds).row_space()]
+        # Each round uses a generator that some candidate violates, at several vectors.
+        conditions += [spun.condition(source[failing], target[failing], rng) for _ in range(2)]
+    raise InternalError("intertwiners: the conditions did not settle")
+
+
+def _lifted(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> list[Any] | None:
+    """The intertwiners from their residues; None where there is no small kernel, or the numbers are too large.
+
+    Their dimension modulo a prime is an upper bound, also where only some combinations of the A_i are used.
+    """
+    rng = random.Random(11)
+    pairs = list(zip(source, target, strict=True))
+    batch = _enough(source, shape[1])
+    used = pairs if len(pairs) <= MIXED else [_mixed(source, target, rng, batch) for _ in range(MIXED)]
+    for _ in range(ROUNDS):
+        left, right = [a for a, _ in used], [b for _, b in used]
+        first = intertwining_residues(left, right)
+        if first is None:
+            return None
+        if first.nrows() == 0:
+            return []
+        failing: int | None = None
+        for rows in rational_lifts(partial(_residues_again, left, right, first), over):
+            candidates = rows.split_rows(*shape)
+            failing = _first_failing(candidates, source, target)
+            if failing is None:
+                return candidates
+            if _first_failing(candidates, left, right) is None:
+                break  # the combinations do not generate: one that is violated is used next
+        else:
+            return None
+        if failing is not None:
+            used.append(pairs[failing])
+    return None
+
+
+def _residues_again(left: Sequence[Any], right: Sequence[Any], first: Any, attempt: int) -> Any:
+    return intertwining_residues(left, right, attempt) if attempt else first
+
+
+def _first_failing(candidates: Sequence[Any], source: Sequence[Any], target: Sequence[Any]) -> int | None:
+    for i, (a, b) in enumerate(zip(source, target, strict=True)):
+        for t in candidates:
+            if not (t @ a - b @ t).is_zero():
+                return i
+    return None
+
+
+def _enough(matrices: Sequence[Any], d: int) -> int:
+    """How many matrices of such few entries a combination needs for several entries in each of d rows."""
+    entries = max(1, *(sum(map(bool, a.entries())) for a in (matrices[0], matrices[-1])))
+    return max(BATCH, -(-ROW_ENTRIES * d // entries))
+
+
+def _mixed(source: Sequence[Any], target: Sequence[Any], rng: random.Random, batch: int = BATCH) -> tuple[Any, Any]:
+    """A random small combination of a few A_i and the same one of the B_i."""
+    if not source:
+        raise InternalError("no matrices to combine")
+    chosen = rng.sample(range(len(source)), min(batch, len(source)))
+    weights = [rng.choice((-2, -1, 1, 2)) for _ in chosen]
+    a, b = source[chosen[0]].scale(weights[0]), target[chosen[0]].scale(weights[0])
+    for i, w in zip(chosen[1:], weights[1:], strict=True):
+        a, b = a + source[i].scale(w), b + target[i].scale(w)
+    return a, b
+
+
+@final
+@dataclass(slots=True)
+class _Spun:
+    """A basis v_j of the source made by words in the A_i, with T v_j = images[j] t for the unknown t."""
+
+    over: Field
+    shape: tuple[int, int]
+    seeds: int
+    vectors: list[Any]
+    images: list[Any]
+    inverse: Any = field(default=None)
+
+    def value(self, w: Any) -> Any:
+        """The matrix (e, e * seeds) with T w = value t."""
+        coordinates = (self.inverse @ w).T.row(0)
+        total = self.over.zeros(self.shape[0], self.shape[0] * self.seeds)
+        for c, image in zip(coordinates, self.images, strict=True):
+            if c != 0:
+                total = total + image.scale(c)
+        return total
+
+    def condition(self, a: Any, b: Any, rng: random.Random) -> Any:
+        """The rows on t that T a y = b T y imposes for a random y."""
+        d = self.shape[1]
+        weights = [rng.randint(-2, 2) for _ in range(d)]
+        y = self.over.zeros(d, 1)
+        image = self.over.zeros(self.shape[0], self.shape[0] * self.seeds)
+        for c, v, m in zip(weights, self.vectors, self.images, strict=True):
+            if c:
+                y, image = y + v.scale(c), image + m.scale(c)
+        return self.value(a @ y) - b @ image
+
+    def map(self, t: Any) -> Any:
+        """The map T with the values t (1, e * seeds)."""
+        e = self.shape[0]
+        columns = [(m @ t.T).T for m in self.images]
+        return self.over.stack_rows(columns, e).T @ self.inverse
+
+
+def _spin(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> _Spun:
+    e, d = shape
+    rng = random.Random(d)
+    vectors: list[Any] = []
+    words: list[tuple[int, int]] = []  # (generator, parent), or (-1, seed number)
+    seeds = 0
+    while len(vectors) < d:
+        start = over.matrix([[rng.randint(-3, 3) for _ in range(d)]]).T if seeds < 3 else None
+        if start is None:  # a stubborn module: take unit vectors in turn
+            start = over.unit(d, seeds % d).T
+        if not _extends(vectors, start, d):
+            seeds_left = seeds >= 3
+            start = _any_outside(over, vectors, d) if seeds_left else start
+            if not _extends(vectors, start, d):
+                continue
+        frontier = [len(vectors)]
+        vectors.append(start)
+        words.append((-1, seeds))
+        seeds += 1
+        while frontier and len(vectors) < d:
+            frontier = _grow(over, source, vectors, words, frontier, d, rng)
+    return _Spun(over, shape, seeds, vectors, _images(over, target, words, seeds, e), _inverse(over, vectors, d))
+
+
+def _inverse(over: Field, vectors: list[Any], d: int) -> Any:
+    return over.stack_rows([v.T for v in vectors], d).T.inverse()
+
+
+def _residues(vectors: Sequence[Any], d: int) -> Any:
+    """The columns as rows modulo a prime; a common factor or denominator of one of them does no harm."""
+    return primitive_residues([v.T for v in vectors], d)
+
+
+def _extends(vectors: list[Any], candidate: Any, d: int) -> bool:
+    return int(_residues([*vectors, candidate], d).rank()) == len(vectors) + 1
+
+
+def _any_outside(over: Field, vectors: list[Any], d: int) -> Any:
+    pivots = set(pivot_columns(_residues(vectors, d)))
+    return over.unit(d, next(j for j in range(d) if j not in pivots)).T
+
+
+def _grow(
+    over: Field, source: Any, vectors: list[Any], words: Any, frontier: list[int], d: int, rng: random.Random
+) -> list[int]:
+    """Append images of the frontier that extend the span; return their places."""
+    pairs = [(g, p) for p in frontier for g in range(len(source))]
+    rng.shuffle(pairs)
+    added: list[int] = []
+    for start in range(0, len(pairs), 2 * d):
+        batch = pairs[start : start + 2 * d]
+        images = [source[g] @ vectors[p] for g, p in batch]
+        old = len(vectors)
+        for x in pivot_columns(_residues([*vectors, *images], d).transpose()):
+            if x >= old:
+                added.append(len(vectors))
+                vectors.append(images[x - old])
+                words.append(batch[x - old])
+        if len(vectors) == d:
+            break
+    return added
+
+
+def _images(over: Field, target: Any, words: list[tuple[int, int]], seeds: int, e: int) -> list[Any]:
+    images: list[Any] = []
+    for generator, parent in words:
+        if generator < 0:
+            blocks = [over.identity(e) if s == parent else over.zeros(e, e) for s in range(seeds)]
+            images.append(over.stack_columns(blocks, e))
+        else:
+            images.append(target[generator] @ images[parent])
+    return images
+
+
+def commutant(matrices: Sequence[Any], size: int, over: Field) -> list[Any]:
+    """A basis of the maps that commute with all matrices (the identity among their combinations).
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> len(commutant([QQ.matrix([[0, -1], [1, 0]])], 2, QQ))
+    2
+    """
+    return intertwiners(matrices, matrices, (size, size), over)
+
+
+def _elementary(over: Field, shape: tuple[int, int], i: int, j: int) -> Any:
+    return over.unit(shape[0], i).T @ over.unit(shape[1], j)
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class InvariantForms:
+    """The invariant bilinear forms of a set of matrices, P with A^T P + P A = 0.
+
+    Attributes
+    ----------
+    symmetric, skew : tuple of Matrix
+        Bases of the symmetric and of the skew ones.
+    """
+
+    symmetric: tuple[Any, ...]
+    skew: tuple[Any, ...]
+
+
+def invariant_forms(matrices: Sequence[Any], size: int, over: Field) -> InvariantForms:
+    """The invariant symmetric and skew forms of matrices A (A^T P + P A = 0 for all A).
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> forms = invariant_forms([QQ.matrix([[0, -1], [1, 0]])], 2, QQ)
+    >>> len(forms.symmetric), len(forms.skew)
+    (1, 1)
+    """
+    found = intertwiners(matrices, [-a.T for a in matrices], (size, size), over)
+    return InvariantForms(
+        _independent(over, [t + t.T for t in found], size), _independent(over, [t - t.T for t in found], size)
+    )
+
+
+def _independent(over: Field, matrices: list[Any], size: int) -> tuple[Any, ...]:
+    if not matrices:
+        return ()
+    flat = over.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
+    space = Subspace(over, flat, size * size).basis
+    return tuple(space.select(rows=[i]).reshape(size, size) for i in range(space.nrows))
+
+
+def invariant_vectors(matrices: Sequence[Any], size: int, over: Field) -> Subspace:
+    """The vectors that all matrices kill.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> invariant_vectors([QQ.matrix([[0, 1], [0, 0]])], 2, QQ).rows()
+    [[1, 0]]
+    """
+    rows = over.stack_rows(list(matrices), size) if matrices else over.zeros(0, size)
+    kernel = rows.null_space() if matrices else over.identity(size)
+    return Subspace(over, kernel, size)

@@ -1,0 +1,114 @@
+"""MatrixAlgebra: an associative algebra of matrices with one, by a basis; its centre, and generators of the centre.
+
+Coordinates in the span of k matrices are read from k entries that determine them.  Over QQ the basis is that of the
+integral matrices of the span, LLL-reduced: its first members are small.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import Any, final
+
+from liehom.errors import InternalError
+from liehom.scalars import Field, Polynomial
+from liehom.scalars.spaces.integral_basis import integral_basis
+
+PAIRS = 60
+REDUCED = 40
+
+
+@final
+class MatrixAlgebra:
+    """The span of matrices that is closed under products, with a reduced basis.
+
+    Parameters
+    ----------
+    field : Field
+        Exact.
+    size : int
+        N for matrices (N, N).
+    matrices : sequence of Matrix
+        They span the algebra; they may be dependent. Closure under products is the caller's knowledge.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> units = [QQ.unit(2, i).T @ QQ.unit(2, j) for i in range(2) for j in range(2)]
+    >>> algebra = MatrixAlgebra(QQ, 2, units)
+    >>> algebra.dimension, algebra.center().dimension
+    (4, 1)
+    """
+
+    __slots__ = ("_flat", "_inverse", "_places", "basis", "field", "size")
+
+    def __init__(self, field: Field, size: int, matrices: Sequence[Any]) -> None:
+        self.field, self.size = field, size
+        flat = field.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
+        reducible = field.degree == 1 and len(matrices) <= REDUCED
+        self._flat = integral_basis(flat) if reducible else flat.row_space()
+        self.basis = tuple(self._flat.split_rows(size, size))
+        self._places = self._flat.echelon()[1]
+        self._inverse = self._flat.select(columns=self._places).inverse()
+
+    @property
+    def dimension(self) -> int:
+        """The dimension."""
+        return len(self.basis)
+
+    def coordinates(self, matrices: Sequence[Any]) -> Any:
+        """The coefficients (k, dimension) of k elements in the basis."""
+        n = self.size
+        flat = self.field.stack_rows([m.reshape(1, n * n) for m in matrices], n * n)
+        return flat.select(columns=self._places) @ self._inverse
+
+    def element(self, coefficients: Sequence[Any]) -> Any:
+        """The combination of the basis with these coefficients."""
+        row = self.field.matrix([coefficients], (1, self.dimension))
+        return (row @ self._flat).reshape(self.size, self.size)
+
+    def multiplication(self, element: Any) -> Any:
+        """The matrix (k, k) of x -> element x in the basis, acting on columns."""
+        return self.coordinates([element @ t for t in self.basis]).T
+
+    def center(self) -> MatrixAlgebra:
+        """The centre: what commutes with a few random elements, verified against all."""
+        k = self.dimension
+        rng = random.Random(k)
+        tests = [self.element([rng.randint(-3, 3) for _ in range(k)]) for _ in range(2)]
+        for _ in range(k + 2):
+            blocks = [self.coordinates([t @ s - s @ t for t in self.basis]) for s in tests]
+            rows = self.field.stack_columns(blocks, k).left_null_space()
+            found = (rows @ self._flat).split_rows(self.size, self.size)
+            failing = next((t for t in self.basis for z in found if not (t @ z - z @ t).is_zero()), None)
+            if failing is None:
+                return MatrixAlgebra(self.field, self.size, found)
+            tests.append(failing)
+        raise InternalError("the centre of a matrix algebra was not found")
+
+    def elements(self) -> Iterator[Any]:
+        """Elements to try: the basis, sums and differences of two, then random combinations (without end)."""
+        yield from self.basis
+        for s, t in list(combinations(self.basis, 2))[:PAIRS]:
+            yield s + t
+            yield s - t
+        rng, bound = random.Random(self.dimension), 1
+        while True:
+            yield self.element([rng.randint(-bound, bound) for _ in self.basis])
+            bound += 1
+
+    def minimal_polynomial_power(self, element: Any) -> Polynomial:
+        """A polynomial with the irreducible factors of the minimal polynomial of an element (a characteristic one)."""
+        matrix = self.multiplication(element) if self.dimension < self.size else element
+        return Polynomial(self.field, matrix.characteristic_coefficients())  # type: ignore[arg-type]
+
+    def generator(self) -> tuple[Any, Polynomial]:
+        """A generator of a commutative algebra without nilpotent elements, and its (squarefree) minimal polynomial."""
+        for tried, element in enumerate(self.elements()):
+            polynomial = Polynomial(self.field, self.multiplication(element).characteristic_coefficients())  # type: ignore[arg-type]
+            if polynomial.gcd(polynomial.derivative()).degree == 0:
+                return element, polynomial
+            if tried > 2 * PAIRS + self.dimension + 40:
+                break
+        raise InternalError("a commutative algebra without nilpotents has no generator")

@@ -1,0 +1,43 @@
+"""The isotropy subalgebra of a point under matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.errors import InputError, ShapeError
+
+
+def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Any:
+    """The matrix (dim g, N) with rows rho(e_i) point.
+
+    Raises
+    ------
+    ShapeError
+        If the point does not have N coordinates.
+    InputError
+        If a coordinate has free symbols.
+    FieldError
+        If a coordinate is not in the field.
+    """
+    values = list(point)
+    if len(values) != size:
+        raise ShapeError(f"the point has {len(values)} coordinates, the representation acts on {size}")
+    symbols = sorted({str(s) for v in values for s in getattr(v, "free_symbols", ())})
+    if symbols:
+        raise InputError(f"the point has the free symbols {', '.join(symbols)}; use liehom.symbolic_isotropy")
+    column = algebra.field.matrix([values], (1, size)).T
+    rows = [(a @ column).T for a in matrices]
+    return algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)
+
+
+def stabilizer(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Subalgebra:
+    """The subalgebra {x : rho(x) point = 0}."""
+    rows = moved_point(algebra, matrices, size, point).left_null_space()
+    return Subalgebra(algebra, rows, check=False)  # closed: rho([x, y]) p = rho(x) rho(y) p - rho(y) rho(x) p = 0
+
+
+def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> int:
+    """The rank of x -> rho(x) point."""
+    return int(moved_point(algebra, matrices, size, point).rank())

@@ -1,0 +1,24 @@
+"""Numbers: the rationals QQ, real number fields QQ(a) and float64, each with its matrices.
+
+`Field` and `Matrix` are the interfaces; `rational`, `number_field` and `floating` implement them, `exact_matrix`
+holds the linear algebra on python-flint. `grammar` and `number_fields` read what a user writes, `polynomial` and
+`balls` count and enclose real roots. Everything above uses this wing; the conventions are in docs/notation.md.
+"""
+
+from liehom.scalars.fields.algebraic_number import AlgebraicNumber as AlgebraicNumber
+from liehom.scalars.fields.exact_field import ExactField as ExactField
+from liehom.scalars.fields.exact_matrix import ExactMatrix as ExactMatrix
+from liehom.scalars.fields.field import Field as Field
+from liehom.scalars.fields.field import Matrix as Matrix
+from liehom.scalars.fields.field import Scalar as Scalar
+from liehom.scalars.fields.floating import RR as RR
+from liehom.scalars.fields.floating import FloatField as FloatField
+from liehom.scalars.fields.floating import FloatMatrix as FloatMatrix
+from liehom.scalars.fields.floating import RankDecision as RankDecision
+from liehom.scalars.fields.number_field import NumberField as NumberField
+from liehom.scalars.fields.number_fields import common_field as common_field
+from liehom.scalars.fields.number_fields import exact_value as exact_value
+from liehom.scalars.fields.number_fields import number_field as number_field
+from liehom.scalars.fields.polynomial import Polynomial as Polynomial
+from liehom.scalars.fields.rational import QQ as QQ
+from liehom.scalars.fields.rational import RationalField as RationalField

@@ -1,0 +1,101 @@
+"""Ball arithmetic (flint): real roots as balls of any precision, and signs that are certain.
+
+A ball [m +- r] contains the number it stands for, so a comparison of disjoint balls is a proof; where balls
+overlap the precision is doubled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import flint
+
+from liehom.errors import FieldError
+
+
+@contextmanager
+def working_precision(bits: int) -> Iterator[None]:
+    """Set flint's working precision for the block, and restore it.
+
+    Examples
+    --------
+    >>> with working_precision(200):
+    ...     flint.ctx.prec
+    200
+    """
+    before = flint.ctx.prec
+    flint.ctx.prec = bits
+    try:
+        yield
+    finally:
+        flint.ctx.prec = before
+
+
+def real_root_balls(polynomial: Any, precision: int) -> list[Any]:
+    """Disjoint balls around the real roots of a squarefree integer polynomial, in increasing order.
+
+    Parameters
+    ----------
+    polynomial : flint.fmpz_poly
+        Squarefree.
+    precision : int
+        Working precision in bits.
+
+    Returns
+    -------
+    list of flint.arb
+
+    Examples
+    --------
+    >>> [float(r) for r in real_root_balls(flint.fmpz_poly([-4, 0, 1]), 64)]
+    [-2.0, 2.0]
+    """
+    with working_precision(precision):
+        roots = [r.real for r, _ in polynomial.complex_roots() if r.imag.is_zero()]
+        return sorted(roots, key=lambda ball: ball.mid())
+
+
+def root_ball(polynomial: Any, index: int, precision: int) -> Any:
+    """A ball around the `index`-th real root (from the left) of a squarefree integer polynomial."""
+    return real_root_balls(polynomial, precision)[index]
+
+
+def isolate_real_root(polynomial: Any, interval: tuple[Any, Any]) -> tuple[tuple[Any, Any], int]:
+    """Check that an interval holds exactly one root; return it with the root's index from the left.
+
+    Parameters
+    ----------
+    polynomial : flint.fmpz_poly
+        Irreducible of degree at least 2 (so no end is a root).
+    interval : pair of flint.fmpq
+
+    Raises
+    ------
+    FieldError
+        If the interval is empty or does not hold exactly one root.
+
+    Examples
+    --------
+    >>> isolate_real_root(flint.fmpz_poly([-2, 0, 1]), (flint.fmpq(1), flint.fmpq(2)))[1]
+    1
+    """
+    low, high = interval
+    if not low < high:
+        raise FieldError(f"the interval ({low}, {high}) of a number field is empty")
+    precision = 64
+    while True:
+        balls = real_root_balls(polynomial, precision)
+        with working_precision(precision):
+            left, right = flint.arb(low), flint.arb(high)
+            sides = [(b > left, b < left, b < right, b > right) for b in balls]
+        if all((s[0] or s[1]) and (s[2] or s[3]) for s in sides):
+            inside = [i for i, s in enumerate(sides) if s[0] and s[2]]
+            if len(inside) == 1:
+                return interval, inside[0]
+            raise FieldError(
+                f"the interval ({low}, {high}) holds {len(inside)} real roots of {polynomial}; "
+                f"it must hold exactly one ({len(balls)} real roots in all)"
+            )
+        precision *= 2

@@ -1,0 +1,277 @@
+"""Field: which numbers, and the linear algebra over them, as abstract interfaces.
+
+A `Field` converts, parses and prints numbers and makes matrices over itself; a `Matrix` is immutable and
+knows its field.  The algebra of liehom is written once over these two.  Exact fields are in `exact.py`
+(QQ and real number fields), numerical ones in `floating.py`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.errors import ShapeError
+
+Scalar = Any
+"""An element of a field: ``flint.fmpq`` over QQ, `AlgebraicNumber` over QQ(a), ``float`` over float64."""
+
+
+def rows_of(rows: Any) -> list[list[Any]]:
+    """Rows of numbers as lists: from nested sequences, from arrays and matrices of numpy, scipy and sympy.
+
+    Raises
+    ------
+    ShapeError
+        If this is no sequence of rows; names the row.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rows_of(np.eye(2, dtype=int)), rows_of([(1, "1/2")])
+    ([[1, 0], [0, 1]], [[1, '1/2']])
+    """
+    for convert in ("toarray", "to_Matrix", "tolist"):  # scipy's sparse arrays, sympy's DomainMatrix, then all arrays
+        rows = getattr(rows, convert)() if hasattr(rows, convert) else rows
+    if isinstance(rows, str) or not hasattr(rows, "__iter__"):
+        raise ShapeError(f"a matrix is given by its rows, got {rows!r}")
+    table = []
+    for i, row in enumerate(rows):
+        if isinstance(row, str) or not (hasattr(row, "__iter__") or hasattr(row, "__len__")):  # sympy's have a length
+            raise ShapeError(f"row {i} is {row!r}, expected a sequence of numbers")
+        table.append(list(row))
+    return table
+
+
+class Matrix(ABC):
+    """An immutable matrix over a field; the interface that both exact and numerical matrices implement.
+
+    Vectors are rows: a subspace is given by the rows of a matrix, and ``null_space`` returns rows.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> A = QQ.matrix([[1, 2], [2, 4]])
+    >>> A.rank(), A.null_space().to_strings()
+    (1, [['-2', '1']])
+    """
+
+    __slots__ = ()
+
+    # -- shape and entries -------------------------------------------------------------------------------
+    @property
+    @abstractmethod
+    def field(self) -> Field:
+        """The field of the entries."""
+
+    @property
+    @abstractmethod
+    def shape(self) -> tuple[int, int]:
+        """(number of rows, number of columns)."""
+
+    @property
+    def nrows(self) -> int:
+        """Number of rows."""
+        return self.shape[0]
+
+    @property
+    def ncols(self) -> int:
+        """Number of columns."""
+        return self.shape[1]
+
+    @abstractmethod
+    def __getitem__(self, index: tuple[int, int]) -> Scalar: ...
+
+    @abstractmethod
+    def to_rows(self) -> list[list[Scalar]]:
+        """The entries as a list of rows of field elements."""
+
+    def to_strings(self) -> list[list[str]]:
+        """The entries in the grammar of values, as JSON files carry them."""
+        written = self.field.format
+        zero = written(self.field.zero)
+        return [[written(x) if x != 0 else zero for x in row] for row in self.to_rows()]
+
+    def row(self, i: int) -> list[Scalar]:
+        """Row i as a list of field elements."""
+        return [self[i, j] for j in range(self.ncols)]
+
+    @abstractmethod
+    def to_numpy(self) -> npt.NDArray[np.float64]:
+        """The entries rounded to float64."""
+
+    @abstractmethod
+    def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> Matrix:
+        """The submatrix of the given rows and columns (all where None)."""
+
+    # -- arithmetic --------------------------------------------------------------------------------------
+    @property
+    @abstractmethod
+    def T(self) -> Matrix:
+        """The transpose."""
+
+    @abstractmethod
+    def __add__(self, other: Any) -> Any: ...
+
+    @abstractmethod
+    def __sub__(self, other: Any) -> Any: ...
+
+    @abstractmethod
+    def __neg__(self) -> Any: ...
+
+    @abstractmethod
+    def __matmul__(self, other: Any) -> Any: ...
+
+    @abstractmethod
+    def scale(self, factor: Any) -> Any:
+        """The matrix times a number of the field."""
+
+    @abstractmethod
+    def is_zero(self) -> bool:
+        """Whether every entry is zero (over floats: within the field's tolerance of the largest possible)."""
+
+    @abstractmethod
+    def trace(self) -> Scalar:
+        """The sum of the diagonal."""
+
+    @abstractmethod
+    def reshape(self, nrows: int, ncols: int) -> Any:
+        """The same entries row after row in another shape."""
+
+    @abstractmethod
+    def split_rows(self, nrows: int, ncols: int) -> list[Any]:
+        """Each row as a matrix of shape (nrows, ncols)."""
+
+    @abstractmethod
+    def entries(self) -> list[Scalar]:
+        """The entries row after row."""
+
+    # -- linear algebra ----------------------------------------------------------------------------------
+    @abstractmethod
+    def rank(self) -> int:
+        """The rank."""
+
+    @abstractmethod
+    def row_space(self) -> Any:
+        """A canonical basis of the span of the rows (reduced echelon form; orthonormal over floats)."""
+
+    @abstractmethod
+    def null_space(self) -> Any:
+        """A matrix whose rows are a basis of {x : A x = 0}."""
+
+    def left_null_space(self) -> Any:
+        """A matrix whose rows are a basis of {y : y A = 0}."""
+        return self.T.null_space()
+
+    @abstractmethod
+    def solve(self, right: Any) -> Any:
+        """X with A X = right; `SingularError` if there is none (some X if there are several)."""
+
+    @abstractmethod
+    def inverse(self) -> Any:
+        """The inverse; `SingularError` if there is none."""
+
+    @abstractmethod
+    def signature(self) -> tuple[int, int, int]:
+        """Numbers of (positive, negative, zero) eigenvalues of a symmetric matrix."""
+
+    def is_positive_definite(self) -> bool:
+        """Whether a symmetric matrix is positive definite."""
+        return self.signature()[0] == self.nrows
+
+
+class Field(ABC):
+    """A field of real numbers together with its matrices.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> QQ.convert("3/4") + 1
+    7/4
+    """
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def exact(self) -> bool:
+        """Whether arithmetic is exact."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What the field is called in messages and reprs, such as 'QQ', 'QQ(sqrt(2))', 'float64'."""
+
+    @property
+    def degree(self) -> int:
+        """The degree over QQ of an exact field; 1 for float64."""
+        return 1
+
+    @property
+    @abstractmethod
+    def zero(self) -> Scalar:
+        """The number 0."""
+
+    @property
+    @abstractmethod
+    def one(self) -> Scalar:
+        """The number 1."""
+
+    @abstractmethod
+    def convert(self, value: Any) -> Scalar:
+        """The field element that `value` denotes; `FieldError` or `ParseError` if it denotes none."""
+
+    @abstractmethod
+    def format(self, value: Scalar) -> str:
+        """The element in the grammar of values; ``convert`` reads it back."""
+
+    @abstractmethod
+    def sign(self, value: Scalar) -> int:
+        """-1, 0 or 1."""
+
+    @abstractmethod
+    def to_float(self, value: Scalar) -> float:
+        """The nearest float (to a few units in the last place)."""
+
+    @abstractmethod
+    def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> Any:
+        """The matrix with these rows; give `shape` where it may have no rows or no columns."""
+
+    def read(self, rows: Any, shape: tuple[int, int] | None = None) -> Any:
+        """Rows of numbers, or a matrix, as a matrix over this field.
+
+        A matrix over another field is read again entry by entry; `FieldError` if an entry is not in this field.
+        """
+        if not isinstance(rows, Matrix):
+            return self.matrix(rows, shape)
+        return rows if rows.field == self else self.matrix(rows.to_rows(), rows.shape)
+
+    @abstractmethod
+    def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> Any:
+        """The matrix with these field elements, row after row."""
+
+    @abstractmethod
+    def zeros(self, nrows: int, ncols: int) -> Any:
+        """The zero matrix."""
+
+    @abstractmethod
+    def identity(self, n: int) -> Any:
+        """The identity matrix."""
+
+    @abstractmethod
+    def stack_rows(self, blocks: Sequence[Any], ncols: int) -> Any:
+        """The blocks one below the other; all have `ncols` columns."""
+
+    def stack_columns(self, blocks: Sequence[Any], nrows: int) -> Any:
+        """The blocks side by side; all have `nrows` rows."""
+        return self.stack_rows([b.T for b in blocks], nrows).T
+
+    def unit(self, n: int, i: int) -> Any:
+        """The row matrix (1, n) with a one in column i."""
+        return self.identity(n).select(rows=[i])
+
+    def __repr__(self) -> str:
+        return self.name

@@ -1,0 +1,283 @@
+"""Real number fields QQ(a), on python-flint.
+
+A real number field is QQ(a) for one real root a of an irreducible integer polynomial f, singled out by an
+isolating interval; signs are those of this embedding, found by ball arithmetic of growing precision.
+Elements are polynomials in the algebraic integer b = c a, c the leading coefficient of f, so that all
+products stay integral.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Sequence
+from typing import Any, final
+
+import flint
+
+from liehom.errors import FieldError
+from liehom.scalars.fields import grammar
+from liehom.scalars.fields.algebraic_number import AlgebraicNumber
+from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
+from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.rational import QQ, prime, rational_from_text, rational_number, refused
+
+MAX_PRECISION = 1 << 22
+_SYMBOL = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]*|sqrt\([0-9]+\)", re.ASCII)
+
+
+@final
+class NumberField(ExactField):
+    """A real number field QQ(a), a the root of an irreducible polynomial in an isolating interval.
+
+    Parameters
+    ----------
+    symbol : str
+        How the generator is written: an identifier such as 'a', or 'sqrt(2)' for the positive root of t^2 - 2.
+    minpoly : sequence
+        Rational coefficients of an irreducible polynomial of degree at least 2, ascending.
+    interval : pair
+        Rational ends of an interval that contains exactly one of its real roots.
+
+    Raises
+    ------
+    FieldError
+        If the polynomial is reducible or constant, the interval does not isolate one root, or the symbol would
+        be read as another number than the generator.
+
+    Examples
+    --------
+    >>> K = NumberField("a", [-2, 0, 1], (1, 2))
+    >>> a = K.generator
+    >>> a * a, K.sign(a - 1), K.format((a + 1) / 2)
+    (2, 1, '1/2 + 1/2*a')
+    """
+
+    __slots__ = (
+        "_balls",
+        "_modulus",
+        "_powers",
+        "_residues",
+        "interval",
+        "leading",
+        "minpoly",
+        "root_index",
+        "symbol",
+    )
+
+    def __init__(self, symbol: str, minpoly: Sequence[Any], interval: tuple[Any, Any]) -> None:
+        polynomial = flint.fmpq_poly([QQ.convert(c) for c in minpoly])
+        if polynomial.degree() < 2:
+            raise FieldError("the minimal polynomial of a number field must have degree at least 2")
+        integral = polynomial.numer()
+        integral = (
+            integral // integral.content() if integral[integral.degree()] > 0 else -(integral // integral.content())
+        )
+        factors = integral.factor()[1]
+        if len(factors) != 1 or factors[0][1] != 1:
+            shown = ", ".join(str(f) for f, _ in factors)
+            raise FieldError(f"the minimal polynomial {integral} is reducible: factors {shown}; use one of them")
+        self.symbol = symbol
+        self.minpoly = tuple(int(c) for c in integral.coeffs())
+        self.leading = self.minpoly[-1]
+        m = self.degree
+        monic = [c * self.leading ** (m - 1 - i) for i, c in enumerate(self.minpoly[:-1])]
+        self._modulus = flint.fmpz_poly([*monic, 1])
+        ends = (QQ.convert(interval[0]), QQ.convert(interval[1]))
+        self.interval, self.root_index = isolate_real_root(integral, ends)
+        self._check_symbol()
+        self._powers: dict[int, list[int]] = {}
+        self._balls: dict[int, Any] = {}
+        self._residues: list[tuple[int, int]] = []
+
+    def _check_symbol(self) -> None:
+        """What `format` writes, `convert` must read as the same number."""
+        if not isinstance(self.symbol, str) or not _SYMBOL.fullmatch(self.symbol):
+            raise FieldError(f"the symbol of a generator is {self.symbol!r}; expected an identifier such as 'a'")
+        if not self.symbol.startswith("sqrt("):
+            return
+        if self.minpoly != (-int(self.symbol[5:-1]), 0, 1) or self.root_index != 1:
+            raise FieldError(f"the generator is not {self.symbol}, which is positive; give it another name")
+
+    @property
+    def name(self) -> str:
+        return f"QQ({self.symbol})"
+
+    @property
+    def degree(self) -> int:
+        return len(self.minpoly) - 1
+
+    @property
+    def zero(self) -> AlgebraicNumber:
+        return AlgebraicNumber(self, flint.fmpq_poly([0]))
+
+    @property
+    def one(self) -> AlgebraicNumber:
+        return AlgebraicNumber(self, flint.fmpq_poly([1]))
+
+    @property
+    def generator(self) -> AlgebraicNumber:
+        """The number a."""
+        return AlgebraicNumber(self, flint.fmpq_poly([0, flint.fmpq(1, self.leading)]))
+
+    @property
+    def modulus(self) -> Any:
+        """The monic minimal polynomial of b = c a, as ``flint.fmpz_poly``."""
+        return self._modulus
+
+    def convert(self, value: Any) -> AlgebraicNumber:
+        if isinstance(value, AlgebraicNumber):
+            if value.field is self or value.field == self:
+                return value
+            if value.is_rational():
+                return AlgebraicNumber(self, flint.fmpq_poly([value.coordinates[0]]))
+            raise FieldError(f"{value} of {value.field.name} is not in {self.name}")
+        if isinstance(value, str):
+            rational = rational_from_text(value)
+            return self._evaluate(value) if rational is None else self._embedded(rational)
+        rational = rational_number(value)
+        if rational is not None:
+            return self._embedded(rational)
+        if getattr(value, "is_real", False) and hasattr(value, "free_symbols"):  # a sympy expression
+            return self._from_sympy(value)
+        raise refused(value, self)
+
+    def _embedded(self, rational: Any) -> AlgebraicNumber:
+        return AlgebraicNumber(self, flint.fmpq_poly([rational]))
+
+    def _evaluate(self, text: str) -> AlgebraicNumber:
+        names = {self.symbol: self.generator} if self.symbol.isidentifier() else {}
+        tree = grammar.parse(text, names)
+        made = grammar.evaluate(tree, lambda n: self._embedded(flint.fmpq(n)), names, {"sqrt": self.sqrt})
+        return self.convert(made)
+
+    def _from_sympy(self, expression: Any) -> AlgebraicNumber:
+        """A sympy number made of rationals, sums, products and rational powers."""
+        rational = rational_number(expression)
+        if rational is not None:
+            return self._embedded(rational)
+        parts = expression.args
+        if expression.is_Add:
+            return sum((self._from_sympy(x) for x in parts), self.zero)
+        if expression.is_Mul:
+            return functools.reduce(lambda a, b: a * b, (self._from_sympy(x) for x in parts))
+        if expression.is_Pow and expression.exp.is_Rational:
+            exponent = expression.exp
+            return self.root(self._from_sympy(expression.base), int(exponent.q)) ** int(exponent.p)
+        raise refused(expression, self)
+
+    def sqrt(self, value: AlgebraicNumber) -> AlgebraicNumber:
+        """The non-negative square root; `FieldError` if it is not in the field."""
+        return self.root(value, 2)
+
+    def root(self, value: AlgebraicNumber, k: int) -> AlgebraicNumber:
+        """The non-negative k-th root of a non-negative element; `FieldError` if it is not in the field."""
+        from liehom.scalars.fields.polynomial import Polynomial  # the only use; polynomial imports this module
+
+        what = f"sqrt({value})" if k == 2 else f"the root of order {k} of {value}"
+        if self.sign(value) < 0:
+            raise FieldError(f"{what} is not real" if k % 2 == 0 else f"{what}: write minus the root of {-value}")
+        if value == 0 or k == 1:
+            return value
+        for factor, _ in Polynomial(self, [-value, *[self.zero] * (k - 1), self.one]).factor():
+            if factor.degree == 1:
+                root: AlgebraicNumber = -factor.coefficients[0] / factor.coefficients[1]
+                if self.sign(root) > 0 or k % 2 == 0:
+                    return root if self.sign(root) > 0 else -root
+        raise FieldError(f"{what} is not in {self.name}")
+
+    def format(self, value: AlgebraicNumber) -> str:
+        terms = []
+        for power, c in enumerate(value.coordinates):
+            c = c * self.leading**power
+            if c == 0:
+                continue
+            monomial = "" if power == 0 else self.symbol if power == 1 else f"{self.symbol}**{power}"
+            if monomial and c in (1, -1):
+                terms.append(monomial if c == 1 else f"-{monomial}")
+            else:
+                terms.append(f"{c}*{monomial}" if monomial else str(c))
+        return " + ".join(terms).replace("+ -", "- ") or "0"
+
+    def sign(self, value: AlgebraicNumber) -> int:
+        polynomial = value.polynomial
+        if polynomial.is_zero():
+            return 0
+        precision = 64
+        while precision <= MAX_PRECISION:
+            with working_precision(precision):
+                ball = self._value_ball(polynomial, precision)
+                if not ball.contains(0):
+                    return 1 if ball > 0 else -1
+            precision *= 2
+        raise FieldError(f"the sign of {value} could not be found with {MAX_PRECISION} bits")
+
+    def _value_ball(self, polynomial: Any, precision: int) -> Any:
+        root = self.generator_ball(precision)
+        total = flint.arb(0)
+        for c in reversed(polynomial.coeffs()):
+            total = total * root + flint.arb(c)
+        return total
+
+    def generator_ball(self, precision: int) -> Any:
+        """A ball around b = c a, found with the given working precision in bits."""
+        if precision not in self._balls:
+            self._balls[precision] = root_ball(self._modulus, self.root_index, precision)
+        return self._balls[precision]
+
+    def ball(self, value: AlgebraicNumber, precision: int) -> Any:
+        """A ball (``flint.arb``) around an element, found with the given working precision in bits."""
+        with working_precision(precision):
+            return self._value_ball(value.polynomial, precision)
+
+    def to_float(self, value: AlgebraicNumber) -> float:
+        precision = 128
+        while precision < MAX_PRECISION:
+            ball = self.ball(value, precision)
+            if ball.is_exact() or ball.rel_accuracy_bits() > 60:
+                break
+            precision *= 2
+        return float(ball)
+
+    def coordinates(self, value: AlgebraicNumber) -> list[Any]:
+        return value.coordinates
+
+    def from_coordinates(self, coordinates: Sequence[Any]) -> AlgebraicNumber:
+        return AlgebraicNumber(self, flint.fmpq_poly(list(coordinates)))
+
+    def power_coordinates(self, exponent: int) -> list[int]:
+        if exponent not in self._powers:
+            power = flint.fmpz_poly([0] * exponent + [1]) % self._modulus
+            self._powers[exponent] = [int(power[i]) for i in range(self.degree)]
+        return self._powers[exponent]
+
+    def modulus_coefficients(self) -> list[int]:
+        return [int(c) for c in self._modulus.coeffs()]
+
+    def residue(self, attempt: int = 0) -> tuple[int, int]:
+        index = -1
+        while len(self._residues) <= attempt:
+            index = self._residues_tried(index)
+        return self._residues[attempt]
+
+    def _residues_tried(self, index: int) -> int:
+        """Walk down the primes until one splits off a linear factor of the modulus; remember it."""
+        start = [p for p, _ in self._residues]
+        while True:
+            index += 1
+            p = prime(index)
+            if p in start:
+                continue
+            image = flint.nmod_poly([int(c) % p for c in self._modulus.coeffs()], p)
+            linear = [f for f, _ in image.factor()[1] if f.degree() == 1]
+            if linear:
+                root = (-int(linear[0][0]) * pow(int(linear[0][1]), -1, p)) % p
+                self._residues.append((p, root))
+                return index
+
+    def __eq__(self, other: object) -> bool:
+        same = isinstance(other, NumberField) and self.minpoly == other.minpoly
+        return same and self.root_index == other.root_index  # type: ignore[attr-defined]
+
+    def __hash__(self) -> int:
+        return hash((self.minpoly, self.root_index))

@@ -1,0 +1,163 @@
+"""QQ: the rational numbers, as ``flint.fmpq``, and what denotes a rational number."""
+
+from __future__ import annotations
+
+import functools
+import numbers
+import re
+from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, final
+
+import flint
+import numpy as np
+
+from liehom.errors import FieldError
+from liehom.scalars.fields import grammar
+from liehom.scalars.fields.algebraic_number import AlgebraicNumber
+from liehom.scalars.fields.balls import working_precision
+from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.exact_matrix import FIRST_PRIME
+from liehom.scalars.fields.field import Field, Scalar
+
+_INTEGER = re.compile(r"[-+]?[0-9]+", re.ASCII)
+_FRACTION = re.compile(r"[-+]?[0-9]+/[0-9]+", re.ASCII)
+
+
+def rational_number(value: Any) -> Any:
+    """The ``flint.fmpq`` that a Python, numpy, flint or sympy rational number is, else None."""
+    if isinstance(value, flint.fmpq):
+        return value
+    if isinstance(value, (bool, np.bool_)):
+        return None
+    if isinstance(value, (int, flint.fmpz)):
+        return flint.fmpq(value)
+    if isinstance(value, numbers.Rational):  # int, Fraction, numpy integers, sympy Rational
+        return flint.fmpq(int(value.numerator), int(value.denominator))
+    if getattr(value, "is_Rational", False):
+        return flint.fmpq(int(value.p), int(value.q))
+    return None
+
+
+def rational_from_text(text: str) -> Any:
+    """The rational that a plain integer or fraction denotes, else None (fast path of the grammar)."""
+    stripped = text.strip()
+    if _INTEGER.fullmatch(stripped):
+        return flint.fmpq(flint.fmpz(stripped.removeprefix("+")))
+    if _FRACTION.fullmatch(stripped):
+        top, bottom = stripped.removeprefix("+").split("/")
+        if bottom.strip("0"):
+            return flint.fmpq(flint.fmpz(top), flint.fmpz(bottom))
+    return None
+
+
+def refused(value: Any, field: Field) -> FieldError:
+    """The error for a value that is not in an exact field; a float is shown as the fraction to write."""
+    if isinstance(value, (float, np.floating, Decimal)) or getattr(value, "is_Float", False):
+        shown = Fraction(float(value)).limit_denominator(1000) if np.isfinite(float(value)) else "p/q"
+        return FieldError(
+            f"{float(value)!r} is a float, and {field.name} is exact: write a fraction such as '{shown}', "
+            "or work numerically, over float64: .over(liehom.RR)"
+        )
+    return FieldError(f"{value!r} of type {type(value).__name__} is not an element of {field.name}")
+
+
+@final
+class RationalField(ExactField):
+    """The field QQ of rational numbers; its elements are ``flint.fmpq``. Use the instance `QQ`.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> QQ.convert("-6/4"), QQ.sign(QQ.convert("-6/4"))
+    (-3/2, -1)
+    """
+
+    __slots__ = ()
+
+    @property
+    def name(self) -> str:
+        return "QQ"
+
+    @property
+    def degree(self) -> int:
+        return 1
+
+    @property
+    def zero(self) -> Scalar:
+        return flint.fmpq(0)
+
+    @property
+    def one(self) -> Scalar:
+        return flint.fmpq(1)
+
+    def convert(self, value: Any) -> Scalar:
+        if isinstance(value, str):
+            rational = rational_from_text(value)
+            return rational if rational is not None else self._evaluate(value)
+        rational = rational_number(value)
+        if rational is not None:
+            return rational
+        if isinstance(value, AlgebraicNumber) and value.is_rational():
+            return value.coordinates[0]
+        raise refused(value, self)
+
+    def _evaluate(self, text: str) -> Scalar:
+        return grammar.evaluate(grammar.parse(text), flint.fmpq, {}, {"sqrt": self.sqrt})
+
+    def sqrt(self, value: Scalar) -> Scalar:
+        """The non-negative square root; `FieldError` if it is not rational."""
+        numerator, denominator = flint.fmpz(value.p), flint.fmpz(value.q)
+        if numerator < 0:
+            raise FieldError(f"sqrt({value}) is not real")
+        top, bottom = numerator.isqrt(), denominator.isqrt()
+        if top * top != numerator or bottom * bottom != denominator:
+            raise FieldError(f"sqrt({value}) is not in QQ; give the field: .over(number_field('sqrt({value})'))")
+        return flint.fmpq(top, bottom)
+
+    def format(self, value: Scalar) -> str:
+        return str(value)
+
+    def sign(self, value: Scalar) -> int:
+        return int(value > 0) - int(value < 0)
+
+    def to_float(self, value: Scalar) -> float:
+        try:
+            return int(value.p) / int(value.q)
+        except OverflowError:
+            with working_precision(64):
+                return float(flint.arb(value))
+
+    def coordinates(self, value: Scalar) -> list[Any]:
+        return [value]
+
+    def from_coordinates(self, coordinates: Sequence[Any]) -> Scalar:
+        return coordinates[0]
+
+    def power_coordinates(self, exponent: int) -> list[int]:
+        return [1]
+
+    def modulus_coefficients(self) -> list[int]:
+        return [0, 1]
+
+    def residue(self, attempt: int = 0) -> tuple[int, int]:
+        return prime(attempt), 0
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, RationalField)
+
+    def __hash__(self) -> int:
+        return hash("QQ")
+
+
+@functools.cache
+def prime(attempt: int) -> int:
+    """The `attempt`-th prime at or below 2^61 - 1."""
+    candidate = FIRST_PRIME if attempt == 0 else prime(attempt - 1) - 2
+    while not flint.fmpz(candidate).is_prime():
+        candidate -= 2
+    return candidate
+
+
+QQ = RationalField()

@@ -1,0 +1,176 @@
+"""Lattices in QQ^n: LLL-reduced bases for a form that is known approximately, preimages of integer vectors, and
+linear algebra modulo numbers that need not be factored.
+"""
+
+from __future__ import annotations
+
+import random
+from math import gcd
+from typing import Any
+
+import flint
+import numpy as np
+
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.rational import QQ
+
+BITS = 40
+SPARE = 12
+TRIAL_PRIMES = 10_000
+
+
+def reduced_basis(form: Any) -> ExactMatrix:
+    """The rows of a unimodular matrix that are nearly orthogonal and short for a positive definite form.
+
+    Parameters
+    ----------
+    form : (n, n) float array
+        Symmetric positive definite.
+
+    Returns
+    -------
+    ExactMatrix
+        Shape (n, n), integer entries, determinant 1 or -1, whatever the rounding.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> reduced_basis(np.array([[1.0, 10.0], [10.0, 101.0]])).to_strings()
+    [['1', '0'], ['-10', '1']]
+    """
+    factor = np.linalg.cholesky((form + form.T) / 2)
+    n = len(factor)
+    scale = float(1 << BITS) / float(np.abs(factor).max())
+    rows = [round(x) for x in (factor * scale).ravel().tolist()]
+    lattice: Any = flint.fmpz_mat(n, n, rows)
+    _, change = lattice.lll(transform=True)
+    return QQ.from_integers(change.entries(), n, n)
+
+
+def reduced_rows(rows: ExactMatrix, factor: Any) -> ExactMatrix:
+    """A basis of the lattice that the rows span, nearly orthogonal and short for the form factor factor^T.
+
+    Parameters
+    ----------
+    rows : ExactMatrix
+        Shape (n, n), over QQ.
+    factor : (n, n) float array
+        Its rows are the units of QQ^n in an orthonormal frame; rounded to 40 bits.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> reduced_rows(QQ.matrix([["1/2", 100], [0, 1]]), np.eye(2)).to_strings()
+    [['1/2', '0'], ['0', '1']]
+    """
+    n = len(factor)
+    scale = float(1 << BITS) / float(np.abs(factor).max())
+    frame = flint.fmpz_mat(n, n, [round(x) for x in (factor * scale).ravel().tolist()])
+    _, change = (rows.parts[0] * frame).lll(transform=True)
+    return ExactMatrix(rows.field, (change * rows.parts[0],), rows.den).normalized()
+
+
+def kernel_modulo(matrix: ExactMatrix, modulus: int) -> tuple[list[list[int]], list[int]] | int:
+    """The rows x with x A = 0 modulo a number that is treated as a prime, or a proper divisor of it.
+
+    Parameters
+    ----------
+    matrix : ExactMatrix
+        A, shape (n, m), integral, over QQ.
+    modulus : int
+        At least 2.
+
+    Returns
+    -------
+    (rows, pivots) or int
+        A basis of the solutions, each row with a single 1 outside the places of `pivots`, or a divisor of the
+        modulus that elimination came across.
+
+    Examples
+    --------
+    >>> kernel_modulo(QQ.matrix([[1], [4]]), 5)
+    ([[1, 1]], [0])
+    >>> kernel_modulo(QQ.matrix([[3], [4]]), 15)
+    3
+    """
+    n, m = matrix.shape
+    entries = [int(x) % modulus for x in matrix.parts[0].transpose().entries()]
+    table = np.array(entries, dtype=object).reshape(m, n)
+    pivots: list[int] = []
+    for column in range(n):
+        rank = len(pivots)
+        found = next((r for r in range(rank, m) if table[r, column]), None)
+        if found is None:
+            continue
+        common = gcd(table[found, column], modulus)
+        if common != 1:
+            return int(common)
+        table[[rank, found]] = table[[found, rank]]
+        table[rank] = table[rank] * pow(table[rank, column], -1, modulus) % modulus
+        others = [r for r in range(m) if r != rank and table[r, column]]
+        if others:
+            table[others] = (table[others] - np.outer(table[others, column], table[rank])) % modulus
+        pivots.append(column)
+    free = [j for j in range(n) if j not in pivots]
+    rows = [[0] * n for _ in free]
+    for row, j in zip(rows, free, strict=True):
+        row[j] = 1
+        for i, pivot in enumerate(pivots):
+            row[pivot] = -int(table[i, j]) % modulus
+    return rows, pivots
+
+
+def pairwise_coprime(number: int) -> list[int]:
+    """Numbers above 1 that divide a number and that every prime divisor of it divides one of; small ones are primes.
+
+    Notes
+    -----
+    Only primes below about 10^5 are divided out; what remains is given as its smallest root, for the caller to split.
+
+    Examples
+    --------
+    >>> pairwise_coprime(2**5 * 3 * (10**40 + 121) ** 2) == [2, 3, 10**40 + 121]
+    True
+    """
+    found = [int(p) for p, _ in flint.fmpz(number).factor(trial_limit=TRIAL_PRIMES)]
+    roots = []
+    for x in found:
+        base = x
+        for k in range(x.bit_length(), 1, -1):
+            root = int(flint.fmpz(x).root(k))
+            if root**k == x:
+                base = root
+                break
+        roots.append(base)
+    return sorted(set(roots))
+
+
+def integral_preimage(matrix: ExactMatrix) -> ExactMatrix:
+    """Rows of a basis of a lattice that holds {x : x A is integral}, and nearly always equals it.
+
+    Parameters
+    ----------
+    matrix : ExactMatrix
+        A, shape (n, m), of rank n, over QQ.
+
+    Notes
+    -----
+    The lattice is the dual of the one that the columns of A generate; n + 12 random combinations of these are used.
+
+    Examples
+    --------
+    >>> integral_preimage(QQ.matrix([[2, 4]])).to_strings()
+    [['1/2']]
+    """
+    n, m = matrix.shape
+    rng = random.Random(n)
+    count = min(m, n + SPARE)
+    if count < m:
+        mixing = flint.fmpz_mat(m, count, [rng.randint(-9, 9) for _ in range(m * count)])
+        columns = matrix.parts[0] * mixing
+    else:
+        columns = matrix.parts[0]
+    hermite = columns.transpose().hnf()
+    square = flint.fmpz_mat(n, n, hermite.entries()[: n * n])
+    dual, den = (flint.fmpq_mat(square.transpose()).inv() * matrix.den).numer_denom()
+    return ExactMatrix(matrix.field, (dual,), int(den))

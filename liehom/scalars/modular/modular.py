@@ -1,0 +1,162 @@
+"""Linear algebra modulo a prime: lower bounds for ranks, at machine speed.
+
+A rank modulo a prime (a residue map of the field onto F_p) is at most the true rank, so reaching a bound
+modulo p proves that it is reached.  Where it is not reached the prime may be to blame (numbers of the input
+may be multiples of it): then the exact rank decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import flint
+
+from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.exact_matrix import ExactMatrix, nmod_pivots
+
+
+def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
+    """A lower bound (nearly always sharp) for the dimension of the least space of rows closed under maps.
+
+    Parameters
+    ----------
+    span : ExactMatrix
+        Rows to start from, shape (k, n).
+    maps : sequence of ExactMatrix
+        Matrices (n, n) acting on rows from the right.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> shift = QQ.matrix([[0, 1, 0], [0, 0, 1], [0, 0, 0]])
+    >>> invariant_hull_rank(QQ.matrix([[1, 0, 0]]), [shift])
+    3
+    """
+    n = span.ncols
+    images = [m.modulo() for m in maps]
+    current, rank = _row_basis(span.modulo())
+    before = -1
+    while before < rank < n:
+        before = rank
+        current, rank = _row_basis(stacked_residues([current, *[current * image for image in images]]))
+    return rank
+
+
+def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
+    """Primes p < 2^22 with residue maps b -> r of the field, enough to recognise zero.
+
+    A sum of products of two elements of Z[b] that all of these maps kill is zero.
+
+    Parameters
+    ----------
+    field : ExactField
+    bound : int
+        The sum over all terms of |integer factors| times the product of the largest coordinates.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> [p for p, _ in small_residues(QQ, 10**10)]
+    [4194301, 4194287]
+    """
+    modulus = field.modulus_coefficients()
+    remaining = norm_bound(modulus, bound)
+    p = 1 << 22
+    while remaining:
+        p -= 1
+        while not flint.fmpz(p).is_prime():
+            p -= 1
+        image = flint.nmod_poly([c % p for c in modulus], p)
+        linear = [f for f, _ in image.factor()[1] if f.degree() == 1] if len(modulus) > 2 else []
+        if len(modulus) > 2 and not linear:
+            continue
+        root = (-int(linear[0][0]) * pow(int(linear[0][1]), -1, p)) % p if linear else 0
+        yield p, root
+        remaining //= p
+
+
+def norm_bound(modulus: Sequence[int], bound: int) -> int:
+    """A bound for twice the norm of sums of products of two elements, given the bound for coordinates of size 1.
+
+    Every conjugate of the generator is at most 1 + max |coefficient| (Cauchy), so a conjugate of an element with
+    coordinates of size s is at most s (1 + beta + ... + beta^(m-1)).
+    """
+    m = len(modulus) - 1
+    if m == 1:
+        return 2 * bound
+    beta = 1 + max(abs(c) for c in modulus)
+    spread = sum(beta**s for s in range(m))
+    norm: int = (bound * spread * spread) ** m
+    return 2 * norm
+
+
+def independent_rows(matrix: ExactMatrix) -> list[int]:
+    """Indices of rows that are a basis of the span of all, proved.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> independent_rows(QQ.matrix([[1, 2], [2, 4], [0, 1]]))
+    [0, 2]
+    """
+    return independent_columns(matrix.T)
+
+
+def independent_columns(matrix: ExactMatrix) -> list[int]:
+    """Indices of columns that are a basis of the span of all, proved; the first column is among them if it can be.
+
+    Pivots modulo a prime are independent; that there are as many as the rank is proved by the shape or by the
+    exact rank.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> independent_columns(QQ.matrix([[0, 1, 2, 0], [0, 2, 4, 2**61 - 1]]))
+    [1, 3]
+    """
+    found = pivot_columns(matrix.modulo())
+    starts = not matrix.ncols or found[:1] == [0] or matrix.select(columns=[0]).is_zero()
+    if starts and (len(found) == min(matrix.shape) or len(found) == matrix.rank()):
+        return found
+    return matrix.echelon()[1]
+
+
+def primitive_residues(rows: Sequence[ExactMatrix], ncols: int) -> Any:
+    """Rows modulo a prime (``flint.nmod_mat``), each cleared of its denominator and common factor before.
+
+    Parameters
+    ----------
+    rows : sequence of ExactMatrix
+        Row matrices (1, ncols) over one field, at least one.
+    """
+    return rows[0].field.stack_rows([_primitive(row) for row in rows], ncols).modulo()
+
+
+def _primitive(row: ExactMatrix) -> ExactMatrix:
+    content = flint.fmpz(0)
+    for part in row.parts:
+        for x in part.entries():
+            content = content.gcd(x)
+            if content == 1:
+                return row.cleared()
+    return row if content == 0 else row.scale(flint.fmpq(row.den, content))
+
+
+def pivot_columns(image: Any) -> list[int]:
+    """The pivot columns of a matrix modulo a prime (``flint.nmod_mat``)."""
+    reduced, rank = image.rref()
+    return nmod_pivots(reduced, int(rank))
+
+
+def _row_basis(image: Any) -> tuple[Any, int]:
+    reduced, rank = image.rref()
+    n, rank = image.ncols(), int(rank)
+    return flint.nmod_mat(rank, n, [int(x) for x in reduced.entries()[: rank * n]], image.modulus()), rank
+
+
+def stacked_residues(blocks: Sequence[Any]) -> Any:
+    """Matrices modulo one prime (``flint.nmod_mat``) with the same number of columns, one below the other."""
+    rows = sum(b.nrows() for b in blocks)
+    entries = [int(x) for b in blocks for x in b.entries()]
+    return flint.nmod_mat(rows, blocks[0].ncols(), entries, blocks[0].modulus())

@@ -1,0 +1,211 @@
+"""Intertwining maps modulo a prime: all T with T A_g = B_g T, by spinning eigenvectors.
+
+T maps the kernel of a polynomial f(a) in the A_g into that of f(b), the same polynomial in the B_g.  A vector x of a
+small kernel is spun to a basis v_j = (word in A) x, with T v_j = (word in B) T x: the unknown is T x in the other
+kernel.  Random covectors give the conditions.  The space found contains every T modulo p, and so its dimension is at
+least that over the rationals.  Vectors are rows.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from typing import Any
+
+import flint
+
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.modular.modular import pivot_columns
+
+LARGEST_KERNEL = 64
+SEED_TRIALS = 12
+
+
+def intertwining_residues(source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], attempt: int = 0) -> Any:
+    """The maps T, shape (e, d), with T A_g = B_g T modulo a prime, as the reduced echelon rows of flattened matrices.
+
+    Parameters
+    ----------
+    source, target : sequences of ExactMatrix
+        The A_g (d, d) and the B_g (e, e) over QQ, equally many, at least one.
+    attempt : int
+        Which prime.
+
+    Returns
+    -------
+    flint.nmod_mat or None
+        Rows (k, e*d), k at least the dimension over QQ; None where the module has no small kernels to start from.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> J = QQ.matrix([[0, -1], [1, 0]])
+    >>> intertwining_residues([J], [J]).nrows()
+    2
+    """
+    left, right = [_residue(a, attempt).transpose() for a in source], [_residue(b, attempt).transpose() for b in target]
+    if any(m is None for m in (*left, *right)):
+        return None
+    rng = random.Random(left[0].nrows())
+    spun = _Spun(left, right)
+    while spun.rank < spun.d:
+        if not any(spun.seed(rng) for _ in range(SEED_TRIALS)):
+            return None
+    return spun.solution(rng)
+
+
+def _residue(matrix: ExactMatrix, attempt: int) -> Any:
+    image = matrix.modulo(attempt)
+    p = int(image.modulus())
+    return image * pow(matrix.den, -1, p) if matrix.den % p else None
+
+
+def _matrix(nrows: int, ncols: int, entries: list[Any], modulus: int) -> Any:
+    return flint.nmod_mat(nrows, ncols, [int(x) for x in entries], modulus)
+
+
+def _stack(blocks: Sequence[Any], ncols: int, modulus: int) -> Any:
+    entries = [x for b in blocks for x in b.entries()]
+    return _matrix(sum(b.nrows() for b in blocks), ncols, entries, modulus)
+
+
+def _rows(matrix: Any, kept: Sequence[int]) -> Any:
+    n, entries = matrix.ncols(), matrix.entries()
+    return _matrix(len(kept), n, [x for i in kept for x in entries[i * n : (i + 1) * n]], matrix.modulus())
+
+
+def _kernel(matrix: Any) -> Any:
+    """Rows x with x M = 0."""
+    vectors, nullity = matrix.transpose().nullspace()
+    n = vectors.nrows()
+    columns = vectors.transpose().entries()[: int(nullity) * n]
+    return _matrix(int(nullity), n, columns, matrix.modulus())
+
+
+class _Spun:
+    """Rows v_j that are independent, each with its images T v_j for every unknown of its seed."""
+
+    def __init__(self, left: list[Any], right: list[Any]) -> None:
+        self.left, self.right = left, right
+        self.d, self.e = left[0].nrows(), right[0].nrows()
+        self.p = int(left[0].modulus())
+        self.vectors = _matrix(0, self.d, [], self.p)
+        # for each seed: the rows it has made, and for each of its unknowns the images (rows, e)
+        self.seeds: list[tuple[range, list[Any]]] = []
+
+    @property
+    def rank(self) -> int:
+        return int(self.vectors.nrows())
+
+    def _extending(self, rows: Any) -> list[int]:
+        """The numbers of rows that extend the span, in order."""
+        old = self.rank
+        pivots = pivot_columns(_stack([self.vectors, rows], self.d, self.p).transpose())
+        return [x - old for x in pivots if x >= old]
+
+    def seed(self, rng: random.Random) -> bool:
+        """Spin a vector of a small kernel; whether it was outside the span."""
+        kernels = self._kernels(rng)
+        if kernels is None:
+            return False
+        own, other = kernels
+        weights = _matrix(1, own.nrows(), [rng.randrange(self.p) for _ in range(own.nrows())], self.p)
+        frontier = weights * own
+        if not self._extending(frontier):
+            return False
+        start = self.rank
+        unknowns = [_rows(other, [c]) for c in range(other.nrows())]
+        images = list(unknowns)
+        self.vectors = _stack([self.vectors, frontier], self.d, self.p)
+        while frontier.nrows() and self.rank < self.d:
+            grown = _stack([frontier * a for a in self.left], self.d, self.p)
+            kept = self._extending(grown)
+            frontier = _rows(grown, kept)
+            unknowns = [_rows(_stack([u * b for b in self.right], self.e, self.p), kept) for u in unknowns]
+            images = [_stack([w, u], self.e, self.p) for w, u in zip(images, unknowns, strict=True)]
+            self.vectors = _stack([self.vectors, frontier], self.d, self.p)
+        self.seeds.append((range(start, self.rank), images))
+        return True
+
+    def _kernels(self, rng: random.Random) -> tuple[Any, Any] | None:
+        """Kernels (rows) of one polynomial in a random element, in the source and in the target."""
+        a, b = self._element(rng)
+        polynomial = a.charpoly()
+        if self.rank:
+            # an eigenvalue on the quotient by what is spun already belongs to a vector outside
+            polynomial = polynomial // self._restricted(a).charpoly()
+        factors = polynomial.factor()[1]
+        f = min(factors, key=lambda pair: pair[0].degree() * pair[1])[0]
+        own, other = _kernel(_evaluated(f, a)), _kernel(_evaluated(f, b))
+        return (own, other) if max(own.nrows(), other.nrows()) <= LARGEST_KERNEL else None
+
+    def _restricted(self, a: Any) -> Any:
+        """The matrix of an element (acting on rows) on the span of the vectors, which is invariant."""
+        places = pivot_columns(self.vectors)
+        turned = self.vectors.transpose()
+        square, moved = _rows(turned, places), _rows((self.vectors * a).transpose(), places)
+        return square.inv() * moved
+
+    def _element(self, rng: random.Random) -> tuple[Any, Any]:
+        """A random sum of generators and products of two."""
+        words: list[tuple[int, ...]] = [(g,) for g in range(len(self.left))]
+        words += [(rng.randrange(len(self.left)), rng.randrange(len(self.left))) for _ in range(2)]
+        a, b = None, None
+        for word in words:
+            factor = rng.randrange(1, self.p)
+            x, y = self.left[word[0]] * factor, self.right[word[0]] * factor
+            for g in word[1:]:
+                x, y = x * self.left[g], y * self.right[g]
+            a, b = (x, y) if a is None else (a + x, b + y)
+        return a, b
+
+    def solution(self, rng: random.Random) -> Any:
+        """The echelon rows of all T, flattened."""
+        inverse = self.vectors.inv()
+        count = sum(len(images) for _, images in self.seeds)
+        if count == 0:
+            return _matrix(0, self.d * self.e, [], self.p)
+        tests = 2 + count // max(self.e, 1)
+        probes = _matrix(tests, self.d, [rng.randrange(self.p) for _ in range(tests * self.d)], self.p)
+        blocks = []
+        for a, b in zip(self.left, self.right, strict=True):
+            # u A^t T^t = u T^t B^t for every row u
+            blocks.append((self._applied(probes * a * inverse), self._applied(probes * inverse), b))
+        rows = []
+        for c in range(count):
+            conditions = [moved[c] - plain[c] * b for moved, plain, b in blocks]
+            rows.append([x for m in conditions for x in m.entries()])
+        width = len(rows[0])
+        weights = _kernel(_matrix(count, width, [x for row in rows for x in row], self.p))
+        flat = []
+        for i in range(weights.nrows()):
+            flat += (inverse * self._combined(weights, i)).transpose().entries()
+        found, rank = _matrix(weights.nrows(), self.d * self.e, flat, self.p).rref()
+        return _rows(found, range(int(rank)))
+
+    def _applied(self, coefficients: Any) -> list[Any]:
+        """For each unknown the rows sum_j coefficients[., j] T v_j."""
+        turned = coefficients.transpose()
+        return [_rows(turned, places).transpose() * w for places, images in self.seeds for w in images]
+
+    def _combined(self, weights: Any, i: int) -> Any:
+        """The rows T v_j for the i-th solution."""
+        blocks, c = [], 0
+        for _, images in self.seeds:
+            total = images[0] * 0 if images else None
+            for w in images:
+                total = total + w * int(weights[i, c])
+                c += 1
+            blocks.append(total)
+        missing = [_matrix(len(places), self.e, [0] * (len(places) * self.e), self.p) for places, _ in self.seeds]
+        return _stack([m if b is None else b for b, m in zip(blocks, missing, strict=True)], self.e, self.p)
+
+
+def _evaluated(f: Any, a: Any) -> Any:
+    """The matrix f(a) modulo p."""
+    n, p = a.nrows(), int(a.modulus())
+    one = _matrix(n, n, [int(i == j) for i in range(n) for j in range(n)], p)
+    total = one * 0
+    for c in reversed(f.coeffs()):
+        total = total * a + one * int(c)
+    return total

@@ -1,0 +1,167 @@
+"""The joint spectrum of commuting exact matrices, as certain balls, and what integers follow from it.
+
+flint encloses the eigenvalues and eigenvectors of one generic combination in balls that are proved to hold them; each
+matrix then has its eigenvalue on each eigenvector in a ball.  The decision whether balls are small enough is left to
+the caller, who asks again with more bits.  Matrices act on rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import flint
+import numpy as np
+import numpy.typing as npt
+
+from liehom.scalars.fields.balls import working_precision
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+
+Balls = tuple[Any, ...]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class JointSpectrum:
+    """The joint eigenvalues of commuting matrices M_1, ..., M_r whose combination has simple eigenvalues.
+
+    Attributes
+    ----------
+    values : tuple of tuples
+        For each joint eigenvector its eigenvalues on M_1, ..., M_r, as balls (``flint.acb``).
+    conjugation : tuple of int
+        The complex conjugate of joint eigenvalue i is number ``conjugation[i]``.
+    precision : int
+        The working precision in bits.
+    """
+
+    values: tuple[Balls, ...]
+    conjugation: tuple[int, ...]
+    precision: int
+
+    def cartan_integers(self, form: ExactMatrix) -> npt.NDArray[np.int64] | None:
+        """2 (a, b) / (b, b) for all pairs of joint eigenvalues a, b if these are known to be integers.
+
+        Parameters
+        ----------
+        form : ExactMatrix
+            The Gram matrix (r, r) of the form.
+
+        Returns
+        -------
+        (m, m) int64 array, or None
+            None if some ball does not hold exactly one integer.
+        """
+        with working_precision(self.precision):
+            m, r = len(self.values), len(self.values[0])
+            rows = flint.acb_mat(m, r, [x for row in self.values for x in row])
+            gram = rows * enclosure(form, self.precision) * rows.transpose()
+            integers = np.empty((m, m), dtype=np.int64)
+            for j in range(m):
+                if gram[j, j].contains(0):
+                    return None
+                factor = 2 / gram[j, j]
+                for i in range(m):
+                    value = (gram[i, j] * factor).real.unique_fmpz()
+                    if value is None:
+                        return None
+                    integers[i, j] = int(value)
+            return integers
+
+
+def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], precision: int) -> JointSpectrum | None:
+    """The joint spectrum of commuting matrices, or None where the balls do not tell the eigenvalues apart.
+
+    Parameters
+    ----------
+    matrices : sequence of (n, n) ExactMatrix
+        Commuting, at least one.
+    weights : sequence of int
+        The combination sum_i weights[i] M_i must have n different eigenvalues.
+    precision : int
+        The working precision in bits.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> found = joint_spectrum([QQ.matrix([[0, -1], [1, 0]])], [1], 64)
+    >>> found.conjugation
+    (1, 0)
+    """
+    eigenvalues: list[Any] = []
+    values: list[Balls] = []
+    with working_precision(precision):
+        balls = [enclosure(a, precision) for a in matrices]
+        try:
+            for block in _blocks(matrices):
+                size = len(block)
+                parts = [flint.acb_mat(size, size, [b[i, j] for i in block for j in block]) for b in balls]
+                for value, row in _eigenvalues(parts, weights):
+                    eigenvalues.append(value)
+                    values.append(row)
+        except ValueError:  # flint could not separate the eigenvalues
+            return None
+        conjugation = _conjugation(eigenvalues)
+    return None if conjugation is None else JointSpectrum(tuple(values), conjugation, precision)
+
+
+def enclosure(matrix: ExactMatrix, precision: int) -> Any:
+    """A matrix over an exact field as balls (``flint.acb_mat``), at the present working precision."""
+    total = flint.arb_mat(matrix.parts[0])
+    if len(matrix.parts) > 1:
+        generator = matrix.field.generator_ball(precision)  # type: ignore[attr-defined]  # only QQ has none, and one part
+        power = generator
+        for part in matrix.parts[1:]:
+            total += flint.arb_mat(part) * power
+            power = power * generator
+    return flint.acb_mat(total * (flint.arb(1) / matrix.den))
+
+
+def _eigenvalues(parts: list[Any], weights: Sequence[int]) -> list[tuple[Any, Balls]]:
+    """The eigenvalue of the combination and those of each matrix; ValueError if balls do not separate them."""
+    size = parts[0].nrows()
+    total = sum((p * w for p, w in zip(parts, weights, strict=True)), flint.acb_mat(size, size))
+    if size == 1:
+        return [(total[0, 0], tuple(p[0, 0] for p in parts))]
+    eigenvalues, vectors = total.transpose().eig(right=True)
+    rows = vectors.transpose()
+    images = [rows * p for p in parts]
+    found = []
+    for i, value in enumerate(eigenvalues):
+        k = max(range(size), key=lambda j: float(rows[i, j].abs_lower()))
+        if rows[i, k].contains(0):
+            raise ValueError("an eigenvector is not separated from 0")
+        found.append((value, tuple(image[i, k] / rows[i, k] for image in images)))
+    return found
+
+
+def _blocks(actions: Sequence[ExactMatrix]) -> list[list[int]]:
+    """Indices of the finest blocks that all matrices preserve as they stand."""
+    from scipy import sparse
+
+    size = actions[0].nrows
+    if size == 0:
+        return []
+    rows: list[int] = []
+    columns: list[int] = []
+    for a in actions:
+        places = [x for part in a.parts for x, v in enumerate(part.entries()) if v]
+        rows += [x // size for x in places]
+        columns += [x % size for x in places]
+    graph = sparse.coo_array((np.ones(len(rows)), (rows, columns)), shape=(size, size))
+    count, labels = sparse.csgraph.connected_components(graph, directed=False)
+    return [np.flatnonzero(labels == c).tolist() for c in range(count)]
+
+
+def _conjugation(eigenvalues: list[Any]) -> tuple[int, ...] | None:
+    """The place of the complex conjugate of each ball; None if not all are certain."""
+    middle = np.array([complex(x.mid()) for x in eigenvalues])
+    order = []
+    for x in eigenvalues:
+        near = np.argsort(np.abs(middle - complex(x.mid()).conjugate()), kind="stable")[:2]
+        meeting = [int(j) for j in near if eigenvalues[j].overlaps(x.conjugate())]
+        if len(meeting) != 1:
+            return None
+        order.append(meeting[0])
+    return tuple(order) if sorted(order) == list(range(len(order))) else None

@@ -1,0 +1,64 @@
+"""Integral bases: the integer vectors of a rational subspace, by a basis with small entries.
+
+Echelon bases of scrambled subspaces have large entries, and clearing denominators leaves a sublattice of large
+index.  With the echelon form (1 | R / d) the integer vectors are the x (1 | R / d) with x in Z^k and x R = 0 mod d:
+x runs through the dual of the lattice that Z^k and the columns of R / d generate.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import flint
+
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+
+
+def integral_basis(rows: ExactMatrix) -> ExactMatrix:
+    """An LLL-reduced basis of the integer vectors in the span of rows over QQ; over QQ(a) an echelon basis.
+
+    Parameters
+    ----------
+    rows : ExactMatrix
+        Shape (k, n); the rows may be dependent.
+
+    Returns
+    -------
+    ExactMatrix
+        Shape (rank, n).
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> print(integral_basis(QQ.matrix([[4, 0, 6], [1, 1, 1]])))
+    [1, 1, 1]
+    [0, -2, 1]
+    """
+    reduced, pivots = rows.echelon()
+    if rows.field.degree > 1 or not pivots:
+        return reduced
+    integers = reduced.parts[0]
+    if reduced.den > 1:
+        chosen = set(pivots)
+        free = [j for j in range(rows.ncols) if j not in chosen]
+        integers = _coordinates(reduced.select(columns=free).parts[0], reduced.den) * integers
+        integers = (flint.fmpq_mat(integers) / reduced.den).numer_denom()[0]
+    return ExactMatrix(rows.field, (integers.lll(),), 1)
+
+
+def _coordinates(table: Any, den: int) -> Any:
+    """A basis (k, k) of the x in Z^k with x R = 0 modulo den."""
+    k, columns = table.nrows(), table.transpose().tolist()
+    lattice: list[Any] = [[den * int(i == j) for j in range(k)] for i in range(k)]
+    width = max(2 * k, 8)
+    batch = columns[:width]
+    while True:
+        lattice = flint.fmpz_mat([*lattice, *batch]).hnf().tolist()[:k]
+        # the lattice contains den Z^k, so that den times the inverse is integral
+        dual = (flint.fmpq_mat(flint.fmpz_mat(lattice)).inv() * den).numer_denom()[0].transpose()
+        products = (dual * table).entries()
+        m = len(columns)
+        missed = sorted({x % m for x, v in enumerate(products) if v % den})
+        if not missed:
+            return dual
+        batch = [columns[j] for j in missed[:width]]

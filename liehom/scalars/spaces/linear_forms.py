@@ -1,0 +1,178 @@
+"""LinearForms: matrices of linear forms in several variables, their minors, and proofs about their rank.
+
+M(x) = x_0 M_0 + ... + x_{m-1} M_{m-1} over QQ or a real number field.  A number field is worked with as one more
+variable, modulo its minimal polynomial.  Minors are computed by expansion along columns, subset after subset:
+no division.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any, final
+
+import flint
+
+from liehom.errors import FieldError, ShapeError
+from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+
+
+@final
+class LinearForms:
+    """A matrix of linear forms M(x) = sum_i x_i M_i.
+
+    Parameters
+    ----------
+    parts : sequence of ExactMatrix
+        The M_i, at least one, all of one shape and over one field.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> M = LinearForms([QQ.matrix([[1, 0], [0, 1]]), QQ.matrix([[0, 1], [-1, 0]])])
+    >>> print(M.minor([0, 1], [0, 1]))
+    x0^2 + x1^2
+    """
+
+    __slots__ = ("_context", "_modulus", "_table", "field", "parts", "shape")
+
+    def __init__(self, parts: Sequence[ExactMatrix]) -> None:
+        if not parts or any(part.shape != parts[0].shape for part in parts):
+            raise ShapeError("a matrix of linear forms needs matrices of one shape, at least one")
+        self.parts = tuple(parts)
+        self.field: ExactField = parts[0].field
+        self.shape = parts[0].shape
+        names = [f"x{i}" for i in range(len(parts))]
+        if self.field.degree > 1:
+            names.append("b")
+        self._context = flint.fmpq_mpoly_ctx.get(names, "degrevlex")
+        generators = self._context.gens()
+        self._modulus: Any = None
+        if self.field.degree > 1:
+            coefficients = self.field.modulus.coeffs()  # type: ignore[attr-defined]
+            self._modulus = sum((generators[-1] ** k * int(c) for k, c in enumerate(coefficients)), 0 * generators[0])
+        self._table = self._forms(generators)
+
+    def _forms(self, generators: Any) -> list[list[Any]]:
+        nrows, ncols = self.shape
+        zero = 0 * generators[0]
+        table = [[zero] * ncols for _ in range(nrows)]
+        for x, part in zip(generators, self.parts, strict=False):
+            for s, numerators in enumerate(part.parts):
+                unit = x * generators[-1] ** s if s else x
+                for place, v in enumerate(numerators.entries()):
+                    if v:
+                        i, j = divmod(place, ncols)
+                        table[i][j] = table[i][j] + unit * flint.fmpq(v, part.den)
+        return table
+
+    @property
+    def variables(self) -> int:
+        """The number of variables x0, x1, ..."""
+        return len(self.parts)
+
+    def at(self, values: Sequence[Any]) -> ExactMatrix:
+        """The matrix M(x) at field elements x."""
+        total = self.field.zeros(*self.shape)
+        for value, part in zip(values, self.parts, strict=True):
+            total = total + part.scale(value)
+        return total
+
+    def times(self, right: ExactMatrix) -> LinearForms:
+        """M(x) T for a constant matrix T."""
+        return LinearForms([part @ right for part in self.parts])
+
+    # -- minors ------------------------------------------------------------------------------------------
+    def minor(self, rows: Sequence[int], columns: Sequence[int]) -> Any:
+        """The determinant of the rows and columns, a ``flint.fmpq_mpoly`` (in b too over a number field)."""
+        return self._expanded(list(rows), list(columns)).get(tuple(rows), 0 * self._context.gens()[0])
+
+    def _expanded(self, rows: list[int], columns: list[int]) -> dict[tuple[int, ...], Any]:
+        """For each choice of len(columns) of the rows, the minor with these columns."""
+        one = 0 * self._context.gens()[0] + 1
+        minors: dict[tuple[int, ...], Any] = {(): one}
+        for size, column in enumerate(columns, start=1):
+            grown: dict[tuple[int, ...], Any] = {}
+            for chosen in combinations(rows, size):
+                total = 0 * one
+                for place, row in enumerate(chosen):
+                    rest = minors.get(chosen[:place] + chosen[place + 1 :])
+                    entry = self._table[row][column]
+                    if rest is not None and not entry.is_zero():
+                        term = entry * rest
+                        total = total - term if (size - 1 - place) % 2 else total + term
+                total = self._reduced(total)
+                if not total.is_zero():
+                    grown[chosen] = total
+            minors = grown
+        return minors
+
+    def _reduced(self, polynomial: Any) -> Any:
+        return polynomial if self._modulus is None else divmod(polynomial, self._modulus)[1]
+
+    # -- proofs ------------------------------------------------------------------------------------------
+    def rank_is_at_most(self, rank: int, rows: Sequence[int], columns: Sequence[int]) -> bool:
+        """Whether the rank is at most `rank` at every x, given a non-zero minor of that size.
+
+        Parameters
+        ----------
+        rank : int
+        rows, columns : sequences of int
+            `rank` rows and columns whose minor is not the zero polynomial.
+
+        Notes
+        -----
+        For every further row the cofactors of the chosen columns give a covector phi(x), not zero, on the chosen rows
+        and the new one that kills the chosen columns.  The rank over the field of fractions is `rank` exactly where
+        these covectors kill all columns.
+        """
+        nrows, ncols = self.shape
+        for row in (i for i in range(nrows) if i not in set(rows)):
+            bordered = [*rows, row]
+            minors = self._expanded(bordered, list(columns))
+            covector = []
+            for place in range(len(bordered)):
+                cofactor = minors.get(tuple(bordered[:place] + bordered[place + 1 :]))
+                covector.append(cofactor if cofactor is None or (rank - place) % 2 == 0 else -cofactor)
+            for column in range(ncols):
+                total = 0 * self._context.gens()[0]
+                for i, factor in zip(bordered, covector, strict=True):
+                    if factor is not None:
+                        total = total + factor * self._table[i][column]
+                if not self._reduced(total).is_zero():
+                    return False
+        return True
+
+    def invariant_factors(self, first: Any, second: Any, fields: Sequence[ExactMatrix]) -> list[Any]:
+        """The irreducible common factors p of two polynomials with grad p . A x a multiple of p for all A.
+
+        Parameters
+        ----------
+        first, second : polynomials from `minor`
+        fields : sequence of ExactMatrix
+            Matrices A (m, m): linear vector fields x -> A x.
+
+        Raises
+        ------
+        FieldError
+            Over a number field, where factoring is not available.
+        """
+        if self._modulus is not None:
+            raise FieldError(f"polynomials in several variables are factored over QQ only, not over {self.field.name}")
+        common = first.gcd(second)
+        if common.is_constant():
+            return []
+        flows = [self._flow(a) for a in fields]
+        return [p for p, _ in common.factor()[1] if all(self._is_semi_invariant(p, flow) for flow in flows)]
+
+    def _flow(self, matrix: ExactMatrix) -> list[Any]:
+        generators = self._context.gens()
+        zero = 0 * generators[0]
+        return [sum((x * c for x, c in zip(generators, row, strict=True) if c != 0), zero) for row in matrix.to_rows()]
+
+    def _is_semi_invariant(self, polynomial: Any, flow: list[Any]) -> bool:
+        total = 0 * polynomial
+        for i, component in enumerate(flow):
+            total = total + polynomial.derivative(i) * component
+        return bool(divmod(total, polynomial)[1].is_zero())

@@ -1,0 +1,131 @@
+"""Coordinates on a quotient K^n / U with small numbers.
+
+Over QQ an echelon basis of a scrambled subspace has huge entries.  Where that happens, the lattice of integer
+covectors that vanish on U is LLL-reduced together with a completion to a basis of Z^n: its first d members
+are the coordinate functions, the dual basis gives a complement and a basis of U.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import flint
+
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.field import Matrix
+from liehom.scalars.fields.floating import FloatMatrix
+
+SMALL_BITS = 5
+LATTICE_DIMENSION = 130
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """A basis of U, a complement of U, and the coordinates of the quotient in it.
+
+    Attributes
+    ----------
+    subspace : Matrix
+        Rows (k, n), a basis of U.
+    lift : Matrix
+        Rows (d, n), a complement W of U.
+    projection : Matrix
+        (n, d), with U Q = 0 and W Q = 1: x Q are the coordinates of x mod U.
+    """
+
+    subspace: Any
+    lift: Any
+    projection: Any
+
+
+def quotient(basis: Matrix) -> Quotient:
+    """Coordinates for K^n modulo the span of independent rows.
+
+    Parameters
+    ----------
+    basis : Matrix
+        Independent rows (k, n).
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> q = quotient(QQ.matrix([[1, 1, 0]]))
+    >>> (q.subspace @ q.projection).is_zero(), q.lift @ q.projection == QQ.identity(2)
+    (True, True)
+    """
+    if isinstance(basis, FloatMatrix):
+        across = basis.null_space()
+        return Quotient(basis.row_space(), across, across.T)
+    if not isinstance(basis, ExactMatrix):
+        raise TypeError(f"no quotient over {basis.field}")
+    reduced, pivots = basis.echelon()
+    n = basis.ncols
+    if basis.field.degree == 1 and 0 < basis.nrows < n <= LATTICE_DIMENSION and not _is_small(reduced):
+        return _by_lattice(basis)
+    return _from_echelon(reduced, pivots)
+
+
+def echelon_quotient(basis: ExactMatrix) -> Quotient:
+    """The same without the search for small numbers, for what is used once: the complement consists of unit vectors.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> echelon_quotient(QQ.matrix([[1, 7, 0]])).projection.to_strings()
+    [['-7', '0'], ['1', '0'], ['0', '1']]
+    """
+    return _from_echelon(*basis.echelon())
+
+
+def _from_echelon(reduced: ExactMatrix, pivots: list[int]) -> Quotient:
+    n, chosen = reduced.ncols, set(pivots)
+    free = [j for j in range(n) if j not in chosen]
+    lift = reduced.field.identity(n).select(rows=free)
+    return Quotient(reduced, lift, _projection(reduced, pivots, free))
+
+
+def _projection(reduced: ExactMatrix, pivots: list[int], free: list[int]) -> ExactMatrix:
+    """e_f goes to its unit vector, e_p to minus the free part of its echelon row."""
+    n, d = reduced.ncols, len(free)
+    parts = []
+    for s, part in enumerate(reduced.parts):
+        entries = part.entries()
+        out = [0] * (n * d)
+        for i, pivot in enumerate(pivots):
+            for f, j in enumerate(free):
+                out[pivot * d + f] = -entries[i * n + j]
+        if s == 0:
+            for f, j in enumerate(free):
+                out[j * d + f] = reduced.den
+        parts.append(out)
+    return reduced.field.from_parts(parts, n, d, reduced.den)
+
+
+def _is_small(matrix: ExactMatrix) -> bool:
+    bound = 1 << SMALL_BITS
+    return matrix.den < bound and all(-bound < x < bound for x in matrix.parts[0].entries())
+
+
+def _by_lattice(basis: ExactMatrix) -> Quotient:
+    n, k, field = basis.ncols, basis.nrows, basis.field
+    rows = basis.parts[0].entries()
+    bits = 10
+    while True:
+        weight = 1 << bits
+        table = []
+        for i in range(n):
+            table += [int(i == j) for j in range(n)]
+            table += [weight * rows[a * n + i] for a in range(k)]
+        reduced = flint.fmpz_mat(n, n + k, table).lll().tolist()
+        d = n - k
+        if all(x == 0 for row in reduced[:d] for x in row[n:]):
+            break
+        bits *= 2
+    unimodular = flint.fmpz_mat([row[:n] for row in reduced])
+    dual, sign = flint.fmpq_mat(unimodular).inv().numer_denom()
+    # T unimodular: the inverse is integral; its columns are the dual basis.
+    whole = ExactMatrix(field, (dual.transpose(),), int(sign)).normalized()
+    functions = ExactMatrix(field, (unimodular,), 1).select(rows=range(d)).T
+    return Quotient(whole.select(rows=range(d, n)), whole.select(rows=range(d)), functions)

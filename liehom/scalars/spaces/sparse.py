@@ -1,0 +1,129 @@
+"""SparseInteger: sparse integer matrices over a common denominator, with products that cannot overflow.
+
+Held as scipy.sparse int64 while a bound on every sum excludes overflow, else as dictionaries of Python
+integers.  Only what contractions of bracket tables need.
+"""
+
+from __future__ import annotations
+
+from typing import Any, final
+
+import flint
+import numpy as np
+import numpy.typing as npt
+
+from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.exact_matrix import ExactMatrix
+
+LIMIT = 1 << 62
+IntArray = npt.NDArray[np.int64]
+
+
+@final
+class SparseInteger:
+    """A sparse matrix with integer entries over a common denominator.
+
+    Parameters
+    ----------
+    rows, columns : integer arrays
+    values : sequence of int
+        Entries; positions must be distinct.
+    shape : (int, int)
+    den : int
+
+    Examples
+    --------
+    >>> A = SparseInteger([0, 1], [1, 0], [2, 10**30], (2, 2))
+    >>> (A @ A).first_entry()
+    (0, 0)
+    """
+
+    __slots__ = ("columns", "den", "rows", "shape", "values")
+
+    def __init__(self, rows: Any, columns: Any, values: Any, shape: tuple[int, int], den: int = 1) -> None:
+        self.rows = np.asarray(rows, dtype=np.int64)
+        self.columns = np.asarray(columns, dtype=np.int64)
+        self.values: Any = _narrowed(values)
+        self.shape = shape
+        self.den = den
+
+    @classmethod
+    def from_matrix(cls, matrix: ExactMatrix) -> SparseInteger:
+        """The sparse form of a matrix over QQ."""
+        entries = matrix.parts[0].entries()
+        places = [x for x, v in enumerate(entries) if v]
+        index = np.array(places, dtype=np.int64)
+        n = max(matrix.ncols, 1)
+        values = [int(entries[x]) for x in places]
+        return cls(index // n, index % n, values, matrix.shape, matrix.den)
+
+    def __matmul__(self, other: SparseInteger) -> SparseInteger:
+        shape = (self.shape[0], other.shape[1])
+        den = self.den * other.den
+        if not len(self.values) or not len(other.values):
+            return SparseInteger([], [], [], shape, den)
+        if self._product_fits(other):
+            product = (self._csr() @ other._csr()).tocoo()
+            keep = product.data != 0
+            rows, columns = product.row[keep], product.col[keep]
+            return SparseInteger(rows, columns, product.data[keep], shape, den)
+        return self._product_by_dictionaries(other, shape, den)
+
+    def _product_fits(self, other: SparseInteger) -> bool:
+        if self.values.dtype == object or other.values.dtype == object:
+            return False
+        sums = np.zeros(self.shape[0])
+        np.add.at(sums, self.rows, np.abs(self.values.astype(np.float64)))
+        return bool(sums.max() * float(np.abs(other.values.astype(np.float64)).max()) < LIMIT / 2)
+
+    def _csr(self) -> Any:
+        from scipy import sparse
+
+        data = self.values.astype(np.int64)
+        return sparse.coo_array((data, (self.rows, self.columns)), shape=self.shape).tocsr()
+
+    def _product_by_dictionaries(self, other: SparseInteger, shape: tuple[int, int], den: int) -> SparseInteger:
+        right: dict[int, list[tuple[int, int]]] = {}
+        for r, c, v in zip(other.rows.tolist(), other.columns.tolist(), other.values.tolist(), strict=True):
+            right.setdefault(r, []).append((c, v))
+        total: dict[tuple[int, int], int] = {}
+        for r, c, v in zip(self.rows.tolist(), self.columns.tolist(), self.values.tolist(), strict=True):
+            for column, w in right.get(c, ()):
+                total[r, column] = total.get((r, column), 0) + v * w
+        kept = [(r, c, v) for (r, c), v in total.items() if v]
+        return SparseInteger([k[0] for k in kept], [k[1] for k in kept], [k[2] for k in kept], shape, den)
+
+    def reshape(self, nrows: int, ncols: int) -> SparseInteger:
+        """The same entries row after row in another shape."""
+        place = self.rows * self.shape[1] + self.columns
+        return SparseInteger(place // ncols, place % ncols, self.values, (nrows, ncols), self.den)
+
+    def regroup(self, p: int, q: int, r: int) -> SparseInteger:
+        """From shape (p, q*r) to (q, p*r): the first two of three indices exchanged."""
+        j, c = self.columns // r, self.columns % r
+        return SparseInteger(j, self.rows * r + c, self.values, (q, p * r), self.den)
+
+    def first_entry(self) -> tuple[int, int] | None:
+        """The position of a non-zero entry with least column, then row, or None."""
+        if not len(self.values):
+            return None
+        place = int(np.lexsort((self.rows, self.columns))[0])
+        return int(self.rows[place]), int(self.columns[place])
+
+    def dense_blocks(self, field: ExactField, p: int, q: int, r: int) -> list[ExactMatrix]:
+        """The p matrices (q, r) that stand side by side in this one of shape (q, p*r)."""
+        tables = [[0] * (q * r) for _ in range(p)]
+        for row, column, v in zip(self.rows.tolist(), self.columns.tolist(), self.values.tolist(), strict=True):
+            a, c = divmod(column, r)
+            tables[a][row * r + c] = v
+        return [ExactMatrix(field, (flint.fmpz_mat(q, r, t),), self.den).normalized() for t in tables]
+
+
+def _narrowed(values: Any) -> Any:
+    """int64 where all values fit, else an object array of Python integers."""
+    if isinstance(values, np.ndarray) and values.dtype == np.int64:
+        return values
+    try:
+        return np.array(values, dtype=np.int64)
+    except OverflowError:
+        return np.array([int(v) for v in values], dtype=object)

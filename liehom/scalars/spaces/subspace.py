@@ -1,0 +1,135 @@
+"""Subspace: a linear subspace of K^n by its canonical basis.
+
+Over an exact field the basis is the reduced echelon form, so equal subspaces have equal bases; over floats
+it is orthonormal.  Vectors are rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, final
+
+from liehom.errors import ShapeError
+from liehom.scalars.fields.field import Field, Scalar, rows_of
+
+
+@final
+class Subspace:
+    """The span of rows in K^n.
+
+    Parameters
+    ----------
+    field : Field
+    rows : iterable of rows, or a matrix
+        Spanning vectors, shape (k, n); they may be dependent.
+    ambient : int
+        The dimension n of the space around.
+
+    Raises
+    ------
+    ShapeError
+        If a row does not have length `ambient`.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> U = Subspace(QQ, [[1, 1, 0], [2, 2, 0]], 3)
+    >>> U.dimension, [1, 0, 0] in U, (U + Subspace(QQ, [[0, 0, 1]], 3)).dimension
+    (1, False, 2)
+    """
+
+    __slots__ = ("ambient", "basis", "field")
+
+    def __init__(self, field: Field, rows: Any, ambient: int) -> None:
+        matrix = rows if hasattr(rows, "row_space") else _as_matrix(field, rows, ambient)
+        if matrix.ncols != ambient:
+            raise ShapeError(f"rows of length {matrix.ncols} in a space of dimension {ambient}")
+        self.field = field
+        self.ambient = ambient
+        self.basis = matrix.row_space()
+
+    @property
+    def dimension(self) -> int:
+        """The dimension."""
+        return int(self.basis.nrows)
+
+    def __contains__(self, vector: Any) -> bool:
+        row = self.field.matrix([vector])
+        if row.ncols != self.ambient:
+            raise ShapeError(f"a vector of length {row.ncols} in a space of dimension {self.ambient}")
+        return int(self.field.stack_rows([self.basis, row], self.ambient).rank()) == self.dimension
+
+    def includes(self, other: Subspace) -> bool:
+        """Whether `other` is a subspace of this one."""
+        return (self + other).dimension == self.dimension
+
+    def __add__(self, other: Subspace) -> Subspace:
+        return Subspace(self.field, self.field.stack_rows([self.basis, other.basis], self.ambient), self.ambient)
+
+    def intersection(self, other: Subspace) -> Subspace:
+        """The intersection of two subspaces."""
+        return Subspace(self.field, self.annihilator_rows(other), self.ambient)
+
+    def annihilator_rows(self, other: Subspace) -> Any:
+        """Rows spanning the intersection with `other`: the vectors of this one that its annihilator kills."""
+        functionals = other.basis.null_space()
+        coefficients = (functionals @ self.basis.T).null_space()
+        return coefficients @ self.basis
+
+    def annihilator(self) -> Subspace:
+        """The covectors (as rows) that vanish on the subspace."""
+        return Subspace(self.field, self.basis.null_space(), self.ambient)
+
+    def complement_indices(self) -> list[int]:
+        """Indices of standard basis vectors that span a complement, in increasing order."""
+        if self.field.exact:
+            pivots = set(self.basis.echelon()[1])
+            return [j for j in range(self.ambient) if j not in pivots]
+        chosen: list[int] = []
+        current = self.basis
+        for j in range(self.ambient):
+            grown = self.field.stack_rows([current, self.field.unit(self.ambient, j)], self.ambient)
+            if grown.rank() > current.nrows:
+                chosen.append(j)
+                current = grown
+        return chosen
+
+    def complement(self) -> Subspace:
+        """The complement spanned by standard basis vectors (`complement_indices`)."""
+        return Subspace(
+            self.field, self.field.identity(self.ambient).select(rows=self.complement_indices()), self.ambient
+        )
+
+    def quotient_map(self) -> tuple[Any, Any]:
+        """A complement W, shape (d, n), and a matrix Q, shape (n, d), with x Q the coordinates of x mod U in W.
+
+        U Q = 0 and W Q = 1.
+        """
+        indices = self.complement_indices()
+        lift = self.field.identity(self.ambient).select(rows=indices)
+        whole = self.field.stack_rows([lift, self.basis], self.ambient)
+        return lift, whole.inverse().select(columns=range(len(indices)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Subspace) or self.ambient != other.ambient:
+            return False
+        if self.field.exact:
+            return bool(self.basis == other.basis)
+        return self.dimension == other.dimension and self.includes(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def rows(self) -> list[list[Scalar]]:
+        """The canonical basis as lists of field elements."""
+        return self.basis.to_rows()  # type: ignore[no-any-return]
+
+    def __repr__(self) -> str:
+        return f"<subspace of dimension {self.dimension} in {self.field.name}^{self.ambient}>"
+
+
+def _as_matrix(field: Field, rows: Iterable[Iterable[Any]], ambient: int) -> Any:
+    table = rows_of(rows)
+    for i, row in enumerate(table):
+        if len(row) != ambient:
+            raise ShapeError(f"row {i} has length {len(row)}, expected {ambient}")
+    return field.matrix(table, (len(table), ambient))

@@ -1,0 +1,199 @@
+"""Simple algebras over QQ, split over the reals: places of the centroid and the Killing signature at each."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import liehom as lh
+from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition
+from liehom.algebra.structure.real_splitting import centroid_field, places, real_ideals, real_root_intervals
+from liehom.errors import FieldError, InputError
+from liehom.scalars import QQ, Polynomial
+from liehom.testing import random_unimodular
+
+SQRT2, IMAGINARY, CUBE_ROOT, CYCLIC = [-2, 0, 1], [1, 0, 1], [-2, 0, 0, 1], [1, -3, 0, 1]
+
+
+def _reduced(p: list[int], f: list[int]) -> list[int]:
+    """A polynomial modulo a monic one."""
+    m, p = len(f) - 1, [*p, *([0] * len(f))]
+    for k in range(len(p) - 1, m - 1, -1):
+        for i in range(m):
+            p[k - m + i] -= p[k] * f[i]
+    return p[:m]
+
+
+def restricted(a: list[int], b: list[int], c: list[int], f: list[int]) -> lh.LieAlgebra:
+    """[e0, e1] = c e2, [e1, e2] = a e0, [e2, e0] = b e1 over QQ[t]/f, with a, b, c in it, as an algebra over QQ."""
+    m = len(f) - 1
+    table: dict[tuple[int, int], dict[int, int]] = {}
+    brackets = {(0, 1): (2, c), (1, 2): (0, a), (0, 2): (1, [-x for x in b])}
+    for (i, j), (k, value) in brackets.items():
+        for p in range(m):
+            for q in range(m):
+                product = _reduced([0] * (p + q) + value, f)
+                table[i * m + p, j * m + q] = {k * m + x: v for x, v in enumerate(product) if v}
+    return lh.LieAlgebra(table, dimension=3 * m)
+
+
+def scrambled(algebra: lh.LieAlgebra, seed: int) -> lh.LieAlgebra:
+    return algebra.change_of_basis(random_unimodular(algebra.dimension, random.Random(seed)))
+
+
+def whole(algebra: lh.LieAlgebra) -> lh.Subalgebra:
+    return algebra.subalgebra(algebra.whole().basis)
+
+
+def found(algebra: lh.LieAlgebra) -> Counter[Any]:
+    return Counter((p.kind, p.killing_signature) for p in places(whole(algebra)))
+
+
+COMPACT, SPLIT, COMPLEX = ("real", (0, 3)), ("real", (2, 1)), ("complex", (3, 3))
+CASES = {
+    "so(3) over QQ(sqrt 2)": (([1], [1], [1], SQRT2), {COMPACT: 2}),
+    "x^2 + y^2 - sqrt(2) z^2": (([1], [1], [0, -1], SQRT2), {COMPACT: 1, SPLIT: 1}),
+    "x^2 + y^2 + (1 + sqrt 2) z^2": (([1], [1], [1, 1], SQRT2), {COMPACT: 1, SPLIT: 1}),
+    "x^2 + y^2 - (2 + sqrt 2) z^2": (([1], [1], [-2, -1], SQRT2), {SPLIT: 2}),
+    "so(3) over QQ(i)": (([1], [1], [1], IMAGINARY), {COMPLEX: 1}),
+    "cube root of 2, compact": (([1], [1], [0, 1], CUBE_ROOT), {COMPACT: 1, COMPLEX: 1}),
+    "cube root of 2, split": (([1], [1], [0, -1], CUBE_ROOT), {SPLIT: 1, COMPLEX: 1}),
+    "three real places": (([1], [1], [0, 1], CYCLIC), {COMPACT: 2, SPLIT: 1}),
+    "three real places, negative": (([1], [1], [0, -1], CYCLIC), {COMPACT: 1, SPLIT: 2}),
+    "eighth roots of one": (([1], [1], [1, 1], [1, 0, 0, 0, 1]), {COMPLEX: 2}),
+    "quintic with three real roots": (([1], [1], [0, 1], [2, -4, 0, 0, 0, 1]), {COMPACT: 2, SPLIT: 1, COMPLEX: 1}),
+}
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+@pytest.mark.parametrize("seed", [0, 1])
+def test_places_of_restrictions_of_scalars(name: str, seed: int) -> None:
+    data, expected = CASES[name]
+    assert found(scrambled(restricted(*data), seed)) == Counter(expected)
+
+
+@pytest.mark.parametrize(
+    ("algebra", "kind", "signature"),
+    [
+        (lh.so(7), "real", (0, 21)),
+        (lh.sl(4), "real", (9, 6)),
+        (lh.so(3, 1), "complex", (3, 3)),
+        (lh.sl(3, "C"), "complex", (8, 8)),
+        (lh.su(2, 1), "real", (4, 4)),
+    ],
+    ids=["so(7)", "sl(4)", "so(3,1)", "sl(3,C)", "su(2,1)"],
+)
+def test_one_place(algebra: lh.LieAlgebra, kind: str, signature: tuple[int, int]) -> None:
+    """so(3, 1) is simple over R and of complex type, though its centroid over QQ is QQ(i)."""
+    place = places(whole(scrambled(algebra, 3)))
+    assert [(p.kind, p.killing_signature, p.dimension) for p in place] == [(kind, signature, algebra.dimension)]
+
+
+@settings(deadline=None, max_examples=15)
+@given(st.integers(-3, 3), st.integers(-3, 3), st.sampled_from([SQRT2, [-3, 0, 1], [-1, -1, 1]]), st.randoms())
+def test_the_form_decides_at_each_real_place(p: int, q: int, f: list[int], rng: random.Random) -> None:
+    """so of x^2 + y^2 + (p + q t) z^2 is compact exactly at the places where p + q t is positive."""
+    if p == q == 0:
+        return
+    width = (f[1] ** 2 - 4 * f[0]) ** 0.5
+    roots = [(-f[1] - width) / 2, (-f[1] + width) / 2]
+    expected = Counter(COMPACT if p + q * r > 0 else SPLIT for r in roots)
+    algebra = restricted([1], [1], [p, q], f)
+    assert found(algebra.change_of_basis(random_unimodular(6, rng))) == expected
+
+
+def test_signatures_add_up_to_that_of_the_killing_form() -> None:
+    algebra = scrambled(restricted([1], [1], [0, 1], [2, -4, 0, 0, 0, 1]), 5)
+    signatures = [p.killing_signature for p in places(whole(algebra))]
+    assert tuple(map(sum, zip(*signatures, strict=True))) == algebra.killing_signature()[:2]
+
+
+def test_places_over_a_real_number_field() -> None:
+    """Over QQ(sqrt 2) the form x^2 + y^2 - sqrt(2) z^2 needs no second place; a second root is one over QQ(2^(1/4))."""
+    field = lh.number_field("sqrt(2)")
+    table = {(0, 1): {2: "-sqrt(2)"}, (1, 2): {0: 1}, (0, 2): {1: -1}}
+    split = lh.LieAlgebra(table, field, dimension=3)
+    assert found(split) == Counter({SPLIT: 1})
+    doubled = restricted([1], [1], [0, 1], SQRT2).over(lh.number_field("sqrt(3)"))
+    assert found(scrambled(doubled, 2)) == Counter({SPLIT: 1, COMPACT: 1})
+
+
+def test_a_quadratic_centroid_is_shown_by_a_square_root() -> None:
+    """The generator is made simple: t^2 - 5 for the golden ratio, whatever the basis."""
+    algebra = restricted([1], [1], [0, 1], [-1, -1, 1])
+    assert centroid_field(whole(scrambled(algebra, 1))).polynomial == Polynomial(QQ, [-5, 0, 1])
+
+
+def test_an_algebra_that_is_not_simple_is_refused() -> None:
+    with pytest.raises(InputError, match="sum of ideals"):
+        places(whole(lh.so(4)))
+    with pytest.raises(InputError, match="degenerate"):
+        places(whole(lh.gl(2)))
+    with pytest.raises(InputError, match="degenerate"):
+        places(lh.so(3).subalgebra([]))
+    with pytest.raises(FieldError, match="exact"):
+        places(whole(lh.so(3).over(lh.RR)))
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_real_ideals_have_the_signatures_of_their_places(name: str) -> None:
+    """Each ideal is closed and an ideal over its own field, where its Killing form can be looked at directly."""
+    data, _ = CASES[name]
+    ideal = whole(scrambled(restricted(*data), 1))
+    found_ideals = real_ideals(ideal)
+    assert len(found_ideals) == len(places(ideal))
+    for part, place in zip(found_ideals, places(ideal), strict=True):
+        assert part.dimension == place.dimension
+        if part.algebra.field.degree <= 5:
+            closed = lh.Subalgebra(part.algebra, part.basis)
+            assert closed.is_ideal() and closed.as_algebra().killing_signature() == (*place.killing_signature, 0)
+
+
+def test_a_real_ideal_of_a_part_of_an_algebra() -> None:
+    """An ideal of a larger algebra: the rows are in the coordinates of the algebra around."""
+    algebra = scrambled(lh.direct_sum(lh.sl(2), restricted([1], [1], [0, 1], SQRT2)), 4)
+    large = next(h for h in direct_sum_decomposition(algebra) if h.dimension == 6)
+    parts = real_ideals(large)
+    assert [h.algebra.field for h in parts] == [lh.number_field("sqrt(2)")] * 2
+    rows = lh.QQ.stack_rows([large.basis], 9)
+    for h in parts:
+        inside = h.algebra.field.stack_rows([h.algebra.field.read(rows), h.basis], 9)
+        assert h.is_ideal() and inside.rank() == 6
+
+
+def test_real_ideals_over_a_real_number_field() -> None:
+    """Over QQ(sqrt 3) the ideals need QQ(sqrt 2, sqrt 3), of degree 4."""
+    doubled = scrambled(restricted([1], [1], [0, 1], SQRT2).over(lh.number_field("sqrt(3)")), 2)
+    parts = real_ideals(whole(doubled))
+    assert [h.algebra.field.degree for h in parts] == [4, 4]
+    assert all(lh.Subalgebra(h.algebra, h.basis).is_ideal() for h in parts)
+    assert sorted(h.as_algebra().killing_signature() for h in parts) == [(0, 3, 0), (2, 1, 0)]
+
+
+def test_what_does_not_split_is_returned_as_it_is() -> None:
+    """so(4) splits over QQ already; so(3, 1) is simple over R."""
+    compact = [real_ideals(h) for h in direct_sum_decomposition(scrambled(lh.so(4), 1))]
+    assert [[(p.dimension, p.algebra.field) for p in parts] for parts in compact] == [[(3, lh.QQ)], [(3, lh.QQ)]]
+    lorentz = whole(scrambled(lh.so(3, 1), 1))
+    assert real_ideals(lorentz) == [lorentz]
+
+
+def test_a_field_of_too_large_a_degree_is_refused() -> None:
+    """t^10 - 2 has complex roots: sums of two of its ten roots may have degree 45; places are found still."""
+    ideal = whole(restricted([1], [1], [1], [-2, *[0] * 9, 1]))
+    with pytest.raises(FieldError, match="degree 45"):
+        real_ideals(ideal)
+    assert Counter(p.kind for p in places(ideal)) == Counter(real=2, complex=4)
+
+
+def test_intervals_hold_one_root_each() -> None:
+    f = Polynomial(QQ, [0, 4, 0, -5, 0, 1])  # -2, -1, 0, 1, 2
+    intervals = real_root_intervals(f)
+    assert [f.count_real_roots(*i) for i in intervals] == [1] * 5
+    assert all(f(low) != 0 != f(high) for low, high in intervals)
+    assert real_root_intervals(Polynomial(QQ, [1, 0, 1])) == []

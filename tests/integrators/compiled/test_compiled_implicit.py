@@ -1,0 +1,121 @@
+"""Compiled steps that solve equations by iteration: loops in the trace, for every lane as long as it needs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.tracing import Kernel, StepGraph, Tape, Traced, repeated
+from liehom.tracing.jax_code import evaluated
+from tests.integrators import spaces
+from tests.integrators.compiled.test_compiled import BODY, EPS, START, ULPS, a_field, assert_same, both, cache, sphere
+
+__all__ = ["cache"]
+
+STEPS = ["implicit euler", "implicit midpoint", "gauss2", "gauss3", "radau2a", "sdirk2", "trapezoidal"]
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_the_rigid_body_agrees(name: str) -> None:
+    for y0 in (START, sphere(21)):
+        assert_same(*both(BODY, (0, 2), y0, step=lh.RKMK(name), dt=0.1))
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_calls_of_psi_are_counted_iteration_by_iteration(name: str) -> None:
+    plain, made = both(BODY, (0, 2), START, step=lh.RKMK(name), dt=0.1)
+    # an iteration that stops at round-off may stop one later or earlier
+    assert abs(made.nfev - plain.nfev) <= 0.05 * plain.nfev
+    assert plain.nfev > 4 * 20
+
+
+@pytest.mark.parametrize("step", [lh.BackwardEuler(), lh.Corrected(lh.BackwardEuler(), 2)], ids=["plain", "corrected"])
+def test_backward_euler_agrees(step: lh.correctors.Step) -> None:
+    assert_same(*both(BODY, (0, 2), sphere(5), step=step, dt=0.1))
+
+
+@pytest.mark.parametrize("name", ["S^4", "Sym(3) at (1,2,3)", "H^3"])
+def test_other_spaces_agree(name: str) -> None:
+    space = spaces.make(name)
+    assert_same(*both(a_field(name, space), (0, 1), space.starts[:3], step=lh.RKMK("gauss2"), dt=0.05))
+
+
+def test_lanes_iterate_as_long_as_they_need() -> None:
+    """A trajectory at rest beside fast ones: each has the result that it has alone."""
+    w = np.array([1.0, 0.5, 0.25])
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * w * (1 + 30 * m[..., :1] ** 2))
+    y0 = np.concatenate([[[0.0, 0.0, 1.0]], sphere(9)])
+    options: dict[str, Any] = {"step": lh.RKMK("gauss2"), "dt": 0.01, "compile": "numba"}
+    many = lh.integrate(field, (0, 1), y0, **options)
+    for k in (0, 1, 9):
+        alone = lh.integrate(field, (0, 1), y0[k], **options)
+        np.testing.assert_allclose(alone.y, many.y[k], rtol=0, atol=ULPS * EPS)
+    assert_same(*both(field, (0, 1), y0, step=lh.RKMK("gauss2"), dt=0.01))
+
+
+@pytest.mark.parametrize("backend", ["numba", "jax"])
+def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
+    fast = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -300 * m * [1.0, 0.5, 0.25] * m[..., :1] ** 2)
+    y0 = np.array([[0.6, 0.48, 0.64], [0.0, 0.6, 0.8], [0.1, 0.6, np.sqrt(0.63)]])
+    plain = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1)
+    made = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1, compile=backend)
+    assert list(plain.statuses) == list(made.statuses) and set(plain.statuses) == {0, int(plain.statuses.min())}
+    assert plain.statuses.min() < 0
+    assert plain.message == made.message
+
+
+def test_jax_agrees_and_differentiates() -> None:
+    jax = pytest.importorskip("jax")
+    step = lh.RKMK("implicit midpoint")
+    plain = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1)
+    made = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, compile="jax")
+    np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=ULPS * EPS)
+
+    def last(m: Any, **how: Any) -> Any:
+        return lh.integrate(BODY, (0, 0.5), m, step=step, dt=0.1, t_eval=[0.5], **how).y[1, -1]
+
+    with jax.enable_x64(True):
+        found = np.asarray(jax.jit(jax.grad(lambda m: last(m, compile="jax")))(jax.numpy.asarray(START)))
+    e = 1e-6
+    wanted = [(last(START + e * d) - last(START - e * d)) / (2 * e) for d in np.eye(3)]
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-8)
+
+
+# -- the loop itself -----------------------------------------------------------------------------------------
+def heron(tape: Tape, a: Traced, limit: int) -> Traced:
+    """Square roots, each lane until nothing changes; a loop inside a loop computes the half."""
+
+    def half(x: Any) -> Any:
+        done = repeated(lambda y, k: ([y - x / 8, k + 1], k < 3), [x, 0.0], tape, 10)
+        return done[0]
+
+    def body(x: Any) -> Any:
+        new = half(x + a / x)
+        going = np.abs(new - x) > 1e-14 * new
+        return [np.where(going, new, x)], going
+
+    return repeated(body, [a], tape, limit)[0]
+
+
+def test_loops_within_loops_by_both_emitters() -> None:
+    tape = Tape()
+    found = heron(tape, Traced(tape, tape.input(0)), 60).entries[()]
+    values = np.array([2.0, 1e-3, 5.0, 1e6, 1.0, 3.0, 7.0, 0.5])
+    np.testing.assert_allclose(np.asarray(evaluated([found], {0: values})[0]), np.sqrt(values), rtol=1e-6)
+    for width in (1, 8):
+        m, one, zero = values[None].copy(), np.ones(8), np.zeros(8)
+        kernel = Kernel(StepGraph([found], None, None, {}, {}), width)
+        kernel([m, zero.copy(), one, one, zero.copy(), one, np.zeros((1, 8)), None, None, None], 8, (0, 8 // width), 1,
+               (0.0, 1.0))  # fmt: skip
+        np.testing.assert_allclose(m[0], np.sqrt(values), rtol=1e-12)
+
+
+def test_a_limit_is_kept() -> None:
+    tape = Tape()
+    x = tape.input(0)
+    found = repeated(lambda y: ([y + 1], y < 1e9), [Traced(tape, x)], tape, 7)[0].entries[()]
+    for whole in (False, True):
+        assert float(evaluated([found], {0: 0.0}, differentiable=whole)[0]) == 7.0

@@ -1,0 +1,99 @@
+"""The conformance suite: it passes what is right, and each check catches what it is there for."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import liehom as lh
+from liehom import testing
+from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.errors import ConformanceError
+from liehom.fullness.certificates.certificate import Certificate
+from liehom.scalars import QQ, RR
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+ALGEBRAS: dict[str, Callable[[], lh.LieAlgebra]] = {
+    "zero": lambda: lh.LieAlgebra({}, dimension=0),
+    "line": lambda: lh.abelian(1),
+    "abelian": lambda: lh.abelian(4),
+    "heisenberg": lambda: lh.heisenberg(2),
+    "so(3,1)": lambda: lh.so(3, 1),
+    "sl(3)": lambda: lh.sl(3),
+    "so(3) over QQ(sqrt(2))": lambda: lh.so(3).over(lh.number_field("sqrt(2)")),
+    "so(3) over float64": lambda: lh.so(3).over(RR),
+}
+
+
+@pytest.mark.parametrize("name", ALGEBRAS)
+def test_algebras_conform(name: str) -> None:
+    testing.check_lie_algebra(ALGEBRAS[name]())
+
+
+@pytest.mark.parametrize("name", ["so(4)", "sl(2)"])
+def test_representations_conform(name: str) -> None:
+    rho = lh.defining(lh.so(4) if name == "so(4)" else lh.sl(2))
+    for found in (rho, rho.dual(), rho.symmetric_power(2), lh.adjoint(rho.algebra), lh.trivial(rho.algebra, 2)):
+        testing.check_representation(found)
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*.json")))
+def test_example_files_conform(name: str) -> None:
+    pair = lh.load(EXAMPLES / f"{name}.json")
+    testing.check_pair(pair)
+    if pair.field.exact:
+        testing.check_certificate(pair, lh.decide_fullness(pair).certificate, bases=2)
+
+
+@given(st.integers(0, 7), st.integers(0, 40), st.randoms(use_true_random=False))
+def test_random_unimodular_matrices_are_unimodular(n: int, operations: int, rng: random.Random) -> None:
+    rows = testing.random_unimodular(n, rng, operations)
+    assert abs(QQ.matrix(rows, (n, n)).determinant()) == 1
+
+
+def broken(entries: list[tuple[int, int, int, int]], n: int) -> lh.LieAlgebra:
+    """A table that is taken without proof."""
+    table = StructureConstants(QQ, n, [(i, j, k, QQ.convert(v)) for i, j, k, v in entries])
+    return lh.LieAlgebra(table, check=False)
+
+
+def test_a_table_without_the_jacobi_identity_is_caught() -> None:
+    with pytest.raises(ConformanceError) as caught:
+        testing.check_lie_algebra(broken([(0, 1, 0, 1), (1, 2, 1, 1)], 3))
+    assert caught.value.check in ("Jacobi", "killing form")
+
+
+def test_matrices_that_do_not_respect_the_bracket_are_caught() -> None:
+    so3 = lh.so(3)
+    rho = lh.Representation(so3, [a.scale(2) for a in lh.defining(so3).matrices], check=False)
+    with pytest.raises(ConformanceError, match="bracket"):
+        testing.check_representation(rho)
+
+
+def test_a_span_that_is_not_closed_is_caught() -> None:
+    so3 = lh.so(3)
+    h = lh.Subalgebra(so3, QQ.matrix([[1, 0, 0], [0, 1, 0]]), check=False)
+    with pytest.raises(ConformanceError, match=r"closure|isotropy"):
+        testing.check_pair(lh.Pair(so3, h), trials=10)
+
+
+@pytest.mark.parametrize("other", ["so31_so21", "g2_su3"])
+def test_a_certificate_of_another_pair_is_caught(other: str) -> None:
+    certificate = lh.decide_fullness(lh.load(EXAMPLES / f"{other}.json")).certificate
+    with pytest.raises(ConformanceError, match="verification"):
+        testing.check_certificate(lh.load(EXAMPLES / "so4_so3.json"), certificate)
+
+
+def test_a_certificate_may_be_its_json_object() -> None:
+    pair: Any = lh.load(EXAMPLES / "so31_so21.json")
+    data = json.loads(json.dumps(lh.decide_fullness(pair).certificate.to_json()))
+    testing.check_certificate(pair, data)
+    assert isinstance(Certificate.from_json(data), Certificate)
