@@ -15,11 +15,12 @@ PACKAGE = ROOT / "liehom"
 # layer -> the layers directly below it; a layer may import whatever can be reached downward
 BELOW: dict[str, tuple[str, ...]] = {
     "errors": (),
-    "parallel": ("errors",),
-    "scalars": ("errors",),
+    "typing": (),
+    "parallel": ("errors", "typing"),
+    "scalars": ("errors", "typing"),
     "algebra": ("scalars",),
     "representations": ("algebra",),
-    "tracing": ("errors",),
+    "tracing": ("errors", "typing"),
     "series": ("scalars", "tracing"),
     "homogeneous": ("representations", "series"),
     "fullness": ("homogeneous",),

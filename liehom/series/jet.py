@@ -9,9 +9,10 @@ factorials) and are computed on demand, so that a solution of a differential equ
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
+import numpy.typing as npt
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from liehom.errors import SeriesError, ShapeError
@@ -260,6 +261,10 @@ class Jet(NDArrayOperatorsMixin):
         return total
 
     # -- arithmetic --------------------------------------------------------------------------------------
+    if TYPE_CHECKING:
+        # numpy's functions reach Jets by `__array_function__`; type checkers know of `__array__` only
+        def __array__(self) -> npt.NDArray[Any]: ...
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         from liehom.series.jet_ufuncs import apply_ufunc
 

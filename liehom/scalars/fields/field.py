@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import ShapeError
+from liehom.typing import VectorLike
 
-Scalar = Any
+Scalar: TypeAlias = Any
 """An element of a field: ``flint.fmpq`` over QQ, `AlgebraicNumber` over QQ(a), ``float`` over float64."""
 
 
@@ -275,3 +276,7 @@ class Field(ABC):
 
     def __repr__(self) -> str:
         return self.name
+
+
+MatrixLike: TypeAlias = Sequence[VectorLike] | npt.NDArray[Any] | Matrix
+"""What a field reads as a matrix: rows of numbers, arrays of numpy, scipy and sympy, a `Matrix`."""
