@@ -1,0 +1,66 @@
+"""Two recorded results, compared: each difference with the name of its case; exits with 1 if there is one.
+
+python -m tests.results.compare BEFORE.json AFTER.json
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+
+def environment(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
+    """What results may depend on besides liehom, where it is not the same."""
+    one, other = before["header"], after["header"]
+    names = [name for name in {**one, **other} if name != "liehom"]
+    return [
+        f"{name}: {one.get(name)} before, {other.get(name)} after" for name in names if one.get(name) != other.get(name)
+    ]
+
+
+def differences(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
+    """One line for each value that differs, and for each case that only one of the two has."""
+    sections = [name for name in {**before, **after} if name != "header"]
+    return [
+        line
+        for section in sections
+        for line in _differing(before.get(section, {}), after.get(section, {}), f"{section}: ")
+    ]
+
+
+def _differing(one: Any, other: Any, path: str) -> Iterator[str]:
+    if isinstance(one, dict) and isinstance(other, dict):
+        for key in {**one, **other}:
+            name = f"{path}[{key}] "
+            if key not in one or key not in other:
+                yield f"{name}only {'after' if key not in one else 'before'}"
+            else:
+                yield from _differing(one[key], other[key], name)
+    elif one != other:
+        yield f"{path}\n    before: {one!r}\n    after:  {other!r}"
+
+
+def main(paths: list[str]) -> int:
+    if len(paths) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    loaded = []
+    for path in paths:
+        with open(path, encoding="utf-8") as file:
+            loaded.append(json.load(file))
+    found = differences(*loaded)
+    for line in found:
+        print(line)
+    changed = environment(*loaded)
+    if changed:
+        print("Recorded in different environments, so that floating-point results may differ in their last bits:")
+        print("\n".join(f"    {line}" for line in changed))
+    cases = sum(len(part) for name, part in loaded[0].items() if name != "header")
+    print(f"{len(found)} differences in {cases} cases")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,122 @@
+"""Results are what they were in 0.1.0: a sample here, all of them with --slow; and the comparison can fail."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.results import compare, record
+
+BEFORE = Path(__file__).with_name("0.1.0.json")
+SAMPLE = {
+    "decisions": [
+        *("so(4)/so(3)", "f4/spin(9)", "su(2,1)/P", "e6(6)/P", "affine(field(1,1,1,1))", "0/0", "affine(S3(gl(2)))"),
+        *("so(5)/so(4), random basis", "sl(3)/P1, random basis", "affine(form(1,1,-3)), random basis"),
+        *("so(4)/so(3) over sqrt(2)", "affine(form(1,-2)+R) over sqrt(3)", "diag(1, ..., -1 * sqrt(2)) of size 3"),
+        *("diag(1, ..., 1 * sqrt(2)) of size 3", "powers of a matrix, 3"),
+    ],
+    "cards": ["so(3)", "sl(2)", "so(3,1)", "gl(3)", "heisenberg(2)", "gl(2)+e(2)", "aff(1)", "poincare(2)"],
+    "integrations": ["solved: body, Euler, 0 to 3, dt=0.1"],
+}
+ADVICE = "; if only the wording has changed, say so in REWORDED in tests/results/record.py"
+
+
+def before() -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(BEFORE.read_text(encoding="utf-8"))
+    return data
+
+
+def difference(section: str, name: str) -> list[str]:
+    """How a case differs from 0.1.0."""
+    after = json.loads(json.dumps(record.recorded(section, name)))
+    return compare.differences({section: {name: before()[section][name]}}, {section: {name: after}})
+
+
+def same_environment() -> bool:
+    return not compare.environment(before(), {"header": record.header()})
+
+
+@pytest.mark.parametrize("section", ["decisions", "cards"])
+def test_a_sample_of_exact_results_is_that_of_0_1_0(section: str) -> None:
+    found = [line for name in SAMPLE[section] for line in difference(section, name)]
+    assert not found, "\n".join(found) + ADVICE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("section", ["decisions", "cards"])
+def test_all_exact_results_are_those_of_0_1_0(section: str) -> None:
+    found = [line for name in record.SECTIONS[section] for line in difference(section, name)]
+    assert not found, "\n".join(found) + ADVICE
+
+
+@pytest.mark.slow
+def test_all_integrations_are_those_of_0_1_0() -> None:
+    if not same_environment():
+        pytest.skip("floating-point results are compared where libraries and processor are those of 0.1.0.json")
+    found = [line for name in record.SECTIONS["integrations"] for line in difference("integrations", name)]
+    assert not found, "\n".join(found) + ADVICE
+
+
+def test_the_committed_file_has_all_cases() -> None:
+    data = before()
+    assert data["header"]["liehom"] == "0.1.0"
+    assert {name: list(cases) for name, cases in record.SECTIONS.items()} == {
+        name: list(cases) for name, cases in data.items() if name != "header"
+    }
+    assert [len(cases) for cases in record.SECTIONS.values()] == [100, 40, 60]
+
+
+# -- negative controls -------------------------------------------------------------------------------------
+def test_a_last_bit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = SAMPLE["integrations"][0]
+    one = record.recorded("integrations", name)
+    field, start = record.integrations.PROBLEMS["body"]()
+    moved = start.copy()
+    moved[0] += 2.0**-53
+    monkeypatch.setitem(record.integrations.PROBLEMS, "body", lambda: (field, moved))
+    found = compare.differences(
+        {"integrations": {name: one}}, {"integrations": {name: record.recorded("integrations", name)}}
+    )
+    assert any(name in line and "[y]" in line for line in found)
+
+
+def test_another_certificate_is_noticed() -> None:
+    name = "so(4)/so(3)"
+    long = record.decisions.CASES[name]()["certificate"]
+    short = long.short()
+    long.value["eta"][0] += " + 0"
+    assert long.short() != short
+
+
+def test_each_difference_is_printed_and_the_exit_status_is_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    after = before()
+    assert compare.main([str(BEFORE), str(BEFORE)]) == 0
+    after["decisions"]["so(4)/so(3)"]["full"] = False
+    after["cards"]["so(3)"]["real form"] = "sl(2,R)"
+    del after["integrations"]["a damped spin"]
+    after["cards"]["another"] = {}
+    after["header"]["numpy"] = "0"
+    changed = tmp_path / "after.json"
+    changed.write_text(json.dumps(after))
+    capsys.readouterr()
+    assert compare.main([str(BEFORE), str(changed)]) == 1
+    printed = capsys.readouterr().out
+    for text in ("[so(4)/so(3)] [full]", "[so(3)] [real form]", "[a damped spin] only before", "[another] only after"):
+        assert text in printed
+    assert "numpy: " in printed and "4 differences in 200 cases" in printed
+
+
+def test_words_are_compared_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = record.recorded("cards", "aff(1)")
+    monkeypatch.setattr(record, "REWORDED", {"solvable": "soluble"})
+    other = record.recorded("cards", "aff(1)")
+    assert other["card"] == one["card"].replace("solvable", "soluble") != one["card"]
+    monkeypatch.setattr(record, "REWORDED", {})
+    same = copy.deepcopy(one)
+    assert not compare.differences({"cards": {"aff(1)": one}}, {"cards": {"aff(1)": same}})
