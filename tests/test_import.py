@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 LIMIT_SECONDS = 0.3
 TRIALS = 8
-LATE = ("scipy", "sympy", "networkx", "matplotlib", "jax", "numba", "typer", "rich")
+LATE = ("scipy", "sympy", "networkx", "matplotlib", "jax", "llvmlite", "typer", "rich")
 
 TIMED_IMPORT = "import time; t = time.process_time(); import liehom; print(time.process_time() - t)"
 LOADED = "import sys, liehom; print(*sorted({name.partition('.')[0] for name in sys.modules}))"

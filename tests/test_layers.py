@@ -92,7 +92,6 @@ DOORS: dict[str, tuple[str, ...]] = {
     "networkx": ("liehom.algebra",),
     "matplotlib": ("liehom.plotting", "liehom.paper"),
     "jax": ("liehom.integrators", "liehom.series", "liehom.tracing"),
-    "numba": ("liehom.integrators",),
     "llvmlite": ("liehom.tracing",),
     "zarr": ("liehom.parallel",),
     "typer": ("liehom.cli",),

@@ -43,7 +43,7 @@ def integrate(
         str | None, typer.Option(metavar="PATH", help="Keep the state in this file; an interrupted run continues.")
     ] = None,
     max_steps: Annotated[int | None, typer.Option(metavar="N", help="Stop after so many steps.")] = None,
-    compile: Annotated[str | None, typer.Option(metavar="NAME", help="Compile the step: numba or jax.")] = None,
+    compile: Annotated[str | None, typer.Option(metavar="NAME", help="Compile the step: llvm or jax.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it is there.")] = False,
     json: JsonOption = False,
 ) -> None:

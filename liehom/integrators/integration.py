@@ -96,8 +96,8 @@ def integrate(
         error ends the run; a run that finds it continues from it, bit for bit, and deletes it when it is done.
     checkpoint_every : float
         Seconds between two checkpoints.
-    compile : "numba" or "jax", optional
-        Compile the step (extra ``numba`` or ``jax``), for fixed and for adapted step sizes: see Notes.
+    compile : "llvm" or "jax", optional
+        Compile the step (extra ``llvm`` or ``jax``), for fixed and for adapted step sizes: see Notes.
 
     Returns
     -------

@@ -302,7 +302,7 @@ def _engine(text: str) -> tuple[Any, bool]:
     try:
         import llvmlite.binding as llvm
     except ImportError:
-        raise TraceError('compile="numba" needs the extra: pip install "liehom[numba]"') from None
+        raise TraceError('compile="llvm" needs the extra: pip install "liehom[llvm]"') from None
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     machine = llvm.Target.from_default_triple().create_target_machine(

@@ -125,12 +125,12 @@ def _dimensions(sizes: Sequence[int]) -> list[dict[str, Any]]:
 def _counts(counts: Sequence[int]) -> list[dict[str, Any]]:
     """Trajectories of the rigid body: what a step of all of them takes."""
     from tests.benchmarks.integration_measure import cost
-    from tests.benchmarks.integration_methods import NUMBA, STEPS, integrate
+    from tests.benchmarks.integration_methods import LLVM, STEPS, integrate
     from tests.benchmarks.integration_peers import LADDER, Solver
 
     problem, rows = rigid_body(), []
-    for compile in (None, "numba"):
-        solver = Solver(NUMBA, "E4", integrate("E4", compile), LADDER, fixed=True, lanes=10**9)
+    for compile in (None, "llvm"):
+        solver = Solver(LLVM, "E4", integrate("E4", compile), LADDER, fixed=True, lanes=10**9)
         taken = [cost(problem, solver, n, [], 0.02)["step"] * n for n in counts]
         name = "numpy" if compile is None else "compiled"
         rows.append(_row(f"{STEPS['E4'][0]!r} on S², {name}", "N", counts, taken, "µs"))

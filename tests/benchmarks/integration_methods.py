@@ -1,4 +1,4 @@
-"""liehom on the same problems: without compilation, and with compile="numba" and compile="jax".
+"""liehom on the same problems: without compilation, and with compile="llvm" and compile="jax".
 
 Points of a compiled run are those of the run on numpy arrays to round-off (which tests hold), so that errors are
 measured once.  Spins that act on each other are not compiled by `integrate`; there a step under ``jax.jit`` stands for
@@ -149,7 +149,7 @@ def under_jit(name: str) -> Solve:
 
 # -- rows ------------------------------------------------------------------------------------------------
 FEW, MANY = ("E4", "T8", "RK4"), ("E2", "E2 cay", "E4", "E6", "T4", "T6", "T8", "T12", "RK4")
-EAGER, NUMBA, JAX = "liehom, numpy", 'liehom, compile="numba"', 'liehom, compile="jax"'
+EAGER, LLVM, JAX = "liehom, numpy", 'liehom, compile="llvm"', 'liehom, compile="jax"'
 IN_JIT = "liehom, a step under jax.jit"
 ALL, ENDS, LARGE = (1, 10, 10_000), (1, 10_000), (10_000,)
 
@@ -171,7 +171,7 @@ def solvers(problem: Problem) -> list[Solver]:
         return _coupled_solvers()
     rows = []
     for n in names_for(problem):
-        made = Solver(NUMBA, n, integrate(n, "numba"), LADDER, "llvmlite", True, counts=ALL if n in FEW else LARGE)
+        made = Solver(LLVM, n, integrate(n, "llvm"), LADDER, "llvmlite", True, counts=ALL if n in FEW else LARGE)
         rows.append(made)
         if n in FEW:
             rows.append(Solver(EAGER, n, integrate(n, None), LADDER, "numpy", True, made, counts=ENDS))
@@ -179,12 +179,12 @@ def solvers(problem: Problem) -> list[Solver]:
             rows.append(Solver(JAX, n, integrate(n, "jax"), LADDER, "jax", True, made, counts=ENDS))
     if problem.energy is not None:
         rows += [
-            Solver(NUMBA, n, integrate(n, "numba"), LADDER[:6], "llvmlite", True, counts=ENDS, varying=True)
+            Solver(LLVM, n, integrate(n, "llvm"), LADDER[:6], "llvmlite", True, counts=ENDS, varying=True)
             for n in KEEPING
         ]
     rows += _adaptive_solvers(compiled=problem.size <= 10)
     if problem is rigid_body():
-        made = Solver(NUMBA, "exact orbit", exact_orbit("numba"), LADDER[:6], "llvmlite", True, counts=ENDS)
+        made = Solver(LLVM, "exact orbit", exact_orbit("llvm"), LADDER[:6], "llvmlite", True, counts=ENDS)
         rows += [made, Solver(EAGER, "exact orbit", exact_orbit(None), LADDER[:6], "numpy", True, made, counts=LARGE)]
     return rows
 
@@ -195,7 +195,7 @@ def _adaptive_solvers(*, compiled: bool) -> list[Solver]:
         ("adaptive", lh.LieTaylor(6), (1e-3, 1e-6, 1e-9)),
         ("DOP853", lh.RKMK("dop853"), (1e-3, 1e-6, 1e-9, 1e-12)),
     ):
-        made = Solver(NUMBA, label, adaptive(step, "numba"), tolerances, "llvmlite", counts=ENDS, sample=8)
+        made = Solver(LLVM, label, adaptive(step, "llvm"), tolerances, "llvmlite", counts=ENDS, sample=8)
         eager = Solver(EAGER, label, adaptive(step, None), tolerances, "numpy", False, made if compiled else None,
                        counts=(1,), sample=8)  # fmt: skip
         rows += [made, eager] if compiled else [eager]

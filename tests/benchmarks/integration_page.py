@@ -7,14 +7,14 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.integration_methods import EAGER, EXPLAINED, IN_JIT, JAX, NUMBA
+from tests.benchmarks.integration_methods import EAGER, EXPLAINED, IN_JIT, JAX, LLVM
 from tests.benchmarks.integration_problems import Problem, problems
 from tests.benchmarks.integration_targets import TARGETS, best, curve, ratios
 
 BEGIN, END = "<!-- integration: begin -->", "<!-- integration: end -->"
 MANY, EXPONENTS = 10_000, ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
 STYLES = {
-    NUMBA: "o-", EAGER: "s-", JAX: "^-", "scipy DOP853": "v--", "heyoka.py": "D--", "diffrax": "x--",
+    LLVM: "o-", EAGER: "s-", JAX: "^-", "scipy DOP853": "v--", "heyoka.py": "D--", "diffrax": "x--",
     "numba RK4 by hand": "+:", IN_JIT: "*-",
 }  # fmt: skip
 """One line and one colour for each program, in all pictures."""

@@ -115,7 +115,7 @@ def test_a_step_under_jit_is_the_step() -> None:
     np.testing.assert_allclose(under_jit("T4")(problem, starts, SPAN, 0.01, 1)[0], wanted, rtol=0, atol=1e-7)
 
 
-@pytest.mark.parametrize("compile", [None, "numba", "jax"])
+@pytest.mark.parametrize("compile", [None, "llvm", "jax"])
 def test_liehom_is_measured(benchmark: Any, compile: str | None) -> None:
     solver = Solver("liehom", "E2", integrate("E2", compile), LADDER, fixed=True)
     starts, wanted = end(rigid_body())

@@ -220,7 +220,7 @@ def test_pictures_are_drawn(suffix: str, begins: bytes) -> None:
 def test_a_compiled_step_gives_the_same(file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LIEHOM_CACHE_DIR", str(tmp_path / "code"))
     found = []
-    for name, words in (("plain.npz", ()), ("made.npz", ("--compile", "numba"))):
+    for name, words in (("plain.npz", ()), ("made.npz", ("--compile", "llvm"))):
         result = liehom("integrate", file, "--t-span", "0", "2", "--dt", "0.05", "--out", name, *words)
         assert result.exit_code == 0, result.stderr
         found.append(np.load(name)["y"])

@@ -25,7 +25,7 @@ from liehom.tracing import Kernel, StepGraph, needed, padded
 if TYPE_CHECKING:
     from liehom.integrators.run.run import Run
 
-BACKENDS = ("numba", "jax")
+BACKENDS = ("llvm", "jax")
 WIDTH, NARROW = 16, 8
 LONG = 700
 """Operations between two loops, from which on blocks are narrow."""
@@ -56,7 +56,8 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
         If the step is not compiled.
     """
     if backend not in BACKENDS:
-        raise InputError(f"compile is {backend!r}, expected one of {', '.join(map(repr, BACKENDS))}, or None")
+        hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if backend == "numba" else ""
+        raise InputError(f"compile is {backend!r}, expected one of {', '.join(map(repr, BACKENDS))}, or None{hint}")
     if run.events is not None:
         raise InputError(f"compile={backend!r} does not look for events: integrate without compile=")
     if run.dtype != np.float64:

@@ -35,7 +35,7 @@ STEPS = {
 }
 
 
-def both(field: lh.GeneratorField, span: Any, y0: Any, backend: str = "numba", **options: Any) -> tuple[Any, Any]:
+def both(field: lh.GeneratorField, span: Any, y0: Any, backend: str = "llvm", **options: Any) -> tuple[Any, Any]:
     plain = lh.integrate(field, span, y0, **options)
     return plain, lh.integrate(field, span, y0, compile=backend, **options)
 
@@ -154,7 +154,7 @@ def attempts(solution: Any) -> int:
     return (solution.nfev - 1) // 7
 
 
-@pytest.mark.parametrize("backend", ["numba", "jax"])
+@pytest.mark.parametrize("backend", ["llvm", "jax"])
 def test_rejected_steps_leave_no_trace_but_calls(backend: str) -> None:
     pytest.importorskip(backend)
     plain, made = both(PULSE, (0, 3), START, backend=backend, step=STEPS["RK45"], dense_output=True)
@@ -226,7 +226,7 @@ def test_an_interrupted_run_goes_on_bit_for_bit(
 ) -> None:
     """Whatever the pauses are in which interruptions are noticed."""
     file, starts = tmp_path / "state.npz", sphere(3)
-    options: dict[str, Any] = {"step": STEPS["Heun to 3"], "dt": dt, "compile": "numba", "t_eval": [7.3, 50.0]}
+    options: dict[str, Any] = {"step": STEPS["Heun to 3"], "dt": dt, "compile": "llvm", "t_eval": [7.3, 50.0]}
     whole = lh.integrate(BODY, (0, 50), starts, **options)
     monkeypatch.setattr(compiled, "BREATH", 10_000)
     calls: list[int] = []
@@ -273,7 +273,7 @@ def test_steps_by_jax_agree(step: str) -> None:
 
 def test_what_is_not_compiled_is_refused() -> None:
     with pytest.raises(InputError, match="events"):
-        lh.integrate(BODY, (0, 1), START, step=STEPS["RK45"], events=lambda t, y: y[0], compile="numba")
+        lh.integrate(BODY, (0, 1), START, step=STEPS["RK45"], events=lambda t, y: y[0], compile="llvm")
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True), pytest.raises(InputError, match="give dt"):
         lh.integrate(BODY, (0, 1), jax.numpy.asarray(START), step=STEPS["RK45"], compile="jax")

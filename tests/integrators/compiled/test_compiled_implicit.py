@@ -48,7 +48,7 @@ def test_lanes_iterate_as_long_as_they_need() -> None:
     w = np.array([1.0, 0.5, 0.25])
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * w * (1 + 30 * m[..., :1] ** 2))
     y0 = np.concatenate([[[0.0, 0.0, 1.0]], sphere(9)])
-    options: dict[str, Any] = {"step": lh.RKMK("gauss2"), "dt": 0.01, "compile": "numba"}
+    options: dict[str, Any] = {"step": lh.RKMK("gauss2"), "dt": 0.01, "compile": "llvm"}
     many = lh.integrate(field, (0, 1), y0, **options)
     for k in (0, 1, 9):
         alone = lh.integrate(field, (0, 1), y0[k], **options)
@@ -56,7 +56,7 @@ def test_lanes_iterate_as_long_as_they_need() -> None:
     assert_same(*both(field, (0, 1), y0, step=lh.RKMK("gauss2"), dt=0.01))
 
 
-@pytest.mark.parametrize("backend", ["numba", "jax"])
+@pytest.mark.parametrize("backend", ["llvm", "jax"])
 def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
     fast = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -300 * m * [1.0, 0.5, 0.25] * m[..., :1] ** 2)
     y0 = np.array([[0.6, 0.48, 0.64], [0.0, 0.6, 0.8], [0.1, 0.6, np.sqrt(0.63)]])
