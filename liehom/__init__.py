@@ -45,14 +45,9 @@ if TYPE_CHECKING:
     from liehom.algebra import canonical_real_form as canonical_real_form
     from liehom.algebra import cartan_matrix as cartan_matrix
     from liehom.algebra import central_extension as central_extension
-    from liehom.algebra import centroid as centroid
     from liehom.algebra import chevalley as chevalley
-    from liehom.algebra import cohomology as cohomology
-    from liehom.algebra import complexification as complexification
     from liehom.algebra import conformal as conformal
-    from liehom.algebra import derivations as derivations
     from liehom.algebra import direct_sum as direct_sum
-    from liehom.algebra import direct_sum_decomposition as direct_sum_decomposition
     from liehom.algebra import dynkin_diagram as dynkin_diagram
     from liehom.algebra import euclidean as euclidean
     from liehom.algebra import filiform as filiform
@@ -63,7 +58,6 @@ if TYPE_CHECKING:
     from liehom.algebra import oscillator as oscillator
     from liehom.algebra import parabolic_subalgebra as parabolic_subalgebra
     from liehom.algebra import poincare as poincare
-    from liehom.algebra import quotient as quotient
     from liehom.algebra import real_forms as real_forms
     from liehom.algebra import realification as realification
     from liehom.algebra import root_system as root_system
@@ -200,11 +194,10 @@ _LAYERS = (
 _NAMES = {
     "liehom.algebra": (
         "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
-        "bargmann bianchi canonical_real_form cartan_matrix central_extension centroid chevalley cohomology "
-        "complexification conformal derivations direct_sum direct_sum_decomposition dynkin_diagram euclidean "
-        "filiform free_nilpotent galilei gl heisenberg oscillator parabolic_subalgebra poincare quotient "
-        "real_forms realification root_system semidirect_sum simple sl so so_form so_star sp sp_form "
-        "strictly_upper_triangular su u upper_triangular"
+        "bargmann bianchi canonical_real_form cartan_matrix central_extension chevalley conformal direct_sum "
+        "dynkin_diagram euclidean filiform free_nilpotent galilei gl heisenberg oscillator "
+        "parabolic_subalgebra poincare real_forms realification root_system semidirect_sum simple sl so "
+        "so_form so_star sp sp_form strictly_upper_triangular su u upper_triangular"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (

@@ -64,7 +64,6 @@ WINGS: dict[str, tuple[str, ...]] = {
 # the class files: a method may delegate, inside its body, to a wing above its class; nothing else may point upwards
 CLASS_FILES = (
     "liehom.algebra.core.lie_algebra",
-    "liehom.algebra.core.structure_verbs",
     "liehom.representations.core.representation",
     "liehom.representations.core.analysis_verbs",
     "liehom.representations.core.pair",
@@ -351,7 +350,9 @@ def code_lines(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
 
 def test_files_are_short() -> None:
     sizes = {
-        path: len(path.read_text(encoding="utf-8").splitlines()) for path in modules().values() if not is_data(path)
+        path: len(path.read_text(encoding="utf-8").splitlines())
+        for module, path in modules().items()
+        if not is_data(path) and module not in CLASS_FILES  # a table of contents may be long
     }
     long = {str(path.relative_to(ROOT)): size for path, size in sizes.items() if size > MAX_FILE_LINES}
     assert not long, f"more than {MAX_FILE_LINES} lines (one notion per file?): {long}"

@@ -4,8 +4,6 @@ from liehom.algebra.closure import Closure as Closure
 from liehom.algebra.closure import lie_closure as lie_closure
 from liehom.algebra.cohomology import Cohomology as Cohomology
 from liehom.algebra.cohomology import Derivations as Derivations
-from liehom.algebra.cohomology import cohomology as cohomology
-from liehom.algebra.cohomology import derivations as derivations
 from liehom.algebra.constructions import ComplexLieAlgebra as ComplexLieAlgebra
 from liehom.algebra.constructions import abelian as abelian
 from liehom.algebra.constructions import affine as affine
@@ -14,7 +12,6 @@ from liehom.algebra.constructions import almost_abelian as almost_abelian
 from liehom.algebra.constructions import bargmann as bargmann
 from liehom.algebra.constructions import bianchi as bianchi
 from liehom.algebra.constructions import central_extension as central_extension
-from liehom.algebra.constructions import complexification as complexification
 from liehom.algebra.constructions import conformal as conformal
 from liehom.algebra.constructions import direct_sum as direct_sum
 from liehom.algebra.constructions import euclidean as euclidean
@@ -26,8 +23,6 @@ from liehom.algebra.constructions import heisenberg as heisenberg
 from liehom.algebra.constructions import oscillator as oscillator
 from liehom.algebra.constructions import parabolic_subalgebra as parabolic_subalgebra
 from liehom.algebra.constructions import poincare as poincare
-from liehom.algebra.constructions import quotient as quotient
-from liehom.algebra.constructions import quotient_map as quotient_map
 from liehom.algebra.constructions import realification as realification
 from liehom.algebra.constructions import semidirect_sum as semidirect_sum
 from liehom.algebra.constructions import simple as simple
@@ -64,7 +59,5 @@ from liehom.algebra.structure import LeviDecomposition as LeviDecomposition
 from liehom.algebra.structure import Place as Place
 from liehom.algebra.structure import RootSpace as RootSpace
 from liehom.algebra.structure import RootSpaceDecomposition as RootSpaceDecomposition
-from liehom.algebra.structure import centroid as centroid
-from liehom.algebra.structure import direct_sum_decomposition as direct_sum_decomposition
 from liehom.algebra.structure import places as places
 from liehom.algebra.structure import real_ideals as real_ideals

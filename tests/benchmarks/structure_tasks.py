@@ -270,7 +270,7 @@ def tasks() -> list[Task]:
                   {10: 0, 20: 1, 50: 1}, others=SEEN["centre"]),
         *of_mixed("derived algebra", _derived,
                   "L -> Dimension( LieDerivedSubalgebra( L ) )", {10: 10, 20: 20, 50: 50}, others=SEEN["derived"]),
-        *of_mixed("direct sum decomposition", lambda g: len(lh.direct_sum_decomposition(g)),
+        *of_mixed("direct sum decomposition", lambda g: len(g.direct_sum_decomposition()),
                   "L -> Length( DirectSumDecomposition( L ) )", {20: 3, 50: 4}, factor={50: 1 / 5}),
     ]  # fmt: skip
     modules = [

@@ -5,6 +5,4 @@ through `LieAlgebra.cohomology` and `LieAlgebra.derivations`; see docs/theory/st
 """
 
 from liehom.algebra.cohomology.cohomology import Cohomology as Cohomology
-from liehom.algebra.cohomology.cohomology import cohomology as cohomology
 from liehom.algebra.cohomology.derivation_algebra import Derivations as Derivations
-from liehom.algebra.cohomology.derivation_algebra import derivations as derivations

@@ -21,7 +21,7 @@ PRIMES = 5
 
 @final
 class Cohomology:
-    """The cohomology of a Lie algebra in one degree; made by `cohomology`.
+    """The cohomology of a Lie algebra in one degree; made by `LieAlgebra.cohomology`.
 
     A cochain is a row, as in `liehom.algebra.cohomology.cochain_complex`; `cochain` and `values` convert it from and
     to its values on basis elements.
@@ -38,7 +38,7 @@ class Cohomology:
     Examples
     --------
     >>> import liehom as lh
-    >>> made = lh.cohomology(lh.heisenberg(1), 2)
+    >>> made = lh.heisenberg(1).cohomology(2)
     >>> made.dimension, [made.values(row) for row in made.representatives.to_rows()]
     (2, [{(0, 2): 1}, {(1, 2): 1}])
     >>> made.is_coboundary(made.cochain({(0, 1): 5}))
@@ -159,7 +159,7 @@ class Cohomology:
         Examples
         --------
         >>> import liehom as lh
-        >>> form = lh.cohomology(lh.abelian(2), 2).forms()[0]
+        >>> form = lh.abelian(2).cohomology(2).forms()[0]
         >>> lh.central_extension(lh.abelian(2), form) == lh.heisenberg(1)
         True
         """
@@ -191,42 +191,7 @@ class Cohomology:
 
 
 def cohomology(algebra: LieAlgebra, degree: int, matrices: Any = None, *, size: int | None = None) -> Cohomology:
-    """The Chevalley-Eilenberg cohomology H^k(g, V).
-
-    Parameters
-    ----------
-    algebra : LieAlgebra
-        g.
-    degree : int
-        k, not negative.
-    matrices : sequence of (m, m) array_like, optional
-        The representation on V = R^m, one matrix for each basis element of g; by default R, on which g acts by 0.
-    size : int, optional
-        m, needed only where g has dimension 0 and matrices are given.
-
-    Returns
-    -------
-    Cohomology
-
-    Raises
-    ------
-    InputError
-        If the degree is negative or the complex is too large.
-    ShapeError, RepresentationError
-        If the matrices do not fit, or are no representation.
-
-    Notes
-    -----
-    H^0(g, V) are the invariants of V, H^1(g, R) is dual to g / [g, g], H^1(g, g) are the outer derivations, H^2(g, R)
-    classifies the central extensions by R. For semisimple g and k = 1, 2 it is 0 (Whitehead: then nothing is
-    computed), and for k = 3 and V = R its dimension is the number of simple ideals of the complexification.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> [lh.cohomology(lh.so(3), k).dimension for k in range(5)]
-    [1, 0, 0, 1, 0]
-    """
+    """Implements `LieAlgebra.cohomology`."""
     require_size("degree", degree, 0)
     degree = int(degree)
     cochains = CochainComplex(algebra, matrices, size=size)

@@ -23,7 +23,7 @@ from liehom.errors import InputError, InternalError
 
 @final
 class Derivations:
-    """The Lie algebra of derivations of a Lie algebra; made by `derivations`.
+    """The Lie algebra of derivations of a Lie algebra; made by `LieAlgebra.derivations`.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Derivations:
     Examples
     --------
     >>> import liehom as lh
-    >>> made = lh.derivations(lh.euclidean(3))
+    >>> made = lh.euclidean(3).derivations()
     >>> made.dimension, made.inner_dimension, made.outer_dimension
     (7, 6, 1)
     >>> print(made.outer_matrices()[0])
@@ -120,29 +120,7 @@ class Derivations:
 
 
 def derivations(algebra: LieAlgebra) -> Derivations:
-    """The derivations of a Lie algebra.
-
-    Parameters
-    ----------
-    algebra : LieAlgebra
-
-    Returns
-    -------
-    Derivations
-        With a basis of matrices: ad e_i for a complement of the centre, then outer derivations. Over float64
-        numerical, as all ranks there.
-
-    Notes
-    -----
-    For semisimple g all derivations are inner (Whitehead); that g is semisimple is read from its Killing form.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> lh.derivations(lh.so(4)), lh.derivations(lh.heisenberg(1)), lh.derivations(lh.abelian(2))
-    (<derivations of so(4): dimension 6, 0 outer>, <derivations of heisenberg(1): dimension 6, 4 outer>,
-     <derivations of R^2: dimension 4, 4 outer>)
-    """
+    """Implements `LieAlgebra.derivations`."""
     n, field = algebra.dimension, algebra.field
     if algebra.is_abelian():
         return Derivations(algebra, tuple(field.identity(n * n).split_rows(n, n)), 0)

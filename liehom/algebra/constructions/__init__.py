@@ -5,7 +5,6 @@ them as `liehom.so`, `liehom.direct_sum` and so on; the bases are described in d
 """
 
 from liehom.algebra.constructions.complex_algebra import ComplexLieAlgebra as ComplexLieAlgebra
-from liehom.algebra.constructions.complex_algebra import complexification as complexification
 from liehom.algebra.constructions.complex_algebra import realification as realification
 from liehom.algebra.constructions.constructions import abelian as abelian
 from liehom.algebra.constructions.constructions import direct_sum as direct_sum
@@ -19,8 +18,6 @@ from liehom.algebra.constructions.constructions import sp as sp
 from liehom.algebra.constructions.constructions import su as su
 from liehom.algebra.constructions.constructions import u as u
 from liehom.algebra.constructions.extensions import central_extension as central_extension
-from liehom.algebra.constructions.extensions import quotient as quotient
-from liehom.algebra.constructions.extensions import quotient_map as quotient_map
 from liehom.algebra.constructions.families import affine as affine
 from liehom.algebra.constructions.families import affine_of as affine_of
 from liehom.algebra.constructions.families import bargmann as bargmann

@@ -42,7 +42,7 @@ class ComplexLieAlgebra:
     Examples
     --------
     >>> import liehom as lh
-    >>> made = lh.complexification(lh.so(3))
+    >>> made = lh.so(3).complexification()
     >>> made.algebra, made.complex_dimension
     (<Lie algebra so(3)_C of dimension 6 over QQ>, 3)
     >>> made.complex_structure @ made.complex_structure == -lh.QQ.identity(6)
@@ -73,27 +73,7 @@ class ComplexLieAlgebra:
 
 
 def complexification(algebra: LieAlgebra, *, name: str | None = None) -> ComplexLieAlgebra:
-    """g (x) C as a real Lie algebra of dimension 2n, with its complex structure.
-
-    Parameters
-    ----------
-    algebra : LieAlgebra
-        g, of dimension n.
-    name : str, optional
-        By default that of g followed by _C.
-
-    Returns
-    -------
-    ComplexLieAlgebra
-        With basis x, then ix, for the basis elements x of g.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> made = lh.complexification(lh.so(3)).algebra
-    >>> made.basis_names, made.killing_signature()
-    (('e0', 'e1', 'e2', 'i*e0', 'i*e1', 'i*e2'), (3, 3, 0))
-    """
+    """Implements `LieAlgebra.complexification`."""
     empty = StructureConstants(algebra.field, algebra.dimension, [])
     title = f"{algebra.name}_C" if name is None and algebra.name else name
     return _realified(algebra.table, empty, algebra.basis_names, title, check=False)  # by the identities of g

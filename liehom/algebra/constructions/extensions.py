@@ -1,4 +1,4 @@
-"""Quotients by ideals and central extensions by cocycles, [x, y]' = [x, y] + w(x, y) z."""
+"""Central extensions by cocycles, [x, y]' = [x, y] + w(x, y) z."""
 
 from __future__ import annotations
 
@@ -6,61 +6,10 @@ import itertools
 from collections.abc import Sequence
 from typing import Any
 
-from liehom.algebra.core.homomorphism import Homomorphism
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.core.subalgebra import Subalgebra
-from liehom.errors import CocycleError, InputError, ShapeError, StructureError, shown
+from liehom.errors import CocycleError, ShapeError, StructureError, shown
 from liehom.scalars import Field, FloatField
-
-
-def quotient(algebra: LieAlgebra, ideal: Any, *, name: str | None = None) -> LieAlgebra:
-    """The quotient g/h by an ideal h.
-
-    Parameters
-    ----------
-    algebra : LieAlgebra
-        g.
-    ideal : Subalgebra of g, or rows (k, n)
-        A basis of h.
-    name : str, optional
-
-    Returns
-    -------
-    LieAlgebra
-        In the basis that `quotient_map` maps a complement of h to.
-
-    Raises
-    ------
-    NotAnIdealError
-        If [g, h] does not lie in h.
-    DependentRowsError, NotASubalgebraError, ShapeError
-        If the rows are dependent, their span is not closed, or they have another length.
-    InputError
-        If the ideal belongs to another algebra.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> lh.quotient(lh.heisenberg(1), [[0, 0, 1]]).is_abelian()
-    True
-    """
-    return _ideal(algebra, ideal).quotient_algebra(name)
-
-
-def quotient_map(algebra: LieAlgebra, ideal: Any) -> Homomorphism:
-    """The projection of g onto its quotient by an ideal; arguments and errors as for `quotient`.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> from liehom.algebra.constructions.extensions import quotient_map
-    >>> quotient_map(lh.gl(2), [[1, 0, 0, 1]]).kernel().rows()
-    [[1, 0, 0, 1]]
-    """
-    h = _ideal(algebra, ideal)
-    # The bracket of the quotient is the one that makes this a homomorphism.
-    return Homomorphism(algebra, h.quotient_algebra(), h.quotient().projection.T, check=False)
 
 
 def central_extension(
@@ -91,7 +40,7 @@ def central_extension(
 
     Notes
     -----
-    Extensions by cohomologous cocycles are isomorphic; classes come from ``cohomology(g, 2)``.
+    Extensions by cohomologous cocycles are isomorphic; classes come from ``g.cohomology(2)``.
 
     Examples
     --------
@@ -112,14 +61,6 @@ def central_extension(
     table = StructureConstants(field, n + len(forms), entries)
     # The Jacobi identity of the extension is that of g and the cocycle condition.
     return LieAlgebra(table, basis=names, name=name, check=False)
-
-
-def _ideal(algebra: LieAlgebra, ideal: Any) -> Subalgebra:
-    if not isinstance(ideal, Subalgebra):
-        return Subalgebra(algebra, ideal)
-    if ideal.algebra is not algebra and ideal.algebra != algebra:
-        raise InputError(f"the ideal is a subspace of {ideal.algebra!r}, not of {algebra!r}")
-    return ideal
 
 
 def _listed(cocycle: Any, n: int) -> list[Any]:

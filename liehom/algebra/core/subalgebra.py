@@ -122,13 +122,13 @@ class Subalgebra:
         >>> g.center().intersection(g.derived_series()[1]).dimension
         0
         """
-        _require_inside(self.algebra, other)
+        require_inside(self.algebra, other)
         # What lies in two closed subspaces is closed.
         return Subalgebra(self.algebra, self.subspace.intersection(other.subspace).basis, check=False)
 
     def includes(self, other: Subalgebra) -> bool:
         """Whether another subalgebra of the same algebra lies in this one."""
-        _require_inside(self.algebra, other)
+        require_inside(self.algebra, other)
         return self.subspace.includes(other.subspace)
 
     def as_algebra(self, name: str | None = None) -> LieAlgebra:
@@ -211,14 +211,15 @@ def _dependent(basis: Any) -> list[int]:
 
 def _span(algebra: LieAlgebra, rows: Any) -> Any:
     if isinstance(rows, Subalgebra):
-        _require_inside(algebra, rows)
+        require_inside(algebra, rows)
         rows = rows.basis
     return _matrix(algebra, rows).row_space()
 
 
-def _require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
+def require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
+    """Raise `InputError` if a subalgebra belongs to another algebra."""
     if subalgebra.algebra is not algebra and subalgebra.algebra != algebra:
-        raise InputError(f"{subalgebra!r} is no subalgebra of {algebra!r}: it belongs to {subalgebra.algebra!r}")
+        raise InputError(f"{subalgebra!r} is not a subalgebra of {algebra!r}: it belongs to {subalgebra.algebra!r}")
 
 
 def products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
@@ -250,14 +251,7 @@ def _samples(rows: Any) -> list[Any]:
 
 
 def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
-    """The least subalgebra that contains the rows.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> generated(lh.so(3), [[1, 0, 0], [0, 1, 0]]).dimension
-    3
-    """
+    """Implements `LieAlgebra.subalgebra_generated_by`."""
     n = algebra.dimension
     span, before = _span(algebra, rows), -1
     while before < span.nrows:
@@ -267,14 +261,7 @@ def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
 
 
 def ideal_generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
-    """The least ideal that contains the rows.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> ideal_generated(lh.gl(2), [[1, 0, 0, 0]]).dimension
-    4
-    """
+    """Implements `LieAlgebra.ideal_generated_by`."""
     n = algebra.dimension
     whole = algebra.field.identity(n)
     span, before = _span(algebra, rows), -1
@@ -285,14 +272,7 @@ def ideal_generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
 
 
 def centralizer(algebra: LieAlgebra, rows: Any) -> Subalgebra:
-    """The subalgebra {x : [x, r] = 0 for each row r}.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> centralizer(lh.so(3), [[1, 0, 0]]).dimension
-    1
-    """
+    """Implements `LieAlgebra.centralizer`."""
     n, field = algebra.dimension, algebra.field
     span = _span(algebra, rows)
     if field.exact and span.nrows > SAMPLES:
@@ -306,14 +286,7 @@ def centralizer(algebra: LieAlgebra, rows: Any) -> Subalgebra:
 
 
 def normalizer(subalgebra: Subalgebra) -> Subalgebra:
-    """The subalgebra {x : [x, h] is in h}.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> normalizer(lh.sl(2).subalgebra([[0, 0, 1]])).dimension
-    1
-    """
+    """Implements `LieAlgebra.normalizer`."""
     algebra = subalgebra.algebra
     n = algebra.dimension
     blocks = algebra.table.contract(subalgebra.basis, algebra.field.identity(n), subalgebra._projection())
@@ -322,14 +295,7 @@ def normalizer(subalgebra: Subalgebra) -> Subalgebra:
 
 
 def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
-    """0, the centre z_1, z_2 with z_2/z_1 the centre of g/z_1, ... up to the first term that repeats.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> [h.dimension for h in upper_central_series(lh.heisenberg(1))]
-    [0, 1, 3]
-    """
+    """Implements `LieAlgebra.upper_central_series`."""
     n, field = algebra.dimension, algebra.field
     terms = [Subalgebra(algebra, field.zeros(0, n), check=False)]
     while True:
@@ -344,14 +310,7 @@ def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
 
 
 def derived_series(algebra: LieAlgebra) -> list[Subalgebra]:
-    """g, [g, g], ... down to the first term that repeats.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> [h.dimension for h in derived_series(lh.gl(2))]
-    [4, 3]
-    """
+    """Implements `LieAlgebra.derived_series`."""
     terms = [algebra.field.identity(algebra.dimension)]
     while True:
         following = products(algebra, terms[-1], terms[-1])
@@ -361,14 +320,7 @@ def derived_series(algebra: LieAlgebra) -> list[Subalgebra]:
 
 
 def lower_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
-    """g, [g, g], [g, [g, g]], ... down to the first term that repeats.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> [h.dimension for h in lower_central_series(lh.heisenberg(1))]
-    [3, 1, 0]
-    """
+    """Implements `LieAlgebra.lower_central_series`."""
     whole = algebra.field.identity(algebra.dimension)
     terms = [whole]
     while True:

@@ -61,30 +61,7 @@ class CartanDecomposition:
 
 
 def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
-    """The Cartan decomposition of a semisimple algebra; unpacks as ``k, p``.
-
-    Raises
-    ------
-    InputError
-        If the algebra is not semisimple.
-    NoRationalInvolutionError
-        If it is proved that no Cartan involution has entries in the field: of two ideals over the reals that are
-        conjugate over the field one is compact and the other is not, for example (`involution_obstruction`).
-    UndecidedError
-        If none with small rational entries was found. In both cases over ``lh.RR`` one is found numerically.
-
-    Notes
-    -----
-    k is a subalgebra, [k, p] lies in p, [p, p] in k, the Killing form is negative definite on k and positive definite
-    on p; over an exact field all this follows from the two checks of the involution.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> k, p = cartan_decomposition(lh.so(4, 1))
-    >>> k.dimension, p.dimension, k.as_algebra().real_form()
-    (6, 4, 'so(3) + so(3)')
-    """
+    """Implements `LieAlgebra.cartan_decomposition`."""
     field, n = algebra.field, algebra.dimension
     killing = algebra.killing_form()
     if killing.rank() < n:

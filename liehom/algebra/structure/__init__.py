@@ -4,8 +4,6 @@ Each file answers one question about a `LieAlgebra`, exactly, and is reached as 
 `describe` put the answers together. The algorithms and their proofs are in docs/theory/structure.md.
 """
 
-from liehom.algebra.structure.centroid import centroid as centroid
-from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition as direct_sum_decomposition
 from liehom.algebra.structure.levi import LeviDecomposition as LeviDecomposition
 from liehom.algebra.structure.real_splitting import Place as Place
 from liehom.algebra.structure.real_splitting import places as places

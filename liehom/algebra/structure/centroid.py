@@ -22,38 +22,7 @@ REDUCED = 60
 
 
 def centroid(algebra: LieAlgebra) -> tuple[Any, ...]:
-    """A basis of the centroid of a Lie algebra over an exact field.
-
-    Parameters
-    ----------
-    algebra : LieAlgebra
-
-    Returns
-    -------
-    tuple of Matrix
-        Matrices phi, shape (n, n), acting on columns of coefficients. Proved: each is verified exactly, and the
-        equations that define the space are necessary, so that no other matrix belongs to it.
-
-    Raises
-    ------
-    FieldError
-        Over float64, where the dimension of a null space is no fact.
-
-    Notes
-    -----
-    The centroid is an associative algebra with one. It is commutative where the algebra is perfect or has no
-    centre; for a simple algebra it is a field, the largest one over which the algebra can be seen.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> len(centroid(lh.so(3))), len(centroid(lh.so(4))), len(centroid(lh.so(3, 1)))
-    (1, 2, 2)
-    >>> print(centroid(lh.sl(2))[0])
-    [1, 0, 0]
-    [0, 1, 0]
-    [0, 0, 1]
-    """
+    """Implements `LieAlgebra.centroid`."""
     return centroid_of(seeds_of(algebra), None)
 
 

@@ -12,19 +12,7 @@ from liehom.errors import UndecidedError
 
 
 def describe(algebra: LieAlgebra) -> str:
-    """A short card: the kind of algebra, real form, ranks, radical, series, Killing form.
-
-    Over float64 only what is numerical: dimensions, the Killing form, with the tolerance that decided.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> print(describe(lh.so(4, 1)))
-    so(4,1), dimension 10 over QQ
-      simple, real form so(4,1), rank 2, real rank 1, maximal compact so(4)
-      complex type B2, restricted roots A1 with multiplicity 3
-      Killing form of signature (4, 6, 0) (positive, negative, zero)
-    """
+    """Implements `LieAlgebra.describe`."""
     title = algebra.name or "Lie algebra"
     lines = [f"{title}, dimension {algebra.dimension} over {algebra.field.name}"]
     killing = algebra.killing_signature()

@@ -23,36 +23,7 @@ from liehom.scalars.spaces.integral_basis import integral_basis
 
 
 def direct_sum_decomposition(algebra: LieAlgebra) -> list[Subalgebra]:
-    """Indecomposable ideals whose direct sum is the algebra.
-
-    Parameters
-    ----------
-    algebra : LieAlgebra
-        Over an exact field; the ideals cannot be split over this field (an extension may split them).
-
-    Returns
-    -------
-    list of Subalgebra
-        By dimension, then by canonical basis. Their bases together are a basis of the algebra. Empty for dimension 0.
-
-    Raises
-    ------
-    FieldError
-        Over float64.
-
-    Notes
-    -----
-    The summands are unique up to isomorphism, and as ideals where the algebra has no centre or is perfect
-    (Krull, Remak, Schmidt). Semisimple algebras fall into their simple ideals.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> [h.dimension for h in direct_sum_decomposition(lh.so(4))]
-    [3, 3]
-    >>> [h.dimension for h in direct_sum_decomposition(lh.direct_sum(lh.gl(2), lh.heisenberg(1)))]
-    [1, 3, 3]
-    """
+    """Implements `LieAlgebra.direct_sum_decomposition`."""
     field, n = algebra.field, algebra.dimension
     parts: list[Any] = []
     for indices in components(algebra.table):

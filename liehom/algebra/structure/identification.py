@@ -16,7 +16,6 @@ from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.dynkin import join_types
 from liehom.algebra.roots.real_form import RealForm, complex_form, real_forms_with
 from liehom.algebra.roots.real_form_names import join_real_forms
-from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
 from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition
 from liehom.algebra.structure.levi import levi_decomposition
@@ -94,97 +93,22 @@ def simple_parts(algebra: LieAlgebra) -> list[SimplePart]:
 
 
 def semisimple_type(algebra: LieAlgebra) -> str:
-    """The type of the complexification of a semisimple algebra, or of a Levi factor: 'A1 + B2'; '0' if there is none.
-
-    Raises
-    ------
-    FieldError
-        Over float64.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> semisimple_type(lh.so(3, 1)), semisimple_type(lh.euclidean(3)), semisimple_type(lh.abelian(2))
-    ('A1 + A1', 'A1', '0')
-    """
+    """Implements `LieAlgebra.semisimple_type`."""
     return join_types(part.type for part in simple_parts(algebra) for _ in range(part.centre.degree))
 
 
 def real_forms_of(algebra: LieAlgebra) -> list[RealForm]:
-    """The real forms of the simple ideals, over the reals, of a semisimple algebra (of a Levi factor).
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> real_forms_of(lh.so(4))
-    [<real form so(3) of type A1>, <real form so(3) of type A1>]
-    """
+    """Implements `LieAlgebra.real_forms`."""
     return [form for part in simple_parts(algebra) for form in part.real_forms()]
 
 
 def real_form(algebra: LieAlgebra) -> str:
-    """The name of a semisimple real algebra, or of a Levi factor: 'so(4,1)', 'so(3) + sl(2,R)'; '0' if there is none.
-
-    Raises
-    ------
-    FieldError
-        Over float64.
-    UndecidedError
-        For the few pairs of real forms (of dimension at least 153) with one type and one Killing signature.
-
-    Notes
-    -----
-    One canonical name for each isomorphism class of simple real algebras: `canonical_real_form` translates others.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> real_form(lh.so(4, 1)), real_form(lh.so(2, 2)), real_form(lh.so(3, 1))
-    ('so(4,1)', 'sl(2,R) + sl(2,R)', 'sl(2,C)')
-    """
+    """Implements `LieAlgebra.real_form`."""
     return join_real_forms(form.name for form in real_forms_of(algebra))
 
 
-def root_system(algebra: LieAlgebra) -> RootSystem:
-    """The root system of the complexification of a semisimple algebra.
-
-    Raises
-    ------
-    InputError
-        If the algebra is not semisimple.
-    FieldError
-        Over float64.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> root_system(lh.so(3)).type
-    'A1'
-    """
-    return root_data(algebra).root_system
-
-
 def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
-    """Whether two semisimple algebras are isomorphic over the reals.
-
-    Raises
-    ------
-    InputError
-        If one of them is no `LieAlgebra`, or not semisimple.
-    FieldError, UndecidedError
-        As for `real_form`.
-
-    Notes
-    -----
-    Over QQ isomorphism is finer: two quaternion algebras that are definite at the real place give two algebras over
-    QQ that are both so(3) over the reals.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> is_isomorphic(lh.so(4, 2), lh.su(2, 2)), is_isomorphic(lh.so(5, 1), lh.su(2, 2))
-    (True, False)
-    """
+    """Implements `LieAlgebra.is_isomorphic`."""
     for algebra in (first, second):
         if not isinstance(algebra, LieAlgebra):
             raise InputError(f"isomorphism is of two Lie algebras, such as lh.so(3); got {algebra!r}")

@@ -45,20 +45,7 @@ class LeviDecomposition:
 
 
 def levi_decomposition(algebra: LieAlgebra) -> LeviDecomposition:
-    """A Levi factor and the radical.
-
-    Raises
-    ------
-    FieldError
-        Over float64.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> found = levi_decomposition(lh.euclidean(3))
-    >>> found.levi.dimension, found.radical.dimension, found.levi.as_algebra().killing_signature()
-    (3, 3, (0, 3, 0))
-    """
+    """Implements `LieAlgebra.levi_decomposition`."""
     if not algebra.field.exact:
         raise FieldError("a Levi factor is computed exactly: build the algebra over QQ or a number field")
     ideal = radical(algebra)

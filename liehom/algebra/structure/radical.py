@@ -11,7 +11,7 @@ import random
 from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.core.subalgebra import Subalgebra, lower_central_series, products
+from liehom.algebra.core.subalgebra import Subalgebra, products
 from liehom.errors import FieldError, InternalError
 from liehom.scalars import Polynomial
 
@@ -19,14 +19,7 @@ ATTEMPTS = 20
 
 
 def radical(algebra: LieAlgebra) -> Subalgebra:
-    """The solvable radical: the largest solvable ideal.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> radical(lh.euclidean(3)).dimension, radical(lh.gl(3)).dimension
-    (3, 1)
-    """
+    """Implements `LieAlgebra.radical`."""
     field, n = algebra.field, algebra.dimension
     killing = algebra.killing_form()
     if n == 0 or (field.exact and int(killing.modulo().rank()) == n):
@@ -37,63 +30,8 @@ def radical(algebra: LieAlgebra) -> Subalgebra:
     return Subalgebra(algebra, found, check=False)  # the radical is an ideal
 
 
-def is_semisimple(algebra: LieAlgebra) -> bool:
-    """Whether the Killing form is nondegenerate (Cartan's criterion); the zero algebra is semisimple.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> is_semisimple(lh.so(4)), is_semisimple(lh.gl(2))
-    (True, False)
-    """
-    return bool(algebra.killing_form().rank() == algebra.dimension)
-
-
-def is_solvable(algebra: LieAlgebra) -> bool:
-    """Whether the derived series ends in 0: K(g, [g, g]) = 0.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> is_solvable(lh.euclidean(2)), is_solvable(lh.so(3))
-    (True, False)
-    """
-    return radical(algebra).dimension == algebra.dimension
-
-
-def is_nilpotent(algebra: LieAlgebra) -> bool:
-    """Whether the lower central series ends in 0.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> is_nilpotent(lh.heisenberg(2)), is_nilpotent(lh.euclidean(2))
-    (True, False)
-    """
-    return lower_central_series(algebra)[-1].dimension == 0
-
-
 def nilradical(algebra: LieAlgebra) -> Subalgebra:
-    """The nilradical: the largest nilpotent ideal.
-
-    Raises
-    ------
-    FieldError
-        Over float64: whether a matrix is nilpotent is no numerical question.
-
-    Notes
-    -----
-    It contains [g, rad(g)]. On the composition factors of g the radical acts by weights, and the nilradical is
-    the common kernel of these. With s the number of distinct non-zero eigenvalues of ad y, y in rad(g), all
-    elements of the nilradical satisfy tr(ad x (ad y)^k) = 0 for k = 1, ..., s; for generic y there are no other
-    solutions in rad(g), which is checked: each element of a basis of the solutions must be ad-nilpotent.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> nilradical(lh.euclidean(2)).dimension, nilradical(lh.heisenberg(1)).dimension
-    (2, 3)
-    """
+    """Implements `LieAlgebra.nilradical`."""
     field, n = algebra.field, algebra.dimension
     if not field.exact:
         raise FieldError("the nilradical is computed exactly: build the algebra over QQ or a number field")

@@ -64,25 +64,8 @@ class RootSpaceDecomposition:
 
 
 def root_space_decomposition(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootSpaceDecomposition:
-    """The root space decomposition of a semisimple algebra for a Cartan subalgebra (by default the one that is found).
-
-    Raises
-    ------
-    InputError
-        If the algebra is not semisimple, or `cartan` is no Cartan subalgebra of it.
-    FieldError
-        Over float64.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> found = root_space_decomposition(lh.sl(2))
-    >>> found.is_split, [space.values for space in found.spaces]
-    (True, [(-2,), (2,)])
-    >>> [space.space.dimension for space in root_space_decomposition(lh.so(3)).spaces]
-    [2]
-    """
-    h = cartan_subalgebra(algebra) if cartan is None else algebra.own(cartan)
+    """Implements `LieAlgebra.root_space_decomposition`."""
+    h = cartan_subalgebra(algebra) if cartan is None else algebra.as_subalgebra(cartan)
     field, n = algebra.field, algebra.dimension
     if not algebra.is_semisimple():
         raise InputError("root spaces are those of a semisimple algebra; take the Levi factor of levi_decomposition()")

@@ -13,25 +13,7 @@ from liehom.algebra.structure.real_splitting import real_ideals
 
 
 def simple_ideals(algebra: LieAlgebra) -> list[Subalgebra]:
-    """The simple ideals over the reals.
-
-    Returns
-    -------
-    list of Subalgebra
-        An ideal that is simple over the field but not over the reals gives ideals of ``algebra.over(K)``, K the real
-        number field that holds its coordinates; ``ideal.algebra.field`` tells.
-
-    Raises
-    ------
-    FieldError
-        Over float64, or where a complex place needs a field of too high a degree.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> [h.dimension for h in simple_ideals(lh.direct_sum(lh.gl(2), lh.so(3, 1)))]
-    [3, 6]
-    """
+    """Implements `LieAlgebra.simple_ideals`."""
     found = []
     for ideal in direct_sum_decomposition(algebra):
         if ideal.dimension > 2 and ideal.as_algebra().is_semisimple():

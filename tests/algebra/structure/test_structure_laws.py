@@ -267,7 +267,7 @@ def test_the_root_spaces_of_a_split_algebra_multiply() -> None:
 def test_a_subalgebra_of_another_algebra_is_refused() -> None:
     g, foreign = lh.so(3), lh.heisenberg(1).subalgebra([[0, 0, 1]])
     for question in (g.normalizer, g.centralizer, g.ideal_generated_by, g.subalgebra_generated_by):
-        with pytest.raises(InputError, match="is no subalgebra of"):
+        with pytest.raises(InputError, match="is not a subalgebra of"):
             question(foreign)
     with pytest.raises(InputError, match="belongs to"):
         g.center().intersection(foreign)
