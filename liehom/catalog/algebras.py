@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from liehom.algebra import LieAlgebra, abelian, direct_sum, euclidean, heisenberg, semidirect_sum
 from liehom.algebra.closure.closure import lie_closure
-from liehom.algebra.matrices.classical import linear_algebra
-from liehom.algebra.matrices.matrix_basis import IntegerArray
+from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.catalog.families import family_algebra, is_family
 from liehom.catalog.linear import is_linear, linear_matrices
 from liehom.catalog.names import Expression, Sum, Term, parse_expression, unknown
 from liehom.errors import CatalogError
 from liehom.representations import Representation
+from liehom.typing import IntegerArray
 
 EXAMPLES = (
     "so(3)",
@@ -121,20 +121,20 @@ def algebra_of(tree: Expression) -> LieAlgebra:
         return algebra_of(Term("so", tree.items))
     if not is_linear(tree):
         raise unknown(str(tree), EXAMPLES, "algebra")
-    return linear_algebra(linear_matrices(tree), str(tree))
+    return linear_lie_algebra(linear_matrices(tree), str(tree))
 
 
 def affine_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebra:
     """The affine algebra h + R^N of a linear Lie algebra h, the translations last."""
     # The matrices are the basis of h itself: a representation.
-    return semidirect_sum(linear_algebra(matrices), matrices, size=matrices.shape[1], name=name, check=False)
+    return semidirect_sum(linear_lie_algebra(matrices), matrices, size=matrices.shape[1], name=name, check=False)
 
 
 def representation_of(matrices: IntegerArray, name: str) -> Representation:
     """The defining representation of a closed integer matrix basis."""
     size = int(matrices.shape[1])
     if len(matrices) == 0:
-        return Representation(linear_algebra(matrices, name), [], size=size, name=name)
+        return Representation(linear_lie_algebra(matrices, name), [], size=size, name=name)
     made = lie_closure(matrices, close=False, name=name)
     # The structure constants are those of the matrices.
     return Representation(made.algebra, made.matrices, size=size, name=name, check=False)

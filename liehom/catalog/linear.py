@@ -1,6 +1,6 @@
 """From a name to matrices: linear Lie algebras as integer matrix bases.
 
-classical       gl, sl, so, su, u, sp, spin with the parameters of `liehom.algebra.matrices.classical`; so*(2n)
+classical       gl, sl, so, su, u, sp, spin with the parameters of `liehom.algebra.matrices.named_matrices`; so*(2n)
 other scalars   sl(n,Q(sqrt(c))), sl(n,Q(a,b)): over a quadratic field, or over the quaternion algebra (a, b)
 exceptional     g2, g2(2), f4, f4(-20), f4(4), e6(-26), e6(6)
 forms           form(d1,...,dn): so of the diagonal quadratic form
@@ -17,14 +17,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from liehom.algebra.constructions.simple import exceptional_matrices
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.classical import classical_matrices
-from liehom.algebra.matrices.matrix_basis import IntegerArray, stack, unit
+from liehom.algebra import matrices as families
+from liehom.algebra.matrices.matrix_basis import stack, unit
+from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS, classical_matrices, exceptional_matrices
 from liehom.catalog.names import Expression, Item, Sum, Term, terms
 from liehom.errors import CatalogError
+from liehom.typing import IntegerArray
 
-CLASSICAL = ("gl", "sl", "so", "su", "u", "sp", "spin")
 EXCEPTIONAL = ("g2", "f4", "e6")
 MAX_SIZE = 64
 MAX_SPIN = 16
@@ -53,7 +52,9 @@ def linear_matrices(tree: Expression) -> IntegerArray:
 
 def is_linear(tree: Expression) -> bool:
     """Whether the heads of a name are those of linear Lie algebras."""
-    return all(t.head in (*CLASSICAL, *EXCEPTIONAL, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree))
+    return all(
+        t.head in (*CLASSICAL_KINDS, *EXCEPTIONAL, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree)
+    )
 
 
 def scalar_parameters(term: Term) -> tuple[int, ...]:
@@ -85,7 +86,7 @@ def _ground(letter: Term) -> tuple[int, ...]:
 def _term_matrices(term: Term) -> IntegerArray:
     if term.after:
         raise CatalogError(f"{term} is no linear Lie algebra: unexpected ';'")
-    if term.head in CLASSICAL:
+    if term.head in CLASSICAL_KINDS:
         return _classical(term)
     if term.head in EXCEPTIONAL:
         return exceptional_matrices(str(term))

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TypeAlias, final
 
+from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS
 from liehom.errors import CatalogError
 
 _TOKEN = re.compile(r"\s*(?:(R\^\d+)|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
@@ -147,7 +148,7 @@ def canonical(term: Term) -> Term:
     """The term without parameters that say nothing."""
     if len(term.items) == 2 and not term.after:
         silent: Item = Term("R") if term.head in ("gl", "sl") else 0
-        if term.items[1] == silent and term.head in ("gl", "sl", "so", "su", "u", "sp", "spin"):
+        if term.items[1] == silent and term.head in CLASSICAL_KINDS:
             return Term(term.head, term.items[:1])
     return term
 

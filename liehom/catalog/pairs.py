@@ -15,8 +15,7 @@ import re
 import numpy as np
 
 from liehom.algebra import LieAlgebra, Subalgebra
-from liehom.algebra.matrices.classical import linear_algebra
-from liehom.algebra.matrices.matrix_basis import IntegerArray
+from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.catalog.algebras import affine_algebra, algebra_of
 from liehom.catalog.claims import CLAIMS
 from liehom.catalog.linear import is_linear, linear_matrices
@@ -25,6 +24,7 @@ from liehom.catalog.special import parabolic_rows, special_rows
 from liehom.catalog.subalgebras import coordinates, placements, preserving
 from liehom.errors import CatalogError
 from liehom.representations import Pair
+from liehom.typing import IntegerArray
 
 
 def pair(name: str) -> Pair:
@@ -100,7 +100,7 @@ def _symmetric(tree: Term) -> Pair:
     matrices = linear_matrices(Term("so", (n,)))
     point = np.diag(np.repeat(np.arange(1, len(tree.after) + 1), tree.after))
     rows = preserving(matrices, commuting=[point])
-    return _made(linear_algebra(matrices, f"so({n})"), rows, tree)  # a stabiliser
+    return _made(linear_lie_algebra(matrices, f"so({n})"), rows, tree)  # a stabiliser
 
 
 def _quotient(tree: Quotient) -> Pair:
@@ -111,7 +111,7 @@ def _quotient(tree: Quotient) -> Pair:
     if not is_linear(top):
         raise unknown(str(tree), CLAIMS, "pair")
     matrices = linear_matrices(top)
-    algebra = linear_algebra(matrices, str(top))
+    algebra = linear_lie_algebra(matrices, str(top))
     rows = _rows(top, bottom, matrices)
     if rows is not None:
         return _made(algebra, rows, tree)  # it preserves something: see `preserving`

@@ -1,7 +1,7 @@
 """Subalgebras that have a name under the bar: parabolics, symmetric subalgebras, stabilisers of octonions.
 
 Everything here is the stabiliser of a subspace, a point, a linear map or a form, in the coordinates of
-`liehom.algebra.matrices.matrix_families`.
+`liehom.algebra.matrices`.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.matrix_basis import IntegerArray
+from liehom.algebra import matrices as families
 from liehom.catalog.linear import scalar_parameters
 from liehom.catalog.names import Expression, Sum, Term, terms
 from liehom.catalog.subalgebras import preserving
 from liehom.errors import CatalogError
+from liehom.typing import IntegerArray
 
 Rows = IntegerArray | None
 

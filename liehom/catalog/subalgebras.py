@@ -16,8 +16,9 @@ import numpy as np
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.closure.sparse_commutators import entries_of, private_places
-from liehom.algebra.matrices.matrix_basis import IntegerArray, null_space
+from liehom.algebra.matrices.matrix_basis import null_space
 from liehom.catalog.linear import at_offset
+from liehom.typing import IntegerArray
 
 NOTHING: Sequence[IntegerArray] = ()
 
@@ -45,7 +46,7 @@ def preserving(
     --------
     The upper triangular matrices of sl(2):
 
-    >>> from liehom.algebra.matrices.matrix_families import sl
+    >>> from liehom.algebra.matrices import sl
     >>> preserving(sl(2), subspaces=[np.array([[1, 0]])]).tolist()
     [[1, 0, 0], [0, 0, 1]]
     """

@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra
+from liehom.algebra import matrices as families
 from liehom.algebra.closure.closure import lie_closure
-from liehom.algebra.constructions.simple import exceptional_matrices, simple
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.classical import classical_matrices, linear_algebra
+from liehom.algebra.constructions.simple import simple
+from liehom.algebra.matrices.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
 from liehom.errors import InputError, RepresentationError, ShapeError
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.highest_weight import highest_weight_module
@@ -68,7 +68,7 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     matrices = standard_matrices(name)
     size = int(matrices.shape[1])
     if isinstance(algebra, str) and not len(matrices):
-        return Representation(linear_algebra(matrices, name), [], size=size, name="defining")
+        return Representation(linear_lie_algebra(matrices, name), [], size=size, name="defining")
     if isinstance(algebra, str):
         made = lie_closure(matrices, close=False, name=name)
         # The constants are those of the commutators themselves.

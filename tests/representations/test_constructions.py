@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import liehom as lh
+from liehom.algebra import matrices as families
 from liehom.algebra.closure.closure import lie_closure
-from liehom.algebra.matrices import matrix_families as families
 from liehom.errors import (
     CatalogError,
     DependentRowsError,

@@ -1,4 +1,4 @@
-"""so and sp of a bilinear form given by its matrix, and so*(2n).
+"""The orthogonal and symplectic Lie algebras of a bilinear form given by its matrix.
 
 For a form F(v, w) = v^T F w, symmetric (s = -1) or skew (s = 1), and basis vectors a, b put
 
@@ -15,9 +15,6 @@ from typing import Any
 from liehom.algebra.closure.closure import lie_closure, square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.classical import linear_algebra
-from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import InputError, ShapeError
 from liehom.scalars import Scalar
 
@@ -97,29 +94,6 @@ def sp_form(form: Any, *, name: str | None = None) -> LieAlgebra:
     matrix = _form(form, 1)
     rank = matrix.rank()
     return _algebra(matrix, 1, name or f"sp of a form of rank {rank}", rank < matrix.nrows)
-
-
-def so_star(n: int) -> LieAlgebra:
-    """so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
-
-    Parameters
-    ----------
-    n : int
-        Size over the quaternions, at least 1: half of the number in the name.
-
-    Raises
-    ------
-    InputError
-        If n is not a positive integer.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> lh.so_star(3), lh.so_star(3).killing_signature()
-    (<Lie algebra so*(6) of dimension 15 over QQ>, (6, 9, 0))
-    """
-    require_size("n", n)
-    return linear_algebra(families.so_star(n), f"so*({2 * n})")
 
 
 def index_name(letter: str, *indices: int) -> str:

@@ -9,15 +9,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.classical import classical_matrices, classical_name, linear_algebra
-from liehom.algebra.matrices.matrix_basis import IntegerArray
+from liehom.algebra.matrices.form_preserving import so_star
+from liehom.algebra.matrices.named_matrices import (
+    EXCEPTIONAL_MATRICES,
+    classical_matrices,
+    classical_name,
+    linear_lie_algebra,
+)
 from liehom.algebra.roots.chevalley import chevalley
 from liehom.algebra.roots.compact_form import real_form_of
 from liehom.algebra.roots.dynkin import parse_type
 from liehom.algebra.roots.real_form import RealForm, complex_form, real_forms
 from liehom.algebra.roots.real_form_names import canonical_real_form, parse_name
 from liehom.errors import CatalogError
+from liehom.typing import IntegerArray
 
 Builder = Callable[[], LieAlgebra]
 
@@ -59,7 +64,7 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
     if real_form is None and ("(" in type_name or type_name.strip()[:1].islower()):
         form = RealForm.of_name(type_name)
         type_name, real_form = form.type, form.name
-    forms = constructions(type_name)
+    forms = real_form_builders(type_name)
     wanted = next(iter(forms)) if real_form is None else real_form.replace(" ", "")
     wanted = {"split": real_forms(type_name)[0].name, "compact": real_forms(type_name)[-1].name}.get(wanted, wanted)
     if wanted in forms:
@@ -75,7 +80,7 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
     raise CatalogError(f"{type_name} has no real form {wanted!r}; known: {known}, and 'split', 'compact', 'complex'")
 
 
-def constructions(type_name: str) -> dict[str, Builder]:
+def real_form_builders(type_name: str) -> dict[str, Builder]:
     """The real forms of a complex type by the names of their constructions, the split one first, with builders.
 
     Raises
@@ -85,7 +90,7 @@ def constructions(type_name: str) -> dict[str, Builder]:
 
     Examples
     --------
-    >>> list(constructions("A3")), list(constructions("E6"))
+    >>> list(real_form_builders("A3")), list(real_form_builders("E6"))
     (['sl(4)', 'su(4)', 'su(3,1)', 'su(2,2)', 'sl(2,H)'], ['e6(6)', 'e6(2)', 'e6(-14)', 'e6(-26)', 'e6'])
     """
     parts = parse_type(type_name)
@@ -97,25 +102,6 @@ def constructions(type_name: str) -> dict[str, Builder]:
     return {form.name: _exceptional(form) for form in real_forms(type_name)}
 
 
-def exceptional_matrices(form: str) -> IntegerArray:
-    """The matrix basis of an exceptional real form by its name.
-
-    Raises
-    ------
-    CatalogError
-        If there are no matrices of this form here.
-
-    Examples
-    --------
-    >>> exceptional_matrices("g2(2)").shape
-    (14, 7, 7)
-    """
-    if form not in _EXCEPTIONAL:
-        known = ", ".join(_EXCEPTIONAL)
-        raise CatalogError(f"{form!r} has no construction by matrices here; known: {known}; see also lh.simple")
-    return _EXCEPTIONAL[form]()
-
-
 def _canonical(name: str) -> str | None:
     try:
         return canonical_real_form(name)
@@ -124,8 +110,8 @@ def _canonical(name: str) -> str | None:
 
 
 def _exceptional(form: RealForm) -> Builder:
-    if form.name in _EXCEPTIONAL:
-        return _of_matrices(_EXCEPTIONAL[form.name], form.name)
+    if form.name in EXCEPTIONAL_MATRICES:
+        return _of_matrices(EXCEPTIONAL_MATRICES[form.name], form.name)
     if form.is_split:
         return lambda: _renamed(chevalley(form.type), form.name)
     return lambda: real_form_of(form.vogan, form.name)
@@ -135,7 +121,7 @@ def _complex_algebra(form: RealForm) -> LieAlgebra:
     kind, numbers, _ = parse_name(form.name)
     if not numbers:
         return real_form_of(form.vogan, form.name)
-    return linear_algebra(classical_matrices(kind, numbers[0], "C"), form.name)
+    return linear_lie_algebra(classical_matrices(kind, numbers[0], "C"), form.name)
 
 
 def _renamed(algebra: LieAlgebra, name: str) -> LieAlgebra:
@@ -143,7 +129,7 @@ def _renamed(algebra: LieAlgebra, name: str) -> LieAlgebra:
 
 
 def _of_matrices(build: Callable[[], IntegerArray], name: str) -> Builder:
-    return lambda: linear_algebra(build(), name)
+    return lambda: linear_lie_algebra(build(), name)
 
 
 def _form(kind: str, first: int, second: int | str = 0) -> tuple[str, Builder]:
@@ -171,17 +157,7 @@ def _type_c(rank: int) -> Iterator[tuple[str, Builder]]:
 def _type_d(rank: int) -> Iterator[tuple[str, Builder]]:
     yield from (_form("so", 2 * rank - q, q) for q in range(rank, -1, -1))
     name = f"so*({2 * rank})"
-    yield name, _of_matrices(lambda: families.so_star(rank), name)
+    yield name, _of_matrices(lambda: so_star(rank), name)
 
 
 _CLASSICAL = {"A": _type_a, "B": _type_b, "C": _type_c, "D": _type_d}
-
-_EXCEPTIONAL: dict[str, Callable[[], IntegerArray]] = {
-    "g2(2)": lambda: families.g2(families.SPLIT_OCTONIONS),
-    "g2": families.g2,
-    "f4(4)": lambda: families.f4(parameters=families.SPLIT_OCTONIONS),
-    "f4": families.f4,
-    "f4(-20)": lambda: families.f4((-1, 1, 1)),
-    "e6(6)": lambda: families.e6(families.SPLIT_OCTONIONS),
-    "e6(-26)": families.e6,
-}

@@ -1,6 +1,6 @@
-"""Solvable Lie algebras by name: triangular, filiform, oscillator, almost abelian; Bianchi's of dimension three.
+"""Solvable Lie algebras by name: abelian, Heisenberg, triangular, filiform, oscillator, almost abelian, Bianchi's.
 
-Each with named basis elements.
+Of Bianchi's algebras of dimension three, types VIII and IX are simple.
 """
 
 from __future__ import annotations
@@ -11,10 +11,55 @@ from typing import Any
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.constructions.form_algebras import index_name
 from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import field_of_values
-from liehom.algebra.matrices.classical import linear_algebra
 from liehom.algebra.matrices.matrix_basis import require_size, stack, unit
+from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.errors import InputError, ShapeError
+from liehom.scalars import QQ
+
+
+def abelian(n: int) -> LieAlgebra:
+    """The abelian Lie algebra R^n; n may be 0.
+
+    Raises
+    ------
+    InputError
+        If n is not an integer at least 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.abelian(2), lh.abelian(2).is_abelian()
+    (<Lie algebra R^2 of dimension 2 over QQ>, True)
+    """
+    require_size("n", n, 0)
+    name = f"R^{n}" if n > 1 else "R" if n else "0"
+    return LieAlgebra(StructureConstants(QQ, n, []), name=name, check=False)  # no bracket, nothing to prove
+
+
+def heisenberg(n: int) -> LieAlgebra:
+    """The Heisenberg algebra of dimension 2n + 1: [x_i, y_i] = z, basis x_1, ..., x_n, y_1, ..., y_n, z.
+
+    Raises
+    ------
+    InputError
+        If n is not an integer at least 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(lh.heisenberg(1))
+    Lie algebra heisenberg(1) over QQ, dimension 3
+      basis x1, y1, z
+      [x1, y1] = z
+    """
+    require_size("n", n, 0)
+    entries = [(i, n + i, 2 * n, QQ.one) for i in range(n)]
+    basis = [*(f"x{i + 1}" for i in range(n)), *(f"y{i + 1}" for i in range(n)), "z"]
+    # All double brackets vanish: z is central.
+    table = StructureConstants(QQ, 2 * n + 1, entries)
+    return LieAlgebra(table, basis=basis, name=f"heisenberg({n})", check=False)
 
 
 def upper_triangular(n: int) -> LieAlgebra:
@@ -247,6 +292,6 @@ _BIANCHI: dict[str, tuple[tuple[int, int, int], int | None]] = {
 def _triangular(n: int, above: int, name: str) -> LieAlgebra:
     require_size("n", n)
     places = [(i, j) for i in range(n) for j in range(i + above, n)]
-    table = linear_algebra(stack((unit(n, i, j) for i, j in places), n)).table
+    table = linear_lie_algebra(stack((unit(n, i, j) for i, j in places), n)).table
     # Products of triangular matrices are triangular, and commutators satisfy the Jacobi identity.
     return LieAlgebra(table, basis=[index_name("e", i, j) for i, j in places], name=name, check=False)

@@ -17,8 +17,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.algebra.matrices.matrix_basis import IntegerArray, require_nonzero
+from liehom.algebra.matrices.matrix_basis import require_nonzero
 from liehom.errors import InputError
+from liehom.typing import IntegerArray
 
 OCTONIONS = (-1, -1, -1)
 SPLIT_OCTONIONS = (-1, -1, 1)

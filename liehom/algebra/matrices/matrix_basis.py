@@ -12,16 +12,14 @@ as rows of coefficients.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
-from math import gcd, lcm
-from typing import TypeAlias
+from math import gcd
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from liehom.errors import InputError, ShapeError
-
-IntegerArray: TypeAlias = NDArray[np.int64]
+from liehom.scalars import QQ
+from liehom.typing import IntegerArray
 
 
 def combine(rows: ArrayLike, matrices: ArrayLike) -> IntegerArray:
@@ -114,7 +112,7 @@ def stabilizer_rows(matrices: ArrayLike, point: ArrayLike, *, up_to_scale: bool 
     --------
     The stabiliser of e_0 in so(3) is the rotation of the other two coordinates:
 
-    >>> from liehom.algebra.matrices.matrices_forms import so
+    >>> from liehom.algebra.matrices.form_preserving import so
     >>> stabilizer_rows(so(3), [1, 0, 0]).tolist()
     [[0, 0, 1]]
     """
@@ -151,14 +149,9 @@ def null_space(matrix: ArrayLike) -> IntegerArray:
     """
     system = np.asarray(matrix, dtype=np.int64)
     n = system.shape[1]
-    pivots: dict[int, dict[int, Fraction]] = {}
-    for values in system:
-        _insert({int(j): Fraction(int(values[j])) for j in np.flatnonzero(values)}, pivots)
-    rows = []
-    for free in (j for j in range(n) if j not in pivots):
-        entries = {free: Fraction(1)} | {p: -row[free] for p, row in pivots.items() if free in row}
-        scale = lcm(*(value.denominator for value in entries.values()))
-        rows.append(primitive([int(entries.get(j, 0) * scale) for j in range(n)]))
+    system = np.unique(system, axis=0)  # equations for all pairs of indices repeat each other
+    solved = QQ.from_integers(system.ravel().tolist(), len(system), n).null_space()
+    rows = [primitive([int(x) for x in row]) for row in solved.parts[0].tolist()]
     return np.array(rows, dtype=np.int64).reshape(-1, n)
 
 
@@ -257,28 +250,3 @@ def require_nonzero(name: str, values: Sequence[int]) -> None:
     for value in values:
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value == 0:
             raise InputError(f"the entries of {name} must be non-zero integers; got {list(values)!r}")
-
-
-def _insert(row: dict[int, Fraction], pivots: dict[int, dict[int, Fraction]]) -> None:
-    """Reduce the row by the pivot rows and, if something is left, add it; all stay fully reduced."""
-    for p in [p for p in row if p in pivots]:
-        _subtract(row, row[p], pivots[p])
-    if not row:
-        return
-    pivot = min(row)
-    inverse = 1 / row[pivot]
-    reduced = {j: value * inverse for j, value in row.items()}
-    for other in pivots.values():
-        if pivot in other:
-            _subtract(other, other[pivot], reduced)
-    pivots[pivot] = reduced
-
-
-def _subtract(row: dict[int, Fraction], factor: Fraction, other: dict[int, Fraction]) -> None:
-    """Subtract factor times the other row, in place, dropping zeros."""
-    for j, value in other.items():
-        difference = row.get(j, Fraction(0)) - factor * value
-        if difference:
-            row[j] = difference
-        else:
-            row.pop(j, None)

@@ -15,14 +15,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.scalars import QQ
-
-IntArray = npt.NDArray[np.int64]
+from liehom.typing import IntegerArray
 
 
 class RootBrackets(NamedTuple):
@@ -35,10 +33,10 @@ class RootBrackets(NamedTuple):
         N_{a,b}, which is p + 1 or -(p + 1) if b - p a is the last root of the string through b.
     """
 
-    a: IntArray
-    b: IntArray
-    c: IntArray
-    number: IntArray
+    a: IntegerArray
+    b: IntegerArray
+    c: IntegerArray
+    number: IntegerArray
 
 
 def chevalley(type_name: str) -> LieAlgebra:
@@ -114,7 +112,7 @@ def chevalley_constants(system: RootSystem) -> StructureConstants:
     return StructureConstants.from_integers(QQ, rank + 2 * count, i, j, k, values.tolist())
 
 
-def cartan_weights(system: RootSystem) -> IntArray:
+def cartan_weights(system: RootSystem) -> IntegerArray:
     """<a, alpha_i^vee> for all roots a, shape (number of roots, r).
 
     Examples
@@ -125,7 +123,7 @@ def cartan_weights(system: RootSystem) -> IntArray:
     return system.root_matrix() @ _square(system.cartan)
 
 
-def coroots(system: RootSystem) -> IntArray:
+def coroots(system: RootSystem) -> IntegerArray:
     """The coroots of the positive roots in the simple coroots, shape (N, r).
 
     Examples
@@ -199,5 +197,5 @@ def _component(system: RootSystem, node: int) -> list[int]:
     return max(supports, key=len)
 
 
-def _square(cartan: Any) -> IntArray:
+def _square(cartan: Any) -> IntegerArray:
     return np.array(cartan, dtype=np.int64).reshape(len(cartan), len(cartan))

@@ -15,7 +15,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
@@ -23,8 +22,7 @@ from liehom.algebra.roots.chevalley import cartan_weights, coroots, root_bracket
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.scalars import QQ
-
-IntArray = npt.NDArray[np.int64]
+from liehom.typing import IntegerArray
 
 
 def compact_form(type_name: str) -> LieAlgebra:
@@ -141,7 +139,7 @@ def real_form_of(vogan: VoganDiagram, name: str | None = None) -> LieAlgebra:
     return LieAlgebra(made, basis=names, name=name, check=False)
 
 
-def _involution(vogan: VoganDiagram) -> tuple[IntArray, IntArray]:
+def _involution(vogan: VoganDiagram) -> tuple[IntegerArray, IntegerArray]:
     """theta on the basis of the compact form: the place and the sign of each image."""
     system = vogan.root_system()
     rank, count = system.rank, len(system.positive_roots)
@@ -161,7 +159,7 @@ def _reordered(table: StructureConstants, order: list[int]) -> StructureConstant
 
 
 def _in_eigenvectors(
-    table: StructureConstants, image: IntArray, sign: IntArray, plus: list[int], minus: list[int]
+    table: StructureConstants, image: IntegerArray, sign: IntegerArray, plus: list[int], minus: list[int]
 ) -> StructureConstants:
     """The table in the basis v + theta v, v - theta v for the two-element orbits, and v for the others."""
     size = table.dimension

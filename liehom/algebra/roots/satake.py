@@ -19,14 +19,12 @@ from functools import lru_cache
 from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra.roots.dynkin import identify, isomorphisms, join_types
 from liehom.algebra.roots.root_system import Root, RootSystem
 from liehom.algebra.roots.vogan import VoganDiagram, generic, gram_to_cartan, simple_system
 from liehom.errors import InputError, InternalError
-
-IntArray = npt.NDArray[np.int64]
+from liehom.typing import IntegerArray
 
 
 @final
@@ -132,7 +130,7 @@ class SatakeDiagram:
         """The root system of the complex algebra."""
         return VoganDiagram(self.type).root_system()
 
-    def involution(self) -> IntArray:
+    def involution(self) -> IntegerArray:
         """theta on rows of coefficients in the simple roots, shape (r, r).
 
         Examples
@@ -238,7 +236,7 @@ def _from_vogan(vogan: VoganDiagram) -> SatakeDiagram:
     return SatakeDiagram(vogan.type, tuple(sorted(-x for x in last_black)), tuple(arrows))
 
 
-def _maximally_split(vogan: VoganDiagram) -> IntArray:
+def _maximally_split(vogan: VoganDiagram) -> IntegerArray:
     """The involution on the root lattice after Cayley transforms by noncompact roots, until none is left."""
     system, theta = vogan.root_system(), vogan.involution()
     gram = np.array(system.cartan, dtype=np.int64).reshape(system.rank, system.rank) * np.array(system.norms) // 2
@@ -257,7 +255,7 @@ def _maximally_split(vogan: VoganDiagram) -> IntArray:
     return theta
 
 
-def _simple_roots_for(system: RootSystem, theta: IntArray) -> list[Root]:
+def _simple_roots_for(system: RootSystem, theta: IntegerArray) -> list[Root]:
     """Simple roots for an order in which the part of a root in the (-1)-eigenspace of theta decides first."""
     roots = system.root_matrix()
     split = dict(zip(system.roots, (roots - roots @ theta).tolist(), strict=True))

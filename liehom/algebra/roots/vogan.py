@@ -16,13 +16,11 @@ from functools import lru_cache
 from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra.roots.dynkin import identify, join_types
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.errors import InputError
-
-IntArray = npt.NDArray[np.int64]
+from liehom.typing import IntegerArray
 
 
 @final
@@ -90,11 +88,11 @@ class VoganDiagram:
         """The root system of the type."""
         return _root_system(self.type)
 
-    def involution(self) -> IntArray:
+    def involution(self) -> IntegerArray:
         """The matrix (r, r) of the involution on rows of coefficients in the simple roots."""
         return np.eye(len(self.automorphism), dtype=np.int64)[list(self.automorphism)]
 
-    def signs(self) -> IntArray:
+    def signs(self) -> IntegerArray:
         """s(a) for each root a, in the order of `RootSystem.roots`.
 
         Examples
@@ -109,7 +107,7 @@ class VoganDiagram:
         sigma = list(self.automorphism)
         change = np.triu(b[np.ix_(sigma, sigma)] - b, 1)
         q = np.einsum("ai,ij,aj->a", roots, change, roots) + roots[:, list(self.painted)].sum(axis=1)
-        signs: IntArray = 1 - 2 * (q % 2)
+        signs: IntegerArray = 1 - 2 * (q % 2)
         return signs
 
     def maximal_compact_type(self) -> tuple[str, int]:
@@ -138,7 +136,7 @@ class VoganDiagram:
         return (roots[:, list(self.automorphism)] == roots).all(axis=1)
 
 
-def bilinear_form(system: RootSystem) -> IntArray:
+def bilinear_form(system: RootSystem) -> IntegerArray:
     """B with B(a, a) = (a, a) / 2 and B(a, b) + B(b, a) = (a, b) for a simply laced system, in the simple roots.
 
     B(i, j) is 1 for i = j, -1 for neighbours i < j, else 0.  For other systems it is the same with norms as weights,

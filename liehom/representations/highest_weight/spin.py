@@ -14,13 +14,14 @@ from typing import final
 
 import numpy as np
 
+from liehom.algebra import matrices as families
 from liehom.algebra import so
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.matrix_basis import IntegerArray, require_size
+from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import InputError
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.highest_weight import require_room
 from liehom.scalars import QQ
+from liehom.typing import IntegerArray
 
 LARGEST = 64
 

@@ -10,9 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 import liehom as lh
-from liehom.algebra.constructions.simple import constructions, exceptional_matrices
+from liehom.algebra.constructions.simple import real_form_builders
 from liehom.algebra.core.jacobi import prove_jacobi
-from liehom.algebra.matrices.classical import classical_matrices
+from liehom.algebra.matrices import exceptional_matrices
+from liehom.algebra.matrices.named_matrices import classical_matrices
 from liehom.errors import CatalogError, InputError, JacobiError, ShapeError
 
 
@@ -165,7 +166,7 @@ COMPACT_PARTS = {
 @pytest.mark.parametrize("type_name", ["A1", "A3", "B2", "C2", "D3", "G2", "F4", "E6"])
 def test_real_forms(type_name: str) -> None:
     dimension = {"A1": 3, "A3": 15, "B2": 10, "C2": 10, "D3": 15, "G2": 14, "F4": 52, "E6": 78}[type_name]
-    for name in constructions(type_name):
+    for name in real_form_builders(type_name):
         g = lh.simple(type_name, name)
         assert (g.name, g.dimension, g.killing_signature()[2]) == (name, dimension, 0)
         assert compact_dimension(g) == COMPACT_PARTS.get(name, compact_dimension(g))

@@ -11,22 +11,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.algebra.constructions.families import (
+from liehom.algebra.constructions import (
     affine,
     affine_of,
+    almost_abelian,
     bargmann,
+    bianchi,
     conformal,
+    filiform,
+    free_nilpotent,
     galilei,
+    oscillator,
     parabolic_subalgebra,
     poincare,
-)
-from liehom.algebra.constructions.form_algebras import so_form, so_star, sp_form
-from liehom.algebra.constructions.free_nilpotent import free_nilpotent
-from liehom.algebra.constructions.solvable_families import (
-    almost_abelian,
-    bianchi,
-    filiform,
-    oscillator,
+    so_form,
+    so_star,
+    sp_form,
     strictly_upper_triangular,
     upper_triangular,
 )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from liehom.algebra.matrices import matrix_families as mf
+from liehom.algebra import matrices as mf
 
 ALGEBRAS = [(), (-1,), (2,), (-1, -1), (-1, 3), (-1, -1, -1), (-1, -1, 1), (2, -3, 5)]
 

@@ -5,7 +5,7 @@ import random
 import pytest
 
 import liehom as lh
-from liehom.algebra.constructions.simple import constructions
+from liehom.algebra.constructions.simple import real_form_builders
 from liehom.algebra.core.jacobi import prove_jacobi
 from liehom.algebra.roots.compact_form import compact_form, real_form_of
 from liehom.algebra.roots.real_form import complex_form, real_forms
@@ -63,7 +63,7 @@ def test_real_forms_of_e8(form):
 def test_constructions_are_the_forms_that_their_names_say(type_name):
     """The algebras of matrices have the signatures that the Vogan diagrams of their names give."""
     canonical = set()
-    for name in constructions(type_name):
+    for name in real_form_builders(type_name):
         g, form = lh.simple(type_name, name), lh.RealForm.of_name(name)
         canonical.add(form.name)
         assert g.name == name

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.classical import linear_algebra
+from liehom.algebra import matrices as families
+from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.errors import FieldError, InputError, ShapeError, UndecidedError
 from liehom.scalars import QQ, RR
 
@@ -23,7 +23,7 @@ SQRT2 = lh.number_field("sqrt(2)")
 def affine(matrices: Any) -> lh.Pair:
     """(h + V, h) for integer matrices h on V."""
     made = np.asarray(matrices)
-    h = linear_algebra(made)
+    h = linear_lie_algebra(made)
     g = lh.semidirect_sum(h, [m.tolist() for m in made])
     return lh.Pair(g, [[int(i == j) for j in range(g.dimension)] for i in range(h.dimension)])
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 from itertools import combinations, pairwise
 
 from liehom.algebra.matrices.composition_algebra import OCTONIONS, cayley_dickson, left_multiplications, norm_diagonal
-from liehom.algebra.matrices.matrix_basis import IntegerArray, primitive, stack, unit
+from liehom.algebra.matrices.matrix_basis import primitive, stack, unit
 from liehom.errors import InputError
+from liehom.typing import IntegerArray
 
 
 def g2(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:

@@ -6,7 +6,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from liehom.algebra.matrices import matrix_families as mf
+from liehom.algebra import matrices as mf
 
 
 @pytest.mark.parametrize("k", range(5))

@@ -1,6 +1,7 @@
-"""The classical linear Lie algebras by name and parameters: one table for the constructors and the catalogue.
+"""The bases of classical and exceptional linear Lie algebras by name: one table for constructors and catalogue.
 
-The second parameter is a number q (a form of signature (p, q)) or a letter: 'R', 'C' or 'H' for the scalars.
+The second parameter of a classical name is a number q (a form of signature (p, q)) or a letter, 'R', 'C' or 'H',
+for the scalars.
 
 ==========  =====================================  ==========================
 gl, sl      (n), (n, 'C'), (n, 'H')                on R^n, R^2n, R^4n
@@ -21,10 +22,11 @@ from collections.abc import Callable
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.matrices import matrix_families as families
-from liehom.algebra.matrices.matrix_basis import IntegerArray
-from liehom.errors import InputError
+from liehom.algebra.matrices import albert, form_preserving, general_linear, octonionic, spinors
+from liehom.algebra.matrices.composition_algebra import SPLIT_OCTONIONS
+from liehom.errors import CatalogError, InputError
 from liehom.scalars import QQ
+from liehom.typing import IntegerArray
 
 Parameter = int | str
 
@@ -58,9 +60,28 @@ def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerA
         return _FORMS[kind](first, second)
     build = _BY_LETTER.get((kind, "R" if second == 0 else str(second)))
     if build is None:
-        known = ", ".join(sorted({k for k, _ in _BY_LETTER} | _FORMS.keys()))
+        known = ", ".join(sorted(CLASSICAL_KINDS))
         raise InputError(f"there is no {kind}({first},{second}); the kinds are {known}, the scalars R, C, H")
     return build(first)
+
+
+def exceptional_matrices(form: str) -> IntegerArray:
+    """The matrix basis of an exceptional real form by its name.
+
+    Raises
+    ------
+    CatalogError
+        If there are no matrices of this form here.
+
+    Examples
+    --------
+    >>> exceptional_matrices("g2(2)").shape
+    (14, 7, 7)
+    """
+    if form not in EXCEPTIONAL_MATRICES:
+        known = ", ".join(EXCEPTIONAL_MATRICES)
+        raise CatalogError(f"{form!r} has no construction by matrices here; known: {known}; see also lh.simple")
+    return EXCEPTIONAL_MATRICES[form]()
 
 
 def classical_name(kind: str, first: int, second: Parameter = 0) -> str:
@@ -75,7 +96,7 @@ def classical_name(kind: str, first: int, second: Parameter = 0) -> str:
     return f"{kind}({first})" if silent else f"{kind}({first},{second})"
 
 
-def linear_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebra:
+def linear_lie_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebra:
     """The Lie algebra with an integer matrix basis that is closed under commutators; there may be no matrix.
 
     Raises
@@ -84,7 +105,7 @@ def linear_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebr
 
     Examples
     --------
-    >>> linear_algebra(classical_matrices("so", 3), "so(3)")
+    >>> linear_lie_algebra(classical_matrices("so", 3), "so(3)")
     <Lie algebra so(3) of dimension 3 over QQ>
     """
     if len(matrices) == 0:
@@ -104,22 +125,36 @@ def _half(build: Callable[[int], IntegerArray]) -> Callable[[int], IntegerArray]
 
 
 _FORMS: dict[str, Callable[[int, int], IntegerArray]] = {
-    "so": families.so,
-    "su": families.su,
-    "u": families.u,
-    "sp": families.quaternionic_u,
-    "spin": families.spin,
+    "so": form_preserving.so,
+    "su": form_preserving.su,
+    "u": form_preserving.u,
+    "sp": form_preserving.quaternionic_u,
+    "spin": spinors.spin,
 }
 
 _BY_LETTER: dict[tuple[str, str], Callable[[int], IntegerArray]] = {
-    ("gl", "R"): families.gl,
-    ("gl", "C"): families.complex_gl,
-    ("gl", "H"): families.quaternionic_gl,
-    ("sl", "R"): families.sl,
-    ("sl", "C"): families.complex_sl,
-    ("sl", "H"): families.quaternionic_sl,
-    ("so", "R"): families.so,
-    ("so", "C"): families.complex_so,
-    ("sp", "R"): _half(families.sp),
-    ("sp", "C"): _half(families.complex_sp),
+    ("gl", "R"): general_linear.gl,
+    ("gl", "C"): general_linear.complex_gl,
+    ("gl", "H"): general_linear.quaternionic_gl,
+    ("sl", "R"): general_linear.sl,
+    ("sl", "C"): general_linear.complex_sl,
+    ("sl", "H"): general_linear.quaternionic_sl,
+    ("so", "R"): form_preserving.so,
+    ("so", "C"): form_preserving.complex_so,
+    ("sp", "R"): _half(form_preserving.sp),
+    ("sp", "C"): _half(form_preserving.complex_sp),
 }
+
+CLASSICAL_KINDS = frozenset({kind for kind, _ in _BY_LETTER} | _FORMS.keys())
+"""The kinds that `classical_matrices` knows."""
+
+EXCEPTIONAL_MATRICES: dict[str, Callable[[], IntegerArray]] = {
+    "g2(2)": lambda: octonionic.g2(SPLIT_OCTONIONS),
+    "g2": octonionic.g2,
+    "f4(4)": lambda: albert.f4(parameters=SPLIT_OCTONIONS),
+    "f4": albert.f4,
+    "f4(-20)": lambda: albert.f4((-1, 1, 1)),
+    "e6(6)": lambda: albert.e6(SPLIT_OCTONIONS),
+    "e6(-26)": albert.e6,
+}
+"""Builders of the exceptional real forms that have a matrix basis here, by name."""

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from liehom.algebra.matrices.composition_algebra import cayley_dickson, left_multiplications, right_multiplications
-from liehom.algebra.matrices.matrix_basis import IntegerArray, as_matrices, join, require_size, stack, unit
+from liehom.algebra.matrices.matrix_basis import as_matrices, join, require_size, stack, unit
 from liehom.errors import InputError
+from liehom.typing import IntegerArray
 
 
 def gl(n: int) -> IntegerArray:

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from liehom.algebra.matrices import matrix_families as mf
+from liehom.algebra import matrices as mf
 
 
 @pytest.mark.parametrize(("p", "q"), [(p, q) for p in range(10) for q in range(10) if p + q <= 11])

@@ -11,7 +11,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from liehom.algebra.matrices import matrix_families as mf
+from liehom.algebra import matrices as mf
 from liehom.algebra.matrices.matrix_basis import null_space, primitive
 from liehom.errors import InputError, LiehomError, ShapeError
 

@@ -16,9 +16,10 @@ from itertools import combinations
 import numpy as np
 
 from liehom.algebra.matrices.composition_algebra import OCTONIONS, conjugation
-from liehom.algebra.matrices.matrices_octonionic import octonion_table
-from liehom.algebra.matrices.matrix_basis import IntegerArray, primitive, stack
+from liehom.algebra.matrices.matrix_basis import primitive, stack
+from liehom.algebra.matrices.octonionic import octonion_table
 from liehom.errors import InputError
+from liehom.typing import IntegerArray
 
 _DIMENSION = 27
 _PLACES = ((1, 2), (2, 0), (0, 1))

@@ -12,8 +12,9 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.algebra.matrices.matrix_basis import IntegerArray, as_matrices, require_size, stack
+from liehom.algebra.matrices.matrix_basis import as_matrices, require_size, stack
 from liehom.errors import InputError
+from liehom.typing import IntegerArray
 
 
 def tensor_sum(first: ArrayLike, second: ArrayLike) -> IntegerArray:
@@ -34,7 +35,7 @@ def tensor_sum(first: ArrayLike, second: ArrayLike) -> IntegerArray:
     --------
     sl(4, R) + sl(2, R) on R^8:
 
-    >>> from liehom.algebra.matrices.matrices_linear import sl
+    >>> from liehom.algebra.matrices.general_linear import sl
     >>> tensor_sum(sl(4), sl(2)).shape
     (18, 8, 8)
     """
@@ -68,7 +69,7 @@ def symmetric_power(matrices: ArrayLike, k: int) -> IntegerArray:
     --------
     sl(2, R) on binary quadratic forms, basis x^2, xy, y^2:
 
-    >>> from liehom.algebra.matrices.matrices_linear import sl
+    >>> from liehom.algebra.matrices.general_linear import sl
     >>> symmetric_power(sl(2), 2)[0].tolist()
     [[0, 1, 0], [0, 0, 2], [0, 0, 0]]
     """
@@ -130,7 +131,7 @@ def congruence(matrices: ArrayLike) -> IntegerArray:
     --------
     so(3) on Sym(3) = R^6 by conjugation:
 
-    >>> from liehom.algebra.matrices.matrices_forms import so
+    >>> from liehom.algebra.matrices.form_preserving import so
     >>> congruence(so(3)).shape
     (3, 6, 6)
     """

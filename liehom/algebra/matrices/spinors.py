@@ -20,8 +20,9 @@ from itertools import combinations
 import numpy as np
 
 from liehom.algebra.matrices.composition_algebra import OCTONIONS, cayley_dickson, left_multiplications
-from liehom.algebra.matrices.matrix_basis import IntegerArray, require_size, stack
+from liehom.algebra.matrices.matrix_basis import require_size, stack
 from liehom.errors import InputError
+from liehom.typing import IntegerArray
 
 _SX: IntegerArray = np.array([[0, 1], [1, 0]], dtype=np.int64)
 _SZ: IntegerArray = np.array([[1, 0], [0, -1]], dtype=np.int64)

@@ -1,7 +1,6 @@
-"""Algebras of affine and kinematical groups, and parabolic subalgebras: gl(n) + R^n, Poincaré, Galilei, conformal.
+"""Lie algebras of affine and kinematical groups: Euclidean, Poincaré, Galilei, Bargmann, conformal, gl(n) + R^n.
 
-Each over QQ, with named basis elements.  Those of solvable groups are in `solvable_families`, free nilpotent ones
-in `free_nilpotent`.
+Each is over QQ, with named basis elements.
 """
 
 from __future__ import annotations
@@ -10,15 +9,33 @@ import itertools
 from typing import Any
 
 from liehom.algebra.closure.closure import lie_closure
-from liehom.algebra.constructions.constructions import semidirect_sum, sl, so
+from liehom.algebra.constructions.classical_algebras import so
 from liehom.algebra.constructions.form_algebras import form_brackets, index_name
+from liehom.algebra.constructions.sums import semidirect_sum
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.core.subalgebra import Subalgebra
-from liehom.algebra.matrices.classical import classical_matrices, linear_algebra
 from liehom.algebra.matrices.matrix_basis import require_size
-from liehom.errors import InputError
+from liehom.algebra.matrices.named_matrices import classical_matrices, linear_lie_algebra
 from liehom.scalars import QQ
+
+
+def euclidean(n: int) -> LieAlgebra:
+    """e(n) = so(n) + R^n, the rotations first and then the translations.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.euclidean(3), lh.euclidean(3).center().dimension
+    (<Lie algebra e(3) of dimension 6 over QQ>, 0)
+    """
+    matrices = classical_matrices("so", n)
+    # The matrices are the basis of so(n) itself: a representation.
+    return semidirect_sum(so(n), matrices, size=n, name=f"e({n})", check=False)
 
 
 def poincare(p: int, q: int = 1) -> LieAlgebra:
@@ -163,7 +180,7 @@ def affine(n: int) -> LieAlgebra:
     matrices = classical_matrices("gl", n)
     names = [*(index_name("e", i, j) for i in range(n) for j in range(n)), *(index_name("t", i) for i in range(n))]
     # The matrices are the basis of gl(n) itself: a representation.
-    return semidirect_sum(linear_algebra(matrices), matrices, basis=names, name=f"aff({n})", check=False)
+    return semidirect_sum(linear_lie_algebra(matrices), matrices, basis=names, name=f"aff({n})", check=False)
 
 
 def affine_of(matrices: Any, *, name: str | None = None) -> LieAlgebra:
@@ -194,43 +211,6 @@ def affine_of(matrices: Any, *, name: str | None = None) -> LieAlgebra:
     made = lie_closure(matrices, close=False)
     # The matrices have the brackets of the algebra: a representation.
     return semidirect_sum(made.algebra, made.matrices, name=name, check=False)
-
-
-def parabolic_subalgebra(*sizes: int) -> Subalgebra:
-    """The block upper triangular matrices in sl(n): the parabolic subalgebra of a flag.
-
-    Parameters
-    ----------
-    *sizes : int
-        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. All 1: the Borel subalgebra.
-
-    Returns
-    -------
-    Subalgebra
-        Of ``sl(n)``, in its basis.
-
-    Raises
-    ------
-    InputError
-        If there is no block or a size is not a positive integer.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> h = lh.parabolic_subalgebra(1, 2)
-    >>> h, h.algebra.normalizer(h).dimension
-    (<subalgebra of dimension 6 in sl(3) over QQ>, 6)
-    """
-    if not sizes:
-        raise InputError("a parabolic subalgebra needs the sizes of its diagonal blocks, such as (1, 2)")
-    for size in sizes:
-        require_size("the size of a block", size)
-    n = sum(sizes)
-    block = [b for b, size in enumerate(sizes) for _ in range(size)]
-    off = [pair for pair in itertools.product(range(n), repeat=2) if pair[0] != pair[1]]
-    kept = [k for k, (i, j) in enumerate(off) if block[i] <= block[j]] + list(range(len(off), n * n - 1))
-    # Products of block upper triangular matrices are block upper triangular.
-    return Subalgebra(sl(n), QQ.identity(n * n - 1).select(rows=kept), check=False)
 
 
 def _rotations(n: int) -> list[str]:

@@ -5,7 +5,7 @@ For a diagonal form D over R, C or H the condition X* D + D X = 0 reads conj(x_j
     d_i q E_ji - d_j conj(q) E_ij  (i < j, q a unit)   and   q E_ii  (q an imaginary unit)
 
 are a basis: so(p,q), u(p,q) and sp(p,q) at once.  Blocks of a complex or quaternionic entry are as in
-matrices_linear.
+`general_linear`.
 """
 
 from __future__ import annotations
@@ -15,15 +15,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from liehom.algebra.matrices.composition_algebra import cayley_dickson, conjugation, left_multiplications
-from liehom.algebra.matrices.matrices_linear import complexify, with_complex_scalars, with_quaternion_scalars
-from liehom.algebra.matrices.matrix_basis import (
-    IntegerArray,
-    primitive,
-    require_nonzero,
-    require_size,
-    stack,
-    unit,
-)
+from liehom.algebra.matrices.general_linear import complexify, with_complex_scalars, with_quaternion_scalars
+from liehom.algebra.matrices.matrix_basis import primitive, require_nonzero, require_size, stack, unit
+from liehom.typing import IntegerArray
 
 
 def so(p: int, q: int = 0) -> IntegerArray:

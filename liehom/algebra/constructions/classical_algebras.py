@@ -1,0 +1,194 @@
+"""The classical Lie algebras gl, sl, so, su, u, sp and so*(2n), and the parabolic subalgebras of sl(n).
+
+Each is over QQ, in the basis of its matrices (`liehom.algebra.matrices`), and has a name that the catalogue reads.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.algebra.matrices import form_preserving
+from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.algebra.matrices.named_matrices import Parameter, classical_matrices, classical_name, linear_lie_algebra
+from liehom.errors import InputError
+from liehom.scalars import QQ
+
+
+def gl(n: int, over: str = "R") -> LieAlgebra:
+    """gl(n) over 'R', 'C' or 'H', as a real Lie algebra of dimension n**2, 2 n**2 or 4 n**2.
+
+    Parameters
+    ----------
+    n : int
+        Size, at least 1.
+    over : 'R', 'C' or 'H'
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer or the letter is another one.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.gl(2).dimension, lh.gl(1, "H").dimension
+    (4, 4)
+    """
+    return _classical("gl", n, over)
+
+
+def sl(n: int, over: str = "R") -> LieAlgebra:
+    """sl(n) over 'R', 'C' or 'H'; over H it is the real trace that vanishes.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer or the letter is another one.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.sl(3), lh.sl(2, "H").dimension
+    (<Lie algebra sl(3) of dimension 8 over QQ>, 15)
+    """
+    return _classical("sl", n, over)
+
+
+def so(p: int, q: int | str = 0) -> LieAlgebra:
+    """so(p, q), of dimension n (n - 1) / 2 with n = p + q, or so(n, 'C').
+
+    Raises
+    ------
+    InputError
+        If p or q is negative or p + q is 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.so(3).killing_signature(), lh.so(2, 1).killing_signature(), lh.so(3, "C").dimension
+    ((0, 3, 0), (2, 1, 0), 6)
+    """
+    return _classical("so", p, q)
+
+
+def su(p: int, q: int = 0) -> LieAlgebra:
+    """su(p, q), of dimension n**2 - 1 with n = p + q.
+
+    Raises
+    ------
+    InputError
+        If p or q is negative or p + q is 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.su(3).killing_signature(), lh.su(1, 1).killing_signature()
+    ((0, 8, 0), (2, 1, 0))
+    """
+    return _classical("su", p, q)
+
+
+def u(p: int, q: int = 0) -> LieAlgebra:
+    """u(p, q), of dimension n**2 with n = p + q.
+
+    Raises
+    ------
+    InputError
+        If p or q is negative or p + q is 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.u(2).center().dimension
+    1
+    """
+    return _classical("u", p, q)
+
+
+def sp(p: int, q: int | str = 0) -> LieAlgebra:
+    """The compact sp(n) and sp(p, q) on H^n, n = p + q; with a letter the split sp(2n, 'R') and sp(2n, 'C').
+
+    Parameters
+    ----------
+    p : int
+        With q a number: sp(p, q) of dimension n (2n + 1), sp(1) = su(2). With a letter: the even size 2n.
+    q : int, 'R' or 'C'
+
+    Raises
+    ------
+    InputError
+        If p or q is negative, p + q is 0, or the size before a letter is odd.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.sp(2).killing_signature(), lh.sp(4, "R").killing_signature(), lh.sp(1, 1).killing_signature()
+    ((0, 10, 0), (6, 4, 0), (4, 6, 0))
+    """
+    return _classical("sp", p, q)
+
+
+def so_star(n: int) -> LieAlgebra:
+    """so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
+
+    Parameters
+    ----------
+    n : int
+        Size over the quaternions, at least 1: half of the number in the name.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.so_star(3), lh.so_star(3).killing_signature()
+    (<Lie algebra so*(6) of dimension 15 over QQ>, (6, 9, 0))
+    """
+    require_size("n", n)
+    return linear_lie_algebra(form_preserving.so_star(n), f"so*({2 * n})")
+
+
+def parabolic_subalgebra(*sizes: int) -> Subalgebra:
+    """The block upper triangular matrices in sl(n): the parabolic subalgebra of a flag.
+
+    Parameters
+    ----------
+    *sizes : int
+        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. All 1: the Borel subalgebra.
+
+    Returns
+    -------
+    Subalgebra
+        Of ``sl(n)``, in its basis.
+
+    Raises
+    ------
+    InputError
+        If there is no block or a size is not a positive integer.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> h = lh.parabolic_subalgebra(1, 2)
+    >>> h, h.algebra.normalizer(h).dimension
+    (<subalgebra of dimension 6 in sl(3) over QQ>, 6)
+    """
+    if not sizes:
+        raise InputError("a parabolic subalgebra needs the sizes of its diagonal blocks, such as (1, 2)")
+    for size in sizes:
+        require_size("the size of a block", size)
+    n = sum(sizes)
+    block = [b for b, size in enumerate(sizes) for _ in range(size)]
+    off = [pair for pair in itertools.product(range(n), repeat=2) if pair[0] != pair[1]]
+    kept = [k for k, (i, j) in enumerate(off) if block[i] <= block[j]] + list(range(len(off), n * n - 1))
+    # Products of block upper triangular matrices are block upper triangular.
+    return Subalgebra(sl(n), QQ.identity(n * n - 1).select(rows=kept), check=False)
+
+
+def _classical(kind: str, first: int, second: Parameter) -> LieAlgebra:
+    return linear_lie_algebra(classical_matrices(kind, first, second), classical_name(kind, first, second))
