@@ -71,9 +71,6 @@ CLASS_FILES = (
 
 # circles that remain to be opened, by the stems of their modules
 CIRCLES_LEFT = {
-    "exact_field exact_matrix",
-    "algebraic_number number_field polynomial rational",
-    "function_field rational_function",
     "generating_matrices representation analysis_verbs",
     "run state",
     "closed_forms exact_orbit rigid_body updates",

@@ -13,7 +13,7 @@ from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError
 from liehom.representations.core.representation import Representation
 from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, NumberField
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.floating import FloatMatrix
 
 GREEK = re.compile(

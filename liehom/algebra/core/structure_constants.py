@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Scalar
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.spaces.sparse import SparseInteger
 
 IntArray = npt.NDArray[np.int64]

@@ -16,7 +16,7 @@ import numpy as np
 from liehom.correctors.symbolic.symbolic_problem import Symbols
 from liehom.errors import InputError, ShapeError, SingularError
 from liehom.scalars import QQ
-from liehom.scalars.functions.rational_function import RationalFunction
+from liehom.scalars.functions.function_field import RationalFunction
 from liehom.series.arrays import as_values, is_jax, namespace
 
 CHUNK = 100

@@ -96,7 +96,7 @@ class Symbols:
     def chunks(self, p: Any, size: int) -> list[Any]:
         """A polynomial as expressions of at most `size` terms whose sum it is."""
         terms = list(p.terms())
-        ring = self.field.ring
+        ring = self.field.ring.context
         return [self._polynomial(ring.from_dict(dict(terms[i : i + size]))) for i in range(0, len(terms), size)]
 
     # -- back to sympy -----------------------------------------------------------------------------------
@@ -116,7 +116,7 @@ class Symbols:
             factors += [(self.field.atoms[i], -k) for i, k in element.powers]
         else:
             content, factors = element.factors()
-        return QQ.convert(content), [(self.field.shortest(p) if short else p, k) for p, k in factors]
+        return QQ.convert(content), [(self.field.ring.shortest(p) if short else p, k) for p, k in factors]
 
     def expression(self, element: RationalFunction) -> Any:
         """An element as a factorised expression of few terms."""
@@ -136,7 +136,7 @@ class Symbols:
         for element in elements:
             for x in element if isinstance(element, list) else [element]:
                 used |= {i for i, _ in x.powers}
-        return sympy.Mul(*(self._polynomial(self.field.shortest(self.field.atoms[i])) for i in sorted(used)))
+        return sympy.Mul(*(self._polynomial(self.field.ring.shortest(self.field.atoms[i])) for i in sorted(used)))
 
 
 # -- reading ---------------------------------------------------------------------------------------------
@@ -240,7 +240,7 @@ def _with_grading(
     values = [evaluated(x, scope, plain.field) + plain.field.zero for x in components]
     full = values + [plain.field.zero] * (representation.algebra.dimension - len(values))
     vector = action_map(representation)(array(full), array(plain.point))
-    extra = plain.field.graded_weights([*values, *vector], names[n:]) if n else []
+    extra = plain.field.ring.graded_weights((x.numerator for x in (*values, *vector)), names[n:]) if n else []
     if not extra:
         return plain
     return Symbols(names, n, symbols, FunctionField(names, made, [*names[:n], *extra]), tuple(constraints))
@@ -268,8 +268,8 @@ def _require_invariance(
         unit = array([field.one if i == a else field.zero for i in range(dimension)])
         moved = action(unit, array(symbols.point))
         for number, terms in enumerate(constraints):
-            p = field.polynomial(terms)
-            slopes = [RationalFunction(field, field.reduce(p.derivative(i)), ()) for i in range(n)]
+            p = field.ring.polynomial(terms)
+            slopes = [RationalFunction(field, field.ring.reduce(p.derivative(i)), ()) for i in range(n)]
             if sum((slope * v for slope, v in zip(slopes, moved, strict=True)), field.zero) != 0:
                 raise InputError(
                     f"constraints[{number}], {symbols.constraints[number]} = 0, is not kept by the group: "

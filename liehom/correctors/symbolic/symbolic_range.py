@@ -71,7 +71,7 @@ class SymbolicRange:
         image = np.stack([inverse(column) for column in fixing.T], axis=-1)
         self.projector = simple(self._units - adjoint @ image)
         # without a gcd a row would bring factors that do not cancel
-        own = n - inverse.rank == 1 and len(field.basis) < 2
+        own = n - inverse.rank == 1 and len(field.ring.basis) < 2
         self.row: Any = self._simplest_row() if own else None
 
     def _moved(self, m: Any) -> Any:

@@ -14,8 +14,8 @@ import numpy as np
 
 from liehom.errors import InputError, ParseError
 from liehom.homogeneous.fields.scope import Chain, Compiled, Constant, Function, Power
-from liehom.scalars.fields.algebraic_number import AlgebraicNumber
 from liehom.scalars.fields.grammar import Call, Name, Node, Number, Operation, parse
+from liehom.scalars.fields.number_field import AlgebraicNumber
 
 # what a text may call; the names are those of sympy, and mostly those of numpy
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "atan", "asin", "asinh", "atanh")

@@ -14,7 +14,7 @@ import numpy as np
 
 from liehom.errors import FieldError, ParseError
 from liehom.homogeneous.maps import remainder
-from liehom.scalars.fields.algebraic_number import AlgebraicNumber
+from liehom.scalars.fields.number_field import AlgebraicNumber
 from liehom.series.arrays import elementary, is_exact
 from liehom.series.jet import Jet
 

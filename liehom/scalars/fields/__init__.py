@@ -5,9 +5,8 @@ holds the linear algebra on python-flint. `grammar` and `number_fields` read wha
 `balls` count and enclose real roots. Everything above uses this wing; the conventions are in docs/notation.md.
 """
 
-from liehom.scalars.fields.algebraic_number import AlgebraicNumber as AlgebraicNumber
 from liehom.scalars.fields.exact_field import ExactField as ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix as ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix as ExactMatrix
 from liehom.scalars.fields.field import Field as Field
 from liehom.scalars.fields.field import Matrix as Matrix
 from liehom.scalars.fields.field import Scalar as Scalar
@@ -15,6 +14,7 @@ from liehom.scalars.fields.floating import RR as RR
 from liehom.scalars.fields.floating import FloatField as FloatField
 from liehom.scalars.fields.floating import FloatMatrix as FloatMatrix
 from liehom.scalars.fields.floating import RankDecision as RankDecision
+from liehom.scalars.fields.number_field import AlgebraicNumber as AlgebraicNumber
 from liehom.scalars.fields.number_field import NumberField as NumberField
 from liehom.scalars.fields.number_fields import common_field as common_field
 from liehom.scalars.fields.number_fields import exact_value as exact_value

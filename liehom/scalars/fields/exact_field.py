@@ -1,21 +1,38 @@
-"""ExactField: what QQ and the real number fields have in common.
+"""ExactField and ExactMatrix: QQ and the real number fields have their linear algebra in common, on python-flint.
 
-Elements have coordinates over QQ in powers of an integral generator b (QQ is degree 1); matrices are made of
-integer coefficient matrices over a common denominator.
+A number of QQ(b), b an algebraic integer of degree m, has m coordinates over QQ in the powers of b; QQ is the case
+m = 1. A matrix is A = (A_0 + A_1 b + ... + A_{m-1} b^(m-1)) / den with integer matrices A_s. Products are
+convolutions. Echelon forms are taken over QQ after restriction of scalars (each entry becomes the m x m matrix of
+multiplication by it), where flint finds pivots modulo primes and verifies the lifted result exactly.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterable, Sequence
-from math import lcm
-from typing import Any
+from math import gcd, lcm
+from typing import Any, final
 
 import flint
+import numpy as np
+import numpy.typing as npt
 
-from liehom.errors import ShapeError
-from liehom.scalars.fields.exact_matrix import ExactMatrix
-from liehom.scalars.fields.field import Field, Scalar, rows_of
+from liehom.errors import FieldError, ShapeError, SingularError
+from liehom.scalars.fields.field import Field, Matrix, Scalar, rows_of
+from liehom.scalars.fields.integer_matrices import (
+    cancelled,
+    echelon_pivots,
+    integer_identity,
+    interleaved,
+    kernel_rows,
+    lifted_inverse,
+    separated,
+    sign_changes,
+    stacked_rows,
+)
+
+TALL = 2
+GUESSED_INVERSE = 40
 
 
 class ExactField(Field):
@@ -89,21 +106,333 @@ class ExactField(Field):
         return ExactMatrix(self, tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree)), 1)
 
     def identity(self, n: int) -> ExactMatrix:
-        one = flint.fmpz_mat(n, n)
-        for i in range(n):
-            one[i, i] = 1
-        return ExactMatrix(self, (one, *(flint.fmpz_mat(n, n) for _ in range(self.degree - 1))), 1)
+        return ExactMatrix(self, (integer_identity(n), *(flint.fmpz_mat(n, n) for _ in range(self.degree - 1))), 1)
 
     def stack_rows(self, blocks: Sequence[ExactMatrix], ncols: int) -> ExactMatrix:
         blocks = [b for b in blocks if b.nrows]
         if len(blocks) == 1:
             return blocks[0]
         den = lcm(*(b.den for b in blocks)) if blocks else 1
-        nrows = sum(b.nrows for b in blocks)
+        scaled = [b.parts if b.den == den else [a * (den // b.den) for a in b.parts] for b in blocks]
+        return ExactMatrix(self, tuple(stacked_rows([b[s] for b in scaled], ncols) for s in range(self.degree)), den)
+
+
+@final
+class ExactMatrix(Matrix):
+    """A matrix over an exact field; made by ``field.matrix(rows)``.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> A = QQ.matrix([["1/2", 1], [0, 3]])
+    >>> A @ A.inverse() == QQ.identity(2)
+    True
+    """
+
+    __slots__ = ("_field", "den", "parts")
+
+    def __init__(self, field: ExactField, parts: tuple[Any, ...], den: int) -> None:
+        self._field = field
+        self.parts = parts
+        self.den = den
+
+    # -- shape and entries -------------------------------------------------------------------------------
+    @property
+    def field(self) -> ExactField:
+        return self._field
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.parts[0].nrows(), self.parts[0].ncols()
+
+    def __getitem__(self, index: tuple[int, int]) -> Scalar:
+        if self._field.degree == 1:
+            return flint.fmpq(self.parts[0][index], self.den)
+        return self._field.from_coordinates([flint.fmpq(a[index], self.den) for a in self.parts])
+
+    def entries(self) -> list[Scalar]:
+        if self._field.degree == 1:
+            first = self.parts[0]
+            return (flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)).entries()
+        columns = [a.entries() for a in self.parts]
+        den = self.den
+        return [self._field.from_coordinates([flint.fmpq(c, den) for c in x]) for x in zip(*columns, strict=True)]
+
+    def to_rows(self) -> list[list[Scalar]]:
+        n, entries = self.ncols, self.entries()
+        return [entries[i * n : (i + 1) * n] for i in range(self.nrows)]
+
+    def to_numpy(self) -> npt.NDArray[np.float64]:
+        values = [self._field.to_float(x) for x in self.entries()]
+        return np.array(values, dtype=np.float64).reshape(self.shape)
+
+    def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> ExactMatrix:
+        n = self.ncols
+        if columns is None and rows is not None and 8 * len(rows) >= self.nrows:
+            places = [i * n + j for i in rows for j in range(n)]
+            return self._rearranged(places, len(rows), n)
+        rows = range(self.nrows) if rows is None else rows
+        columns = range(n) if columns is None else columns
+        if 8 * len(rows) * len(columns) < self.nrows * n:
+            parts = ([a[i, j] for i in rows for j in columns] for a in self.parts)
+            made = tuple(flint.fmpz_mat(len(rows), len(columns), part) for part in parts)
+            return ExactMatrix(self._field, made, self.den)
+        return self._rearranged([i * n + j for i in rows for j in columns], len(rows), len(columns))
+
+    def reshape(self, nrows: int, ncols: int) -> ExactMatrix:
+        parts = tuple(flint.fmpz_mat(nrows, ncols, a.entries()) for a in self.parts)
+        return ExactMatrix(self._field, parts, self.den)
+
+    def split_rows(self, nrows: int, ncols: int) -> list[ExactMatrix]:
+        size = nrows * ncols
+        tables = [a.entries() for a in self.parts]
+        blocks = []
+        for i in range(self.nrows):
+            parts = tuple(flint.fmpz_mat(nrows, ncols, t[i * size : (i + 1) * size]) for t in tables)
+            blocks.append(ExactMatrix(self._field, parts, self.den))
+        return blocks
+
+    def _rearranged(self, places: list[int], nrows: int, ncols: int) -> ExactMatrix:
         parts = []
-        for s in range(self.degree):
-            entries: list[Any] = []
-            for b in blocks:
-                entries += (b.parts[s] if b.den == den else b.parts[s] * (den // b.den)).entries()
-            parts.append(flint.fmpz_mat(nrows, ncols, entries))
-        return ExactMatrix(self, tuple(parts), den)
+        for a in self.parts:
+            e = a.entries()
+            parts.append(flint.fmpz_mat(nrows, ncols, [e[x] for x in places]))
+        return ExactMatrix(self._field, tuple(parts), self.den)
+
+    def normalized(self) -> ExactMatrix:
+        """The same matrix with the least positive common denominator."""
+        parts, den = cancelled(self.parts, self.den)
+        return self if den == self.den else ExactMatrix(self._field, parts, den)
+
+    def cleared(self) -> ExactMatrix:
+        """The matrix times its common denominator."""
+        return self if self.den == 1 else ExactMatrix(self._field, self.parts, 1)
+
+    def primitive(self) -> ExactMatrix:
+        """The positive multiple with integer coordinates that have no common factor; zero stays zero."""
+        common = gcd(*(int(x) for a in self.parts for x in a.entries()))
+        if common in (0, 1):
+            return self.cleared()
+        integers = (flint.fmpq_mat(a) / common for a in self.parts)
+        return ExactMatrix(self._field, tuple(a.numer_denom()[0] for a in integers), 1)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ExactMatrix):
+            return NotImplemented
+        if self.shape != other.shape or self._field != other._field:
+            return False
+        return all(a * other.den == b * self.den for a, b in zip(self.parts, other.parts, strict=True))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"<matrix {self.nrows} x {self.ncols} over {self._field.name}>"
+
+    def __str__(self) -> str:
+        return "\n".join("[" + ", ".join(row) + "]" for row in self.to_strings())
+
+    # -- arithmetic --------------------------------------------------------------------------------------
+    @property
+    def T(self) -> ExactMatrix:
+        return ExactMatrix(self._field, tuple(a.transpose() for a in self.parts), self.den)
+
+    def _combined(self, other: ExactMatrix, sign: int) -> ExactMatrix:
+        if self.den == other.den:
+            pairs = zip(self.parts, other.parts, strict=True)
+            return ExactMatrix(self._field, tuple(a + b if sign > 0 else a - b for a, b in pairs), self.den)
+        den = lcm(self.den, other.den)
+        left, right = den // self.den, sign * (den // other.den)
+        pairs = zip(self.parts, other.parts, strict=True)
+        return ExactMatrix(self._field, tuple(a * left + b * right for a, b in pairs), den)
+
+    def __add__(self, other: ExactMatrix) -> ExactMatrix:
+        return self._combined(other, 1)
+
+    def __sub__(self, other: ExactMatrix) -> ExactMatrix:
+        return self._combined(other, -1)
+
+    def __neg__(self) -> ExactMatrix:
+        return ExactMatrix(self._field, tuple(-a for a in self.parts), self.den)
+
+    def __matmul__(self, other: ExactMatrix) -> ExactMatrix:
+        if self.ncols != other.nrows:
+            raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not multiply")
+        den = self.den * other.den
+        if self._field.degree == 1:
+            return ExactMatrix(self._field, (self.parts[0] * other.parts[0],), den).normalized()
+        m = self._field.degree
+        powers: list[Any] = [None] * (2 * m - 1)
+        for s, a in enumerate(self.parts):
+            for t, b in enumerate(other.parts):
+                powers[s + t] = a * b if powers[s + t] is None else powers[s + t] + a * b
+        return ExactMatrix(self._field, self._reduced(powers), den).normalized()
+
+    def _reduced(self, powers: list[Any]) -> tuple[Any, ...]:
+        """Coefficient matrices of b^0 .. b^(2m-2), rewritten in b^0 .. b^(m-1)."""
+        m = self._field.degree
+        parts = powers[:m]
+        for r in range(m, len(powers)):
+            for s, c in enumerate(self._field.power_coordinates(r)):
+                if c:
+                    parts[s] = parts[s] + powers[r] * c
+        return tuple(parts)
+
+    def scale(self, factor: Any) -> ExactMatrix:
+        factor = self._field.convert(factor)
+        if self._field.degree == 1:
+            return ExactMatrix(self._field, (self.parts[0] * factor.p,), self.den * int(factor.q)).normalized()
+        coordinates = self._field.coordinates(factor)
+        den = lcm(*(int(c.q) for c in coordinates))
+        integers = [int(c.p) * (den // int(c.q)) for c in coordinates]
+        m = self._field.degree
+        powers = [flint.fmpz_mat(*self.shape) for _ in range(2 * m - 1)]
+        for s, a in enumerate(self.parts):
+            for t, c in enumerate(integers):
+                if c:
+                    powers[s + t] = powers[s + t] + a * c
+        return ExactMatrix(self._field, self._reduced(powers), self.den * den).normalized()
+
+    def is_zero(self) -> bool:
+        return all(a.is_zero() for a in self.parts)
+
+    def trace(self) -> Scalar:
+        total = [sum((a[i, i] for i in range(self.nrows)), flint.fmpz(0)) for a in self.parts]
+        if self._field.degree == 1:
+            return flint.fmpq(total[0], self.den)
+        return self._field.from_coordinates([flint.fmpq(x, self.den) for x in total])
+
+    # -- linear algebra ----------------------------------------------------------------------------------
+    def modulo(self, attempt: int = 0) -> Any:
+        """The numerators modulo a prime (``flint.nmod_mat``); its rank is at most the true rank."""
+        p, root = self._field.residue(attempt)
+        image = flint.nmod_mat(self.parts[0], p)
+        power = 1
+        for a in self.parts[1:]:
+            power = power * root % p
+            image += flint.nmod_mat(a, p) * power
+        return image
+
+    def _restricted(self) -> flint.fmpz_mat:
+        """The integer matrix (degree * nrows, degree * ncols) of the numerators over QQ."""
+        multiples = [self.parts]  # by the powers of the generator
+        for _ in range(1, self._field.degree):
+            multiples.append(self._reduced([flint.fmpz_mat(*self.shape), *multiples[-1]]))
+        return interleaved(multiples)
+
+    def rank(self) -> int:
+        if 0 in self.shape:
+            return 0
+        lower = int(self.modulo().rank())
+        if lower == min(self.shape):
+            return lower
+        return int(self._restricted().rank()) // self._field.degree
+
+    def echelon(self) -> tuple[ExactMatrix, list[int]]:
+        """The non-zero rows of the reduced row echelon form, and the pivot columns."""
+        m, ncols = self._field.degree, self.ncols
+        if 0 in self.shape:
+            return self._field.zeros(0, ncols), []
+        if self.nrows > TALL * ncols:
+            found = self._tall_echelon()
+            if found is not None:
+                return found
+        reduced, den, full_rank = self._restricted().rref()
+        rank = full_rank // m
+        parts = separated(reduced, m, rank)
+        sign = -1 if den < 0 else 1
+        matrix = ExactMatrix(self._field, tuple(a * sign for a in parts), int(den) * sign).normalized()
+        return matrix, echelon_pivots(matrix.parts, rank)
+
+    def _tall_echelon(self) -> tuple[ExactMatrix, list[int]] | None:
+        """The echelon form from rows that are independent modulo a prime, if the others are shown to depend on them."""
+        image, rank = self.modulo().transpose().rref()
+        rows = echelon_pivots((image,), int(rank))
+        if rank == self.ncols:  # independent modulo a prime, so independent
+            return self._field.identity(self.ncols), list(range(self.ncols))
+        reduced, pivots = self.select(rows=rows).echelon()
+        if self.select(columns=pivots) @ reduced != self:
+            return None
+        return reduced, pivots
+
+    def row_space(self) -> ExactMatrix:
+        return self.echelon()[0]
+
+    def null_space(self) -> ExactMatrix:
+        reduced, pivots = self.echelon()
+        parts = (kernel_rows(a, pivots, 0 if s else reduced.den) for s, a in enumerate(reduced.parts))
+        return ExactMatrix(self._field, tuple(parts), reduced.den).normalized()
+
+    def solve(self, right: ExactMatrix) -> ExactMatrix:
+        if right.nrows != self.nrows:
+            raise ShapeError(f"the right-hand side has {right.nrows} rows, the matrix {self.nrows}")
+        n, k = self.ncols, right.ncols
+        joined = self._field.stack_columns([self, right], self.nrows)
+        reduced, pivots = joined.echelon()
+        if pivots and pivots[-1] >= n:
+            raise SingularError("the linear system has no solution")
+        solution: ExactMatrix = reduced.select(columns=range(n, n + k))
+        if len(pivots) == n:
+            return solution
+        placed = self._field.zeros(n, len(pivots)).T.to_rows()
+        for i, pivot in enumerate(pivots):
+            placed[i][pivot] = self._field.one
+        spread: ExactMatrix = self._field.matrix(placed, (len(pivots), n)).T @ solution
+        return spread
+
+    def inverse(self) -> ExactMatrix:
+        n = self.nrows
+        if n != self.ncols:
+            raise ShapeError(f"a matrix of shape {self.shape} has no inverse")
+        if self._field.degree == 1 and n >= GUESSED_INVERSE:
+            guess = self._integral_inverse()
+            if guess is not None:
+                return guess
+        if self._field.degree == 1 and n:
+            try:
+                numerators, den = (flint.fmpq_mat(self.parts[0]).inv() * self.den).numer_denom()
+            except ZeroDivisionError:
+                raise SingularError("the matrix is singular") from None
+            return ExactMatrix(self._field, (numerators,), int(den))
+        if self.rank() < n:
+            raise SingularError("the matrix is singular")
+        return self.solve(self._field.identity(n))
+
+    def _integral_inverse(self) -> ExactMatrix | None:
+        """The inverse if it is integral up to the denominator, as for unimodular matrices: guessed modulo a prime."""
+        guess = lifted_inverse(self.parts[0], self._field.residue()[0])
+        if guess is None:
+            return None
+        candidate = ExactMatrix(self._field, (guess,), 1)
+        if self.cleared() @ candidate != self._field.identity(self.nrows):
+            return None
+        return candidate if self.den == 1 else candidate.scale(self.den)
+
+    def characteristic_coefficients(self) -> list[Scalar]:
+        """The coefficients of det(t - A), ascending."""
+        n = self.nrows
+        if self._field.degree == 1:
+            if n == 0:
+                return [flint.fmpq(1)]
+            integral = self.parts[0].charpoly().coeffs()
+            return [flint.fmpq(c) / flint.fmpz(self.den) ** (n - i) for i, c in enumerate(integral)]
+        # Faddeev-LeVerrier: only ring operations and divisions by 1, ..., n.
+        coefficients, power = [self._field.one], self._field.identity(n)
+        for k in range(1, n + 1):
+            power = self @ power
+            coefficients.append(-power.trace() / k)
+            power = power + self._field.identity(n).scale(coefficients[-1])
+        return coefficients[::-1]
+
+    def determinant(self) -> Scalar:
+        """The determinant."""
+        constant = self.characteristic_coefficients()[0]
+        return -constant if self.nrows % 2 else constant
+
+    def signature(self) -> tuple[int, int, int]:
+        if self != self.T:
+            raise FieldError("a signature is asked of a matrix that is not symmetric")
+        # All roots are real, so Descartes' rule of signs is exact.
+        signs = [self._field.sign(c) for c in self.characteristic_coefficients()]
+        zero = next(i for i, s in enumerate(signs) if s)
+        positive = sign_changes(signs)
+        return positive, self.nrows - zero - positive, zero

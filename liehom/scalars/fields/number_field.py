@@ -17,10 +17,10 @@ import flint
 
 from liehom.errors import FieldError
 from liehom.scalars.fields import grammar
-from liehom.scalars.fields.algebraic_number import AlgebraicNumber
 from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
 from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.rational import QQ, prime, rational_from_text, rational_number, refused
+from liehom.scalars.fields.polynomial import Polynomial
+from liehom.scalars.fields.rational import QQ, ExactNumber, prime, rational_from_text, rational_number, refused
 
 MAX_PRECISION = 1 << 22
 _SYMBOL = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]*|sqrt\([0-9]+\)", re.ASCII)
@@ -129,8 +129,8 @@ class NumberField(ExactField):
         if isinstance(value, AlgebraicNumber):
             if value.field is self or value.field == self:
                 return value
-            if value.is_rational():
-                return AlgebraicNumber(self, flint.fmpq_poly([value.coordinates[0]]))
+            if (rational := value.rational()) is not None:
+                return self._embedded(rational)
             raise FieldError(f"{value} of {value.field.name} is not in {self.name}")
         if isinstance(value, str):
             rational = rational_from_text(value)
@@ -172,8 +172,6 @@ class NumberField(ExactField):
 
     def root(self, value: AlgebraicNumber, k: int) -> AlgebraicNumber:
         """The non-negative k-th root of a non-negative element; `FieldError` if it is not in the field."""
-        from liehom.scalars.fields.polynomial import Polynomial  # the only use; polynomial imports this module
-
         what = f"sqrt({value})" if k == 2 else f"the root of order {k} of {value}"
         if self.sign(value) < 0:
             raise FieldError(f"{what} is not real" if k % 2 == 0 else f"{what}: write minus the root of {-value}")
@@ -281,3 +279,121 @@ class NumberField(ExactField):
 
     def __hash__(self) -> int:
         return hash((self.minpoly, self.root_index))
+
+
+@final
+class AlgebraicNumber(ExactNumber):
+    """An element of a real number field; made by arithmetic or ``field.convert``.
+
+    Comparisons are those of the field's real embedding.
+
+    Examples
+    --------
+    >>> from liehom.scalars import NumberField
+    >>> K = NumberField("a", [-2, 0, 1], (1, 2))
+    >>> K.generator > "7/5", 1 / K.generator
+    (True, 1/2*a)
+    """
+
+    __slots__ = ("field", "polynomial")
+
+    def __init__(self, field: NumberField, polynomial: Any) -> None:
+        self.field = field
+        self.polynomial = polynomial
+
+    @property
+    def coordinates(self) -> list[Any]:
+        """Rational coordinates in powers of the integral generator."""
+        return [self.polynomial[i] for i in range(self.field.degree)]
+
+    def rational(self) -> flint.fmpq | None:
+        return self.polynomial[0] if self.polynomial.degree() < 1 else None
+
+    def is_rational(self) -> bool:
+        """Whether the number is rational."""
+        return self.rational() is not None
+
+    def _operand(self, other: Any) -> Any:
+        if isinstance(other, AlgebraicNumber) and other.field is self.field:
+            return other.polynomial
+        try:
+            return self.field.convert(other).polynomial
+        except FieldError:
+            return None
+
+    def _made(self, polynomial: Any) -> AlgebraicNumber:
+        return AlgebraicNumber(self.field, polynomial)
+
+    def __add__(self, other: Any) -> AlgebraicNumber:
+        right = self._operand(other)
+        return NotImplemented if right is None else self._made(self.polynomial + right)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> AlgebraicNumber:
+        right = self._operand(other)
+        return NotImplemented if right is None else self._made(self.polynomial - right)
+
+    def __rsub__(self, other: Any) -> AlgebraicNumber:
+        right = self._operand(other)
+        return NotImplemented if right is None else self._made(right - self.polynomial)
+
+    def __neg__(self) -> AlgebraicNumber:
+        return self._made(-self.polynomial)
+
+    def __mul__(self, other: Any) -> AlgebraicNumber:
+        right = self._operand(other)
+        if right is None:
+            return NotImplemented
+        return self._made((self.polynomial * right) % flint.fmpq_poly(self.field.modulus))
+
+    __rmul__ = __mul__
+
+    def inverse(self) -> AlgebraicNumber:
+        """1 divided by the number; ZeroDivisionError for zero."""
+        if self.polynomial.is_zero():
+            raise ZeroDivisionError("division by zero in a number field")
+        common, left, _ = self.polynomial.xgcd(flint.fmpq_poly(self.field.modulus))
+        return self._made(left / common[0])
+
+    def __truediv__(self, other: Any) -> AlgebraicNumber:
+        right = self._operand(other)
+        return NotImplemented if right is None else self * self._made(right).inverse()
+
+    def __rtruediv__(self, other: Any) -> AlgebraicNumber:
+        right = self._operand(other)
+        return NotImplemented if right is None else self.inverse() * self._made(right)
+
+    def __pow__(self, exponent: int) -> AlgebraicNumber:
+        base = self if exponent >= 0 else self.inverse()
+        result, exponent = self.field.one, abs(exponent)
+        while exponent:
+            if exponent & 1:
+                result = result * base
+            base, exponent = base * base, exponent >> 1
+        return result
+
+    def __eq__(self, other: object) -> bool:
+        right = self._operand(other)
+        return NotImplemented if right is None else bool(self.polynomial == right)
+
+    def __hash__(self) -> int:
+        return hash(tuple((int(c.p), int(c.q)) for c in self.coordinates))
+
+    def __lt__(self, other: Any) -> bool:
+        return self.field.sign(self - other) < 0
+
+    def __le__(self, other: Any) -> bool:
+        return self.field.sign(self - other) <= 0
+
+    def __gt__(self, other: Any) -> bool:
+        return self.field.sign(self - other) > 0
+
+    def __ge__(self, other: Any) -> bool:
+        return self.field.sign(self - other) >= 0
+
+    def __float__(self) -> float:
+        return self.field.to_float(self)
+
+    def __repr__(self) -> str:
+        return self.field.format(self)

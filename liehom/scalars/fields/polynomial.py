@@ -16,7 +16,6 @@ import flint
 from liehom.errors import FieldError, InternalError
 from liehom.scalars.fields.exact_field import ExactField
 from liehom.scalars.fields.field import Scalar
-from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.rational import QQ
 
 
@@ -194,13 +193,12 @@ class Polynomial:
 
     def _norm(self) -> Polynomial:
         """The product of the conjugates over QQ: the resultant with the field's modulus, by interpolation."""
-        if not isinstance(self.field, NumberField):
+        if self.field.degree == 1:
             return self
         size = self.degree * self.field.degree + 1
         points = [flint.fmpq(x) for x in range(size)]
-        modulus = flint.fmpq_poly(self.field.modulus)
-        values = [self(x).polynomial for x in points]
-        values = [modulus.resultant(v) for v in values]
+        modulus = flint.fmpq_poly(self.field.modulus_coefficients())
+        values = [modulus.resultant(flint.fmpq_poly(self.field.coordinates(self(x)))) for x in points]
         vandermonde = flint.fmpq_mat(size, size, [x**i if i else flint.fmpq(1) for x in points for i in range(size)])
         solution = vandermonde.solve(flint.fmpq_mat(size, 1, values))
         return Polynomial(QQ, solution.entries())

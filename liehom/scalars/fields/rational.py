@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import numbers
 import re
+from abc import abstractmethod
 from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -15,14 +16,23 @@ import numpy as np
 
 from liehom.errors import FieldError
 from liehom.scalars.fields import grammar
-from liehom.scalars.fields.algebraic_number import AlgebraicNumber
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import FIRST_PRIME
 from liehom.scalars.fields.field import Field, Scalar
 
+FIRST_PRIME = (1 << 61) - 1
 _INTEGER = re.compile(r"[-+]?[0-9]+", re.ASCII)
 _FRACTION = re.compile(r"[-+]?[0-9]+/[0-9]+", re.ASCII)
+
+
+class ExactNumber:
+    """Base of the exact numbers that need not be rational."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def rational(self) -> flint.fmpq | None:
+        """The rational number that this one equals, or None."""
 
 
 def rational_number(value: Any) -> Any:
@@ -99,8 +109,9 @@ class RationalField(ExactField):
         rational = rational_number(value)
         if rational is not None:
             return rational
-        if isinstance(value, AlgebraicNumber) and value.is_rational():
-            return value.coordinates[0]
+        rational = value.rational() if isinstance(value, ExactNumber) else None
+        if rational is not None:
+            return rational
         raise refused(value, self)
 
     def _evaluate(self, text: str) -> Scalar:

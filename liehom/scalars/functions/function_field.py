@@ -1,33 +1,22 @@
-"""Rational functions on a variety: the field of fractions of QQ[x_1, ..., x_n] modulo some polynomials, exactly.
+"""Rational functions on a variety: the field of fractions of its coordinate ring, exactly.
 
-An element is numerator / denominator. The numerator is a normal form modulo the constraints (remainder by a Groebner
-basis), so that an element is zero exactly if its numerator is; the denominator is a product of powers of known
-polynomials ("atoms"), so that fractions with denominators such as |X|^2, |X|^4 are added without a gcd.
-
-Where the only constraint is F = r with F homogeneous and r a number, as |m|^2 = 1, a function whose terms all have
-one degree modulo deg F is one homogeneous polynomial (multiply by powers of F/r): these are factorised and cancelled.
-Division by a sum a of an even and an odd function on a quadric is division of p a(-x) by a a(-x), which is even.
+An element is numerator / denominator. The numerator is a normal form modulo the constraints, so that an element is
+zero if and only if its numerator is; the denominator is a product of powers of known polynomials ("atoms"), so that
+fractions with denominators such as |X|^2, |X|^4 are added without a gcd.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import combinations_with_replacement, product
-from math import comb, prod
 from typing import Any, final
 
 import flint
 
 from liehom.errors import FieldError, SingularError
 from liehom.scalars.fields.rational import rational_number
-from liehom.scalars.functions.rational_function import Powers as Powers
-from liehom.scalars.functions.rational_function import RationalFunction as RationalFunction
-from liehom.scalars.functions.rational_function import join
+from liehom.scalars.functions.coordinate_ring import MAX_TERMS_TO_FACTOR, CoordinateRing
 
-# a divisor of more terms is taken as it is, without a search for its factors
-MAX_TERMS_TO_FACTOR = 3000
-# with several constraints, a quotient is looked for among polynomials of so many coefficients
-MAX_UNKNOWNS = 500
+Powers = tuple[tuple[int, int], ...]
 
 
 @final
@@ -68,178 +57,14 @@ class FunctionField:
         constraints: Iterable[Mapping[tuple[int, ...], Any]] = (),
         graded: Sequence[str] = (),
     ) -> None:
-        self.names = tuple(names)
-        self.ring = flint.fmpq_mpoly_ctx.get(self.names, flint.Ordering.degrevlex)
-        given = [self.polynomial(c) for c in constraints]
-        given = [c for c in given if not c.is_zero()]
-        self.basis = given if len(given) < 2 else self._groebner(given)
-        if any(c.is_constant() for c in self.basis):
-            raise FieldError("the constraints contradict each other: they have no common zero")
-        self.weights = [int(name in graded) for name in self.names]
-        self._form = self._homogeneous_form(given)
+        self.ring = CoordinateRing(names, constraints, graded)
+        constant = self.ring.context.constant
         self.atoms: list[Any] = []
         self._reduced: list[Any] = []
-        self.zero = RationalFunction(self, self.ring.constant(0), ())
-        self.one = RationalFunction(self, self.ring.constant(1), ())
-        self.variables = tuple(RationalFunction(self, self.reduce(g), ()) for g in self.ring.gens())
-
-    # -- polynomials -------------------------------------------------------------------------------------
-    def polynomial(self, terms: Mapping[tuple[int, ...], Any]) -> Any:
-        """The polynomial with these terms."""
-        return self.ring.from_dict({e: rational_number(c) for e, c in terms.items()})
-
-    def reduce(self, p: Any) -> Any:
-        """The normal form of a polynomial modulo the constraints."""
-        if len(self.basis) == 1:
-            return divmod(p, self.basis[0])[1]
-        changed = bool(self.basis)
-        while changed:
-            changed = False
-            for g in self.basis:
-                quotient, p = divmod(p, g)
-                changed = changed or not quotient.is_zero()
-        return p
-
-    def _groebner(self, given: list[Any]) -> list[Any]:
-        import sympy
-
-        symbols = sympy.symbols([f"x{i}" for i in range(len(self.names))])
-        polys = [
-            sympy.Poly.from_dict({e: sympy.Rational(int(c.p), int(c.q)) for e, c in p.terms()}, *symbols) for p in given
-        ]
-        found = sympy.groebner(polys, *symbols, order="grevlex")
-        return [self.polynomial(dict(p.terms())) for p in found.polys]
-
-    # -- the grading -------------------------------------------------------------------------------------
-    def _homogeneous_form(self, given: list[Any]) -> tuple[Any, int] | None:
-        """F/r and its degree if the only constraint is F - r."""
-        if len(given) != 1:
-            return None
-        parts = self._parts(given[0])
-        degrees = sorted(parts)
-        if len(degrees) != 2 or degrees[0] != 0 or not parts[0].is_constant():
-            return None
-        constant = parts[0].leading_coefficient()
-        return parts[degrees[1]] / -constant, degrees[1]
-
-    def _parts(self, p: Any) -> dict[int, Any]:
-        """The homogeneous parts of a polynomial by degree."""
-        terms: dict[int, dict[Any, Any]] = {}
-        for e, c in p.terms():
-            degree = sum(int(k) for k, w in zip(e, self.weights, strict=True) if w)
-            terms.setdefault(degree, {})[e] = c
-        return {degree: self.ring.from_dict(part) for degree, part in terms.items()}
-
-    def homogeneous(self, p: Any) -> Any:
-        """The homogeneous polynomial that equals p on the variety, not divisible by F; None if there is none."""
-        if self._form is None:
-            return None if self.basis else p
-        form, e = self._form
-        parts = self._parts(p)
-        if not parts or len({degree % e for degree in parts}) > 1:
-            return None
-        top = max(parts)
-        made = self.ring.constant(0)
-        for degree, part in parts.items():
-            made += part * form ** ((top - degree) // e)
-        return self._without_form(made)
-
-    def _without_form(self, p: Any) -> Any:
-        form = self._form[0] if self._form is not None else None
-        while form is not None and not p.is_zero():
-            quotient, rest = divmod(p, form)
-            if not rest.is_zero():
-                break
-            p = quotient
-        return p
-
-    def divide(self, p: Any, q: Any) -> Any:
-        """The polynomial p/q in normal form, or None if q is not seen to divide p on the variety.
-
-        Examples
-        --------
-        >>> circle = FunctionField(["x", "y"], [{(2, 0): 1, (0, 2): 1, (0, 0): -1}], ["x", "y"])
-        >>> x, y = circle.variables
-        >>> p = ((1 + x) * (x * y + y**2 + x)).numerator
-        >>> circle.divide(p, (1 + x).numerator), circle.divide(p, (2 + x).numerator)
-        (x*y + y^2 + x, None)
-        """
-        if self._form is None:
-            quotient, rest = divmod(p, q)
-            if rest.is_zero():
-                return self.reduce(quotient)
-            return self._divide_by_ansatz(p, q) if len(self.basis) > 1 else None
-        divisor = self.homogeneous(q)
-        if divisor is not None:
-            return self._divide_parts(p, divisor)
-        if self._form[1] != 2:
-            return None
-        mirrored = sum(((-1) ** degree * part for degree, part in self._parts(q).items()), self.ring.constant(0))
-        even = self.homogeneous(self.reduce(q * mirrored))
-        return None if even is None else self._divide_parts(self.reduce(p * mirrored), even)
-
-    def _divide_by_ansatz(self, p: Any, q: Any) -> Any:
-        """A quotient of low degree by linear algebra: normal forms of degree have no unique factors."""
-        least = max(0, int(p.total_degree()) - int(q.total_degree()))
-        for degree in (least, least + 1):
-            used = [i for i, d in enumerate(p.degrees()) if d]
-            count = comb(len(used) + degree, degree)
-            if count > MAX_UNKNOWNS:
-                return None
-            gens = [self.ring.constant(1), *(self.ring.gens()[i] for i in used)]
-            monomials = [prod(chosen, start=gens[0]) for chosen in combinations_with_replacement(gens, degree)]
-            kept = {str(m): m for m in map(self.reduce, monomials) if len(m) == 1}
-            candidates = list(kept.values())
-            products = [dict(self.reduce(m * q).terms()) for m in candidates]
-            right = dict(p.terms())
-            rows = sorted({e for x in (*products, right) for e in x})
-            if len(right.keys() - {e for x in products for e in x}):
-                continue
-            left = flint.fmpq_mat(len(rows), len(candidates), [x.get(e, 0) for e in rows for x in products])
-            both = flint.fmpq_mat(
-                len(rows), len(candidates) + 1, [x.get(e, 0) for e in rows for x in (*products, right)]
-            )
-            reduced, rank = both.rref()
-            if rank > left.rank():
-                continue
-            total = self.ring.constant(0)
-            for i in range(rank):
-                j = next(j for j in range(len(candidates)) if reduced[i, j] != 0)
-                total += candidates[j] * reduced[i, len(candidates)]
-            return self.reduce(total)
-        return None
-
-    def _divide_parts(self, p: Any, divisor: Any) -> Any:
-        """Division by a homogeneous polynomial, separately for each class of degrees."""
-        e = self._form[1] if self._form is not None else 1
-        classes: dict[int, Any] = {}
-        for degree, part in self._parts(p).items():
-            classes[degree % e] = classes.get(degree % e, self.ring.constant(0)) + part
-        total = self.ring.constant(0)
-        for part in classes.values():
-            quotient, rest = divmod(self.homogeneous(part), divisor)
-            if not rest.is_zero():
-                return None
-            total += quotient
-        return self.reduce(total)
-
-    def shortest(self, p: Any) -> Any:
-        """Of the polynomials that equal p on the variety and are seen, one with few terms; p if it is as short.
-
-        Examples
-        --------
-        >>> circle = FunctionField(["x", "y"], [{(2, 0): 1, (0, 2): 1, (0, 0): -1}], ["x", "y"])
-        >>> circle.shortest(circle.polynomial({(2, 0): 3, (0, 2): 2}))
-        x^2 + 2
-        """
-        found = [p]
-        for name in self.names if self._form is not None and len(p) <= MAX_TERMS_TO_FACTOR else ():
-            order = (name, *(other for other in self.names if other != name))
-            ring = flint.fmpq_mpoly_ctx.get(order, flint.Ordering.lex)
-            divisor = self.basis[0].project_to_context(ring)
-            rest = divmod(p.project_to_context(ring), divisor)[1]
-            found.append(rest.project_to_context(self.ring))
-        return min(found, key=lambda q: (len(q), len(str(q))))
+        self.zero = RationalFunction(self, constant(0), ())
+        self.one = RationalFunction(self, constant(1), ())
+        generators = map(self.ring.reduce, self.ring.context.gens())
+        self.variables = tuple(RationalFunction(self, g, ()) for g in generators)
 
     # -- denominators ------------------------------------------------------------------------------------
     def atom(self, p: Any) -> int:
@@ -248,7 +73,7 @@ class FunctionField:
             if known == p:
                 return i
         self.atoms.append(p)
-        self._reduced.append(self.reduce(p))
+        self._reduced.append(self.ring.reduce(p))
         return len(self.atoms) - 1
 
     def reduced_atom(self, i: int) -> Any:
@@ -257,21 +82,21 @@ class FunctionField:
 
     def denominator(self, powers: Powers) -> Any:
         """The product of atoms as a polynomial, in normal form."""
-        made = self.ring.constant(1)
+        made = self.ring.context.constant(1)
         for i, k in powers:
             for _ in range(k):
-                made = self.reduce(made * self._reduced[i])
+                made = self.ring.reduce(made * self._reduced[i])
         return made
 
     def inverse(self, p: Any) -> RationalFunction:
         """1 / p for a polynomial that is not zero on the variety."""
         if p.is_zero():
             raise SingularError("division by a function that is zero")
-        lifted = self.homogeneous(p)
+        lifted = self.ring.homogeneous(p)
         powers: dict[int, int] = {}
         if lifted is None:
             for i in range(len(self.atoms)):
-                while (quotient := self.divide(p, self._reduced[i])) is not None:
+                while (quotient := self.ring.divide(p, self._reduced[i])) is not None:
                     p, powers[i] = quotient, powers.get(i, 0) + 1
         source = p if lifted is None else lifted
         content, factors = source.leading_coefficient(), [(source / source.leading_coefficient(), 1)]
@@ -281,7 +106,7 @@ class FunctionField:
             if not factor.is_constant():
                 i = self.atom(factor)
                 powers[i] = powers.get(i, 0) + int(k)
-        return RationalFunction(self, self.ring.constant(1) / content, tuple(sorted(powers.items())))
+        return RationalFunction(self, self.ring.context.constant(1) / content, tuple(sorted(powers.items())))
 
     def primitive(self, vector: Sequence[RationalFunction]) -> list[RationalFunction]:
         """The vector times a function, so that it has no denominators and no common divisor that is seen.
@@ -292,9 +117,9 @@ class FunctionField:
         for x in vector:
             common = join(common, x.powers)
         tops = [x.over(common) for x in vector]
-        lifted = [None if p.is_zero() else self.homogeneous(p) for p in tops]
+        lifted = [None if p.is_zero() else self.ring.homogeneous(p) for p in tops]
         known = [p if q is None else q for p, q in zip(tops, lifted, strict=True)]
-        divisor = self.ring.constant(0)
+        divisor = self.ring.context.constant(0)
         for p in known:
             divisor = p if divisor.is_zero() else divisor.gcd(p) if not p.is_zero() else divisor
         if divisor.is_zero():
@@ -302,7 +127,7 @@ class FunctionField:
         known = [divmod(p, divisor)[0] for p in known]
         first = next(p for p in known if not p.is_zero())
         scale = _content(known) * (1 if first.leading_coefficient() > 0 else -1)
-        return [RationalFunction(self, self.reduce(p / scale), ()) for p in known]
+        return [RationalFunction(self, self.ring.reduce(p / scale), ()) for p in known]
 
     # -- numbers -----------------------------------------------------------------------------------------
     def convert(self, value: Any) -> RationalFunction:
@@ -318,28 +143,181 @@ class FunctionField:
         number = rational_number(value)
         if number is None:
             raise FieldError(f"{value!r} is not a rational number: write a fraction, or a symbol for it")
-        return RationalFunction(self, self.ring.constant(number), ())
+        return RationalFunction(self, self.ring.context.constant(number), ())
 
-    def graded_weights(self, elements: Iterable[RationalFunction], optional: Sequence[str]) -> list[str]:
-        """Which of the optional variables have to count with degree 1 for all elements to be graded; [] if none serve.
 
-        Examples
-        --------
-        >>> circle = FunctionField(["x", "y", "a"], [{(2, 0, 0): 1, (0, 2, 0): 1, (0, 0, 0): -1}], ["x", "y"])
-        >>> x, y, a = circle.variables
-        >>> circle.graded_weights([x + a, y], ["a"])
-        ['a']
-        """
-        if self._form is None:
-            return []
-        e = self._form[1]
-        chosen = list(elements)
-        for bits in product((0, 1), repeat=min(len(optional), 10)):
-            extra = [name for name, bit in zip(optional, bits, strict=False) if bit]
-            weights = [w or int(name in extra) for w, name in zip(self.weights, self.names, strict=True)]
-            if all(_one_degree(x.numerator, weights, e) for x in chosen):
-                return extra
-        return []
+@final
+class RationalFunction:
+    """An element of a `FunctionField`: arithmetic with rational numbers and with elements of the same field.
+
+    Parameters
+    ----------
+    field : FunctionField
+    numerator : flint polynomial, in normal form
+    powers : tuple of (number of an atom, exponent)
+        The denominator.
+
+    Examples
+    --------
+    >>> x, y = FunctionField(["x", "y"]).variables
+    >>> 1 / x - 1 / y
+    (-x + y)/((x)*(y))
+    >>> (x**2 - y**2) / (x - y) == x + y
+    True
+    """
+
+    __slots__ = ("field", "numerator", "powers")
+
+    def __init__(self, field: FunctionField, numerator: Any, powers: Powers) -> None:
+        self.field = field
+        self.numerator = numerator
+        self.powers: Powers = () if numerator.is_zero() else powers
+
+    def _other(self, value: Any) -> RationalFunction | None:
+        if isinstance(value, RationalFunction):
+            return value
+        number = rational_number(value)
+        return None if number is None else RationalFunction(self.field, self.field.ring.context.constant(number), ())
+
+    def __add__(self, other: Any) -> Any:
+        right = self._other(other)
+        if right is None:
+            return NotImplemented
+        if self.powers == right.powers:
+            return RationalFunction(self.field, self.numerator + right.numerator, self.powers)
+        common = join(self.powers, right.powers)
+        a = self.over(common)
+        return RationalFunction(self.field, a + right.over(common), common)
+
+    __radd__ = __add__
+
+    def over(self, common: Powers) -> Any:
+        """The numerator over a multiple of the denominator."""
+        if common == self.powers:
+            return self.numerator
+        own = dict(self.powers)
+        missing = tuple((i, k - own.get(i, 0)) for i, k in common if k > own.get(i, 0))
+        return self.field.ring.reduce(self.numerator * self.field.denominator(missing))
+
+    def __neg__(self) -> RationalFunction:
+        return RationalFunction(self.field, -self.numerator, self.powers)
+
+    def __sub__(self, other: Any) -> Any:
+        right = self._other(other)
+        return NotImplemented if right is None else self + (-right)
+
+    def __rsub__(self, other: Any) -> Any:
+        left = self._other(other)
+        return NotImplemented if left is None else left + (-self)
+
+    def __mul__(self, other: Any) -> Any:
+        if not isinstance(other, RationalFunction):
+            number = rational_number(other)
+            if number is None:
+                return NotImplemented
+            return RationalFunction(self.field, self.numerator * number, self.powers)
+        made = self.field.ring.reduce(self.numerator * other.numerator)
+        return RationalFunction(self.field, made, times(self.powers, other.powers))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Any:
+        if not isinstance(other, RationalFunction):
+            number = rational_number(other)
+            if number is None:
+                return NotImplemented
+            if number == 0:
+                raise SingularError("division by a function that is zero")
+            return RationalFunction(self.field, self.numerator / number, self.powers)
+        return self * other.inverse()
+
+    def __rtruediv__(self, other: Any) -> Any:
+        left = self._other(other)
+        return NotImplemented if left is None else left * self.inverse()
+
+    def inverse(self) -> RationalFunction:
+        """1 / self."""
+        below = RationalFunction(self.field, self.field.denominator(self.powers), ())
+        made: RationalFunction = self.field.inverse(self.numerator) * below
+        return made
+
+    def __pow__(self, exponent: int) -> Any:
+        if isinstance(exponent, bool) or not isinstance(exponent, int):
+            return NotImplemented
+        base, made = (self if exponent >= 0 else self.inverse()), self.field.one
+        for _ in range(abs(exponent)):
+            made = made * base
+        return made
+
+    def __eq__(self, other: object) -> bool:
+        right = self._other(other)
+        if right is None:
+            return NotImplemented
+        return bool((self - right).numerator.is_zero())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __bool__(self) -> bool:
+        return not self.numerator.is_zero()
+
+    # -- simplification ----------------------------------------------------------------------------------
+    def cancelled(self) -> RationalFunction:
+        """The same function without the atoms of the denominator that are seen to divide the numerator."""
+        if not self.powers:
+            return self
+        top, kept = self.numerator, []
+        for i, k in self.powers:
+            while k and (quotient := self.field.ring.divide(top, self.field.reduced_atom(i))) is not None:
+                top, k = quotient, k - 1
+            if k:
+                kept.append((i, k))
+        return RationalFunction(self.field, top, tuple(kept))
+
+    def factors(self) -> tuple[Any, list[tuple[Any, int]]]:
+        """A number and polynomials with exponents of either sign, whose product equals the function on the variety."""
+        lifted = self.field.ring.homogeneous(self.numerator)
+        top = self.numerator if lifted is None else lifted
+        if top.is_zero():
+            return flint.fmpq(0), []
+        content, found = top.factor()
+        below = [(self.field.atoms[i], -k) for i, k in self.powers]
+        return content, [(p, int(k)) for p, k in found] + below
+
+    def __repr__(self) -> str:
+        if not self.powers:
+            return str(self.numerator)
+        below = "*".join(f"({self.field.atoms[i]})" + (f"^{k}" if k > 1 else "") for i, k in self.powers)
+        return f"({self.numerator})/({below})"
+
+
+def join(a: Powers, b: Powers) -> Powers:
+    """The least common multiple of two denominators.
+
+    Examples
+    --------
+    >>> join(((0, 1),), ((0, 2), (1, 1)))
+    ((0, 2), (1, 1))
+    """
+    made = dict(a)
+    for i, k in b:
+        made[i] = max(k, made.get(i, 0))
+    return tuple(sorted(made.items()))
+
+
+def times(a: Powers, b: Powers) -> Powers:
+    """The product of two denominators.
+
+    Examples
+    --------
+    >>> times(((0, 1),), ((0, 2), (1, 1)))
+    ((0, 3), (1, 1))
+    """
+    if not a or not b:
+        return a or b
+    made = dict(a)
+    for i, k in b:
+        made[i] = made.get(i, 0) + k
+    return tuple(sorted(made.items()))
 
 
 def _content(polynomials: Sequence[Any]) -> Any:
@@ -349,8 +327,3 @@ def _content(polynomials: Sequence[Any]) -> Any:
     for c in numbers:
         top, bottom = top.gcd(c.p), bottom.lcm(c.q)
     return flint.fmpq(top, bottom)
-
-
-def _one_degree(p: Any, weights: list[int], e: int) -> bool:
-    degrees = {sum(int(k) for k, w in zip(m, weights, strict=True) if w) % e for m in p.monoms()}
-    return len(degrees) <= 1

@@ -16,7 +16,7 @@ from typing import Any
 import flint
 
 from liehom.errors import InternalError
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 Triple = tuple[int, int, int]

@@ -14,7 +14,7 @@ from typing import Any
 import flint
 import numpy as np
 
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.rational import QQ
 

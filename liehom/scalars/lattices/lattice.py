@@ -11,7 +11,7 @@ from typing import Any
 import flint
 import numpy as np
 
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.rational import QQ
 
 BITS = 40

@@ -12,8 +12,8 @@ from typing import Any
 
 import flint
 
-from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix, nmod_pivots
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
+from liehom.scalars.fields.integer_matrices import echelon_pivots
 
 
 def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
@@ -146,7 +146,7 @@ def _primitive(row: ExactMatrix) -> ExactMatrix:
 def pivot_columns(image: Any) -> list[int]:
     """The pivot columns of a matrix modulo a prime (``flint.nmod_mat``)."""
     reduced, rank = image.rref()
-    return nmod_pivots(reduced, int(rank))
+    return echelon_pivots((reduced,), int(rank))
 
 
 def _row_basis(image: Any) -> tuple[Any, int]:

@@ -14,7 +14,7 @@ from typing import Any
 
 import flint
 
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.modular.modular import pivot_columns
 
 LARGEST_KERNEL = 64

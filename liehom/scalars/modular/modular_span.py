@@ -15,8 +15,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 from liehom.scalars.fields.rational import prime
 from liehom.scalars.modular.modular import small_residues
 

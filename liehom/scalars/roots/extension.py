@@ -18,8 +18,7 @@ import flint
 
 from liehom.errors import FieldError, InternalError
 from liehom.scalars.fields.balls import working_precision
-from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.number_field import MAX_PRECISION, NumberField
 from liehom.scalars.fields.number_fields import number_field

@@ -17,7 +17,7 @@ import flint
 
 from liehom.errors import SingularError
 from liehom.scalars.fields.balls import working_precision
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.roots.joint_spectrum import enclosure

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.scalars.fields.balls import working_precision
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 
 Balls = tuple[Any, ...]
 

@@ -15,9 +15,8 @@ from typing import Any
 import flint
 
 from liehom.errors import FieldError
-from liehom.scalars.fields.algebraic_number import AlgebraicNumber
 from liehom.scalars.fields.balls import real_root_balls, working_precision
-from liehom.scalars.fields.number_field import MAX_PRECISION, NumberField
+from liehom.scalars.fields.number_field import MAX_PRECISION, AlgebraicNumber, NumberField
 from liehom.scalars.roots.roots import bounds, simplest_between
 
 LARGEST_REDUCED_DEGREE = 24

@@ -11,7 +11,7 @@ from typing import Any
 
 import flint
 
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 
 
 def integral_basis(rows: ExactMatrix) -> ExactMatrix:

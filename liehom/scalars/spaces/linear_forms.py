@@ -14,8 +14,7 @@ from typing import Any, final
 import flint
 
 from liehom.errors import FieldError, ShapeError
-from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 
 
 @final

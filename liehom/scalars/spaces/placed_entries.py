@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import flint
 
-from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 
 
 def matrix_of_places(

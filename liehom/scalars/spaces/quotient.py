@@ -12,7 +12,7 @@ from typing import Any, final
 
 import flint
 
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.field import Matrix
 from liehom.scalars.fields.floating import FloatMatrix
 

@@ -8,7 +8,7 @@ import flint
 
 from liehom.errors import ShapeError
 from liehom.scalars.fields.balls import working_precision
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
 
 PRECISION_LIMIT = 1 << 14

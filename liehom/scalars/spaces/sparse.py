@@ -12,8 +12,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from liehom.scalars.fields.exact_field import ExactField
-from liehom.scalars.fields.exact_matrix import ExactMatrix
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 
 LIMIT = 1 << 62
 IntArray = npt.NDArray[np.int64]

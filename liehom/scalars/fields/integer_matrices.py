@@ -1,0 +1,196 @@
+"""Integer matrices of flint (``flint.fmpz_mat``): common factors, kernels of echelon forms, inverses.
+
+The exact matrices of `exact_field` are made of these.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import random
+from collections.abc import Sequence
+
+import flint
+
+SMALL_MATRIX = 64
+
+
+def integer_identity(n: int) -> flint.fmpz_mat:
+    """The identity matrix (n, n).
+
+    Examples
+    --------
+    >>> integer_identity(2)
+    [1, 0]
+    [0, 1]
+    """
+    one = flint.fmpz_mat(n, n)
+    for i in range(n):
+        one[i, i] = 1
+    return one
+
+
+def stacked_rows(blocks: Sequence[flint.fmpz_mat], ncols: int) -> flint.fmpz_mat:
+    """The matrix whose rows are those of the blocks, one block below the other; all have `ncols` columns.
+
+    Examples
+    --------
+    >>> stacked_rows([flint.fmpz_mat([[1, 2]]), flint.fmpz_mat([[3, 4]])], 2)
+    [1, 2]
+    [3, 4]
+    """
+    entries = [x for b in blocks for x in b.entries()]
+    return flint.fmpz_mat(sum(b.nrows() for b in blocks), ncols, entries)
+
+
+def cancelled(parts: tuple[flint.fmpz_mat, ...], den: int) -> tuple[tuple[flint.fmpz_mat, ...], int]:
+    """Numerators and their common denominator without the factor that all share.
+
+    Examples
+    --------
+    >>> cancelled((flint.fmpz_mat([[2, 4]]),), 6)
+    (([1, 2],), 3)
+    """
+    common = flint.fmpz(den)
+    for a in parts:
+        if common == 1:
+            return parts, den
+        common = _common_factor(common, a)
+    if common == 1:
+        return parts, den
+    return tuple((flint.fmpq_mat(a) / common).numer_denom()[0] for a in parts), den // int(common)
+
+
+def sign_changes(signs: Sequence[int]) -> int:
+    """Number of sign changes in a sequence, zeros left out (Descartes).
+
+    Examples
+    --------
+    >>> sign_changes([1, 0, -1, -1, 1])
+    2
+    """
+    kept = [s for s in signs if s]
+    return sum(1 for a, b in itertools.pairwise(kept) if a != b)
+
+
+def echelon_pivots(parts: Sequence[flint.fmpz_mat | flint.nmod_mat], rank: int) -> list[int]:
+    """The columns in which the rows of a reduced echelon form start, its entries given by one matrix or several.
+
+    Examples
+    --------
+    >>> echelon_pivots([flint.fmpz_mat([[0, 1, 0], [0, 0, 1]])], 2)
+    [1, 2]
+    """
+    pivots, column = [], 0
+    for i in range(rank):
+        while all(a[i, column] == 0 for a in parts):
+            column += 1
+        pivots.append(column)
+        column += 1
+    return pivots
+
+
+def kernel_rows(reduced: flint.fmpz_mat, pivots: Sequence[int], unit: int) -> flint.fmpz_mat:
+    """Rows spanning the kernel of a reduced echelon form with these pivots; `unit` stands at the free columns.
+
+    Examples
+    --------
+    >>> kernel_rows(flint.fmpz_mat([[1, 2, 3]]), [0], 1)
+    [-2, 1, 0]
+    [-3, 0, 1]
+    """
+    n, chosen, entries = reduced.ncols(), set(pivots), reduced.entries()
+    free = [j for j in range(n) if j not in chosen]
+    out: list[int | flint.fmpz] = [0] * (len(free) * n)
+    for f, j in enumerate(free):
+        out[f * n + j] = unit
+        for i, pivot in enumerate(pivots):
+            out[f * n + pivot] = -entries[i * n + j]
+    return flint.fmpz_mat(len(free), n, out)
+
+
+def lifted_inverse(matrix: flint.fmpz_mat, p: int) -> flint.fmpz_mat | None:
+    """The inverse modulo a prime with entries between -p/2 and p/2, or None where the matrix is singular modulo p.
+
+    Examples
+    --------
+    >>> lifted_inverse(flint.fmpz_mat([[1, 1], [0, 1]]), 101)
+    [1, -1]
+    [0, 1]
+    """
+    try:
+        entries = flint.nmod_mat(matrix, p).inv().entries()
+    except ZeroDivisionError:
+        return None
+    half = p // 2
+    return flint.fmpz_mat(matrix.nrows(), matrix.ncols(), [x - p if x > half else x for x in map(int, entries)])
+
+
+def interleaved(multiples: Sequence[Sequence[flint.fmpz_mat]]) -> flint.fmpz_mat:
+    """The restriction of scalars of a matrix over QQ(b), from the coordinates of its multiples by 1, b, b^2, ...
+
+    Each entry becomes the (m, m) matrix whose row i holds the coordinates of b^i times the entry.
+
+    Examples
+    --------
+    >>> one_plus_b = [flint.fmpz_mat([[1]]), flint.fmpz_mat([[1]])]  # b^2 = 2
+    >>> interleaved([one_plus_b, [flint.fmpz_mat([[2]]), flint.fmpz_mat([[1]])]])
+    [1, 1]
+    [2, 1]
+    """
+    m, (nrows, ncols) = len(multiples), (multiples[0][0].nrows(), multiples[0][0].ncols())
+    if m == 1:
+        return multiples[0][0]
+    out: list[int | flint.fmpz] = [0] * (nrows * m * ncols * m)
+    for i, parts in enumerate(multiples):
+        for s, a in enumerate(parts):
+            for index, x in enumerate(a.entries()):
+                row, column = divmod(index, ncols)
+                out[(row * m + i) * ncols * m + column * m + s] = x
+    return flint.fmpz_mat(nrows * m, ncols * m, out)
+
+
+def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint.fmpz_mat]:
+    """The coordinates of a matrix (nrows, ncols) over QQ(b), from the first row of each block of its restriction.
+
+    Examples
+    --------
+    >>> separated(flint.fmpz_mat([[1, 3], [6, 1]]), 2, 1)
+    [[1], [3]]
+    """
+    table, width = restricted.entries(), restricted.ncols()
+    parts = []
+    for s in range(degree):
+        rows = [table[i * degree * width + s : (i * degree + 1) * width : degree] for i in range(nrows)]
+        parts.append(flint.fmpz_mat(nrows, width // degree, [x for row in rows for x in row]))
+    return parts
+
+
+def _common_factor(number: flint.fmpz, matrix: flint.fmpz_mat) -> flint.fmpz:
+    """gcd(number, all entries of an integer matrix).
+
+    It divides the gcd with the entries of one combination of rows, and nearly always is it; a quotient shows it.
+    """
+    nrows, ncols = matrix.nrows(), matrix.ncols()
+    if nrows * ncols <= SMALL_MATRIX:
+        return _gcd_of(number, matrix.entries())
+    one_row = matrix * _weights(ncols).transpose() if nrows < ncols else _weights(nrows) * matrix
+    bound = _gcd_of(number, one_row.entries())
+    if bound == 1 or (flint.fmpq_mat(matrix) / bound).numer_denom()[1] == 1:
+        return bound
+    return _gcd_of(bound, matrix.entries())
+
+
+def _gcd_of(number: flint.fmpz, entries: Sequence[flint.fmpz]) -> flint.fmpz:
+    for x in entries:
+        number = number.gcd(x)
+        if number == 1:
+            break
+    return number
+
+
+@functools.cache
+def _weights(n: int) -> flint.fmpz_mat:
+    """A row of n fixed integers without pattern."""
+    rng = random.Random(n)
+    return flint.fmpz_mat(1, n, [rng.randint(1, 1 << 20) for _ in range(n)])
