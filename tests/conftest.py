@@ -1,24 +1,34 @@
-"""Options shared by the whole suite: `--slow`, and hypothesis without a clock."""
+"""Options shared by the whole suite: `--slow`, samples of expensive tables, and hypothesis without a clock."""
 
 from __future__ import annotations
 
 import pytest
 from hypothesis import settings
 
-# deadline: the suite shares two cores, so a slow example says nothing about the code;
-# derandomize: a run is the same run everywhere, and a failure found once is found again
-settings.register_profile("liehom", deadline=None, derandomize=True, print_blob=True)
-settings.load_profile("liehom")
+from tests import sampling
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--slow", action="store_true", help="also run the tests marked slow, at full size")
+    parser.addoption("--slow", action="store_true", help="also run the tests marked slow, and every table whole")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    sampling.whole = config.getoption("--slow")
+    # deadline: the suite shares two cores, so a slow example says nothing about the code;
+    # derandomize: a run is the same run everywhere, and a failure found once is found again
+    settings.register_profile(
+        "liehom", deadline=None, derandomize=True, print_blob=True, max_examples=sampling.examples(100)
+    )
+    settings.load_profile("liehom")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     if config.getoption("--slow"):
         return
-    slow = [item for item in items if item.get_closest_marker("slow")]
+    slow = {item for item in items if item.get_closest_marker("slow")}
+    named = {arg.split("::")[-1] for arg in config.args if "::" in arg}  # a test asked for by name runs whole
+    if not named:
+        slow.update(sampling.left_out([item for item in items if item not in slow], sampling.table()))
     if slow:
-        config.hook.pytest_deselected(items=slow)
-        items[:] = [item for item in items if not item.get_closest_marker("slow")]
+        config.hook.pytest_deselected(items=[item for item in items if item in slow])
+        items[:] = [item for item in items if item not in slow]

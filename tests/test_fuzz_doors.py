@@ -21,6 +21,7 @@ from liehom.cli.app import app
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.scalars import QQ, common_field, number_field
 from liehom.scalars.fields import grammar
+from tests.sampling import examples
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 FILES = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(EXAMPLES.glob("*.json"))}
@@ -264,7 +265,7 @@ def mutated(draw: st.DrawFn, originals: dict[str, Any]) -> tuple[str, Any]:
 
 
 @given(mutated(SMALL))
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 def test_mutated_files(case: tuple[str, Any]) -> None:
     found = tried(io.from_json, case[1])
     if isinstance(found, lh.Pair) and found.algebra.dimension <= SIZE:
@@ -272,7 +273,7 @@ def test_mutated_files(case: tuple[str, Any]) -> None:
 
 
 @given(mutated(SMALL))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_mutated_files_that_are_read_are_decided(case: tuple[str, Any]) -> None:
     found = tried(io.from_json, case[1])
     if isinstance(found, lh.Pair) and found.field.exact and found.algebra.dimension <= SIZE:
@@ -280,7 +281,7 @@ def test_mutated_files_that_are_read_are_decided(case: tuple[str, Any]) -> None:
 
 
 @given(mutated(CERTIFICATES))
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 def test_mutated_certificates_never_prove_the_opposite(case: tuple[str, Any]) -> None:
     """Harmless changes may be accepted (any eta will do); a certificate that is accepted claims what is true."""
     name, data = case
@@ -291,7 +292,7 @@ def test_mutated_certificates_never_prove_the_opposite(case: tuple[str, Any]) ->
 
 
 @given(mutated(SMALL), st.sampled_from(["fullness", "isotropy", "range"]))
-@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_mutated_files_on_the_command_line(tmp_path: Path, case: tuple[str, Any], command: str) -> None:
     file = tmp_path / "mutant.json"
     file.write_text(json.dumps(case[1]), encoding="utf-8")
@@ -304,7 +305,7 @@ def test_mutated_files_on_the_command_line(tmp_path: Path, case: tuple[str, Any]
 
 
 @given(st.text(max_size=40))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_any_text_as_a_pair_point_or_row(text: str) -> None:
     sphere, sym3 = str(EXAMPLES / "so4_so3.json"), str(EXAMPLES / "sym3.json")
     for words in (["fullness", "--", text], ["range", sphere, f"--psi={text}"], ["isotropy", sym3, f"--point={text}"]):
@@ -331,7 +332,7 @@ TERMS = st.recursive(
 @given(st.lists(TERMS, min_size=3, max_size=3), st.sampled_from(["lietaylor", "euler", "rk4", "backward euler"]))
 @example(["m0", "m2 + sqrt(m0)", "m0"], "euler")
 @example(["0", "0", "t" + " + m0*t" * 2000], "lietaylor")
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_any_generator_is_integrated_or_refused(texts: list[str], base: str) -> None:
     data = {**FILES["rigid_body"], "generator": texts, "base": base, "order": 3, "t_span": [0, 1], "dt": 0.2}
     problem = tried(lambda: io.loads(json.dumps(data), problem=True))
@@ -342,7 +343,7 @@ def test_any_generator_is_integrated_or_refused(texts: list[str], base: str) -> 
 
 
 @given(mutated(PROBLEMS))
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_mutated_problems_on_the_command_line(tmp_path: Path, case: tuple[str, Any]) -> None:
     file, out = tmp_path / "mutant.json", tmp_path / "out.npz"
     file.write_text(json.dumps(case[1]), encoding="utf-8")
@@ -360,7 +361,7 @@ def test_mutated_problems_on_the_command_line(tmp_path: Path, case: tuple[str, A
 
 
 @given(st.text(max_size=20), st.sampled_from(["dt", "rtol", "atol", "base", "exponential", "clock", "order"]))
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_text_as_an_option(tmp_path: Path, text: str, option: str) -> None:
     words = ["integrate", str(EXAMPLES / "rigid_body.json"), f"--{option}={text}", "--out", str(tmp_path / "out.npz")]
     result = CliRunner().invoke(app, [*words, "--force", "--max-steps", "3"])

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.fullness import decide
 from liehom.scalars import QQ, NumberField
+from tests import sampling
 from tests.fullness.strategies import changes, linear_pairs, pairs, subalgebra_pairs
 from tests.fullness.support import affine, in_basis, over, proved, without_cheap_points
 
@@ -20,7 +21,9 @@ FIELDS = [NumberField("a", [-d, 0, 1], (0, d)) for d in (2, 3, 5)] + [NumberFiel
 
 
 def examples(count: int) -> Callable[[Any], Any]:
-    return settings(max_examples=count, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+    return settings(
+        max_examples=sampling.examples(count), suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much]
+    )
 
 
 def both_sizes(check: Callable[..., None], **strategies: Any) -> tuple[Any, Any]:

@@ -14,6 +14,7 @@ from liehom.errors import InputError
 from liehom.homogeneous import exponential_of, inner_product
 from liehom.homogeneous.fields.field import check_point
 from tests.homogeneous.support import heisenberg_matrices, rigid_motions, scrambled
+from tests.sampling import examples
 
 BASES: list[Any] = [
     lambda: lh.defining(lh.so(3)),
@@ -47,7 +48,7 @@ def representations(draw: st.DrawFn) -> lh.Representation:
     return rho
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(representations(), st.integers(0, 1000))
 def test_any_representation_works(rho: lh.Representation, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -81,7 +82,7 @@ def test_any_representation_works(rho: lh.Representation, seed: int) -> None:
     )
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(representations(), st.integers(0, 1000))
 def test_cayley_is_in_the_group_or_refused(rho: lh.Representation, seed: int) -> None:
     """What it does is an automorphism of every invariant form, to all sizes of x."""

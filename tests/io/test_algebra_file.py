@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom import errors
+from tests.sampling import examples
 
 SO3: dict[str, Any] = {
     "format": "liehom-algebra",
@@ -105,7 +106,7 @@ def test_an_algebra_is_neither_a_pair_nor_a_problem(tmp_path: Path) -> None:
 small = st.integers(-3, 3)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.lists(st.lists(small, min_size=3, max_size=3), min_size=3, max_size=3), st.integers(1, 10**40))
 def test_round_trip_in_every_basis(rows: list[list[int]], scale: int) -> None:
     matrix = lh.QQ.matrix([[x + (7 * scale if i == j else 0) for j, x in enumerate(row)] for i, row in enumerate(rows)])

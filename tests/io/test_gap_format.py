@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom import errors, io
 from liehom.algebra import LieAlgebra
+from tests.sampling import examples
 
 GAP = shutil.which("gap")
 # What GAP 4.12.1 prints for StructureConstantsTable( Basis( SimpleLieAlgebra( "A", 1, Rationals ) ) ).
@@ -135,7 +136,7 @@ def test_the_variable_is_an_identifier(name: object) -> None:
         io.to_gap(lh.so(3), name)  # type: ignore[arg-type]
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.text(alphabet='[]",;:=.0123456789/-TE( )\\\n#', max_size=40))
 def test_no_text_does_anything_but_raise_or_give_an_algebra(text: str) -> None:
     try:

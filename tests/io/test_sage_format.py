@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom import errors, io
 from liehom.algebra import LieAlgebra
+from tests.sampling import examples
 
 SL2 = "{('e', 'f'): {'h': 1}, ('e', 'h'): {'e': -2}, ('f', 'h'): {'f': 2}}"
 
@@ -138,7 +139,7 @@ def test_only_rational_numbers_are_carried(value: Any) -> None:
         io.to_sage(lh.LieAlgebra({(0, 1): {1: value}}))
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.text(alphabet="{}()[]'xy:,*/+-1 =L", max_size=40))
 def test_no_text_does_anything_but_raise_or_give_an_algebra(text: str) -> None:
     try:

@@ -17,6 +17,7 @@ from liehom.algebra.closure.generated_span import commutator_pairs, generated_sp
 from liehom.errors import InputError, NotClosedError
 from liehom.scalars import QQ, RR, NumberField
 from liehom.scalars.modular.modular_span import ModularSpan, product, rational_lifts
+from tests.sampling import examples
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 
@@ -46,7 +47,7 @@ def is_right(made: Any) -> bool:
 entries = st.sampled_from([0, 0, 0, 1, -1, 2, "1/2"])
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=examples(15))
 @given(st.data())
 def test_against_the_plain_closure(data: st.DataObject) -> None:
     n = data.draw(st.integers(2, 4))

@@ -16,6 +16,7 @@ from liehom.algebra.cohomology.cochain_complex import CochainComplex
 from liehom.algebra.cohomology.cohomology import cohomology
 from liehom.algebra.cohomology.derivation_algebra import derivations, is_derivation
 from liehom.errors import InputError, RepresentationError, ShapeError, SingularError
+from tests.sampling import examples
 
 
 def unit(n: int, i: int) -> list[int]:
@@ -42,7 +43,7 @@ def test_the_square_of_the_differential_is_zero(name: str) -> None:
             assert (first @ second).is_zero()
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.lists(st.integers(-3, 3), min_size=18, max_size=18))
 def test_the_differential_is_its_formula(values: list[int]) -> None:
     """For a 1-cochain with values in V: dw(x, y) = x w(y) - y w(x) - w([x, y])."""
@@ -57,7 +58,7 @@ def test_the_differential_is_its_formula(values: list[int]) -> None:
         assert row.row(0)[6 * x : 6 * x + 6] == list(expected)
 
 
-@settings(max_examples=10)
+@settings(max_examples=examples(10))
 @given(st.lists(st.integers(-3, 3), min_size=10, max_size=10))
 def test_the_differential_of_two_forms_is_its_formula(values: list[int]) -> None:
     """dw(x, y, z) = -w([x, y], z) + w([x, z], y) - w([y, z], x)."""
@@ -178,7 +179,7 @@ def test_invariants_are_h0() -> None:
     assert cohomology(lh.so(3), 0, [[[0]]] * 3).dimension == 1
 
 
-@settings(max_examples=10)
+@settings(max_examples=examples(10))
 @given(
     st.sampled_from(["heisenberg(1)", "e(3)", "upper(3)", "aff(1)"]),
     st.lists(st.integers(-2, 2), min_size=6, max_size=6),
@@ -192,7 +193,7 @@ def test_the_dimensions_do_not_depend_on_the_basis(name: str, numbers: list[int]
     assert cohomology(moved, 2, adjoint(moved)).dimension == cohomology(g, 2, adjoint(g)).dimension
 
 
-@settings(max_examples=10)
+@settings(max_examples=examples(10))
 @given(st.lists(st.integers(-2, 2), min_size=4, max_size=4), st.integers(0, 4))
 def test_kuenneth(numbers: list[int], k: int) -> None:
     """b_k of a direct sum is the convolution of the Betti numbers."""
@@ -221,7 +222,7 @@ def test_cochains_and_values() -> None:
     assert module.values(row) == {(0,): [1, 0, 0], (1,): [0, -1, 0]}
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.lists(st.integers(-4, 4), min_size=9, max_size=9))
 def test_coordinates_of_classes(numbers: list[int]) -> None:
     g = lh.filiform(5)

@@ -14,6 +14,7 @@ from liehom.algebra.cohomology.derivation_algebra import Derivations, derivation
 from liehom.algebra.cohomology.derivation_equations import exact_outer, modular_derivations, small_outer
 from liehom.algebra.cohomology.generating_words import exact_words, generating_words
 from liehom.errors import InputError, ShapeError
+from tests.sampling import examples
 
 Build = Callable[[], lh.LieAlgebra]
 
@@ -94,7 +95,7 @@ def test_the_full_system_of_equations_agrees(name: str) -> None:
     assert span(derivations(g)) == by_the_full_system(g)
 
 
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(
     st.sampled_from(["e(2)", "heisenberg(1)", "filiform(7)", "oscillator(1)", "gl(3)", "galilei(3)", "so(5)"]),
     st.data(),

@@ -25,6 +25,7 @@ from liehom.errors import (
     ShapeError,
     StructureError,
 )
+from tests.sampling import examples
 
 
 # -- quotients -----------------------------------------------------------------------------------------------
@@ -36,7 +37,7 @@ def test_quotient_by_an_ideal_has_the_expected_brackets() -> None:
     assert lh.abelian(0).quotient([]).dimension == 0
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.lists(st.integers(-2, 2), min_size=10, max_size=10))
 def test_the_quotient_map_is_a_homomorphism_with_the_ideal_as_kernel(x: list[int]) -> None:
     g = lh.upper_triangular(4)
@@ -132,7 +133,7 @@ def test_a_form_that_is_not_antisymmetric() -> None:
             central_extension(lh.abelian(2), bad)
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.lists(st.integers(-3, 3), min_size=10, max_size=10))
 def test_coboundaries_give_split_extensions(values: list[int]) -> None:
     """w(x, y) = f([x, y]): the map x -> x + f(x) z is an isomorphism from g + R."""

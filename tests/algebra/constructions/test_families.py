@@ -32,6 +32,7 @@ from liehom.algebra.constructions import (
 )
 from liehom.algebra.core.jacobi import prove_jacobi
 from liehom.errors import CatalogError, DependentRowsError, InputError, NotClosedError, ShapeError
+from tests.sampling import examples
 
 Build = Callable[[], lh.LieAlgebra]
 
@@ -174,7 +175,7 @@ def square(n: int) -> st.SearchStrategy[list[list[int]]]:
     return st.lists(st.lists(small, min_size=n, max_size=n), min_size=n, max_size=n)
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.integers(1, 4).flatmap(square))
 def test_the_orthogonal_algebra_of_any_form(rows: list[list[int]]) -> None:
     form = symmetric(rows, 1)
@@ -187,7 +188,7 @@ def test_the_orthogonal_algebra_of_any_form(rows: list[list[int]]) -> None:
         assert g.killing_signature() == (p * q, p * (p - 1) // 2 + q * (q - 1) // 2, 0)
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.integers(1, 4).flatmap(square))
 def test_the_symplectic_algebra_of_any_form(rows: list[list[int]]) -> None:
     form = symmetric(rows, -1)
@@ -327,7 +328,7 @@ def test_names_of_a_free_nilpotent_algebra_are_its_brackets() -> None:
         assert value(name) == vector(g, name)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.lists(st.integers(-3, 3), min_size=12, max_size=12))
 def test_free_nilpotent_algebras_are_free(coefficients: list[int]) -> None:
     """Any images of the generators in a nilpotent algebra of the step extend to a homomorphism."""

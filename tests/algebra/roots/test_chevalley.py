@@ -10,6 +10,7 @@ import liehom as lh
 from liehom.algebra.core.jacobi import prove_jacobi
 from liehom.algebra.roots.chevalley import chevalley_constants, root_brackets
 from liehom.algebra.roots.root_system import RootSystem, root_system
+from tests.sampling import examples
 
 SMALL = ["A1", "A2", "A3", "A4", "B2", "B3", "B4", "C3", "C4", "D4", "D5", "F4", "G2", "E6", "A1 + G2", "B2 + C3 + A2"]
 LARGE = [f"{x}{n}" for x in "ABCD" for n in range(5, 9)] + ["E7", "E8"]
@@ -57,7 +58,7 @@ def test_brackets_with_the_cartan_subalgebra_and_coroots(name):
         assert found == [*system.coroot(root), *[0] * (2 * count)]
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=examples(10))
 @given(st.sampled_from(["B3", "C3", "F4", "A2 + G2", "D4"]), st.randoms(use_true_random=False))
 def test_any_numbering_of_the_simple_roots_will_do(name, randomness):
     matrix = root_system(name).cartan

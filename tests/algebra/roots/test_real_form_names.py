@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.algebra.roots.real_form import RealForm, complex_form, real_forms
 from liehom.algebra.roots.real_form_names import _rank_in_sums, canonical_real_form
+from tests.sampling import examples
 
 COINCIDENCES = {
     "so(3)": "so(3) | su(2) | sp(1) | sl(1,H) | spin(3) | su*(2)",
@@ -70,7 +71,7 @@ def invariants(name):
 SIZES = st.integers(0, 7)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(SIZES, SIZES)
 def test_pseudo_orthogonal_names_keep_dimension_character_and_rank(p, q):
     assume(p + q >= 3)
@@ -79,7 +80,7 @@ def test_pseudo_orthogonal_names_keep_dimension_character_and_rank(p, q):
     assert invariants(f"so({p},{q})") == (n * (n - 1) // 2, k, min(p, q))
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=examples(12))
 @given(SIZES, SIZES)
 def test_other_names_keep_dimension_character_and_rank(p, q):
     n = p + q

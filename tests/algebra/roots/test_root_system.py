@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.algebra.roots.dynkin import cartan_matrix, dynkin_diagram, identify, isomorphisms, type_name
 from liehom.algebra.roots.root_system import RootSystem, root_system
+from tests.sampling import examples
 
 CONNECTED = [
     *(f"A{n}" for n in range(1, 9)),
@@ -92,7 +93,7 @@ def test_fundamental_weights_pair_to_the_identity(name):
 SUMS = st.lists(st.sampled_from(["A1", "A2", "A4", "B2", "B3", "C3", "D4", "E6", "F4", "G2"]), min_size=1, max_size=3)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 @given(SUMS, st.randoms(use_true_random=False))
 def test_the_type_does_not_depend_on_the_numbering(names, randomness):
     matrix = cartan_matrix("+".join(names))

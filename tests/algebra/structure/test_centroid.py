@@ -17,6 +17,7 @@ from liehom.errors import FieldError
 from liehom.scalars import QQ, Polynomial
 from liehom.scalars.spaces.integral_basis import integral_basis
 from liehom.testing import random_unimodular
+from tests.sampling import examples
 
 # what is known: a field for a simple algebra; End for an abelian one; R id + Hom(g/[g, g], z) for a Heisenberg algebra
 KNOWN: dict[str, tuple[lh.LieAlgebra, int]] = {
@@ -71,7 +72,7 @@ def respects(algebra: lh.LieAlgebra, phi: Any, rng: random.Random) -> bool:
     return bool((left - algebra.row(algebra.bracket((phi @ column).T.row(0), y)).T).is_zero())
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.integers(2, 6), st.data())
 def test_random_solvable_algebras_against_all_equations(n: int, data: st.DataObject) -> None:
     """R acting on R^(n-1) by a random matrix: the centroid solves [phi, ad x] = 0, and nothing is left out."""
@@ -86,7 +87,7 @@ def test_random_solvable_algebras_against_all_equations(n: int, data: st.DataObj
     assert all(respects(algebra, phi, random.Random(n)) for phi in maps)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.integers(2, 4), st.integers(1, 2), st.data())
 def test_random_two_step_algebras_against_all_equations(m: int, k: int, data: st.DataObject) -> None:
     """R^m with brackets in a centre R^k, in a scrambled basis; here the centroid is far from commutative."""

@@ -13,6 +13,7 @@ import liehom as lh
 from liehom.algebra.structure.direct_sum_decomposition import components, direct_sum_decomposition
 from liehom.errors import FieldError
 from liehom.testing import random_unimodular
+from tests.sampling import examples
 
 PARTS: dict[str, tuple[lh.LieAlgebra, tuple[int, ...]]] = {
     "so(3)": (lh.so(3), (3,)),
@@ -44,7 +45,7 @@ def dimensions(algebra: lh.LieAlgebra) -> list[int]:
     return [h.dimension for h in ideals]
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.lists(st.sampled_from(sorted(PARTS)), min_size=1, max_size=3), st.randoms())
 def test_sums_in_scrambled_bases(names: list[str], rng: random.Random) -> None:
     """Krull, Remak and Schmidt: the dimensions of the summands do not depend on the basis."""

@@ -16,6 +16,7 @@ from liehom.algebra.structure.real_splitting import centroid_field, places, real
 from liehom.errors import FieldError, InputError
 from liehom.scalars import QQ, Polynomial
 from liehom.testing import random_unimodular
+from tests.sampling import examples
 
 SQRT2, IMAGINARY, CUBE_ROOT, CYCLIC = [-2, 0, 1], [1, 0, 1], [-2, 0, 0, 1], [1, -3, 0, 1]
 
@@ -94,7 +95,7 @@ def test_one_place(algebra: lh.LieAlgebra, kind: str, signature: tuple[int, int]
     assert [(p.kind, p.killing_signature, p.dimension) for p in place] == [(kind, signature, algebra.dimension)]
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=examples(15))
 @given(st.integers(-3, 3), st.integers(-3, 3), st.sampled_from([SQRT2, [-3, 0, 1], [-1, -1, 1]]), st.randoms())
 def test_the_form_decides_at_each_real_place(p: int, q: int, f: list[int], rng: random.Random) -> None:
     """so of x^2 + y^2 + (p + q t) z^2 is compact exactly at the places where p + q t is positive."""

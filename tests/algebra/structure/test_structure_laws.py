@@ -14,6 +14,7 @@ from liehom.algebra import LieAlgebra
 from liehom.algebra.structure.root_data import root_data
 from liehom.errors import FieldError, InputError
 from liehom.testing import random_unimodular
+from tests.sampling import examples
 
 
 def with_module(name: str, form: Any) -> LieAlgebra:
@@ -44,7 +45,7 @@ SEMISIMPLE = {name: g for name, g in ALGEBRAS.items() if g.is_semisimple()}
 names = st.sampled_from(sorted(ALGEBRAS))
 semisimple = st.sampled_from(sorted(SEMISIMPLE))
 seeds = st.integers(0, 10**6)
-few = settings(max_examples=25, deadline=None)
+few = settings(max_examples=examples(25), deadline=None)
 
 
 def scrambled(algebra: LieAlgebra, seed: int) -> LieAlgebra:

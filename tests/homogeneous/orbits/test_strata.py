@@ -17,6 +17,7 @@ from liehom.homogeneous.orbits.strata import Stratum, adjoint_strata, hermitian_
 from liehom.homogeneous.orbits.structure_name import structure_name
 from liehom.representations import Representation, hermitian_conjugation
 from liehom.scalars import QQ
+from tests.sampling import examples
 
 
 @pytest.mark.parametrize("k", [1, 2, 3, 4])
@@ -43,7 +44,7 @@ def test_known_strata_of_larger_matrices() -> None:
     assert (chosen.orbit_dimension, chosen.structure) == (12, "so(3) + su(3) + R") and chosen.verify()
 
 
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=examples(20))
 @given(st.lists(st.integers(0, 3), min_size=4, max_size=4))
 def test_every_diagonal_matrix_is_in_its_stratum(values: list[int]) -> None:
     partition = tuple(sorted((values.count(v) for v in set(values)), reverse=True))

@@ -16,6 +16,7 @@ from scipy.special import ellipj
 import liehom as lh
 from liehom.errors import ConvergenceError, InputError, ShapeError
 from liehom.integrators import Reference, orbit_distance
+from tests.sampling import examples
 
 INERTIA = np.array([1.0, 2.0, 3.0])
 START = np.array([0.6, 0.0, 0.8])
@@ -221,7 +222,7 @@ def brute_force(ref: Reference, y: Any, low: float, high: float) -> float:
     return float(minimize_scalar(lambda s: float(np.linalg.norm(ref(s) - y)), bounds=near, method="bounded").fun)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(0.5, 8), st.floats(-0.4, 0.4), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3))
 def test_points_next_to_an_orbit(t: float, late: float, a: float, b: float) -> None:
     """y = F_s + a u + b v with u, v orthogonal to F_s': within the radius of curvature, distance and s come back."""

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 import liehom as lh
 from liehom.errors import InputError
 from liehom.integrators.run.events import bracketed_zero
+from tests.sampling import examples
 
 CIRCLE = lh.GeneratorField(lh.defining(lh.so(2)), [1])
 DRIVEN = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + cos(t)/2"])  # the angle is t + sin(t)/2
@@ -242,7 +243,7 @@ def test_an_error_of_g_reaches_the_user() -> None:
     st.sampled_from([lambda x: x, np.cbrt, lambda x: x**3, np.sign, lambda x: np.expm1(20 * x), lambda x: 1e-200 * x]),
     st.sampled_from([-3.0, 1.0, 1e-9]),
 )
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_zeros_are_bracketed_to_round_off(zeros: Any, shape: Any, h: float) -> None:
     where = np.array(zeros)
     calls = [0]

@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 import liehom as lh
 from liehom.errors import InputError, ShapeError, TangencyError
 from liehom.integrators import Solution
+from tests.sampling import examples
 
 CIRCLE = lh.GeneratorField(lh.defining(lh.so(2)), [1])
 DRIVEN = lh.GeneratorField(lh.defining(lh.so(2)), ["cos(t)"])
@@ -401,7 +402,7 @@ def test_one_bad_start_of_an_ensemble_is_named() -> None:
 @given(
     st.floats(-10, 10), st.floats(-10, 10), st.floats(1e-3, 30), st.booleans(), st.lists(st.floats(0, 1), max_size=4)
 )
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_whatever_the_span_the_step_and_the_times(start: float, end: float, dt: float, fixed: bool, share: Any) -> None:
     dt = max(dt, abs(end - start) / 60)
     times = np.unique(start + np.array(sorted(share)) * (end - start))

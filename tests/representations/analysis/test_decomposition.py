@@ -15,6 +15,7 @@ from liehom.errors import CertificateError, FieldError, InputError, NotCompletel
 from liehom.representations.analysis.decomposition import Component, Decomposition
 from liehom.scalars import QQ, NumberField
 from liehom.testing import random_unimodular
+from tests.sampling import examples
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 MINUS_ROOT2 = NumberField("a", [-2, 0, 1], (-2, -1))
@@ -225,7 +226,7 @@ def test_verify_refuses_what_is_wrong() -> None:
         Decomposition(found.representation, (one, other, five), found.isotypic).verify()
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=examples(12))
 @given(st.lists(st.sampled_from(["V", "S", "1", "W"]), min_size=1, max_size=3), st.integers(0, 50))
 def test_multiplicities_do_not_depend_on_the_basis(names: list[str], seed: int) -> None:
     g = lh.so(3)

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.errors import CatalogError, InputError, ShapeError
+from tests.sampling import examples
 
 ORACLE = json.loads(
     (Path(__file__).resolve().parents[2] / "oracles" / "gap_characters.json").read_text(encoding="utf-8")
@@ -59,7 +60,7 @@ def test_the_smallest_modules_have_the_dimensions_of_the_tables() -> None:
 
 
 @given(module=modules())
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=examples(30))
 def test_the_character_has_the_dimension_and_the_symmetry_of_the_module(module: tuple[str, list[int]]) -> None:
     kind, weight = module
     full = lh.character(kind, weight)
@@ -72,7 +73,7 @@ def test_the_character_has_the_dimension_and_the_symmetry_of_the_module(module: 
 
 
 @given(module=modules(), data=st.data())
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=examples(20))
 def test_the_two_ways_to_decompose_a_tensor_product_agree(module: tuple[str, list[int]], data: st.DataObject) -> None:
     kind, left = module
     right = data.draw(st.lists(st.integers(0, 1), min_size=len(left), max_size=len(left)))
@@ -91,7 +92,7 @@ def test_the_two_ways_to_decompose_a_tensor_product_agree(module: tuple[str, lis
 
 
 @given(module=modules())
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=examples(20))
 def test_the_indicator_is_the_symmetry_of_the_invariant_form(module: tuple[str, list[int]]) -> None:
     """Sym^2 V holds the trivial module for 1, Lambda^2 V for -1: by the character of Sym^2, g(2) added to g^2."""
     kind, weight = module

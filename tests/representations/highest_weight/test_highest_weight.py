@@ -16,6 +16,7 @@ from liehom.representations import admissible_lattice
 from liehom.representations.invariants.bracket_proof import failing_pair
 from liehom.representations.invariants.generator_proof import SparseStack, failing_generator_pair
 from liehom.scalars import QQ
+from tests.sampling import examples
 
 SMALL = {"A1": 6, "A2": 3, "B2": 2, "G2": 1, "A3": 1, "B3": 1, "C3": 1, "A1 + A2": 1}
 
@@ -55,7 +56,7 @@ def test_every_bracket_is_respected(kind: str, weight: list[int]) -> None:
 
 
 @given(module=modules())
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 def test_weights_highest_weight_vector_and_integrality(module: tuple[str, list[int]]) -> None:
     kind, weight = module
     made = lh.highest_weight_module(kind, weight)

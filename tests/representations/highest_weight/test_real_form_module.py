@@ -15,6 +15,7 @@ from liehom.errors import CatalogError, InputError, RepresentationError, ShapeEr
 from liehom.representations.highest_weight import real_structure
 from liehom.representations.highest_weight.admissible_lattice import admissible_lattice
 from liehom.representations.invariants.bracket_proof import failing_pair
+from tests.sampling import examples
 
 COMMUTANT = {"R": 1, "C": 2, "H": 4}
 SMALL_TYPES = ("A1", "A2", "A3", "B2", "B3", "C3", "D4", "G2")
@@ -84,7 +85,7 @@ def modules(draw: st.DrawFn) -> tuple[RealForm, list[int]]:
 
 
 @given(module=modules())
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 def test_the_square_of_the_conjugation_is_the_sign_of_the_formula(module: tuple[RealForm, list[int]]) -> None:
     form, weight = module
     letter = lh.real_module_type(form, weight)
@@ -101,7 +102,7 @@ def test_the_square_of_the_conjugation_is_the_sign_of_the_formula(module: tuple[
 
 
 @given(module=modules())
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=examples(15))
 def test_every_module_of_every_real_form_is_a_representation(module: tuple[RealForm, list[int]]) -> None:
     """Proved at construction; the compact ones keep a definite form, and the dimension is one or two complex ones."""
     form, weight = module

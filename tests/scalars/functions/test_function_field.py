@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from liehom.errors import FieldError, SingularError
 from liehom.scalars.functions.function_field import FunctionField, RationalFunction
+from tests.sampling import examples
 
 SPHERE: dict[tuple[int, ...], int] = {(2, 0, 0, 0): 1, (0, 2, 0, 0): 1, (0, 0, 2, 0): 1, (0, 0, 0, 0): -1}
 POLYNOMIALS = st.dictionaries(
@@ -51,7 +52,7 @@ def at(x: RationalFunction, values: list[Fraction]) -> Fraction | None:
     return None if bottom == 0 else top / bottom
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(POLYNOMIALS, POLYNOMIALS, POLYNOMIALS, SMALL, SMALL, SMALL)
 def test_arithmetic_is_that_of_the_values(p: Any, q: Any, r: Any, u: int, v: int, a: int) -> None:
     field, values = sphere(), [*point(u, v), Fraction(a)]
@@ -66,7 +67,7 @@ def test_arithmetic_is_that_of_the_values(p: Any, q: Any, r: Any, u: int, v: int
     assert made_of * y * z == x * z - 2 * y * y + x * y * y * z
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(POLYNOMIALS, POLYNOMIALS)
 def test_products_are_divided(p: Any, q: Any) -> None:
     """Whatever the parities: quotients on the sphere are found where they exist."""
@@ -80,7 +81,7 @@ def test_products_are_divided(p: Any, q: Any) -> None:
     assert quotient is not None and RationalFunction(field, quotient, ()) == x
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(POLYNOMIALS)
 def test_factors_and_shorter_forms_are_equal(p: Any) -> None:
     field = sphere()

@@ -16,6 +16,7 @@ from liehom.scalars import QQ, NumberField, Polynomial
 from liehom.scalars.lattices.conic import legendre_zero, rational_zero
 from liehom.scalars.roots.extension import adjoin_root, real_factors, real_roots, trivial_extension
 from liehom.scalars.spaces.real_rows import is_basis_of_reals
+from tests.sampling import examples
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 MINUS_ROOT2 = NumberField("a", [-2, 0, 1], (-2, -1))
@@ -77,7 +78,7 @@ def test_the_embedding_decides() -> None:
         assert [factor.extension.field.degree for factor in factors] == ([4, 4] if real else [2])
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=examples(15))
 @given(st.lists(st.integers(-6, 6), min_size=2, max_size=4))
 def test_random_polynomials(coefficients: list[int]) -> None:
     for f, _ in Polynomial(QQ, [*coefficients, 1]).factor():
@@ -108,7 +109,7 @@ def test_towers_and_refusals() -> None:
     assert [round(float(r)) for r in real_roots(Polynomial(QQ, [0, -4, 0, 1]), 64)] == [-2, 0, 2]
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(st.lists(st.integers(-9, 9), min_size=6, max_size=6))
 def test_zeros_of_ternary_forms(entries: list[int]) -> None:
     a, b, c, d, e, f = entries
