@@ -13,14 +13,14 @@ from liehom.catalog import pair as named_pair
 from liehom.catalog import parse
 from liehom.errors import InputError, LiehomError
 from liehom.fullness import decide_fullness
-from liehom.parallel import Source, completed, open_store
+from liehom.parallel import ExecutorLike, completed, open_store
 from liehom.representations import Pair
 
 
 def sweep(
     pairs: Iterable[str | Pair],
     *,
-    executor: Source = None,
+    executor: ExecutorLike = None,
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,
     seed: int = 0,

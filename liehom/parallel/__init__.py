@@ -6,5 +6,5 @@ In reading order: `tasks` (a function of many tasks on any `concurrent.futures.E
 
 from liehom.parallel.store import Store as Store
 from liehom.parallel.store import open_store as open_store
-from liehom.parallel.tasks import Source as Source
+from liehom.parallel.tasks import ExecutorLike as ExecutorLike
 from liehom.parallel.tasks import completed as completed

@@ -15,16 +15,16 @@ from typing import Any, final
 
 from liehom.errors import InputError, WorkerLostError
 
-Source = Executor | Callable[[], Executor] | None
+ExecutorLike = Executor | Callable[[], Executor] | None
 """An executor; a function that makes one, called again where one is broken; None for the calling process."""
 
 RETRIES = 2
 # dask's own exceptions for workers that died, by name, as dask is not imported here
-LOST = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PConsistencyError")
+WORKER_LOSS = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PConsistencyError")
 
 
 def completed(
-    function: Callable[[Any], Any], tasks: Sequence[Any], executor: Source = None, *, retries: int = RETRIES
+    function: Callable[[Any], Any], tasks: Sequence[Any], executor: ExecutorLike = None, *, retries: int = RETRIES
 ) -> Iterator[tuple[int, Any]]:
     """Pairs (number of the task, function(task)), in the order in which tasks are done.
 
@@ -128,7 +128,7 @@ class _Run:
                     elif isinstance(error, BrokenExecutor):
                         broken = error
                         self.todo.append(number)
-                    elif is_loss(error):
+                    elif is_worker_loss(error):
                         self._again(number, error)
                     else:
                         raise _explained(error)
@@ -190,16 +190,16 @@ class _Run:
         )
 
 
-def is_loss(error: BaseException) -> bool:
+def is_worker_loss(error: BaseException) -> bool:
     """Whether an exception says that a worker, or all of them, are gone, rather than that the task failed.
 
     Examples
     --------
-    >>> is_loss(BrokenExecutor("a process was killed")), is_loss(ValueError("psi"))
+    >>> is_worker_loss(BrokenExecutor("a process was killed")), is_worker_loss(ValueError("psi"))
     (True, False)
     """
     kinds = (BrokenExecutor, CancelledError, ConnectionError)
-    return isinstance(error, kinds) or type(error).__name__ in LOST
+    return isinstance(error, kinds) or type(error).__name__ in WORKER_LOSS
 
 
 def _error_of(future: Future[Any]) -> BaseException | None:

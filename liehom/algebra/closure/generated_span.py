@@ -7,7 +7,7 @@ all commutators it contains the algebra, and having at most its dimension it is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -17,6 +17,7 @@ from liehom.algebra.closure.sparse_commutators import sparse_commutator_table
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.scalars.modular.modular_span import (
     ModularSpan,
+    Residues,
     flat_echelon,
     product,
     rational_lifts,
@@ -66,17 +67,54 @@ def generating_words(generators: Sequence[Any]) -> Words:
     field, n = generators[0].field, generators[0].nrows
     p, root = residue_map(field)
     given = np.array([residues(a, p, root) for a in generators])
-    span = ModularSpan(p, n * n)
-    kept = span.extend(given)
+
+    def brackets(last: Residues) -> Residues:
+        return np.concatenate([np.mod(product(a, last, p) - product(last, a, p), p) for a in given])
+
+    return left_normed_words(ModularSpan(p, n * n), given, brackets)[0]
+
+
+def left_normed_words(
+    span: ModularSpan, generators: Residues, brackets: Callable[[Residues], Residues]
+) -> tuple[Words, list[Residues]]:
+    """Words [x_i, [x_j, ... x_k]] that are a basis of what generators generate modulo a prime, and their values.
+
+    Parameters
+    ----------
+    span : ModularSpan
+        Empty; afterwards the span of all words.
+    generators : (s, ...) float64
+        The residues of x_1, ..., x_s.
+    brackets : callable
+        From the residues of m words w to those of all [x_i, w], an array whose entry i m + j is [x_i, w_j].
+
+    Returns
+    -------
+    words : list of (int, int)
+    levels : list of arrays
+        The residues of the words of each length; one after the other they are those of `words`.
+
+    Examples
+    --------
+    The cross product, from the first two unit vectors:
+
+    >>> one = np.eye(3)
+    >>> words, levels = left_normed_words(
+    ...     ModularSpan(7, 3), one[:2], lambda w: np.concatenate([np.cross(x, w) % 7 for x in one[:2]])
+    ... )
+    >>> words, levels[1].tolist()
+    ([(0, -1), (1, -1), (0, 1)], [[0.0, 0.0, 1.0]])
+    """
+    kept = span.extend(generators)
     words: Words = [(i, -1) for i in kept]
-    frontier, start = given[kept], 0
-    while len(frontier) and span.rank < n * n:
-        images = np.concatenate([np.mod(product(a, frontier, p) - product(frontier, a, p), p) for a in given])
+    levels, start = [generators[kept]], 0
+    while len(levels[-1]) and span.rank < span.ncols:
+        images, count = brackets(levels[-1]), len(levels[-1])
         kept = span.extend(images)
-        words += [(i // len(frontier), start + i % len(frontier)) for i in kept]
-        start += len(frontier)
-        frontier = images[kept]
-    return words
+        words += [(i // count, start + i % count) for i in kept]
+        start += count
+        levels.append(images[kept])
+    return words, levels
 
 
 def commutator_pairs(basis: Sequence[Any], dimension: int) -> list[tuple[int, int]]:

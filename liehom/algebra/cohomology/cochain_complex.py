@@ -92,7 +92,7 @@ class CochainComplex:
             self._differentials[degree] = self._made(degree, shape)
         return self._differentials[degree]
 
-    def places(self, degree: int) -> list[tuple[int, ...]]:
+    def index_tuples(self, degree: int) -> list[tuple[int, ...]]:
         """The increasing tuples of indices, in the order of the cochains."""
         return list(itertools.combinations(range(self.algebra.dimension), degree)) if degree >= 0 else []
 
@@ -109,8 +109,8 @@ class CochainComplex:
     def _from_brackets(self, degree: int, shape: tuple[int, int]) -> Any:
         """The second sum: for each c[i, j, l] and each set R without i, j, l, from R + l to R + i + j."""
         table, n, m = self.algebra.table, self.algebra.dimension, self.size
-        source = {place: x for x, place in enumerate(self.places(degree))}
-        target = {place: x for x, place in enumerate(self.places(degree + 1))}
+        source = {place: x for x, place in enumerate(self.index_tuples(degree))}
+        target = {place: x for x, place in enumerate(self.index_tuples(degree + 1))}
         parts = [[0] * (shape[0] * shape[1]) for _ in table.parts]
         places = list(zip(table.i.tolist(), table.j.tolist(), table.k.tolist(), strict=True))
         for rest in itertools.combinations(range(n), degree - 1) if degree else ():
@@ -131,10 +131,10 @@ class CochainComplex:
     def _from_action(self, degree: int, shape: tuple[int, int]) -> Any:
         """The first sum: from S to S + t, by the matrix of e_t."""
         m, field = self.size, self.algebra.field
-        source = {place: x for x, place in enumerate(self.places(degree))}
+        source = {place: x for x, place in enumerate(self.index_tuples(degree))}
         den, action = _integral(self.matrices or (), field)
         parts = [[0] * (shape[0] * shape[1]) for _ in range(field.degree)]
-        for x, grown in enumerate(self.places(degree + 1)):
+        for x, grown in enumerate(self.index_tuples(degree + 1)):
             for a, t in enumerate(grown):
                 start = source[grown[:a] + grown[a + 1 :]] * m
                 for part, values in zip(parts, action[t], strict=True):

@@ -127,7 +127,7 @@ class Cohomology:
             If a value does not have dim V coordinates.
         """
         field, m, n = self.algebra.field, self.cochains.size, self.algebra.dimension
-        found = {place: x for x, place in enumerate(self.cochains.places(self.degree))}
+        found = {place: x for x, place in enumerate(self.cochains.index_tuples(self.degree))}
         entries = [field.zero] * self._length()
         for key, value in values.items():
             indices = tuple(key) if isinstance(key, tuple) else (key,)
@@ -145,7 +145,7 @@ class Cohomology:
     def values(self, cochain: Any) -> dict[tuple[int, ...], Any]:
         """The non-zero values by increasing indices: numbers, or lists of coordinates where dim V is not 1."""
         row, m = self._row(cochain).row(0), self.cochains.size
-        blocks = {p: row[x * m : (x + 1) * m] for x, p in enumerate(self.cochains.places(self.degree))}
+        blocks = {p: row[x * m : (x + 1) * m] for x, p in enumerate(self.cochains.index_tuples(self.degree))}
         return {p: v[0] if m == 1 else v for p, v in blocks.items() if any(x != 0 for x in v)}
 
     def forms(self) -> list[Any]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.cohomology.derivation_equations import exact_outer, modular_derivations, small_outer
-from liehom.algebra.cohomology.generating_words import generating_words
+from liehom.algebra.cohomology.word_basis import word_bases
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import InputError, InternalError
@@ -157,7 +157,7 @@ def _inner(algebra: LieAlgebra, indices: Sequence[int]) -> tuple[Any, ...]:
 def _outer(algebra: LieAlgebra, inner: tuple[Any, ...]) -> tuple[Any, ...]:
     """Derivations that complete the inner ones to a basis, proved."""
     n, count = algebra.dimension, len(inner)
-    for words in generating_words(algebra):
+    for words in word_bases(algebra):
         found = modular_derivations(words)
         if found.dimension == count:
             return ()

@@ -1,6 +1,6 @@
 """The equations of derivations, for the images of generators: modulo a prime, and exactly where that is needed.
 
-With words w_1, ..., w_n in generators x_1, ..., x_s (`generating_words`) the row u of all images D x_i determines
+With words w_1, ..., w_n in generators x_1, ..., x_s (`word_basis`) the row u of all images D x_i determines
 D w = [D x_i, v] + [x_i, D v] for w = [x_i, v], so D w_k = u A_k with matrices A_k.  D is a derivation if and only if
 D [x_i, w_k] = [D x_i, w_k] + [x_i, D w_k] for all i and k: the x with this property form a subalgebra.
 
@@ -15,9 +15,9 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.cohomology.generating_words import GeneratingWords, Residues, exact_words
+from liehom.algebra.cohomology.word_basis import WordBasis, exact_words
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.scalars.modular.modular_span import ModularSpan, lifted, product
+from liehom.scalars.modular.modular_span import ModularSpan, Residues, lifted, product
 
 
 @final
@@ -27,14 +27,14 @@ class ModularDerivations:
 
     Attributes
     ----------
-    words : GeneratingWords
+    words : WordBasis
     solutions : array (t, s n)
         Images of the generators in the basis of words, for a basis of all derivations modulo the prime.
     needed : tuple of (i, k, c)
         Coordinate c of the equation for generator i and word k: equations that imply the others modulo the prime.
     """
 
-    words: GeneratingWords
+    words: WordBasis
     solutions: Residues
     needed: tuple[tuple[int, int, int], ...]
 
@@ -44,14 +44,14 @@ class ModularDerivations:
         return len(self.solutions)
 
 
-def modular_derivations(words: GeneratingWords) -> ModularDerivations:
+def modular_derivations(words: WordBasis) -> ModularDerivations:
     """All derivations modulo the prime of the words.
 
     Examples
     --------
     >>> import liehom as lh
-    >>> from liehom.algebra.cohomology.generating_words import generating_words
-    >>> modular_derivations(next(generating_words(lh.heisenberg(1)))).dimension
+    >>> from liehom.algebra.cohomology.word_basis import word_bases
+    >>> modular_derivations(next(word_bases(lh.heisenberg(1)))).dimension
     6
     """
     p, table, n = words.modulus, words.word_table, len(words.words)
@@ -175,15 +175,14 @@ def are_derivations(algebra: LieAlgebra, generators: Any, flat: Any) -> bool:
     return True
 
 
-def _images(words: GeneratingWords) -> Residues:
+def _images(words: WordBasis) -> Residues:
     """The matrices A_k, shape (n, s n, n), modulo the prime."""
     p, table, n, s = words.modulus, words.word_table, len(words.words), words.generators.nrows
     images = np.zeros((n, s * n, n))
-    for k, word in enumerate(words.words):
-        if word is None:
+    for k, (i, v) in enumerate(words.words):
+        if v < 0:
             images[k, k * n : (k + 1) * n] = np.eye(n)
         else:
-            i, v = word
             images[k] = product(images[v], table[i], p)
             images[k, i * n : (i + 1) * n] -= table[v]
             images[k] %= p
@@ -205,14 +204,13 @@ def _joined(columns: list[Any], n: int) -> Any:
     return wide.T
 
 
-def _exact_images(words: GeneratingWords, ads: list[Any]) -> list[Any]:
+def _exact_images(words: WordBasis, ads: list[Any]) -> list[Any]:
     s = words.generators.nrows
     images: list[Any] = []
-    for k, word in enumerate(words.words):
-        if word is None:
+    for k, (i, v) in enumerate(words.words):
+        if v < 0:
             images.append(_placed(ads[0].field.identity(len(ads)), k, s))
         else:
-            i, v = word
             images.append(images[v] @ ads[i] - _placed(ads[v], i, s))
     return images
 

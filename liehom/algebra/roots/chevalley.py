@@ -18,7 +18,7 @@ import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.roots.root_system import RootSystem
+from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
 
@@ -67,7 +67,7 @@ def chevalley(type_name: str) -> LieAlgebra:
       [h1, f1] = -2*f1
       [e1, f1] = h1
     """
-    system = RootSystem.of_type(type_name)
+    system = root_system(type_name)
     count = len(system.positive_roots)
     names = [f"h{i + 1}" for i in range(system.rank)]
     names += [f"{letter}{i + 1}" for letter in "ef" for i in range(count)]
@@ -93,7 +93,7 @@ def chevalley_constants(system: RootSystem) -> StructureConstants:
 
     Examples
     --------
-    >>> table = chevalley_constants(RootSystem.of_type("G2"))
+    >>> table = chevalley_constants(root_system("G2"))
     >>> table.dimension, max(table.parts[0]), min(table.parts[0])
     (14, 3, -3)
     """
@@ -117,7 +117,7 @@ def cartan_weights(system: RootSystem) -> IntegerArray:
 
     Examples
     --------
-    >>> cartan_weights(RootSystem.of_type("A1")).tolist()
+    >>> cartan_weights(root_system("A1")).tolist()
     [[2], [-2]]
     """
     return system.root_matrix() @ _square(system.cartan)
@@ -128,7 +128,7 @@ def coroots(system: RootSystem) -> IntegerArray:
 
     Examples
     --------
-    >>> coroots(RootSystem.of_type("B2")).tolist()
+    >>> coroots(root_system("B2")).tolist()
     [[1, 0], [0, 1], [2, 1], [1, 1]]
     """
     norms = np.array([system.norm(a) for a in system.positive_roots], dtype=np.int64).reshape(-1, 1)
@@ -140,7 +140,7 @@ def root_brackets(system: RootSystem) -> RootBrackets:
 
     Examples
     --------
-    >>> [part.tolist() for part in root_brackets(RootSystem.of_type("A2"))][3]
+    >>> [part.tolist() for part in root_brackets(root_system("A2"))][3]
     [-1, 1, 1, -1, 1, -1, -1, 1, 1, -1, -1, 1]
     """
     cover, folding = _unfolded(system)

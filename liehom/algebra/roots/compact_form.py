@@ -19,7 +19,7 @@ import numpy as np
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.roots.chevalley import cartan_weights, coroots, root_brackets
-from liehom.algebra.roots.root_system import RootSystem
+from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
@@ -53,7 +53,7 @@ def compact_form(type_name: str) -> LieAlgebra:
       [H1, Y1] = -2*X1
       [X1, Y1] = 2*H1
     """
-    system = RootSystem.of_type(type_name)
+    system = root_system(type_name)
     count = len(system.positive_roots)
     names = [f"H{i + 1}" for i in range(system.rank)] + [f"{x}{i + 1}" for x in "XY" for i in range(count)]
     # a real form of the algebra with the Chevalley basis
@@ -73,7 +73,7 @@ def compact_constants(system: RootSystem) -> StructureConstants:
 
     Examples
     --------
-    >>> compact_constants(RootSystem.of_type("A2")).dimension
+    >>> compact_constants(root_system("A2")).dimension
     8
     """
     rank, count = system.rank, len(system.positive_roots)

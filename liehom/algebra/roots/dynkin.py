@@ -16,8 +16,8 @@ from liehom.errors import CatalogError, InputError, InternalError
 
 CartanMatrix = tuple[tuple[int, ...], ...]
 
-_LEAST = {"A": 1, "B": 1, "C": 1, "D": 2, "E": 6, "F": 4, "G": 2}
-_MOST = {"E": 8, "F": 4, "G": 2}
+_LOWEST_RANK = {"A": 1, "B": 1, "C": 1, "D": 2, "E": 6, "F": 4, "G": 2}
+_HIGHEST_RANK = {"E": 8, "F": 4, "G": 2}
 
 
 def parse_type(name: str) -> tuple[tuple[str, int], ...]:
@@ -111,7 +111,7 @@ def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> Any:
     return graph
 
 
-def identify(cartan: Sequence[Sequence[int]]) -> list[tuple[str, tuple[int, ...]]]:
+def diagram_components(cartan: Sequence[Sequence[int]]) -> list[tuple[str, tuple[int, ...]]]:
     """The components of a Cartan matrix: the type of each, and its nodes in Bourbaki's order.
 
     Parameters
@@ -132,7 +132,7 @@ def identify(cartan: Sequence[Sequence[int]]) -> list[tuple[str, tuple[int, ...]
 
     Examples
     --------
-    >>> identify([[2, 0, -1], [0, 2, 0], [-2, 0, 2]])
+    >>> diagram_components([[2, 0, -1], [0, 2, 0], [-2, 0, 2]])
     [('A1', (1,)), ('B2', (2, 0))]
     """
     return list(_identified(tuple(tuple(int(x) for x in row) for row in cartan)))
@@ -151,7 +151,7 @@ def type_name(cartan: Sequence[Sequence[int]]) -> str:
     >>> type_name(cartan_matrix("D2")), type_name(cartan_matrix("G2 + C2 + D3"))
     ('A1 + A1', 'A3 + B2 + G2')
     """
-    return join_types(name for name, _ in identify(cartan))
+    return join_types(name for name, _ in diagram_components(cartan))
 
 
 def join_types(names: Any) -> str:
@@ -207,15 +207,15 @@ def _isomorphisms(first: Any, second: Any) -> Iterator[tuple[int, ...]]:
 
 def _candidates(rank: int) -> list[str]:
     """One name for each connected diagram of this rank."""
-    least = {**_LEAST, "B": 2, "C": 3, "D": 4}
-    return [f"{letter}{rank}" for letter, low in least.items() if low <= rank <= _MOST.get(letter, rank)]
+    least = {**_LOWEST_RANK, "B": 2, "C": 3, "D": 4}
+    return [f"{letter}{rank}" for letter, low in least.items() if low <= rank <= _HIGHEST_RANK.get(letter, rank)]
 
 
 def _parse_simple(name: str) -> tuple[str, int]:
     match = re.fullmatch(r"([A-G])([1-9]\d*)", name)
     if match is not None:
         letter, rank = match[1], int(match[2])
-        if _LEAST[letter] <= rank <= _MOST.get(letter, rank):
+        if _LOWEST_RANK[letter] <= rank <= _HIGHEST_RANK.get(letter, rank):
             return letter, rank
     known = "A1, A2, ...; B1, ...; C1, ...; D3, ...; E6, E7, E8, F4, G2"
     raise CatalogError(f"{name!r} is not the type of a simple Lie algebra; known: {known}")

@@ -189,7 +189,7 @@ def real_forms_with(type_name: str, character: int) -> list[RealForm]:
     return [form for form in _real_forms(type_name) if form.character == character]
 
 
-def real_form(type_name: str, character: int) -> RealForm:
+def real_form_with(type_name: str, character: int) -> RealForm:
     """The real form of a type with a given character, where this determines it.
 
     Raises
@@ -199,7 +199,7 @@ def real_form(type_name: str, character: int) -> RealForm:
 
     Examples
     --------
-    >>> real_form("B2", -2)
+    >>> real_form_with("B2", -2)
     <real form so(4,1) of type B2>
     """
     found = real_forms_with(type_name, character)

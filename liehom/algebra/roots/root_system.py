@@ -11,13 +11,14 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 from math import prod
 from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.algebra.roots.dynkin import CartanMatrix, cartan_matrix, dynkin_diagram, identify, join_types
+from liehom.algebra.roots.dynkin import CartanMatrix, cartan_matrix, diagram_components, dynkin_diagram, join_types
 from liehom.errors import InputError, ShapeError
 
 Root = tuple[int, ...]
@@ -66,7 +67,7 @@ class RootSystem:
     cartan: CartanMatrix
     positive_roots: tuple[Root, ...] = field(init=False, repr=False, compare=False)
     norms: tuple[int, ...] = field(init=False, repr=False, compare=False)
-    _places: dict[Root, int] = field(init=False, repr=False, compare=False)
+    _index: dict[Root, int] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         matrix = _checked(self.cartan)
@@ -76,23 +77,7 @@ class RootSystem:
         signed = [*positive, *(_negative(root) for root in positive)]
         for name, value in (("cartan", matrix), ("norms", norms), ("positive_roots", positive)):
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "_places", {root: place for place, root in enumerate(signed)})
-
-    @classmethod
-    def of_type(cls, name: str) -> RootSystem:
-        """The root system of a type such as 'E8' or 'A2 + G2', with Bourbaki's numbering.
-
-        Raises
-        ------
-        CatalogError
-            If there is no such type.
-
-        Examples
-        --------
-        >>> RootSystem.of_type("E8").number_of_roots
-        240
-        """
-        return cls(cartan_matrix(name))
+        object.__setattr__(self, "_index", {root: place for place, root in enumerate(signed)})
 
     # -- properties --------------------------------------------------------------------------------------
     @property
@@ -113,7 +98,7 @@ class RootSystem:
     @property
     def roots(self) -> tuple[Root, ...]:
         """The positive roots, then their negatives in the same order."""
-        return tuple(self._places)
+        return tuple(self._index)
 
     @property
     def simple_roots(self) -> tuple[Root, ...]:
@@ -126,7 +111,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("E8").highest_roots
+        >>> root_system("E8").highest_roots
         ((2, 3, 4, 6, 5, 4, 3, 2),)
         """
         highest = {frozenset(i for i, x in enumerate(root) if x): root for root in self.positive_roots}
@@ -145,7 +130,7 @@ class RootSystem:
         >>> RootSystem([[2, 0, -1], [0, 2, 0], [-2, 0, 2]]).components()
         [('A1', (1,)), ('B2', (2, 0))]
         """
-        return identify(self.cartan)
+        return diagram_components(self.cartan)
 
     def dynkin_diagram(self) -> Any:
         """The Dynkin diagram as a networkx.DiGraph; see `liehom.algebra.dynkin_diagram`."""
@@ -161,7 +146,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("E8").weyl_group_order(), RootSystem.of_type("A1 + A2").weyl_group_order()
+        >>> root_system("E8").weyl_group_order(), root_system("A1 + A2").weyl_group_order()
         (696729600, 12)
         """
         heights = Counter(map(sum, self.positive_roots))
@@ -169,7 +154,7 @@ class RootSystem:
 
     def is_root(self, alpha: Sequence[int]) -> bool:
         """Whether this combination of the simple roots is a root."""
-        return tuple(alpha) in self._places
+        return tuple(alpha) in self._index
 
     def index(self, alpha: Sequence[int]) -> int:
         """The place of a root in `roots`.
@@ -181,10 +166,10 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("A2").index((-1, -1))
+        >>> root_system("A2").index((-1, -1))
         5
         """
-        place = self._places.get(tuple(alpha))
+        place = self._index.get(tuple(alpha))
         if place is None:
             raise InputError(f"{tuple(alpha)} is not a root of {self.type}; `roots` lists them")
         return place
@@ -203,7 +188,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> b2 = RootSystem.of_type("B2")
+        >>> b2 = root_system("B2")
         >>> [b2.norm(alpha) for alpha in b2.positive_roots]
         [4, 2, 2, 4]
         """
@@ -219,7 +204,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("C3").pairing((0, 0, 1), (0, 1, 0))
+        >>> root_system("C3").pairing((0, 0, 1), (0, 1, 0))
         -2
         """
         self.index(beta)
@@ -230,7 +215,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("A2").reflection((0, 1), (1, 0))
+        >>> root_system("A2").reflection((0, 1), (1, 0))
         (1, 1)
         """
         times = self.pairing(alpha, beta)
@@ -241,7 +226,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("B2").coroot((1, 1))
+        >>> root_system("B2").coroot((1, 1))
         (2, 1)
         """
         self.index(alpha)
@@ -253,7 +238,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> [[str(x) for x in row] for row in RootSystem.of_type("B2").fundamental_weights()]
+        >>> [[str(x) for x in row] for row in root_system("B2").fundamental_weights()]
         [['1', '1'], ['1/2', '1']]
         """
         return _inverse(self.cartan)
@@ -268,7 +253,7 @@ class RootSystem:
 
         Examples
         --------
-        >>> RootSystem.of_type("A2").dominant((-1, 0))
+        >>> root_system("A2").dominant((-1, 0))
         (0, 1)
         """
         self._require_length(weight)
@@ -306,7 +291,12 @@ def root_system(name: str) -> RootSystem:
     >>> lh.root_system("E8")
     <root system E8 of rank 8 with 240 roots>
     """
-    return RootSystem.of_type(name)
+    return _of_type(name)
+
+
+@lru_cache(maxsize=64)
+def _of_type(name: str) -> RootSystem:
+    return RootSystem(cartan_matrix(name))
 
 
 def _negative(root: Root) -> Root:

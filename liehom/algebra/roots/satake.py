@@ -20,9 +20,9 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.roots.dynkin import identify, isomorphisms, join_types
-from liehom.algebra.roots.root_system import Root, RootSystem
-from liehom.algebra.roots.vogan import VoganDiagram, generic, gram_to_cartan, simple_system
+from liehom.algebra.roots.dynkin import diagram_components, isomorphisms, join_types
+from liehom.algebra.roots.root_system import Root, RootSystem, root_system
+from liehom.algebra.roots.vogan import VoganDiagram, generic_form, gram_to_cartan, simple_system
 from liehom.errors import InputError, InternalError
 from liehom.typing import IntegerArray
 
@@ -128,7 +128,7 @@ class SatakeDiagram:
     # -- verbs -------------------------------------------------------------------------------------------
     def root_system(self) -> RootSystem:
         """The root system of the complex algebra."""
-        return VoganDiagram(self.type).root_system()
+        return root_system(self.type)
 
     def involution(self) -> IntegerArray:
         """theta on rows of coefficients in the simple roots, shape (r, r).
@@ -206,7 +206,7 @@ def _restricted_system(diagram: SatakeDiagram) -> tuple[str, dict[str, int]]:
     simple = list(dict.fromkeys(tuple(x) for x in projected.tolist() if any(x)))
     doubled = [i for i, a in enumerate(simple) if tuple(2 * x for x in a) in restricted]
     names = []
-    for name, nodes in identify(gram_to_cartan(system, simple)):
+    for name, nodes in diagram_components(gram_to_cartan(system, simple)):
         names.append(f"BC{len(nodes)}" if set(nodes) & set(doubled) else name)
     if len(names) > 1:
         return join_types(names), {}
@@ -259,7 +259,7 @@ def _simple_roots_for(system: RootSystem, theta: IntegerArray) -> list[Root]:
     """Simple roots for an order in which the part of a root in the (-1)-eigenspace of theta decides first."""
     roots = system.root_matrix()
     split = dict(zip(system.roots, (roots - roots @ theta).tolist(), strict=True))
-    return simple_system(system.roots, lambda a: (generic(split[a]), generic(a)))
+    return simple_system(system.roots, lambda a: (generic_form(split[a]), generic_form(a)))
 
 
 def _white_part(system: RootSystem, simple: Sequence[Root], black: set[int], image: Root) -> int:

@@ -12,13 +12,12 @@ noncompact for s(a) = -1; the others, complex, come in pairs.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.roots.dynkin import identify, join_types
-from liehom.algebra.roots.root_system import RootSystem
+from liehom.algebra.roots.dynkin import diagram_components, join_types
+from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.errors import InputError
 from liehom.typing import IntegerArray
 
@@ -86,7 +85,7 @@ class VoganDiagram:
     # -- verbs -------------------------------------------------------------------------------------------
     def root_system(self) -> RootSystem:
         """The root system of the type."""
-        return _root_system(self.type)
+        return root_system(self.type)
 
     def involution(self) -> IntegerArray:
         """The matrix (r, r) of the involution on rows of coefficients in the simple roots."""
@@ -127,9 +126,9 @@ class VoganDiagram:
         roots = system.root_matrix()
         kept = ~self._fixed() | (self.signs() == 1)
         restricted = {tuple(x) for x in (roots + roots @ self.involution())[kept].tolist()}
-        simple = simple_system(restricted, lambda a: (generic(a),))
+        simple = simple_system(restricted, lambda a: (generic_form(a),))
         orbits = sum(i <= j for i, j in enumerate(self.automorphism))
-        return join_types(name for name, _ in identify(gram_to_cartan(system, simple))), orbits - len(simple)
+        return join_types(name for name, _ in diagram_components(gram_to_cartan(system, simple))), orbits - len(simple)
 
     def _fixed(self) -> Any:
         roots = self.root_system().root_matrix()
@@ -144,7 +143,7 @@ def bilinear_form(system: RootSystem) -> IntegerArray:
 
     Examples
     --------
-    >>> bilinear_form(RootSystem.of_type("A2")).tolist()
+    >>> bilinear_form(root_system("A2")).tolist()
     [[1, -1], [0, 1]]
     """
     rank = system.rank
@@ -183,27 +182,22 @@ def gram_to_cartan(system: RootSystem, vectors: Any) -> list[list[int]]:
 
     Examples
     --------
-    >>> gram_to_cartan(RootSystem.of_type("G2"), [(0, 1), (1, 0)])
+    >>> gram_to_cartan(root_system("G2"), [(0, 1), (1, 0)])
     [[2, -3], [-1, 2]]
     """
     norms = [system.norm(v) for v in vectors]
     return [[2 * system.inner(u, v) // norm for v, norm in zip(vectors, norms, strict=True)] for u in vectors]
 
 
-def generic(a: Any, base: int = 1024) -> int:
+def generic_form(a: Any, base: int = 1024) -> int:
     """A linear form without zeros on non-zero vectors whose coordinates are less than base / 2 in absolute value.
 
     Examples
     --------
-    >>> generic((1, -1))
+    >>> generic_form((1, -1))
     1023
     """
     value = 0
     for x in a:
         value = value * base + int(x)
     return value
-
-
-@lru_cache(maxsize=64)
-def _root_system(name: str) -> RootSystem:
-    return RootSystem.of_type(name)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 
-from liehom.algebra.roots.dynkin import identify
+from liehom.algebra.roots.dynkin import diagram_components
 from liehom.algebra.roots.root_system import RootSystem
 
 Nodes = tuple[int, ...]
@@ -21,7 +21,8 @@ def levi_classes(system: RootSystem) -> list[list[Nodes]]:
 
     Examples
     --------
-    >>> levi_classes(RootSystem.of_type("A3"))
+    >>> import liehom as lh
+    >>> levi_classes(lh.root_system("A3"))
     [[()], [(0,), (1,), (2,)], [(0, 1), (1, 2)], [(0, 2)], [(0, 1, 2)]]
     """
     waiting = [s for size in range(system.rank + 1) for s in combinations(range(system.rank), size)]
@@ -68,11 +69,12 @@ def opposition(system: RootSystem, nodes: Sequence[int]) -> dict[int, int]:
 
     Examples
     --------
-    >>> opposition(RootSystem.of_type("A3"), [0, 1, 2])
+    >>> import liehom as lh
+    >>> opposition(lh.root_system("A3"), [0, 1, 2])
     {0: 2, 1: 1, 2: 0}
     """
     found: dict[int, int] = {}
-    for kind, places in identify([[system.cartan[i][j] for j in nodes] for i in nodes]):
+    for kind, places in diagram_components([[system.cartan[i][j] for j in nodes] for i in nodes]):
         own = [nodes[p] for p in places]
         image = list(own)
         series, rank = kind[0], len(own)

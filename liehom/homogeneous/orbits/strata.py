@@ -16,7 +16,7 @@ from typing import Any, final
 from liehom.algebra import Subalgebra
 from liehom.algebra.roots.compact_form import compact_form
 from liehom.algebra.roots.real_form_names import canonical_real_form
-from liehom.algebra.roots.root_system import RootSystem
+from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.errors import CertificateError, InputError
 from liehom.homogeneous.orbits.levi_classes import levi_classes
 from liehom.homogeneous.orbits.structure_name import reductive_name, structure_name
@@ -71,7 +71,7 @@ class Stratum:
         return self.orbit_dimension + self.parameters
 
     def verify(self, *, name: bool = True) -> bool:
-        """Compute the isotropy at the point, and identify its structure (unless `name` is False).
+        """Compute the isotropy at the point, and diagram_components its structure (unless `name` is False).
 
         Raises
         ------
@@ -173,7 +173,7 @@ def adjoint_strata(type_name: str) -> list[Stratum]:
     <stratum ((1,),): orbits of dimension 10 in 1 parameter, isotropy so(3) + R>
     <stratum ((0, 1),): orbits of dimension 0 in 0 parameters, isotropy g2>
     """
-    system = RootSystem.of_type(type_name)
+    system = root_system(type_name)
     rho = adjoint(compact_form(type_name))
     n, rank, positive = rho.size, system.rank, system.positive_roots
     cartan = QQ.matrix(system.cartan, (rank, rank))
@@ -193,10 +193,10 @@ def adjoint_strata(type_name: str) -> list[Stratum]:
 
 def _compact_names(system: RootSystem, nodes: Sequence[int]) -> list[str]:
     """The compact algebras of the components of a subdiagram."""
-    from liehom.algebra.roots.dynkin import identify
+    from liehom.algebra.roots.dynkin import diagram_components
 
     names = []
-    for kind, _ in identify([[system.cartan[i][j] for j in nodes] for i in nodes]):
+    for kind, _ in diagram_components([[system.cartan[i][j] for j in nodes] for i in nodes]):
         series, rank = kind[0], int(kind[1:])
         classical = {"A": f"su({rank + 1})", "B": f"so({2 * rank + 1})", "C": f"sp({rank})", "D": f"so({2 * rank})"}
         names.append(canonical_real_form(classical.get(series, kind.lower())))

@@ -23,7 +23,7 @@ from liehom.integrators.convergence.reference import Reference
 from liehom.integrators.ensembles.ensemble_problem import Problem, all_solved
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.solution import Solution
-from liehom.parallel import Source
+from liehom.parallel import ExecutorLike
 
 
 def observed_order(
@@ -37,7 +37,7 @@ def observed_order(
     clock: str = "corrected",
     compile: str | None = None,
     reference: Reference | None = None,
-    executor: Source = None,
+    executor: ExecutorLike = None,
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,
 ) -> ConvergenceTable:

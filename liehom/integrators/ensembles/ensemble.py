@@ -21,7 +21,7 @@ from liehom.integrators.ensembles.merging import from_shard, merged, to_shard
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.solution import Solution
-from liehom.parallel import Source, completed, open_store
+from liehom.parallel import ExecutorLike, completed, open_store
 
 CHUNK = 1024
 """Trajectories of a chunk, where the caller does not say: many enough to hide what a step costs besides them."""
@@ -46,7 +46,7 @@ def integrate_ensemble(
     y0: Any,
     *,
     parameters: Mapping[str, Any] | None = None,
-    executor: Source = None,
+    executor: ExecutorLike = None,
     chunk: int = CHUNK,
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,
@@ -140,7 +140,7 @@ def ensemble_parts(
     y0: Any,
     *,
     parameters: Mapping[str, Any] | None = None,
-    executor: Source = None,
+    executor: ExecutorLike = None,
     chunk: int = CHUNK,
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,

@@ -16,7 +16,7 @@ from liehom.integrators.ensembles.merging import from_shard, to_shard
 from liehom.integrators.integration import integrate
 from liehom.integrators.run.checkpoint import digest
 from liehom.integrators.run.solution import Solution
-from liehom.parallel import Source, completed, open_store
+from liehom.parallel import ExecutorLike, completed, open_store
 
 ARRAYS = ("dt", "t_eval")
 """The options of `integrate` that are arrays."""
@@ -118,7 +118,7 @@ def solved(task: Problem) -> Solution:
 
 
 def all_solved(
-    problems: Sequence[Problem], executor: Source, store: str | os.PathLike[str] | None, retries: int = 2
+    problems: Sequence[Problem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
 ) -> list[Solution]:
     """The solutions of some problems in their order, on an executor; kept in a store, if one is given.
 

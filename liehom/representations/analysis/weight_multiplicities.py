@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from liehom.algebra.roots.dynkin import identify
+from liehom.algebra.roots.dynkin import diagram_components
 from liehom.algebra.structure.root_data import root_data
 from liehom.errors import InternalError
 from liehom.representations.highest_weight.characters import decompose_character
@@ -70,7 +70,7 @@ def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
         values = found.values(bits)
         weights = coroot_pairings([v for v, _ in values], data.simple_values(), form, bits)
         if weights is not None:
-            order = [i for _, nodes in identify(data.root_system.cartan) for i in nodes]
+            order = [i for _, nodes in diagram_components(data.root_system.cartan) for i in nodes]
             counted: Counter[Weight] = Counter()
             for w, (_, m) in zip(weights, values, strict=True):
                 counted[tuple(w[i] for i in order)] += m

@@ -12,7 +12,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.algebra.roots.root_system import RootSystem
+from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.errors import InputError, ShapeError
 
 Weight = tuple[int, ...]
@@ -116,7 +116,7 @@ def root_system_of(system: RootSystem | str) -> RootSystem:
     CatalogError, InputError
         If there is no such type, or if it is neither.
     """
-    roots = RootSystem.of_type(system) if isinstance(system, str) else system
+    roots = root_system(system) if isinstance(system, str) else system
     if not isinstance(roots, RootSystem):
         raise InputError(f"a root system or the name of a type such as 'B3' or 'A2 + G2' is needed, got {system!r}")
     return roots

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.algebra.roots.real_form import RealForm, complex_form, real_form, real_forms, real_forms_with
+from liehom.algebra.roots.real_form import RealForm, complex_form, real_form_with, real_forms, real_forms_with
 from liehom.algebra.roots.real_form_names import canonical_ideals, parse_name
 from liehom.algebra.roots.root_system import root_system
 from liehom.algebra.roots.satake import SatakeDiagram
@@ -188,10 +188,10 @@ def test_several_forms_of_one_character():
     assert real_forms_with("A13", -15)[0].real_rank == 5
     assert real_forms_with("A13", -15)[1].real_rank == 6
     with pytest.raises(lh.errors.CatalogError, match=r"2 real forms .* so\(12,6\) \(-9\), so\*\(18\)"):
-        real_form("D9", -9)
+        real_form_with("D9", -9)
     with pytest.raises(lh.errors.CatalogError, match=r"no real form of character 1: e8\(8\) \(8\)"):
-        real_form("E8", 1)
-    assert real_form("E8", -24).real_rank == 4
+        real_form_with("E8", 1)
+    assert real_form_with("E8", -24).real_rank == 4
     assert real_forms_with("E8", 1) == []
 
 

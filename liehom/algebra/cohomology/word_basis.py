@@ -11,21 +11,20 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
+from liehom.algebra.closure.generated_span import Words, left_normed_words
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.scalars.modular.modular import small_residues
-from liehom.scalars.modular.modular_span import ModularSpan, product
+from liehom.scalars.modular.modular_span import ModularSpan, Residues, product
 
-Word = tuple[int, int]
-Residues = npt.NDArray[np.float64]
-ENOUGH = 1 << 200
+PRIME_SUPPLY = 1 << 200
+"""The primes below 2^22 that are tried have this product at least: about nine of them."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
-class GeneratingWords:
+class WordBasis:
     """Generators x_1, ..., x_s and a basis of words, with the brackets modulo a prime.
 
     Attributes
@@ -34,8 +33,8 @@ class GeneratingWords:
         A prime p below 2^22.
     generators : Matrix
         Rows (s, n) of small integers.
-    words : tuple
-        None for a generator (these come first, in order), else (i, v): the bracket of generator i with word v.
+    words : tuple of (int, int)
+        (i, -1) for generator i (these come first, in order), else (i, v): the bracket of generator i with word v.
     basis, inverse : array (n, n)
         The words as rows modulo p, and the inverse.
     table, word_table : array (n, n, n)
@@ -44,14 +43,14 @@ class GeneratingWords:
 
     modulus: int
     generators: Any
-    words: tuple[Word | None, ...]
+    words: tuple[tuple[int, int], ...]
     basis: Residues
     inverse: Residues
     table: Residues
     word_table: Residues
 
 
-def generating_words(algebra: LieAlgebra) -> Iterator[GeneratingWords]:
+def word_bases(algebra: LieAlgebra) -> Iterator[WordBasis]:
     """Generators and words for one prime after the other: should one be of no use, the next is.
 
     Parameters
@@ -62,23 +61,22 @@ def generating_words(algebra: LieAlgebra) -> Iterator[GeneratingWords]:
     Examples
     --------
     >>> import liehom as lh
-    >>> next(generating_words(lh.heisenberg(1))).words
-    (None, None, (0, 1))
+    >>> next(word_bases(lh.heisenberg(1))).words
+    ((0, -1), (1, -1), (0, 1))
     """
-    for p, root in small_residues(algebra.field, ENOUGH):  # type: ignore[arg-type]
+    for p, root in small_residues(algebra.field, PRIME_SUPPLY):  # type: ignore[arg-type]
         if algebra.table.den % p:
             yield _words_modulo(algebra, p, root)
 
 
-def exact_words(algebra: LieAlgebra, found: GeneratingWords) -> Any:
+def exact_words(algebra: LieAlgebra, found: WordBasis) -> Any:
     """The words as rows (n, n), exactly."""
     n, field = algebra.dimension, algebra.field
     s = found.generators.nrows
     actions = [algebra.ad(found.generators.select(rows=[i])).T for i in range(s)]
     rows = [found.generators.select(rows=[i]) for i in range(s)]
-    for word in found.words[s:]:
-        if word is not None:
-            rows.append(rows[word[1]] @ actions[word[0]])
+    for i, v in found.words[s:]:
+        rows.append(rows[v] @ actions[i])
     return field.stack_rows(rows, n)
 
 
@@ -101,7 +99,7 @@ def table_modulo(table: StructureConstants, p: int, root: int) -> Residues:
     return dense
 
 
-def _words_modulo(algebra: LieAlgebra, p: int, root: int) -> GeneratingWords:
+def _words_modulo(algebra: LieAlgebra, p: int, root: int) -> WordBasis:
     n = algebra.dimension
     table = table_modulo(algebra.table, p, root)
     derived = ModularSpan(p, n)
@@ -113,29 +111,24 @@ def _words_modulo(algebra: LieAlgebra, p: int, root: int) -> GeneratingWords:
     while len(words) < n:
         generators.append([rng.randint(-1, 1) for _ in range(n)])
         words, basis = _closed(table, generators, p)
-        if words.count(None) < len(generators):  # it depends on the others
+        if sum(v < 0 for _, v in words) < len(generators):  # it depends on the others
             generators.pop()
     inverse = _inverse(basis, p)
     moved = product(product(basis, table.reshape(n, n * n), p).reshape(n, n, n), inverse, p)
     rows = algebra.field.matrix(generators, (len(generators), n))
-    return GeneratingWords(p, rows, tuple(words), basis, inverse, table, product(basis, moved, p))
+    return WordBasis(p, rows, tuple(words), basis, inverse, table, product(basis, moved, p))
 
 
-def _closed(table: Residues, generators: list[list[int]], p: int) -> tuple[list[Word | None], Residues]:
+def _closed(table: Residues, generators: list[list[int]], p: int) -> tuple[Words, Residues]:
     """Words from independent generators, level by level, until brackets with generators give nothing new."""
     n = len(table)
     first = np.mod(np.array(generators, dtype=np.float64).reshape(-1, n), p)
-    span = ModularSpan(p, n)
-    words: list[Word | None] = [None] * len(span.extend(first))
-    levels, start = [first[: len(words)]], 0
-    actions = product(levels[0], table.reshape(n, n * n), p).reshape(-1, n, n)
-    while start < len(words) < n:
-        recent, count = levels[-1], len(words)
-        found = np.concatenate([product(recent, action, p) for action in actions])
-        chosen = span.extend(found)
-        words += [(x // len(recent), start + x % len(recent)) for x in chosen]
-        levels.append(found[chosen])
-        start = count
+    actions = product(first, table.reshape(n, n * n), p).reshape(-1, n, n)
+
+    def brackets(last: Residues) -> Residues:
+        return np.concatenate([product(last, action, p) for action in actions])
+
+    words, levels = left_normed_words(ModularSpan(p, n), first, brackets)
     return words, np.concatenate(levels)
 
 
