@@ -156,7 +156,6 @@ if TYPE_CHECKING:
     from liehom.representations import spin_representation as spin_representation
     from liehom.representations import spinor_type as spinor_type
     from liehom.representations import sym_conjugation as sym_conjugation
-    from liehom.representations import symbolic_isotropy as symbolic_isotropy
     from liehom.representations import tensor_product_decomposition as tensor_product_decomposition
     from liehom.representations import trivial as trivial
     from liehom.representations import weyl_dimension as weyl_dimension
@@ -223,7 +222,7 @@ _NAMES = {
         "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
         "dual_weight frobenius_schur_indicator hermitian_conjugation HermitianForms highest_weight_module "
         "HighestWeightModule Pair real_module real_module_type RealModule Representation spin_representation "
-        "spinor_type sym_conjugation symbolic_isotropy tensor_product_decomposition trivial weyl_dimension weyl_orbit"
+        "spinor_type sym_conjugation tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

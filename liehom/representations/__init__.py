@@ -5,7 +5,6 @@ from liehom.representations.analysis import Decomposition as Decomposition
 from liehom.representations.analysis import HermitianForms as HermitianForms
 from liehom.representations.analysis import IsotypicComponent as IsotypicComponent
 from liehom.representations.analysis import SymbolicIsotropy as SymbolicIsotropy
-from liehom.representations.analysis import symbolic_isotropy as symbolic_isotropy
 from liehom.representations.constructions import adjoint as adjoint
 from liehom.representations.constructions import coadjoint as coadjoint
 from liehom.representations.constructions import defining as defining

@@ -9,4 +9,3 @@ from liehom.representations.analysis.decomposition import Decomposition as Decom
 from liehom.representations.analysis.decomposition import IsotypicComponent as IsotypicComponent
 from liehom.representations.analysis.hermitian_forms import HermitianForms as HermitianForms
 from liehom.representations.analysis.symbolic import SymbolicIsotropy as SymbolicIsotropy
-from liehom.representations.analysis.symbolic import symbolic_isotropy as symbolic_isotropy

@@ -8,25 +8,16 @@ on it semisimply: f(z) v = 0, f the squarefree part of the characteristic polyno
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from liehom.representations.analysis.submodules import restricted
+from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.irreducibility import combination, evaluated, trace_form
 from liehom.scalars import Polynomial, Subspace
 
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
-
 
 def socle(rho: Representation) -> Subspace:
-    """The sum of all irreducible invariant subspaces, over the reals (or over the field: it is the same).
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> socle(lh.Representation.from_matrices([[[1, 1], [0, 1]]])).rows()
-    [[1, 0]]
-    """
+    """Implements `Representation.socle`."""
     field, size = rho.field, rho.size
     whole = field.identity(size)
     if not rho.matrices or size == 0 or is_visibly_semisimple(rho):
@@ -48,14 +39,7 @@ def socle(rho: Representation) -> Subspace:
 
 
 def is_completely_reducible(rho: Representation) -> bool:
-    """Whether every invariant subspace has an invariant complement.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> is_completely_reducible(lh.adjoint(lh.so(4))), is_completely_reducible(lh.adjoint(lh.euclidean(2)))
-    (True, False)
-    """
+    """Implements `Representation.is_completely_reducible`."""
     return socle(rho).dimension == rho.size
 
 

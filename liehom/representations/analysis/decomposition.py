@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
@@ -21,15 +21,13 @@ from liehom.representations.analysis.complete_reducibility import socle
 from liehom.representations.analysis.isotypic import Type, isotypic_pieces
 from liehom.representations.analysis.splitting import irreducible_pieces
 from liehom.representations.analysis.submodules import restricted
-from liehom.representations.core.generating_matrices import generating_matrices
+from liehom.representations.core.generating_matrices import exact_matrices, generating_matrices
+from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import commutant, intertwiners
 from liehom.representations.invariants.irreducibility import is_irreducible
 from liehom.scalars import Field, Subspace
 from liehom.scalars.roots.extension import Extension, trivial_extension
 from liehom.scalars.spaces.real_rows import is_basis_of_reals
-
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
 
 
 @final
@@ -214,7 +212,7 @@ class Decomposition:
     def _verify_component(self, number: int, component: Component) -> None:
         field, dimension = component.field, component.dimension
         matrices = component.representation.matrices
-        over = [component.extension.matrix(a) for a in self.representation.matrices]
+        over = [component.extension.matrix(a) for a in exact_matrices(self.representation)]
         if restricted(over, component.subspace.basis) != list(matrices):
             raise CertificateError("restriction", f"component {number} is not the restriction to its subspace")
         generating = generating_matrices(component.representation)
@@ -239,22 +237,7 @@ class Decomposition:
 
 
 def decomposition(rho: Representation) -> Decomposition:
-    """The decomposition of a completely reducible representation into irreducible ones over the reals.
-
-    Raises
-    ------
-    NotCompletelyReducibleError
-        If the representation is not completely reducible (its socle is decomposed by
-        ``rho.subrepresentation(rho.socle())``).
-    FieldError
-        Over float64.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> decomposition(lh.adjoint(lh.so(4))).dimensions()
-    [3, 3]
-    """
+    """Implements `Representation.decomposition`."""
     found = socle(rho)
     if found.dimension < rho.size:
         raise NotCompletelyReducibleError(
@@ -317,8 +300,6 @@ class _Restrictions:
         self._seen: list[tuple[Extension, LieAlgebra, list[Any]]] = []
 
     def to(self, subspace: Subspace, extension: Extension) -> Representation:
-        from liehom.representations.core.representation import Representation
-
         if subspace.dimension == self.rho.size and extension.is_trivial:
             return self.rho
         algebra, matrices = self._over(extension)
@@ -338,6 +319,6 @@ class _Restrictions:
         table = StructureConstants(extension.field, given.dimension, entries)
         # The same identities in a larger field.
         algebra = LieAlgebra(table, basis=given.basis_names, name=given.name, check=False)
-        matrices = [extension.matrix(a) for a in self.rho.matrices]
+        matrices = [extension.matrix(a) for a in exact_matrices(self.rho)]
         self._seen.append((extension, algebra, matrices))
         return algebra, matrices

@@ -9,36 +9,19 @@ Hom(V, W) is a module over End V; if T generates it and is not invertible, no T 
 from __future__ import annotations
 
 import random
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from liehom.errors import FieldError, InputError, UndecidedError
 from liehom.representations.analysis.complete_reducibility import is_completely_reducible
 from liehom.representations.core.generating_matrices import generating_matrices
+from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import commutant, intertwiners
-
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
 
 ATTEMPTS = 30
 
 
 def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
-    """A basis of the maps T, shape (M, N), with T rho(x) = sigma(x) T for all x.
-
-    Raises
-    ------
-    InputError
-        If they are representations of two algebras.
-    FieldError
-        If they are over two fields, or over float64.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> g = lh.so(3)
-    >>> len(intertwining_maps(lh.defining(g).tensor(lh.defining(g)), lh.adjoint(g)))
-    1
-    """
+    """Implements `Representation.intertwiners`."""
     for given in (rho, sigma):
         if not hasattr(given, "algebra") or not hasattr(given, "matrices"):
             raise InputError(f"expected a Representation of the same algebra, such as lh.adjoint(g); got {given!r}")
@@ -60,24 +43,7 @@ def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
 
 
 def equivalence(rho: Representation, sigma: Representation) -> Any:
-    """An invertible T with T rho(x) = sigma(x) T for all x, or None: the representations are not equivalent.
-
-    Raises
-    ------
-    InputError, FieldError
-        As `intertwining_maps`.
-    UndecidedError
-        For representations that are not completely reducible, where neither an invertible map nor a reason was found.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> g = lh.sl(2)
-    >>> equivalence(lh.defining(g), lh.defining(g).dual()) is None
-    False
-    >>> equivalence(lh.defining(g), lh.trivial(g, 2)) is None
-    True
-    """
+    """Implements `Representation.equivalence`."""
     maps = intertwining_maps(rho, sigma)
     if rho.size != sigma.size:
         return None

@@ -10,16 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, final
+from typing import Any, Literal, final
 
 from liehom.errors import InputError
 from liehom.representations.analysis.commutant_type import complex_structure, imaginary_units
+from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.irreducibility import combination
 from liehom.scalars import Polynomial
 from liehom.scalars.roots.extension import adjoin_root
-
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
 
 
 @final
@@ -78,28 +76,7 @@ class HermitianForms:
 
 
 def hermitian_forms(rho: Representation, structure: Any = None) -> HermitianForms:
-    """The invariant Hermitian forms with respect to a complex structure, or to the commutant of an irreducible rho.
-
-    Parameters
-    ----------
-    rho : Representation
-    structure : (N, N) array_like, optional
-        J, commuting with the action, with J^2 = -d for a number d > 0. By default rho must be irreducible of type C
-        (its commutant has J) or H (its commutant has three units: quaternionic forms).
-
-    Raises
-    ------
-    InputError
-        If J does not commute or its square is no negative number; without J, if rho is reducible or of type R.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> lh.defining("so*(6)").hermitian_forms().kind
-    'quaternionic'
-    >>> len(hermitian_forms(lh.defining("so*(6)")).skew_hermitian)
-    1
-    """
+    """Implements `Representation.hermitian_forms`."""
     matrices, size, field = rho.matrices, rho.size, rho.field
     if structure is not None:
         units = [_checked(rho, structure)]

@@ -6,28 +6,19 @@ Subspaces are given by rows b, on which a matrix A acts as b A^T.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from liehom.errors import DependentRowsError, NotCompletelyReducibleError, NotInvariantError, ShapeError, SingularError
 from liehom.representations.core.generating_matrices import generating_matrices
+from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import intertwiners
 from liehom.scalars import Subspace
 from liehom.scalars.modular.modular import independent_rows
 from liehom.scalars.spaces.quotient import quotient
 
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
-
 
 def generated_submodule(rho: Representation, rows: Any) -> Subspace:
-    """The least invariant subspace that contains the rows.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> generated_submodule(lh.adjoint(lh.so(4)), [[1, 0, 0, 0, 0, 1]]).dimension
-    3
-    """
+    """Implements `Representation.submodule`."""
     span, before = _rows(rho, rows).row_space(), -1
     turned = [a.T for a in generating_matrices(rho)]
     while before < span.nrows < rho.size:
@@ -37,24 +28,7 @@ def generated_submodule(rho: Representation, rows: Any) -> Subspace:
 
 
 def subrepresentation(rho: Representation, rows: Any) -> Representation:
-    """The restriction to an invariant subspace, in the basis of the rows as given.
-
-    Raises
-    ------
-    DependentRowsError
-        If the rows are dependent.
-    NotInvariantError
-        If their span is not invariant; names the row and the basis element that moves it out.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> rho = lh.adjoint(lh.gl(2))
-    >>> subrepresentation(rho, [[1, 0, 0, 1]]).matrices[0].is_zero()
-    True
-    """
-    from liehom.representations.core.representation import Representation
-
+    """Implements `Representation.subrepresentation`."""
     basis = _independent(rho, rows)
     made = restricted(rho.matrices, basis)
     # A homomorphism followed by restriction to an invariant subspace.
@@ -62,20 +36,7 @@ def subrepresentation(rho: Representation, rows: Any) -> Representation:
 
 
 def quotient_representation(rho: Representation, rows: Any) -> Representation:
-    """The representation on the quotient by an invariant subspace, in the basis of ``liehom.scalars.spaces.quotient``.
-
-    Raises
-    ------
-    DependentRowsError, NotInvariantError
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> quotient_representation(lh.adjoint(lh.heisenberg(1)), [[0, 0, 1]]).size
-    2
-    """
-    from liehom.representations.core.representation import Representation
-
+    """Implements `Representation.quotient`."""
     data = quotient(_independent(rho, rows))
     for i, a in enumerate(rho.matrices):
         moved = data.subspace @ a.T @ data.projection
@@ -88,20 +49,7 @@ def quotient_representation(rho: Representation, rows: Any) -> Representation:
 
 
 def invariant_complement(rho: Representation, rows: Any) -> Subspace:
-    """An invariant complement of an invariant subspace: the kernel of a projection that commutes with the action.
-
-    Raises
-    ------
-    NotCompletelyReducibleError
-        If there is none.
-    DependentRowsError, NotInvariantError
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> invariant_complement(lh.adjoint(lh.gl(2)), [[1, 0, 0, 1]]).rows()
-    [[1, 0, 0, -1], [0, 1, 0, 0], [0, 0, 1, 0]]
-    """
+    """Implements `Representation.invariant_complement`."""
     field, size = rho.field, rho.size
     basis = _independent(rho, rows)
     k = basis.nrows

@@ -6,7 +6,6 @@ DomainMatrix.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -14,6 +13,7 @@ from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, InputError, ShapeError
 from liehom.representations.core.representation import Representation
 from liehom.scalars import NumberField
+from liehom.typing import VectorLike
 
 
 @final
@@ -90,41 +90,8 @@ class SymbolicIsotropy:
         return self.basis.subs(values)
 
 
-def symbolic_isotropy(rho: Representation, point: Sequence[Any]) -> SymbolicIsotropy:
-    """The isotropy subalgebra at a point with free symbols, for generic values of them.
-
-    Parameters
-    ----------
-    rho : Representation
-        Over QQ or a real number field.
-    point : sequence of sympy expressions, shape (N,)
-        Rational functions of free symbols; their coefficients may be algebraic numbers.
-
-    Raises
-    ------
-    ShapeError
-        If the point does not have N coordinates.
-    InputError
-        If a coordinate is not a rational function of the symbols (write cos and sin by a rational parameter).
-    FieldError
-        If the representation is over floats, or a coefficient of the point is a float.
-
-    Notes
-    -----
-    The rank of the matrix with columns rho(e_i) point over the field of fractions is the largest rank at any
-    value.  With pivot columns P and independent rows R the null space has denominators that divide det M[R, P]
-    (Cramer's rule), so the answer is right wherever this minor does not vanish.
-
-    Examples
-    --------
-    >>> import liehom as lh, sympy
-    >>> x, y, z = sympy.symbols("x y z")
-    >>> generic = symbolic_isotropy(lh.defining(lh.so(3)), [x, y, z])
-    >>> generic.dimension, generic.basis
-    (1, Matrix([[z, -y, x]]))
-    >>> symbolic_isotropy(lh.defining(lh.so(3)), [x, 0, 0]).nonvanishing
-    x
-    """
+def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotropy:
+    """Implements `Representation.symbolic_isotropy`."""
     import sympy
 
     values = _coordinates(rho, point)
@@ -154,7 +121,7 @@ def symbolic_isotropy(rho: Representation, point: Sequence[Any]) -> SymbolicIsot
     )
 
 
-def _coordinates(rho: Representation, point: Sequence[Any]) -> list[Any]:
+def _coordinates(rho: Representation, point: VectorLike) -> list[Any]:
     import sympy
 
     if not rho.field.exact:

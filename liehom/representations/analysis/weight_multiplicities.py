@@ -9,53 +9,28 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import cast
 
 from liehom.algebra.roots.dynkin import diagram_components
 from liehom.algebra.structure.root_data import root_data
 from liehom.errors import InternalError
+from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.characters import decompose_character
+from liehom.scalars import ExactMatrix
 from liehom.scalars.roots.joint_multiplicities import coroot_pairings, joint_multiplicities
-
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
 
 Weight = tuple[int, ...]
 ATTEMPTS = 20
 
 
 def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
-    """The weights of a representation of a semisimple algebra with their multiplicities.
-
-    Returns
-    -------
-    dict
-        {weight: multiplicity} in fundamental coordinates, in Bourbaki's numbering of ``algebra.semisimple_type()``.
-
-    Raises
-    ------
-    InputError
-        If the algebra is not semisimple.
-    FieldError
-        Over float64.
-
-    Notes
-    -----
-    Where the Dynkin diagram has symmetries (A_n, D_n, E6, equal components) the weights are those for one choice of
-    simple roots up to such a symmetry: V and its dual may change places.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> weight_multiplicities(lh.defining(lh.so(3)))
-    {(2,): 1, (0,): 1, (-2,): 1}
-    """
+    """Implements `Representation.weights`."""
     data = root_data(rho.algebra)
     rank = data.cartan.dimension
     if rank == 0 or rho.size == 0:
         return {(0,) * rank: rho.size} if rho.size else {}
     h = data.cartan.basis
-    matrices = [rho(h.row(j)) for j in range(rank)]
+    matrices = [cast(ExactMatrix, rho(h.row(j))) for j in range(rank)]
     form = (h @ rho.algebra.killing_form() @ h.T).inverse()
     rng = random.Random(rho.size)
     for attempt in range(ATTEMPTS):
@@ -79,15 +54,7 @@ def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
 
 
 def highest_weights(rho: Representation) -> dict[Weight, int]:
-    """The highest weights of the irreducible parts of the complexification, with how often each occurs.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> su3 = lh.defining(lh.su(3))
-    >>> highest_weights(su3), highest_weights(lh.adjoint(su3.algebra))
-    ({(1, 0): 1, (0, 1): 1}, {(1, 1): 1})
-    """
+    """Implements `Representation.highest_weights`."""
     weights = weight_multiplicities(rho)
     if not weights:
         return {}

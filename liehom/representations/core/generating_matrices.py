@@ -7,18 +7,17 @@ everything, which a rank modulo a prime proves.
 from __future__ import annotations
 
 import random
-from typing import TYPE_CHECKING, Any
+from typing import cast
 
+from liehom.representations.core.representation import Representation
+from liehom.scalars import ExactMatrix, Matrix
 from liehom.scalars.modular.modular import invariant_hull_rank
-
-if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
 
 SMALL = 20_000
 MOST = 4
 
 
-def generating_matrices(rho: Representation, size: int | None = None) -> tuple[Any, ...]:
+def generating_matrices(rho: Representation, size: int | None = None) -> tuple[Matrix, ...]:
     """Matrices with the same commutant, invariant forms, vectors and subspaces as all rho(x).
 
     Parameters
@@ -45,8 +44,8 @@ def generating_matrices(rho: Representation, size: int | None = None) -> tuple[A
     if n <= MOST or n * (rho.size if size is None else size) ** 2 <= SMALL:
         return rho.matrices
     rng = random.Random(n)
-    rows: list[Any] = []
-    adjoints: list[Any] = []
+    rows: list[ExactMatrix] = []
+    adjoints: list[ExactMatrix] = []
     for _ in range(MOST):
         x = rho.field.matrix([[rng.choice((-1, 0, 0, 1)) for _ in range(n)]])
         rows.append(x)
@@ -54,3 +53,8 @@ def generating_matrices(rho: Representation, size: int | None = None) -> tuple[A
         if len(rows) > 1 and invariant_hull_rank(rho.field.stack_rows(rows, n), adjoints) == n:
             return tuple(rho(x.row(0)) for x in rows)
     return rho.matrices
+
+
+def exact_matrices(rho: Representation) -> tuple[ExactMatrix, ...]:
+    """The matrices of a representation that is known to be over an exact field."""
+    return cast("tuple[ExactMatrix, ...]", rho.matrices)

@@ -26,7 +26,7 @@ def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: 
         raise ShapeError(f"the point has {len(values)} coordinates, the representation acts on {size}")
     symbols = sorted({str(s) for v in values for s in getattr(v, "free_symbols", ())})
     if symbols:
-        raise InputError(f"the point has the free symbols {', '.join(symbols)}; use liehom.symbolic_isotropy")
+        raise InputError(f"the point has the free symbols {', '.join(symbols)}; use Representation.symbolic_isotropy")
     column = algebra.field.matrix([values], (1, size)).T
     rows = [(a @ column).T for a in matrices]
     return algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)
