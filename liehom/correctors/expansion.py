@@ -16,11 +16,11 @@ import numpy as np
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.series.arrays import across_lanes, as_values, beside, in_lanes, is_exact, namespace, zeros
+from liehom.series.arrays import across_lanes, as_values, constant_like, in_lanes, is_exact, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 
-NOISE = 64
+ROUND_OFF_UNITS = 64
 
 
 @final
@@ -104,7 +104,7 @@ def flow_series(field: GeneratorField, m: Any, order: int, t: Any = 0.0) -> Flow
     points = Jet.growing(start, order)
     time: Any = t
     if field.time_dependent:
-        first = beside(start, t) + zeros(start, start.shape[:-1])
+        first = constant_like(start, t) + zeros(start, start.shape[:-1])
         time = Jet.from_node(Node(order, first, [first, 0 * first + 1, *[None] * (order - 1)][: order + 1]))
     generator = field.psi(points, time)
     if not isinstance(generator, Jet):  # a constant psi
@@ -262,7 +262,7 @@ def vanishing(flow: Flow, k: int) -> Any:
         m = flow.point(0)
         floor = xp.maximum(size, np.finfo(w.dtype).tiny * (1 + xp.max(xp.abs(m), axis=-1)))
         terms = terms + _moved(xp, flow, flow.psi(1), m) * (xp.max(xp.abs(m), axis=-1) / floor)
-    return size <= NOISE * np.finfo(w.dtype).eps * terms / k
+    return size <= ROUND_OFF_UNITS * np.finfo(w.dtype).eps * terms / k
 
 
 def _all_move(flow: Flow, size: Any) -> bool:
@@ -273,7 +273,7 @@ def _all_move(flow: Flow, size: Any) -> bool:
         return False
     if flow.generator.order >= 1:
         norm = norm + flow.field.sizes(in_lanes(flow.psi(1)), m) * (np.abs(m).max(axis=-1) / size)
-    return bool((size > 2 * NOISE * np.finfo(m.dtype).eps * norm * np.sqrt(_square(m))).all())
+    return bool((size > 2 * ROUND_OFF_UNITS * np.finfo(m.dtype).eps * norm * np.sqrt(_square(m))).all())
 
 
 def at_rest(action: Action, flow: Flow) -> Any:
@@ -289,7 +289,7 @@ def at_rest(action: Action, flow: Flow) -> Any:
     True
     """
     w, m = flow.point(1), flow.point(0)
-    bound = (NOISE * float(np.finfo(w.dtype).eps) * action.size) ** 2
+    bound = (ROUND_OFF_UNITS * float(np.finfo(w.dtype).eps) * action.size) ** 2
     speed, size = _square(w), _square(m)
     gram, twice = action.inner_product.matrix, flow.generator.order >= 1
     if isinstance(w, np.ndarray):  # mostly nothing is at rest, also by a larger norm

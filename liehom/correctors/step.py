@@ -18,7 +18,7 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import is_jax, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
-from liehom.tracing import Traced, repeated
+from liehom.tracing import Traced, while_loop
 
 MAX_ITERATIONS = 200
 JAX_ITERATIONS = 60
@@ -262,6 +262,6 @@ def _solved_on_tape(function: Callable[[Any], Any], start: Any, tape: Any) -> An
         settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
         return [kept, change, settled], ~settled & np.isfinite(change)
 
-    solved, _, settled = repeated(iteration, [start, np.inf, tape.false], tape, MAX_ITERATIONS)
+    solved, _, settled = while_loop(iteration, [start, np.inf, tape.false], tape, MAX_ITERATIONS)
     tape.required.append(settled.entries[()])
     return solved

@@ -9,7 +9,7 @@ from liehom.instances.isospectral import double_bracket_flow as double_bracket_f
 from liehom.instances.isospectral import qr_flow as qr_flow
 from liehom.instances.isospectral import qr_solution as qr_solution
 from liehom.instances.isospectral import toda_flow as toda_flow
-from liehom.instances.rigid_body import ClosedForm as ClosedForm
+from liehom.instances.rigid_body import ClosedFormUpdate as ClosedFormUpdate
 from liehom.instances.rigid_body import ExactOrbit as ExactOrbit
 from liehom.instances.rigid_body import ExactOrbitUpdate as ExactOrbitUpdate
 from liehom.instances.rigid_body import GeneratorTaylor as GeneratorTaylor

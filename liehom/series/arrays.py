@@ -144,7 +144,7 @@ def _is_number(value: Any) -> bool:
     return hasattr(value, "__mul__")
 
 
-def beside(like: Any, value: Any) -> Any:
+def constant_like(like: Any, value: Any) -> Any:
     """A constant as an array that can stand in one formula with arrays like `like`; the caller's array is copied.
 
     A number takes the type of `like`, as in numpy; next to exact scalars it must be exact.
@@ -152,7 +152,7 @@ def beside(like: Any, value: Any) -> Any:
     Examples
     --------
     >>> import numpy as np
-    >>> beside(np.ones(2, dtype=np.float32), 0.5).dtype
+    >>> constant_like(np.ones(2, dtype=np.float32), 0.5).dtype
     dtype('float32')
     """
     if is_lazy(value):

@@ -12,7 +12,7 @@ import numpy as np
 
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import beside, is_exact, is_lazy, namespace
+from liehom.series.arrays import constant_like, is_exact, is_lazy, namespace
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 
@@ -130,7 +130,7 @@ def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
     order = min(node.order for node in found)
     kind = found[0].value if like is None else like.node.value
     kind = next((node.value for node in found if is_exact(np.asarray(node.value))), kind) if not is_lazy(kind) else kind
-    return [x.node if type(x) is Jet else recurrences.constant(beside(kind, x), order) for x in made]
+    return [x.node if type(x) is Jet else recurrences.constant(constant_like(kind, x), order) for x in made]
 
 
 def on_series(function: Callable[..., Any], *arguments: Any) -> Any:

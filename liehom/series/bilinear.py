@@ -16,11 +16,11 @@ import numpy as np
 
 from liehom.errors import ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import as_values, beside, is_jax, namespace, owned, zeros
+from liehom.series.arrays import as_values, constant_like, is_jax, namespace, owned, zeros
 from liehom.series.jet import Jet
 
-DENSE_SIZE = 4096
-DENSE_SHARE = 0.2
+DENSE_UP_TO_ENTRIES = 4096
+DENSE_FROM_FRACTION = 0.2
 
 
 @final
@@ -59,7 +59,7 @@ class Bilinear:
             self._values[index] = int(row[3]) if isinstance(row[3], np.integer) else row[3]
         self._starts = np.flatnonzero(np.r_[True, self._k[1:] != self._k[:-1]]) if rows else np.zeros(0, dtype=int)
         size = shape[0] * shape[1] * shape[2]
-        self._dense = size <= DENSE_SIZE or len(rows) > DENSE_SHARE * size
+        self._dense = size <= DENSE_UP_TO_ENTRIES or len(rows) > DENSE_FROM_FRACTION * size
         self._cache: dict[Any, Any] = {}
 
     def tensor(self) -> Any:
@@ -150,10 +150,10 @@ class Bilinear:
     def _coefficients(self, like: Any) -> Any:
         """The coefficients in the kind of numbers of an array."""
         if like.dtype == object:
-            return beside(like, self._values)
+            return constant_like(like, self._values)
         dtype = np.zeros((), like.dtype).real.dtype
         try:
-            return np.array([beside(np.zeros((), dtype), v)[()] for v in self._values], dtype=dtype)
+            return np.array([constant_like(np.zeros((), dtype), v)[()] for v in self._values], dtype=dtype)
         except TypeError:  # symbols
             return self._values
 

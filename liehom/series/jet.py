@@ -18,7 +18,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import jet_views, recurrences
 from liehom.series.arrays import as_values, namespace, owned, zeros
-from liehom.series.jet_views import Step, View
+from liehom.series.jet_views import View, ViewOperation
 from liehom.series.node import Node, rewind
 
 
@@ -356,11 +356,11 @@ class Jet(NDArrayOperatorsMixin):
         array([2., 5.])
         """
         made = Jet.from_node(recurrences.linear(function, [self.node]))
-        step = Step(function, key, writable)
+        operation = ViewOperation(function, key, writable)
         if self._writable:
-            made._view = View(self, (step,), self._node)
+            made._view = View(self, (operation,), self._node)
         elif self._view is not None:
-            made._view = self._view._replace(steps=(*self._view.steps, step))
+            made._view = self._view._replace(operations=(*self._view.operations, operation))
         return made
 
     # -- methods that arrays have ------------------------------------------------------------------------

@@ -18,7 +18,7 @@ from liehom.series import recurrences
 from liehom.series.arrays import is_lazy, namespace, solve, zeros
 from liehom.series.assembly import as_jet, holds_jets, nodes
 from liehom.series.jet import Jet
-from liehom.series.jet_ufuncs import bilinear, fresh, refused, twin
+from liehom.series.jet_ufuncs import bilinear, fresh, jax_counterpart, refused
 from liehom.series.jet_views import frozen
 
 # name -> how many positional arguments are understood, the array included
@@ -144,7 +144,7 @@ def _linear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Je
     rest, options = frozen(tuple(rest)), {key: frozen(value) for key, value in options.items() if value is not None}
 
     def applied(x: Any) -> Any:
-        return twin(function, x)(x, *rest, **options)
+        return jax_counterpart(function, x)(x, *rest, **options)
 
     if name in VIEWS:
         return first.part(applied)
@@ -181,7 +181,7 @@ def _joined(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Je
     def joined(*parts: Any) -> Any:
         if last and all(type(x) is np.ndarray and x.ndim for x in parts):
             return np.moveaxis(np.stack(parts), 0, -1)  # in the layout of `in_lanes`
-        return twin(function, *parts)(list(parts), *args[1:], **options)
+        return jax_counterpart(function, *parts)(list(parts), *args[1:], **options)
 
     return fresh(recurrences.linear(joined, nodes(*members)))
 
@@ -193,9 +193,9 @@ def _parted(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> li
         raise refused(f"np.{function.__name__} with a series as an option")
 
     def part(i: int, x: Any) -> Any:
-        return twin(function, x)(x, *rest, **options)[i]
+        return jax_counterpart(function, x)(x, *rest, **options)[i]
 
-    count = len(twin(function, first.value)(first.value, *rest, **options))
+    count = len(jax_counterpart(function, first.value)(first.value, *rest, **options))
     return [first.part(partial(part, i)) for i in range(count)]
 
 
@@ -215,7 +215,7 @@ def _einsum(*args: Any, **options: Any) -> Jet:
         filled = list(constants)
         for i, value in zip(places, values, strict=True):
             filled[i] = value
-        return twin(np.einsum, *filled)(subscripts, *filled, **options)
+        return jax_counterpart(np.einsum, *filled)(subscripts, *filled, **options)
 
     return fresh(recurrences.multilinear(contract, [made[i] for i in places]))
 
@@ -234,7 +234,9 @@ def _block(arrays: Any) -> Any:
         return [filled(entry, parts) for entry in x] if isinstance(x, list) else parts[x]
 
     shape = places(arrays)
-    return fresh(recurrences.linear(lambda *parts: twin(np.block, *parts)(filled(shape, parts)), nodes(*members)))
+    return fresh(
+        recurrences.linear(lambda *parts: jax_counterpart(np.block, *parts)(filled(shape, parts)), nodes(*members))
+    )
 
 
 def _append(arr: Any, values: Any, axis: int | None = None) -> Any:

@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
-from liehom.series.arrays import across_lanes, beside, elementary, is_jax, namespace
+from liehom.series.arrays import across_lanes, constant_like, elementary, is_jax, namespace
 from liehom.series.assembly import holds_jets, nodes
 from liehom.series.jet import Jet
 from liehom.series.node import Node
@@ -67,7 +67,7 @@ def _called(ufunc: Any, name: str, inputs: tuple[Any, ...]) -> Any:
     if name in PRODUCTS:
         return _product(ufunc, *inputs)
     if name in LINEAR_UFUNCS:
-        return fresh(recurrences.linear(lambda x: twin(ufunc, x)(x), [inputs[0].node]))
+        return fresh(recurrences.linear(lambda x: jax_counterpart(ufunc, x)(x), [inputs[0].node]))
     if name in OPERATORS:
         return fresh(OPERATORS[name](*inputs))
     raise refused(f"np.{name}")
@@ -100,7 +100,7 @@ def fresh(node: Node) -> Jet:
     return Jet.from_node(node, writable=bool(np.ndim(node.value)))
 
 
-def twin(function: Any, *values: Any) -> Any:
+def jax_counterpart(function: Any, *values: Any) -> Any:
     """The same function of jax.numpy where a value is a JAX array."""
     if not any(is_jax(v) for v in values):
         return function
@@ -126,7 +126,7 @@ def bilinear(function: Callable[..., Any], x: Any, y: Any, **options: Any) -> Je
     def at(a: Any, b: Any) -> Any:
         if shared and type(b) is np.ndarray:
             return across_lanes(a, b)
-        return twin(function, a, b)(a, b, **options)
+        return jax_counterpart(function, a, b)(a, b, **options)
 
     return fresh(recurrences.multilinear(at, factors))
 
@@ -137,7 +137,7 @@ def _multiply(x: Any, y: Any) -> Node:
 
 def _divide(x: Any, y: Any) -> Node:
     if not holds_jets(y):
-        divisor = beside(x.value, y)
+        divisor = constant_like(x.value, y)
         return recurrences.linear(lambda a: a / divisor, [x.node])
     return recurrences.quotient(*nodes(x, y))
 

@@ -17,7 +17,7 @@ from liehom.series.arrays import is_jax, is_lazy, namespace
 from liehom.series.node import Node
 
 
-class Step(NamedTuple):
+class ViewOperation(NamedTuple):
     """How a view is made of the array: a linear function, and its index if it is one."""
 
     function: Callable[[Any], Any]
@@ -29,7 +29,7 @@ class View(NamedTuple):
     """Where a Jet is a view: the Jet that owns the entries, the way to it, and the owner's node at that time."""
 
     owner: Any
-    steps: tuple[Step, ...]
+    operations: tuple[ViewOperation, ...]
     seen: Node
 
 
@@ -97,8 +97,8 @@ def kind_of_index(key: Any, ndim: int) -> str:
 def followed(view: View) -> list[Node]:
     """The nodes of the owner, of the first view, ..., of the view itself, as they are now."""
     nodes = [view.owner.node]
-    for step in view.steps:
-        nodes.append(recurrences.linear(step.function, [nodes[-1]]))
+    for operation in view.operations:
+        nodes.append(recurrences.linear(operation.function, [nodes[-1]]))
     return nodes
 
 
@@ -106,10 +106,10 @@ def written(view: View, key: Any, value: Node) -> Node:
     """The owner's new node after value was written into a view at `key`."""
     nodes = followed(view)
     new = replaced(nodes[-1], key, value)
-    for step, below in zip(reversed(view.steps), reversed(nodes[:-1]), strict=True):
-        if not step.writable:
+    for operation, below in zip(reversed(view.operations), reversed(nodes[:-1]), strict=True):
+        if not operation.writable:
             raise SeriesError("this series is a transposed or reshaped view of another one: write into that one")
-        new = replaced(below, step.key, new)
+        new = replaced(below, operation.key, new)
     return new
 
 

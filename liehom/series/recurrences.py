@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from liehom.errors import SeriesError
-from liehom.series.arrays import beside, elementary, namespace, power, zeros
+from liehom.series.arrays import constant_like, elementary, namespace, power, zeros
 from liehom.series.node import Node
 
 
@@ -202,7 +202,7 @@ def real_power(u: Node, exponent: Any, value: Any = None) -> Node:
             if any(x == 0 for x in np.asarray(u.value).flat):
                 raise SeriesError(f"the power {exponent} of a series is no series where its value is 0")
         else:
-            p = beside(u.value, exponent)[()]
+            p = constant_like(u.value, exponent)[()]
     if value is None:
         value = u.value**p
     node = Node(u.order, value, [value])

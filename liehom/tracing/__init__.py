@@ -8,4 +8,4 @@ from liehom.tracing.kernel import Kernel as Kernel
 from liehom.tracing.kernel import Sizes as Sizes
 from liehom.tracing.kernel import StepGraph as StepGraph
 from liehom.tracing.kernel import padded as padded
-from liehom.tracing.loop import repeated as repeated
+from liehom.tracing.loop import while_loop as while_loop

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from liehom.errors import TraceError
-from liehom.tracing.elements import ELEMENTS, LOGICAL, eliminated
+from liehom.tracing.elements import ELEMENTS, LOGICAL, solve_linear
 from liehom.tracing.expr import FOLDED, Expr
 from liehom.tracing.graph import Tape
 
@@ -400,7 +400,7 @@ def _solve(tape: Tape, a: Any, b: Any) -> Traced:
     a, b = np.broadcast_to(a, (*lead, *a.shape[-2:])), np.broadcast_to(b, (*lead, *b.shape[-2:]))
     out = np.empty(b.shape, dtype=object)
     for index in np.ndindex(*lead):
-        out[index] = eliminated(tape, a[index].copy(), b[index].copy())
+        out[index] = solve_linear(tape, a[index].copy(), b[index].copy())
     return Traced(tape, out[..., 0] if vector else out)
 
 

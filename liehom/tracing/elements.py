@@ -55,7 +55,7 @@ ELEMENTS: dict[str, Callable[..., Expr]] = {
 }
 
 
-def eliminated(tape: Tape, a: Any, b: Any) -> Any:
+def solve_linear(tape: Tape, a: Any, b: Any) -> Any:
     """The solution (n, k) of linear equations (n, n), (n, k), arrays of Expr: the rows are exchanged by selection.
 
     Examples
@@ -63,7 +63,7 @@ def eliminated(tape: Tape, a: Any, b: Any) -> Any:
     >>> tape = Tape()
     >>> x = tape.input(0)
     >>> one, zero = tape.one, tape.zero
-    >>> eliminated(tape, np.array([[zero, one], [one, zero]]), np.array([[x], [one]])).ravel().tolist()
+    >>> solve_linear(tape, np.array([[zero, one], [one, zero]]), np.array([[x], [one]])).ravel().tolist()
     [1.0, <input 4>]
     """
     n = len(a)

@@ -36,16 +36,16 @@ class Expr:
     args : tuple of Expr
     value : float, int, str or None
         Of a constant; the index of an input or result; the block of a result.
-    place : int
+    index : int
         Its number on the tape; arguments have smaller ones.
     boolean : bool
         Whether it is a truth value.
     """
 
-    __slots__ = ("args", "boolean", "op", "place", "tape", "terms", "value")
+    __slots__ = ("args", "boolean", "index", "op", "tape", "terms", "value")
 
-    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Any, place: int) -> None:
-        self.tape, self.op, self.args, self.value, self.place = tape, op, args, value, place
+    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Any, index: int) -> None:
+        self.tape, self.op, self.args, self.value, self.index = tape, op, args, value, index
         self.terms: Any = None
         self.boolean = op in BOOLEAN
         if op == "const":
@@ -129,4 +129,4 @@ class Expr:
     __int__ = __index__ = __complex__ = __float__
 
     def __repr__(self) -> str:
-        return repr(self.value) if self.constant else f"<{self.op} {self.place}>"
+        return repr(self.value) if self.constant else f"<{self.op} {self.index}>"

@@ -16,9 +16,9 @@ from liehom.errors import TraceError
 from liehom.tracing.expr import FOLDED, Expr
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
-LONGEST = 10
+MAX_TERMS = 10
 """Sums of so many terms at most are searched for terms that cancel."""
-NEAR = 4e-16
+CANCELLATION_RTOL = 4e-16
 
 
 @final
@@ -34,13 +34,13 @@ class Tape:
     """
 
     def __init__(self) -> None:
-        self.made: list[Expr] = []
+        self.recorded: list[Expr] = []
         self._known: dict[tuple[Any, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
         self.false, self.true = self.constant(False), self.constant(True)
         # truth values without which the numbers of a trajectory are not what they are to be
         self.required: list[Expr] = []
-        self.given: list[Callable[[Any], Any]] = []
+        self.constant_functions: list[Callable[[Any], Any]] = []
         self.calls = self.zero  # of the function that is counted; in loops, in all iterations
 
     # -- making numbers ----------------------------------------------------------------------------------
@@ -52,10 +52,10 @@ class Tape:
         """A number that is given when the code runs."""
         return self._make("input", (), index)
 
-    def given_number(self, function: Callable[[Any], Any]) -> Expr:
+    def trajectory_constant(self, function: Callable[[Any], Any]) -> Expr:
         """A number that each trajectory has from its start on, as a function of the starts (L, N)."""
-        self.given.append(function)
-        return self.input(-len(self.given))
+        self.constant_functions.append(function)
+        return self.input(-len(self.constant_functions))
 
     def variable(self, name: Any, *, boolean: bool = False) -> Expr:
         """A number, or truth value, that changes in a loop."""
@@ -87,13 +87,13 @@ class Tape:
         return x if x.boolean else self.compare("ne", x, self.zero)
 
     def _make(self, op: str, args: tuple[Expr, ...], value: Any = None, extra: Any = None) -> Expr:
-        if op in COMMUTATIVE and args[0].place > args[1].place:
+        if op in COMMUTATIVE and args[0].index > args[1].index:
             args = args[1], args[0]
-        key = (op, *[a.place for a in args], value if extra is None else extra)
+        key = (op, *[a.index for a in args], value if extra is None else extra)
         found = self._known.get(key)
         if found is None:
-            found = self._known[key] = Expr(self, op, args, value, len(self.made))
-            self.made.append(found)
+            found = self._known[key] = Expr(self, op, args, value, len(self.recorded))
+            self.recorded.append(found)
         return found
 
     # -- arithmetic --------------------------------------------------------------------------------------
@@ -306,7 +306,7 @@ class Tape:
         merged, gone = dict(first), 0
         for x, c in second.items():
             total = merged.get(x, 0.0) + sign * c
-            if abs(total) <= NEAR * abs(c):
+            if abs(total) <= CANCELLATION_RTOL * abs(c):
                 del merged[x]
                 gone += 1
             else:
@@ -315,7 +315,7 @@ class Tape:
 
     def _combination(self, terms: dict[Expr, float]) -> Expr:
         total = self.zero
-        for x, c in sorted(terms.items(), key=lambda item: (item[1] < 0, item[0].place)):
+        for x, c in sorted(terms.items(), key=lambda item: (item[1] < 0, item[0].index)):
             term = self.mul(self.constant(abs(c)), x)
             if total is self.zero:
                 total = term if c > 0 else self.neg(term)
@@ -327,7 +327,7 @@ class Tape:
         """x as a sum of multiples of other numbers; None if it has too many terms."""
         if x.terms is None:
             found = self._expanded(x)
-            x.terms = found if found is not None and len(found) <= LONGEST else False
+            x.terms = found if found is not None and len(found) <= MAX_TERMS else False
         return x.terms or None
 
     def _expanded(self, x: Expr) -> dict[Expr, float] | None:
@@ -355,11 +355,11 @@ def _is_nonnegative(x: Expr) -> bool:
     while stack:
         y = stack.pop()
         square = y.op == "mul" and y.args[0] is y.args[1]
-        if y.place in seen or square or y.op in ("sqrt", "abs", "exp") or (y.constant and y.value >= 0):
+        if y.index in seen or square or y.op in ("sqrt", "abs", "exp") or (y.constant and y.value >= 0):
             continue
         if y.op not in ("add", "mul", "div", "select"):
             return False
-        seen.add(y.place)
+        seen.add(y.index)
         stack.extend(y.args[1:] if y.op == "select" else y.args)
     return True
 
@@ -378,7 +378,7 @@ def needed(outputs: Sequence[Expr]) -> list[Expr]:
     stack = list(outputs)
     while stack:
         x = stack.pop()
-        if x.place not in found:
-            found[x.place] = x
+        if x.index not in found:
+            found[x.index] = x
             stack.extend(x.args)
     return [found[place] for place in sorted(found)]

@@ -8,13 +8,13 @@ from typing import Any
 from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import needed
-from liehom.tracing.llvm_text import SHORT, rotation_series
+from liehom.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 
-SUBSTEPS, TERMS = 4, 18
+EXP_SUBSTEPS, EXP_TERMS = 4, 18
 """exp(A) m is summed in so many substeps and terms, which serves |A| up to 4; beyond that it gives nan."""
 
 
-def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, differentiable: bool = False) -> list[Any]:
+def evaluate_with_jax(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, differentiable: bool = False) -> list[Any]:
     """The outputs of a graph, computed by jax.numpy.
 
     Parameters
@@ -34,7 +34,7 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, differentia
     --------
     >>> from liehom.tracing import Tape
     >>> tape = Tape()
-    >>> float(evaluated([tape.input(0) * 2.0 + 1.0], {0: 3.0})[0])
+    >>> float(evaluate_with_jax([tape.input(0) * 2.0 + 1.0], {0: 3.0})[0])
     7.0
     """
     try:
@@ -43,12 +43,12 @@ def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, differentia
         raise TraceError('compile="jax" needs the extra: pip install "liehom[jax]"') from None
     values: dict[int, Any] = {}
     for x in needed(outputs):
-        values[x.place] = _value(jnp, x, values, inputs, differentiable)
-    return [values[x.place] for x in outputs]
+        values[x.index] = _value(jnp, x, values, inputs, differentiable)
+    return [values[x.index] for x in outputs]
 
 
 def _known(x: Expr, values: Mapping[int, Any]) -> Any:
-    return x.value if x.constant else values[x.place]
+    return x.value if x.constant else values[x.index]
 
 
 def _value(jnp: Any, x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any], whole: bool) -> Any:
@@ -92,9 +92,9 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 
 def _rotation(jnp: Any, q: Any, first: int) -> Any:
     """sin(r)/r or cos(r) with r^2 = q; of the branch that is not taken not even the derivative overflows."""
-    near = jnp.abs(q) < SHORT
+    near = jnp.abs(q) < SHORT_SERIES_REACH
     total: Any = 0.0
-    for c in reversed(rotation_series(SHORT, first)):
+    for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
         total = total * q + c
     safe = jnp.where(near, 1.0, q)
     r = jnp.sqrt(jnp.abs(safe))
@@ -119,9 +119,9 @@ def _iterated(jnp: Any, x: Expr, values: Mapping[int, Any], whole: bool) -> list
     ]
 
     def body(state: list[Any]) -> tuple[list[Any], Any]:
-        known = dict(values) | {v.place: s for v, s in zip(loop.variables, state, strict=True)}
+        known = dict(values) | {v.index: s for v, s in zip(loop.variables, state, strict=True)}
         for y in loop.inside:
-            known[y.place] = _value(jnp, y, known, {}, whole)
+            known[y.index] = _value(jnp, y, known, {}, whole)
         new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
         return new, jnp.any(_known(loop.again, known))
 
@@ -155,11 +155,11 @@ def _exponential(jnp: Any, places: tuple[tuple[int, int], ...], args: list[Any])
 
     def term(j: Any, state: Any) -> Any:
         last, total = state
-        last = jnp.einsum("ij...,j...->i...", matrix, last) / (SUBSTEPS * (j + 1.0))
+        last = jnp.einsum("ij...,j...->i...", matrix, last) / (EXP_SUBSTEPS * (j + 1.0))
         return last, total + last
 
     def substep(_: Any, v: Any) -> Any:
-        return v + lax.fori_loop(0, TERMS, term, (v, jnp.zeros_like(v)))[1]
+        return v + lax.fori_loop(0, EXP_TERMS, term, (v, jnp.zeros_like(v)))[1]
 
-    moved = lax.fori_loop(0, SUBSTEPS, substep, m)
-    return list(jnp.where(size <= SUBSTEPS**2, moved, jnp.nan))
+    moved = lax.fori_loop(0, EXP_SUBSTEPS, substep, m)
+    return list(jnp.where(size <= EXP_SUBSTEPS**2, moved, jnp.nan))

@@ -21,8 +21,8 @@ from liehom.tracing.expr import Expr
 from liehom.tracing.graph import needed
 from liehom.tracing.llvm_text import LIBM, Body, Writer
 
-SLACK = 1e-9
-ARRAYS = 12
+TIME_SLACK = 1e-9
+ARRAY_ARGUMENTS = 12
 
 
 @final
@@ -54,13 +54,13 @@ class StepGraph:
     ----------
     point : list of Expr
         After the step.
-    passed : Expr or None
+    elapsed : Expr or None
         The time that passes; None if it is the step size.
-    runs : Expr or None
+    ordinary : Expr or None
         Whether the step is certainly a plain one: its clock runs over it, its equations were solved; None if always.
     largest, summed : dict of str to Expr
         Numbers of which the run keeps the largest, or the sum, of the steps that are made, by their names.
-    given : tuple of callable
+    constant_functions : tuple of callable
         Inputs -1, -2, ...: numbers of the trajectories, which do not change, as functions of their starts (L, N).
     clock : tuple of (int, Expr)
         k and c_k: in a step of size h the time h + c_2 h^2 + ... passes.
@@ -73,11 +73,11 @@ class StepGraph:
     """
 
     point: list[Expr]
-    passed: Expr | None
-    runs: Expr | None
+    elapsed: Expr | None
+    ordinary: Expr | None
     largest: dict[str, Expr]
     summed: dict[str, Expr]
-    given: tuple[Callable[[Any], Any], ...] = ()
+    constant_functions: tuple[Callable[[Any], Any], ...] = ()
     clock: tuple[tuple[int, Expr], ...] = ()
     solved: Expr | None = None
     sizes: Sizes | None = None
@@ -90,24 +90,24 @@ class StepGraph:
 
     def constants(self, points: Any) -> Any:
         """The further inputs, (count, L), for points (L, N)."""
-        return [number(points) for number in self.given]
+        return [number(points) for number in self.constant_functions]
 
     @property
     def outputs(self) -> list[Expr]:
         """All results."""
-        extra = [x for x in (self.passed, self.runs) if x is not None]
+        extra = [x for x in (self.elapsed, self.ordinary) if x is not None]
         sizes = self.sizes
         adapted = [] if sizes is None else [sizes.tried, sizes.accepted, sizes.proposal]
         return [*self.point, *extra, *adapted, *self.largest.values(), *self.summed.values()]
 
 
-def assembly(graph: StepGraph, width: int) -> str:
+def llvm_module(graph: StepGraph, width: int) -> str:
     """The module with the function `run` for blocks of so many lanes."""
     w = Writer(width)
     v, n = w.vector, graph.size
     _head(w, n)
     kept = _loop_head(w, graph)
-    constants = {-1 - i: f"%c{i}" for i in range(len(graph.given))}
+    constants = {-1 - i: f"%c{i}" for i in range(len(graph.constant_functions))}
     body = Body(w, {**{i: f"%x{i}" for i in range(n)}, n: "%t", n + 1: "%h", **constants})
     body.write(needed(graph.outputs))
     _loop_end(w, graph, body)
@@ -169,10 +169,10 @@ def _loop_head(w: Writer, graph: StepGraph) -> list[tuple[str, str]]:
     w.lines.append(f"  %limit = load {v}, ptr {_pointer(w, '%limit.in', 0)}, align 8")
     if graph.sizes is None:
         w.lines.append(f"  %h = load {v}, ptr {_pointer(w, '%h.in', 0)}, align 8")
-    for i in range(len(graph.given)):
+    for i in range(len(graph.constant_functions)):
         w.lines.append(f"  %c{i} = load {v}, ptr {_pointer(w, '%constants', i)}, align 8")
     if graph.sizes is None:
-        w.lines.append(f"  %slack = fmul {v} {w.intrinsic('fabs', '%h')}, {w.splat(SLACK)}")
+        w.lines.append(f"  %slack = fmul {v} {w.intrinsic('fabs', '%h')}, {w.splat(TIME_SLACK)}")
     w.lines.append(f"  %dir = fadd {v} {w.spread('%direction')}, {w.splat(-0.0)}")
     w.lines.append(f"  %zero.time = fadd {v} {w.spread('%origin')}, {w.splat(-0.0)}")
     w.lines += ["  br label %step", "step:"]
@@ -186,24 +186,24 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
     """Decide where the step is made, keep what is new, store it, and go on."""
     v = w.vector
     more = w.emit(f"fadd {v} %count, {w.splat(1.0)}")
-    if graph.passed is None:  # by counting, so that round-off does not add up; the limit is a number of steps
+    if graph.elapsed is None:  # by counting, so that round-off does not add up; the limit is a number of steps
         after = w.emit(f"fadd {v} %zero.time, {w.emit(f'fmul {v} {more}, %h')}")
         go = w.emit(f"fcmp ole {v} {more}, %limit")
     else:
-        after = w.emit(f"fadd {v} %t, {body.name(graph.passed)}")
+        after = w.emit(f"fadd {v} %t, {body.name(graph.elapsed)}")
         left = w.emit(f"fmul {v} %dir, {w.emit(f'fsub {v} %limit, {after}')}")
         slack = "%slack"
         if graph.sizes is not None:
             size = w.intrinsic("fabs", body.name(graph.sizes.tried))
-            slack = w.emit(f"fmul {v} {size}, {w.splat(SLACK)}")
+            slack = w.emit(f"fmul {v} {size}, {w.splat(TIME_SLACK)}")
         go = w.emit(f"fcmp ogt {v} {left}, {slack}")
     total = body.name(graph.point[0])
     for x in graph.point[1:]:
         total = w.emit(f"fadd {v} {total}, {body.name(x)}")
     finite = w.emit(f"fcmp oeq {v} {w.emit(f'fsub {v} {total}, {total}')}, {w.splat(0.0)}")
     go = w.emit(f"and {w.mask} {go}, {finite}")
-    if graph.runs is not None:
-        go = w.emit(f"and {w.mask} {go}, {body.name(graph.runs)}")
+    if graph.ordinary is not None:
+        go = w.emit(f"and {w.mask} {go}, {body.name(graph.ordinary)}")
     go = w.emit(f"and {w.mask} {go}, {w.emit(f'fcmp ogt {v} %alive, {w.splat(0.0)}')}")
     new = {f"x{i}": body.name(x) for i, x in enumerate(graph.point)}
     new |= {"t": after, "count": more}
@@ -270,9 +270,9 @@ class Kernel:
 
     def __init__(self, graph: StepGraph, width: int) -> None:
         self.graph, self.width = graph, width
-        self.text = assembly(graph, width)
+        self.text = llvm_module(graph, width)
         self._engine, self.cached = _engine(self.text)
-        arguments = [ctypes.c_void_p] * ARRAYS + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
+        arguments = [ctypes.c_void_p] * ARRAY_ARGUMENTS + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
         self._run = ctypes.CFUNCTYPE(None, *arguments)(self._engine.get_function_address("run"))
 
     def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:
@@ -282,7 +282,7 @@ class Kernel:
         many steps were tried) and path_h.
         """
         places = [None if a is None else a.ctypes.data for a in arrays]
-        self._run(*places, *[None] * (ARRAYS - len(places)), lanes, *blocks, steps, *time)
+        self._run(*places, *[None] * (ARRAY_ARGUMENTS - len(places)), lanes, *blocks, steps, *time)
 
 
 _ENGINES: dict[str, Any] = {}

@@ -22,9 +22,9 @@ LIBM = {
     "cbrt": "cbrt", "arctan2": "atan2", "pow": "pow",
 }  # fmt: skip
 COMPARED = {"lt": "olt", "le": "ole", "eq": "oeq", "ne": "une"}
-SHORT, LONG = 0.25, 4.0
+SHORT_SERIES_REACH, LONG_SERIES_REACH = 0.25, 4.0
 """Up to these |q| sin(r)/r and cos(r), r^2 = q, are short and long polynomials in q; beyond them they call libm."""
-MOST_SUBSTEPS = 16.0
+MAX_SUBSTEPS = 16.0
 
 
 def number(x: float) -> str:
@@ -170,12 +170,12 @@ class Body:
     def write(self, exprs: Sequence[Expr]) -> None:
         """Write expressions of which the arguments stand before them."""
         for x in exprs:
-            if x.place not in self._names:
-                self._names[x.place] = self._written(x)
+            if x.index not in self._names:
+                self._names[x.index] = self._written(x)
 
     def name(self, x: Expr) -> str:
         """The name of what was written."""
-        return self.writer.splat(x.value) if x.constant else self._names[x.place]
+        return self.writer.splat(x.value) if x.constant else self._names[x.index]
 
     def _written(self, x: Expr) -> str:
         if x.constant:
@@ -183,7 +183,7 @@ class Body:
         if x.op == "loop":
             return self._iterated(x)
         if x.op == "get" and x.args[0].op == "loop":
-            return self._loops[x.args[0].place][int(x.value)]
+            return self._loops[x.args[0].index][int(x.value)]
         w, args = self.writer, [self.name(a) for a in x.args]
         if x.op == "input":
             return self._inputs[x.value]
@@ -215,12 +215,12 @@ class Body:
     def _iterated(self, x: Expr) -> str:
         """A loop as basic blocks of their own; it goes on as long as a lane wants it."""
         w, loop, before = self.writer, x.value, self.writer.label
-        name = f"loop{x.place}"
+        name = f"loop{x.index}"
         w.lines += [f"  br label %{name}", f"{name}:"]
         w.label, place = name, len(w.lines)  # the first lines need the names of the last
         starts = [self.name(a) for a in x.args[: len(loop.variables)]]
         for i, v in enumerate(loop.variables):
-            self._names[v.place] = f"%{name}.{i}"
+            self._names[v.index] = f"%{name}.{i}"
         self.write(loop.inside)
         new, end = [self.name(y) for y in loop.new], w.label
         phis = [f"  %{name}.k = phi i64 [0, %{before}], [%{name}.next, %{end}]"]
@@ -233,20 +233,20 @@ class Body:
         again = w.emit(f"and i1 {fewer}, {w.any(self.name(loop.again))}")
         w.lines += [f"  br i1 {again}, label %{name}, label %{name}.done", f"{name}.done:"]
         w.label = f"{name}.done"
-        self._loops[x.place] = new
+        self._loops[x.index] = new
         return ""
 
     def _rotation(self, q: Expr, name: str) -> tuple[str, str]:
         """sin(r)/r and cos(r), together."""
-        if q.place not in self._pairs:
+        if q.index not in self._pairs:
             w = self.writer
             _define_rotation(w)
             pair = w.emit(f"call {{{w.vector}, {w.vector}}} @rotation({w.vector} {name})")
-            self._pairs[q.place] = (
+            self._pairs[q.index] = (
                 w.emit(f"extractvalue {{{w.vector}, {w.vector}}} {pair}, 0"),
                 w.emit(f"extractvalue {{{w.vector}, {w.vector}}} {pair}, 1"),
             )
-        return self._pairs[q.place]
+        return self._pairs[q.index]
 
 
 # -- sin(r)/r and cos(r) of r^2 ----------------------------------------------------------------------------
@@ -274,15 +274,15 @@ def _define_rotation(w: Writer) -> None:
     size = f.intrinsic("fabs", "%q")
     f.lines.append("  br label %look")
     f.lines.append("look:")
-    far = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(SHORT)}"))
+    far = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(SHORT_SERIES_REACH)}"))
     f.lines.append(f"  br i1 {far}, label %farther, label %short, !prof !0")
     results = []
-    for label, reach in (("short", SHORT), ("long", LONG)):
+    for label, reach in (("short", SHORT_SERIES_REACH), ("long", LONG_SERIES_REACH)):
         f.lines.append(f"{label}:")
         results.append((label, [f.polynomial(rotation_series(reach, 1 - k), "%q") for k in (0, 1)]))
         f.lines.append("  br label %done")
     f.lines.append("farther:")
-    out = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(LONG)}"))
+    out = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(LONG_SERIES_REACH)}"))
     f.lines.append(f"  br i1 {out}, label %far, label %long, !prof !0")
     f.lines.append("far:")
     results.append(("far", _by_library(f, size)))
@@ -300,7 +300,7 @@ def _by_library(f: Writer, size: str) -> list[str]:
     v = f.vector
     r = f.intrinsic("sqrt", size)
     turns = f.emit(f"fcmp ogt {v} %q, {f.splat(0.0)}")
-    near = f.emit(f"fcmp olt {v} {size}, {f.splat(SHORT)}")
+    near = f.emit(f"fcmp olt {v} {size}, {f.splat(SHORT_SERIES_REACH)}")
     # sinh of a large r of a rotation would overflow
     grown = f.emit(f"select {f.mask} {turns}, {v} {f.splat(0.0)}, {v} {r}")
     made = []
@@ -309,7 +309,7 @@ def _by_library(f: Writer, size: str) -> list[str]:
         whole = f.emit(f"select {f.mask} {turns}, {v} {a}, {v} {b}")
         if k == 0:
             whole = f.binary("fdiv", whole, r)
-        short = f.polynomial(rotation_series(SHORT, 1 - k), "%q")
+        short = f.polynomial(rotation_series(SHORT_SERIES_REACH, 1 - k), "%q")
         made.append(f.emit(f"select {f.mask} {near}, {v} {short}, {v} {whole}"))
     return made
 
@@ -341,9 +341,9 @@ def _define_series(w: Writer, name: str, places: tuple[tuple[int, int], ...], n:
     f.declared["mind"] = "declare double @llvm.minnum.f64(double, double)"
     up = f.emit(f"call double @llvm.ceil.f64(double {halves})")
     least = f.emit(f"call double @llvm.maxnum.f64(double {up}, double {number(1.0)})")
-    parts = f.emit(f"call double @llvm.minnum.f64(double {least}, double {number(MOST_SUBSTEPS)})")
+    parts = f.emit(f"call double @llvm.minnum.f64(double {least}, double {number(MAX_SUBSTEPS)})")
     share = f.spread(f.emit(f"fdiv double {number(1.0)}, {parts}"))
-    fine = f.emit(f"fcmp ole {v} {norm}, {f.splat(2 * MOST_SUBSTEPS)}")  # beyond, and for nan: not computed here
+    fine = f.emit(f"fcmp ole {v} {norm}, {f.splat(2 * MAX_SUBSTEPS)}")  # beyond, and for nan: not computed here
     good = f.emit(f"select {f.mask} {fine}, {v} {f.splat(1.0)}, {v} {f.splat(math.nan)}")
     scaled = [f.binary("fmul", f"%a{p}", share) for p in range(len(places))]
     f.lines += ["  br label %substep", "substep:"]

@@ -40,12 +40,12 @@ class Loop:
 
     def __repr__(self) -> str:
         # the same for loops of the same operations
-        rows = [(x.op, *[a.place for a in x.args], x.value) for x in self.inside]
-        ends = [x.place for x in (*self.variables, *self.new, self.again)]
+        rows = [(x.op, *[a.index for a in x.args], x.value) for x in self.inside]
+        ends = [x.index for x in (*self.variables, *self.new, self.again)]
         return f"Loop({ends}, {rows}, {self.limit})"
 
 
-def iterated(
+def scalar_while_loop(
     tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int
 ) -> list[Expr]:
     """The numbers after a loop.
@@ -63,17 +63,17 @@ def iterated(
 
     Examples
     --------
-    >>> from liehom.tracing.jax_code import evaluated
+    >>> from liehom.tracing.jax_code import evaluate_with_jax
     >>> tape = Tape()
     >>> a = tape.input(0)
     >>> def heron(x):
     ...     new = (x[0] + a / x[0]) * 0.5
     ...     return [new], tape.compare("lt", tape.constant(1e-12), tape.call("abs", new - x[0]))
-    >>> root, = iterated(tape, [a], heron, 50)
-    >>> round(float(evaluated([root], {0: 2.0})[0]), 5)
+    >>> root, = scalar_while_loop(tape, [a], heron, 50)
+    >>> round(float(evaluate_with_jax([root], {0: 2.0})[0]), 5)
     1.41421
     """
-    first, calls, count = len(tape.made), tape.calls, len(start)
+    first, calls, count = len(tape.recorded), tape.calls, len(start)
     tape.calls = tape.zero
     variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
     new, again = body(list(variables))
@@ -82,22 +82,22 @@ def iterated(
         total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
         new = [*new, total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
         variables += [total, wanted]
-    changing = {x.place for x in variables}
+    changing = {x.index for x in variables}
     inside, fixed = [], {}
     for x in needed([*new, again]):
-        if x.place not in changing and any(a.place in changing for a in x.args):
-            changing.add(x.place)
+        if x.index not in changing and any(a.index in changing for a in x.args):
+            changing.add(x.index)
             inside.append(x)
     for x in [*new, again, *[a for y in inside for a in y.args]]:
-        if x.place not in changing and not x.constant:
-            fixed[x.place] = x
+        if x.index not in changing and not x.constant:
+            fixed[x.index] = x
     loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit)
     found = tape.block("loop", [*start, *fixed.values()], len(start), loop)
     tape.calls = calls + found[count] if len(found) > count else calls
     return found[:count]
 
 
-def repeated(
+def while_loop(
     function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int
 ) -> list[Traced]:
     """The same for arrays.
@@ -113,7 +113,7 @@ def repeated(
     Examples
     --------
     >>> tape = Tape()
-    >>> x, = repeated(lambda x: ([x / 2], np.any(x > 1)), [Traced.inputs(tape, 0, 2)], tape, 10)
+    >>> x, = while_loop(lambda x: ([x / 2], np.any(x > 1)), [Traced.inputs(tape, 0, 2)], tape, 10)
     >>> x
     <traced array of shape (2,)>
     """
@@ -130,4 +130,4 @@ def repeated(
         flat = [e for x in new for e in Traced(tape, x).entries.flat]
         return flat, Traced(tape, again).entries[()]
 
-    return shaped(iterated(tape, [e for x in arrays for e in x.entries.flat], body, limit))
+    return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit))

@@ -35,7 +35,7 @@ def compiled_step(field: lh.GeneratorField, step: Any, m: Any, dimension: int, r
     kernel, lanes = Kernel(graph, WIDTH), len(m)
     operations = sum(x.op not in ("const", "input", "get") for x in needed(graph.outputs))
     one, zero = np.ones(lanes), np.zeros(lanes)
-    constants = np.array(graph.constants(m)) if graph.given else None
+    constants = np.array(graph.constants(m)) if graph.constant_functions else None
 
     def run(steps: int) -> float:
         arrays = [np.ascontiguousarray(m.T), zero.copy(), 0.01 * one, 1e15 * one, zero.copy(), one.copy()]

@@ -66,7 +66,7 @@ def compiled(step: Any, width: int, *, nominal: bool, points: Any) -> Callable[[
         lanes = x.shape[1]
         one, zero = np.ones(lanes), np.zeros(lanes)
         limit = np.full(lanes, 1e15)
-        constants = np.array(graph.constants(x.T)) if graph.given else None
+        constants = np.array(graph.constants(x.T)) if graph.constant_functions else None
         arrays = [x, zero.copy(), H * one, limit, zero, one, np.zeros((4, lanes)), constants, None, None]
         kernel(arrays, lanes, (0, lanes // width), count, (0.0, 1.0))
 

@@ -14,8 +14,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.conserving.first_integral import FirstIntegral, conditioning
-from liehom.correctors.expansion import flow_series
-from liehom.correctors.isotropy.order_by_order import NOISE
+from liehom.correctors.expansion import ROUND_OFF_UNITS, flow_series
 from liehom.correctors.step import Step
 from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
@@ -88,7 +87,7 @@ class Conservation:
         self.action, self.integral, self.m, self.factor = action, integral, m, factor
         self.value, self.gradient = integral.gradient(m)
         self.scale = conditioning(self.value, self.gradient, m)
-        noise = NOISE * float(np.finfo(m.dtype).eps)
+        noise = ROUND_OFF_UNITS * float(np.finfo(m.dtype).eps)
         self._on_tangents = self.gradient
         if frame.basis is None:
             tangential = self._on_even_orbit(frame)
@@ -148,13 +147,13 @@ class Conservation:
         (0, 1)
         """
         made = copy(self)
-        moved = _length(displacement) > NOISE * float(np.finfo(self.m.dtype).eps) * _length(self.m)
+        moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(self.m.dtype).eps) * _length(self.m)
         made._take(np.where(self.moving[..., None], self._velocity, displacement), self.moving | moved)
         return made
 
     def needs_motion(self, displacement: Any) -> None:
         """In compiled code: only steps are made for which `toward` would change nothing."""
-        moved = _length(displacement) > NOISE * float(np.finfo(np.float64).eps) * _length(self.m)
+        moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(np.float64).eps) * _length(self.m)
         self.m.tape.required.append((self.moving | ~moved).entries[()])
 
     @property

@@ -13,8 +13,8 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.conserving.first_integral import FirstIntegral, conditioning
-from liehom.correctors.expansion import Flow, flow_series
-from liehom.correctors.isotropy.order_by_order import NOISE, round_off
+from liehom.correctors.expansion import ROUND_OFF_UNITS, Flow, flow_series
+from liehom.correctors.isotropy.order_by_order import round_off
 from liehom.correctors.points import read_point
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors, step_variable
 from liehom.errors import InputError
@@ -22,7 +22,7 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import is_exact
 from liehom.series.jet import Jet
 
-BEYOND = 4
+EXTRA_ORDERS = 4
 """How far beyond the order of a step coefficients are looked at by default."""
 
 
@@ -110,7 +110,7 @@ def conserved_order(
     """
     if up_to is not None and (isinstance(up_to, bool) or not isinstance(up_to, int | np.integer) or up_to < 1):
         raise InputError(f"up_to is an integer at least 1, got {up_to!r}")
-    bound = step.order + BEYOND if up_to is None else int(up_to)
+    bound = step.order + EXTRA_ORDERS if up_to is None else int(up_to)
     point, dimension = read_point(field.representation, m)
     integral = FirstIntegral(F, field.representation.size)
     action = Action(field.representation, exponential)
@@ -179,9 +179,9 @@ def round_off_of(
     scale = conditioning(*integral.gradient(m), m)
     size = np.linalg.norm(np.asarray(m, dtype=float), axis=-1)
     factors = local.factors(step_variable(bound, m))
-    rate, found = 0.0 * size, [NOISE * eps * scale]
+    rate, found = 0.0 * size, [ROUND_OFF_UNITS * eps * scale]
     for k in range(1, bound + 1):
-        term = round_off(action, m, flow, factors, k) / (NOISE * eps * size)
+        term = round_off(action, m, flow, factors, k) / (ROUND_OFF_UNITS * eps * size)
         rate = np.maximum(rate, term ** (1 / k))
-        found.append(4 * NOISE * eps * scale * rate[..., None] ** k)
+        found.append(4 * ROUND_OFF_UNITS * eps * scale * rate[..., None] ** k)
     return found

@@ -14,11 +14,11 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.conserving.conservation import Conservation, combination
-from liehom.correctors.conserving.conserved_order import BEYOND, agreement, expanded, round_off_of
+from liehom.correctors.conserving.conserved_order import EXTRA_ORDERS, agreement, expanded, round_off_of
 from liehom.correctors.conserving.first_integral import FirstIntegral
-from liehom.correctors.conserving.level_newton import aim as newton
-from liehom.correctors.expansion import flow_series
-from liehom.correctors.isotropy.order_by_order import NOISE, with_correction
+from liehom.correctors.conserving.level_newton import solve_levels
+from liehom.correctors.expansion import ROUND_OFF_UNITS, flow_series
+from liehom.correctors.isotropy.order_by_order import with_correction
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors, step_variable
 from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action
@@ -27,9 +27,9 @@ from liehom.series.jet import Jet
 from liehom.tracing import Traced
 
 AIMS = ("start", "previous")
-ROUND_OFF = 0.5
-SAMPLES, MANY = 2, 16
-LATER = 0.01
+TOLERATED_UNITS = 0.5
+EXTRA_POINTS, ENOUGH_TRAJECTORIES = 2, 16
+TIME_SHIFT = 0.01
 
 
 @final
@@ -185,7 +185,7 @@ class _Begun:
             if step._value.size > 1:
                 raise TraceError("a value of F for each trajectory is not compiled: give one, or leave it to the start")
             return _aimed_at(step._value.reshape(()), self.integral(m))
-        return Traced(m.tape, [m.tape.given_number(lambda points: self.integral(points)[..., 0])])
+        return Traced(m.tape, [m.tape.trajectory_constant(lambda points: self.integral(points)[..., 0])])
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Any, t: Any) -> None:
         """n, and whether chi is onto, at the start and at points next to it, as symmetric points may mislead."""
@@ -194,14 +194,14 @@ class _Begun:
         short: Any = np.ones(start.shape[:-1], dtype=bool)
         orders = []
         first: Conservation | None = None
-        bound = step.order + BEYOND
-        for j in range(SAMPLES + 1):
-            if j > 1 and short.size >= MANY and not short.any():
+        bound = step.order + EXTRA_ORDERS
+        for j in range(EXTRA_POINTS + 1):
+            if j > 1 and short.size >= ENOUGH_TRAJECTORIES and not short.any():
                 break  # so many trajectories, moved once from where they may all be symmetric, are points enough
             x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.size or 1.0)
             point = action.act(np.broadcast_to(x, (*start.shape[:-1], x.size)), start) if j else start
             point = point.astype(start.dtype, copy=False)
-            time = t + LATER * j if psi.field.time_dependent else t
+            time = t + TIME_SHIFT * j if psi.field.time_dependent else t
             usable = np.isfinite(point).all(axis=-1) & np.isfinite(psi.field.psi(point, time)).all(axis=-1)
             point = np.where(usable[..., None], point, start)
             frame = action.isotropy_frame(point, psi.orbit_dimension)
@@ -311,7 +311,7 @@ class ConservingStep(LocalStep):
         self.estimate_order = getattr(base, "estimate_order", None)
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
-        self._unit = ROUND_OFF * float(np.finfo(found.m.dtype).eps) * found.scale
+        self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
         self._last: tuple[Any, tuple[Any, ...], Conserved] | None = None
         self._sigma: Any = None
 
@@ -375,8 +375,8 @@ class ConservingStep(LocalStep):
                 found = found.toward(z - m)
             directions = found.directions
             jacobian = found.along(z - m, directions)
-            aimed = newton(residual, first, directions, jacobian, self._unit, action.size)
-            x, resolved, iterations, left = aimed.x, aimed.resolved, aimed.iterations, aimed.residual
+            solution = solve_levels(residual, first, directions, jacobian, self._unit, action.size)
+            x, resolved, iterations, left = solution.x, solution.resolved, solution.iterations, solution.residual
         defect = np.abs(left)
         units = (defect / np.maximum(self._unit, float(np.finfo(defect.dtype).tiny))).max(axis=-1)
         rank, wanted = found.rank, found.wanted
@@ -393,7 +393,7 @@ class ConservingStep(LocalStep):
         rate = 0.0 * size
         for j in range(1, k + 1):
             rate = np.maximum(rate, (_length(z.coefficient(j)) / size) ** (1 / j))
-        noise = NOISE * np.finfo(m.dtype).eps * self.found.scale * rate[..., None] ** k
+        noise = ROUND_OFF_UNITS * np.finfo(m.dtype).eps * self.found.scale * rate[..., None] ** k
         return -self.found.preimage(np.where(np.abs(value) > noise, value, 0.0))
 
     def _series(self, h: Jet) -> Any:

@@ -14,18 +14,18 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.conserving.conservation import RANK_RTOL
-from liehom.tracing import Traced, repeated
+from liehom.tracing import Traced, while_loop
 
 MAX_ITERATIONS = 20
-STALLED = 2
-RESOLVED = 32.0
+MAX_STALLED_ITERATIONS = 2
+MIN_RESOLVED_UNITS = 32.0
 """A direction along which one radian changes F by less than this many units of round-off is left alone: next to an
 equilibrium F does not resolve the orbits."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
-class Aimed:
+class LevelSolution:
     """What Newton's method found.
 
     Attributes
@@ -45,7 +45,9 @@ class Aimed:
     resolved: Any
 
 
-def aim(residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: Any, unit: Any, size: float) -> Aimed:
+def solve_levels(
+    residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: Any, unit: Any, size: float
+) -> LevelSolution:
     """x in the span of `directions` with residual(x) = 0 to round-off.
 
     Parameters
@@ -69,7 +71,7 @@ def aim(residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: A
 
     Examples
     --------
-    >>> found = aim(lambda x: np.sin(x) - 0.5, np.array([-0.5]), np.eye(1), np.eye(1), np.array([1e-16]), 1.0)
+    >>> found = solve_levels(lambda x: np.sin(x) - 0.5, np.array([-0.5]), np.eye(1), np.eye(1), np.array([1e-16]), 1.0)
     >>> bool(np.isclose(found.x[0], np.pi / 6, rtol=1e-15)), bool(found.iterations < 8)
     (True, True)
     """
@@ -78,13 +80,13 @@ def aim(residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: A
         return _on_tape(residual, first, directions[:, 0], jacobian[0, 0], unit, size)
     if jacobian.shape == (1, 1):
         return _of_one(residual, first, directions[:, 0], jacobian.item(), unit.item(), size)
-    project, lift, slopes, kept = _reduced(jacobian / unit[..., None], RESOLVED * size)
+    project, lift, slopes, kept = _reduced(jacobian / unit[..., None], MIN_RESOLVED_UNITS * size)
     resolved = kept.sum(axis=-1)
     r = (project @ (first / unit)[..., None])[..., 0]
     active = np.abs(r).max(axis=-1, initial=0.0) > 1
     iterations = np.zeros(active.shape, dtype=int)
     if not active.any():
-        return Aimed(None, first, iterations, resolved)
+        return LevelSolution(None, first, iterations, resolved)
     turn = directions @ lift
     inverse = np.where(kept, 1 / np.where(kept, slopes, 1.0), 0.0)[..., None] * np.eye(kept.shape[-1], dtype=r.dtype)
     c, left, stalled = 0 * r, first, 0 * iterations
@@ -98,21 +100,23 @@ def aim(residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: A
         c, r = np.where(better[..., None], c + step, c), np.where(better[..., None], made, r)
         left = np.where(better[..., None], value, left)
         stalled = np.where(better, stalled, stalled + 1)
-        active = active & (np.abs(r).max(axis=-1) > 1) & (stalled < STALLED)
+        active = active & (np.abs(r).max(axis=-1) > 1) & (stalled < MAX_STALLED_ITERATIONS)
         if not active.any():
             break
-    return Aimed((turn @ c[..., None])[..., 0], left, iterations, resolved)
+    return LevelSolution((turn @ c[..., None])[..., 0], left, iterations, resolved)
 
 
-def _of_one(residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float) -> Aimed:
-    """`aim` for one trajectory, one integral and one direction, where the overhead of arrays would show."""
-    resolved = abs(slope) > RESOLVED * size * unit
+def _of_one(
+    residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float
+) -> LevelSolution:
+    """`solve_levels` for one trajectory, one integral and one direction, where the overhead of arrays would show."""
+    resolved = abs(slope) > MIN_RESOLVED_UNITS * size * unit
     best = value = first.item()
     if not resolved or not abs(value) > unit:
-        return Aimed(None, first, np.array(0), np.array(int(resolved)))
+        return LevelSolution(None, first, np.array(0), np.array(int(resolved)))
     c, x, left = 0.0, None, first
     iterations = stalled = 0
-    while abs(best) > unit and stalled < STALLED and iterations < MAX_ITERATIONS:
+    while abs(best) > unit and stalled < MAX_STALLED_ITERATIONS and iterations < MAX_ITERATIONS:
         step = -best / slope
         if abs(step) > 1 / size:
             step = 1 / size if step > 0 else -1 / size
@@ -127,13 +131,15 @@ def _of_one(residual: Callable[[Any], Any], first: Any, direction: Any, slope: A
             c, x, best, left = c + step, trial, value, made
         else:
             stalled += 1
-    return Aimed(x, left, np.array(iterations), np.array(1))
+    return LevelSolution(x, left, np.array(iterations), np.array(1))
 
 
-def _on_tape(residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float) -> Aimed:
+def _on_tape(
+    residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float
+) -> LevelSolution:
     """`_of_one` in compiled code, every lane for itself."""
     tape = first.tape
-    resolved = np.abs(slope) > RESOLVED * size * unit[0]
+    resolved = np.abs(slope) > MIN_RESOLVED_UNITS * size * unit[0]
     start = first[0]
 
     def iteration(c: Any, best: Any, over: Any, stalled: Any, count: Any, active: Any) -> Any:
@@ -147,14 +153,14 @@ def _on_tape(residual: Callable[[Any], Any], first: Any, direction: Any, slope: 
         c, best = np.where(better, c + step, c), np.where(better, value, best)
         stalled = np.where(better, stalled, stalled + 1.0)
         count = count + np.where(active, 1.0, 0.0)
-        active = active & (np.abs(best) > unit[0]) & (stalled < STALLED)
+        active = active & (np.abs(best) > unit[0]) & (stalled < MAX_STALLED_ITERATIONS)
         return [c, best, over, stalled, count, active], active
 
     active = resolved & (np.abs(start) > unit[0])
     over = 1.0 / np.where(resolved, slope, 1.0)
-    found = repeated(iteration, [0.0, start, over, 0.0, 0.0, active], tape, MAX_ITERATIONS)
+    found = while_loop(iteration, [0.0, start, over, 0.0, 0.0, active], tape, MAX_ITERATIONS)
     c, best, _, _, count, _ = found
-    return Aimed(c * direction, best[None], count, np.where(resolved, 1, 0))
+    return LevelSolution(c * direction, best[None], count, np.where(resolved, 1, 0))
 
 
 def _reduced(jacobian: Any, cutoff: float) -> tuple[Any, Any, Any, Any]:

@@ -20,11 +20,11 @@ from liehom.correctors.expansion import Flow
 from liehom.homogeneous import Action, IsotropyFrame
 from liehom.series.arrays import namespace
 
-NONE_UP_TO, ALL_FROM = 1 / 4, 1 / 2
+NO_ISOTROPY_UP_TO, ONLY_ISOTROPY_FROM = 1 / 4, 1 / 2
 REFINEMENTS = 2
 
 
-def isotropic_share(action: Action, flow: Flow, leading: int, order: int) -> Any:
+def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> Any:
     """s(rate t_1), shape (...,): the share of the corrections that isotropy takes.
 
     Parameters
@@ -45,7 +45,7 @@ def isotropic_share(action: Action, flow: Flow, leading: int, order: int) -> Any
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
     >>> times = np.array([0.0, 0.01, 0.3, 1.0])
     >>> flow = flow_series(field, np.ones((4, 1)) * [1.0, 0.0], 3, times)
-    >>> isotropic_share(lh.Action(field.representation), flow, 1, 3).round(3).tolist()
+    >>> isotropy_fraction(lh.Action(field.representation), flow, 1, 3).round(3).tolist()
     [0.0, 0.0, 0.383, 1.0]
     """
     xp = namespace(flow.points.value)
@@ -59,7 +59,7 @@ def isotropic_share(action: Action, flow: Flow, leading: int, order: int) -> Any
     for k in range(order):
         rate = xp.maximum(rate, generator_norm(action, flow.psi(k)) ** (1 / (k + 1)))
     product = xp.where(rate > 0, rate * xp.minimum(scale, 1 / xp.where(rate > 0, rate, 1.0)), 1.0)
-    x = xp.clip((product - NONE_UP_TO) / (ALL_FROM - NONE_UP_TO), 0.0, 1.0)
+    x = xp.clip((product - NO_ISOTROPY_UP_TO) / (ONLY_ISOTROPY_FROM - NO_ISOTROPY_UP_TO), 0.0, 1.0)
     return x * x * (3 - 2 * x)
 
 

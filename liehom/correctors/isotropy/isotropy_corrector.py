@@ -16,7 +16,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.isotropy.order_by_order import Part, Tower, norm
+from liehom.correctors.isotropy.order_by_order import OrderRecursion, Part, norm
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
@@ -220,7 +220,7 @@ def correct(
     >>> int(correct(action, field, local, m, 0.0, base_order=1, order=2, orbit_dimension=2).reached)
     2
     """
-    tower = Tower(
+    recursion = OrderRecursion(
         action,
         field,
         local,
@@ -232,17 +232,17 @@ def correct(
         weight=weight,
     )
     for n in range(base_order + 1, order + 1):
-        tower.level(n)
-    for k in range(order + 1, tower.total + 1):
-        tower.defects.append((k, norm(tower.xp, tower.difference(k))))
-    reached = tower.xp.maximum(tower.levels, base_order)
-    leading = tower.leading if tower.moving is None else tower.xp.where(tower.moving, 1, 0)
+        recursion.level(n)
+    for k in range(order + 1, recursion.total + 1):
+        recursion.defects.append((k, norm(recursion.xp, recursion.difference(k))))
+    reached = recursion.xp.maximum(recursion.levels, base_order)
+    leading = recursion.leading if recursion.moving is None else recursion.xp.where(recursion.moving, 1, 0)
     return Correction(
-        tuple(tower.zeta.node.known[: order + 1]),
-        tuple(tower.clock.coefficients[: order + 1]),
+        tuple(recursion.zeta.node.known[: order + 1]),
+        tuple(recursion.clock.coefficients[: order + 1]),
         leading,
-        tower.xp.where(leading == 0, order, reached),  # an equilibrium stays
-        tower.residual,
-        tuple(tower.defects),
-        tuple(tower.parts),
+        recursion.xp.where(leading == 0, order, reached),  # an equilibrium stays
+        recursion.residual,
+        tuple(recursion.defects),
+        tuple(recursion.parts),
     )

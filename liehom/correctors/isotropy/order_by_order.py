@@ -12,8 +12,8 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.expansion import Clock, Flow, at_rest, flow_series, leading_order, vanishing
-from liehom.correctors.isotropy.completion import generator_norm, isotropic_share, lifted
+from liehom.correctors.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
+from liehom.correctors.isotropy.completion import generator_norm, isotropy_fraction, lifted
 from liehom.correctors.isotropy.range_solver import EvenRangeSolver, RangeSolver
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
@@ -22,7 +22,6 @@ from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
 
 SOLVED_RTOL = 1e-6
-NOISE = 64
 
 
 @final
@@ -38,18 +37,18 @@ class Part:
         Which they are; None for all.
     solver : RangeSolver or None
         None where isotropy cannot enter at any order.
-    share : array of shape (...,), or None
+    fraction : array of shape (...,), or None
         What isotropy takes of a correction; None is everything, everywhere.
     """
 
     leading: int
     here: Any
     solver: RangeSolver | EvenRangeSolver | None
-    share: Any
+    fraction: Any
 
 
 @final
-class Tower:
+class OrderRecursion:
     """The state of the iteration: the corrections so far, and what is left.
 
     Parameters
@@ -95,7 +94,7 @@ class Tower:
         self.step: Jet = apply_factors(action, self._factors, m)
         self.clock = Clock(self.flow, total, self.shape)
         self._orbit_dimension = orbit_dimension
-        # the values of traced arrays are not known: w_1 = 0 is then met by a share of 0
+        # the values of traced arrays are not known: w_1 = 0 is then met by a fraction of 0
         if is_lazy(m):
             self.leading = np.ones(self.shape, dtype=int)
         elif action.even is not None and not field.time_dependent:
@@ -143,10 +142,10 @@ class Tower:
                 solver = EvenRangeSolver(self.action, self.m, self._orbit_dimension, velocity, l, factor, self.moving)
             else:
                 solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
-            share = isotropic_share(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
-            if share is not None and not is_lazy(share) and bool(np.all(share == 1)):
-                share = None
-            parts.append(Part(l, here, solver, share))
+            fraction = isotropy_fraction(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
+            if fraction is not None and not is_lazy(fraction) and bool(np.all(fraction == 1)):
+                fraction = None
+            parts.append(Part(l, here, solver, fraction))
         return parts
 
     # -- one order ---------------------------------------------------------------------------------------
@@ -160,13 +159,13 @@ class Tower:
                 self._complete(changed, n, here, difference)
                 self._reach(n, here)
                 continue
-            own = difference if part.share is None else part.share[..., None] * difference
+            own = difference if part.fraction is None else part.fraction[..., None] * difference
             zeta, c, residual = part.solver.solve(own)
             if residual is None:  # it is 0 where nothing moves
                 here = None
             _add(changed, n - part.leading, _masked(self.xp, here, zeta))
             self.clock.set(n - part.leading + 1, c if here is None else self.xp.where(here, c, 0.0))
-            if part.share is not None:
+            if part.fraction is not None:
                 self._complete(changed, n, here, difference - own)
             self._judge(n, here, difference, residual)
         for k in sorted(changed):
@@ -245,7 +244,7 @@ def round_off(action: Action, m: Any, flow: Flow, factors: tuple[Any, ...], n: i
     terms = [norm(xp, m)]
     for k in range(1, n + 1):
         terms.append(sum(rates[i] * terms[k - i] for i in range(1, k + 1)) / k)
-    return NOISE * np.finfo(m.dtype).eps * terms[n]
+    return ROUND_OFF_UNITS * np.finfo(m.dtype).eps * terms[n]
 
 
 def _add(changed: dict[int, Any], k: int, value: Any) -> None:

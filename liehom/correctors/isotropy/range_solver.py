@@ -198,14 +198,14 @@ class EvenRangeSolver:
         action, even, w = self._action, self._action.even, self._velocity
         if even is None:
             raise InternalError("the orbits of an EvenRangeSolver are not known to be even")
-        share = inner(w, right) * self._over
+        along = inner(w, right) * self._over
         # r in place of r + l c w: R^T w has no part in g_m
         turned = action.infinitesimal.pulled(w, right)
         y = across_lanes(turned, even.inverse / (self._factor * even.isotropy)) * self._over[..., None]
         if not even.symmetric:
             lift = action.isotropy_frame(self._m, self._dimension).lift
             y = y - _apply(lift, action.infinitesimal(y, self._m))
-        return y, -share / self._leading, None
+        return y, -along / self._leading, None
 
     @property
     def singular_value(self) -> Any:

@@ -301,13 +301,13 @@ def closed_form(
     solver = SymbolicRange(action, symbols.field, array(symbols.point))
     if isotropy is not None:
         solver.row = _given_isotropy(symbols, solver, isotropy, action.dimension)
-    tower = _Tower(action, generator, step, symbols, solver, order)
-    tower.run(step.order)
-    return _result(tower, step)
+    recursion = _SymbolicRecursion(action, generator, step, symbols, solver, order)
+    recursion.run(step.order)
+    return _result(recursion, step)
 
 
 @final
-class _Tower:
+class _SymbolicRecursion:
     """The iteration over the orders; values have one leading axis of length 1."""
 
     def __init__(
@@ -375,14 +375,14 @@ def _given_isotropy(symbols: Symbols, solver: SymbolicRange, isotropy: Sequence[
     return row
 
 
-def _result(tower: _Tower, step: Step) -> ClosedForm:
-    symbols, row = tower.symbols, tower.solver.row
-    elements: dict[tuple[str, int], Any] = {("clock", k): c for k, c in tower.found_clock.items()}
-    for k, value in sorted(tower.found_zeta.items()):
+def _result(recursion: _SymbolicRecursion, step: Step) -> ClosedForm:
+    symbols, row = recursion.symbols, recursion.solver.row
+    elements: dict[tuple[str, int], Any] = {("clock", k): c for k, c in recursion.found_clock.items()}
+    for k, value in sorted(recursion.found_zeta.items()):
         if any(value):
             if row is not None:
                 elements["factor", k] = value[0]
-            elements["zeta", k] = list(tower.in_algebra(value))
+            elements["zeta", k] = list(recursion.in_algebra(value))
     factor = {k: symbols.expression(x) for (name, k), x in elements.items() if name == "factor"}
     generator = None if row is None else tuple(map(symbols.expression, row))
     zeta = {}
@@ -392,19 +392,19 @@ def _result(tower: _Tower, step: Step) -> ClosedForm:
         )
         zeta[k] = tuple(shown)
     return ClosedForm(
-        order=tower.order,
-        leading=tower.leading,
+        order=recursion.order,
+        leading=recursion.leading,
         zeta=zeta,
-        clock={k: symbols.expression(c) for k, c in sorted(tower.found_clock.items())},
+        clock={k: symbols.expression(c) for k, c in sorted(recursion.found_clock.items())},
         isotropy=generator,
         factor=factor,
-        orbit_dimension=tower.solver.orbit_dimension,
-        residual_is_zero=tower.reached == tower.order,
-        reached=tower.reached,
+        orbit_dimension=recursion.solver.orbit_dimension,
+        residual_is_zero=recursion.reached == recursion.order,
+        reached=recursion.reached,
         nonvanishing=symbols.nonvanishing(elements.values()),
-        representation=tower.action.representation,
+        representation=recursion.action.representation,
         step=repr(step),
-        exponential=tower.action.exponential.name,
+        exponential=recursion.action.exponential.name,
         symbols=symbols,
         _elements=elements,
     )

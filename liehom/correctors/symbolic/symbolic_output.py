@@ -19,7 +19,7 @@ from liehom.scalars import QQ
 from liehom.scalars.functions.function_field import RationalFunction
 from liehom.series.arrays import as_values, is_jax, namespace
 
-CHUNK = 100
+TERMS_PER_CHUNK = 100
 
 
 # -- matching --------------------------------------------------------------------------------------------
@@ -115,13 +115,13 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
     import sympy
 
     order = [symbols.symbols[name] for name in symbols.names]
-    parts: list[Any] = []  # sums of at most CHUNK terms: a compiler reads a long sum as a deep tree
+    parts: list[Any] = []  # sums of at most TERMS_PER_CHUNK terms: a compiler reads a long sum as a deep tree
     plans: list[tuple[tuple[int, int], list[tuple[list[int], int]]]] = []
     for element in elements:
         content, factors = symbols.factors(element)
         plan = []
         for p, k in factors:
-            chunks = symbols.chunks(p, CHUNK)
+            chunks = symbols.chunks(p, TERMS_PER_CHUNK)
             plan.append((list(range(len(parts), len(parts) + len(chunks))), k))
             parts += chunks
         plans.append(((int(content.p), int(content.q)), plan))

@@ -145,7 +145,7 @@ def read_symbols(
     psi: Any,
     constraints: Sequence[Any] | None,
     parameters: Sequence[Any] | None,
-    beside: Sequence[Any] = (),
+    others: Sequence[Any] = (),
 ) -> tuple[Symbols, list[Any]]:
     """The symbols of a problem, and the components of psi as expressions.
 
@@ -153,7 +153,7 @@ def read_symbols(
     ----------
     representation, psi, constraints, parameters
         See `liehom.correctors.closed_form.closed_form`.
-    beside : sequence of expressions
+    others : sequence of expressions
         Others, whose symbols are used for the coordinates.
 
     Raises
@@ -183,7 +183,7 @@ def read_symbols(
     polynomials = _default_constraints(representation) if constraints is None else list(constraints)
     bounds = [read_expression(x, f"constraints[{i}]") for i, x in enumerate(polynomials)]
     symbols = {s.name: s for x in (*bounds, *components) for s in sorted(x.free_symbols, key=str)}
-    for x in (*beside, *polynomials, *given):  # the user's own symbols before those of texts
+    for x in (*others, *polynomials, *given):  # the user's own symbols before those of texts
         symbols |= {s.name: s for s in getattr(x, "free_symbols", ()) if s.name in base or s.name in symbols}
     named = [(f"psi[{i}]", x) for i, x in enumerate(components)] + [
         (f"constraints[{i}]", x) for i, x in enumerate(bounds)

@@ -3,7 +3,7 @@
 `RigidBody` is the field that everything here is about. See docs/reproduction.md for what the paper does with it.
 """
 
-from liehom.instances.rigid_body.closed_forms import ClosedForm as ClosedForm
+from liehom.instances.rigid_body.closed_forms import ClosedFormUpdate as ClosedFormUpdate
 from liehom.instances.rigid_body.exact_orbit import ExactOrbit as ExactOrbit
 from liehom.instances.rigid_body.exact_orbit import ExactOrbitUpdate as ExactOrbitUpdate
 from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor as GeneratorTaylor

@@ -118,7 +118,7 @@ def improvement(name: str, exponential: str, at: Ingredients) -> tuple[int, Any]
 
 
 @final
-class ClosedForm:
+class ClosedFormUpdate:
     """An update of the rigid body in closed form: call it as update(m, dt).
 
     Parameters
@@ -143,7 +143,7 @@ class ClosedForm:
     >>> import numpy as np
     >>> import liehom as lh
     >>> body, m = lh.instances.RigidBody([1, 2, 3]), np.array([[0.6, 0.48, 0.64]])
-    >>> bool(np.allclose(ClosedForm(body, "rk2_io")(m, 0.5), body.update("rk2_io")(m, 0.5), rtol=0, atol=1e-15))
+    >>> bool(np.allclose(ClosedFormUpdate(body, "rk2_io")(m, 0.5), body.update("rk2_io")(m, 0.5), rtol=0, atol=1e-15))
     True
     """
 

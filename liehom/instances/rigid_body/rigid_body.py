@@ -18,7 +18,7 @@ from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.maps import FieldMatrix, remainder
 from liehom.instances.rigid_body.attitude import attitude
-from liehom.instances.rigid_body.closed_forms import ClosedForm
+from liehom.instances.rigid_body.closed_forms import ClosedFormUpdate
 from liehom.instances.rigid_body.exact_orbit import ExactOrbit, ExactOrbitUpdate
 from liehom.instances.rigid_body.free_motion import free_motion
 from liehom.instances.rigid_body.updates import Update
@@ -323,7 +323,7 @@ class RigidBody:
         """
         return Update(self, name, exponential)
 
-    def closed_form(self, name: str, exponential: str = "cayley") -> ClosedForm:
+    def closed_form(self, name: str, exponential: str = "cayley") -> ClosedFormUpdate:
         """The same update in closed form, (m, dt) -> m.
 
         Examples
@@ -334,7 +334,7 @@ class RigidBody:
         >>> bool(np.abs(difference).max() < 1e-15)
         True
         """
-        return ClosedForm(self, name, exponential)
+        return ClosedFormUpdate(self, name, exponential)
 
     def exact_orbit(self) -> ExactOrbitUpdate:
         """The Cayley step that keeps the energy to round-off, (m, dt) -> m, with a clock of order 2.

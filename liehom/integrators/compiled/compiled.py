@@ -224,7 +224,7 @@ class _State:
         run, graph, lanes = self.run, group.graph, group.lanes
         m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
         limit = self.limit
-        if graph.passed is None:  # so many steps end before it
+        if graph.elapsed is None:  # so many steps end before it
             whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
             total: Any = run.total  # no step is made of a rest below the round-off of times
             limit = np.minimum(np.ceil(whole - SLACK), np.broadcast_to(total, run.shape).reshape(-1)) - 1

@@ -21,7 +21,7 @@ from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.solution import Report, Solution
 from liehom.series.arrays import is_traced
 from liehom.tracing import StepGraph
-from liehom.tracing.jax_code import evaluated
+from liehom.tracing.jax_code import evaluate_with_jax
 
 SPARE = 1.5
 """A corrected clock may take so many times the nominal number of steps; where it takes more the result is nan."""
@@ -122,20 +122,20 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
     h, n = direction * dt, graph.size
     constants = {-1 - i: c for i, c in enumerate(_constants(graph, m))}
     gaps = np.abs(np.diff(np.concatenate([[span[0]], np.asarray(times)])))
-    most = ceil(float(gaps.max(initial=0.0)) / dt * (1.0 if graph.passed is None else SPARE)) + 1
+    most = ceil(float(gaps.max(initial=0.0)) / dt * (1.0 if graph.elapsed is None else SPARE)) + 1
 
     def step(m: Any, t: Any, size: Any) -> tuple[Any, Any]:
-        outputs = [*graph.point, *[x for x in (graph.passed, graph.solved) if x is not None]]
-        made = evaluated(outputs, {**dict(enumerate(m)), n: t, n + 1: size, **constants}, differentiable=True)
+        outputs = [*graph.point, *[x for x in (graph.elapsed, graph.solved) if x is not None]]
+        made = evaluate_with_jax(outputs, {**dict(enumerate(m)), n: t, n + 1: size, **constants}, differentiable=True)
         made = [jnp.broadcast_to(x, t.shape) for x in made]
         point = jnp.stack(made[:n])
         if graph.solved is not None:
             point = jnp.where(made[-1], point, jnp.nan)
-        return point, made[n] if graph.passed is not None else jnp.broadcast_to(size, t.shape)
+        return point, made[n] if graph.elapsed is not None else jnp.broadcast_to(size, t.shape)
 
     def size_for(m: Any, t: Any, left: Any) -> Any:
         coefficients = [c for _, c in graph.clock]
-        made = evaluated(coefficients, {**dict(enumerate(m)), n: t, **constants}, differentiable=True)
+        made = evaluate_with_jax(coefficients, {**dict(enumerate(m)), n: t, **constants}, differentiable=True)
         found = dict(zip([k for k, _ in graph.clock], made, strict=True))
         s = left
         for _ in range(NEWTON if found else 0):
@@ -147,7 +147,7 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
         def plain(state: Any, _: Any) -> Any:
             m, t, count = state
             new, passed = step(m, t, h)
-            after = span[0] + (count + 1) * h if graph.passed is None else t + passed
+            after = span[0] + (count + 1) * h if graph.elapsed is None else t + passed
             go = direction * (time - after) > SLACK * dt
             return (jnp.where(go, new, m), jnp.where(go, after, t), count + go), None
 
@@ -166,4 +166,4 @@ def _constants(graph: StepGraph, m: Any) -> list[Any]:
     """Numbers of the trajectories, from their starts."""
     from jax import numpy as jnp
 
-    return [number(jnp.moveaxis(m, 0, -1)) for number in graph.given]
+    return [number(jnp.moveaxis(m, 0, -1)) for number in graph.constant_functions]

@@ -13,7 +13,7 @@ import numpy as np
 from liehom.errors import TraceError
 from liehom.integrators.run.clock import SLACK
 from liehom.tracing import StepGraph, needed
-from liehom.tracing.jax_code import evaluated
+from liehom.tracing.jax_code import evaluate_with_jax
 
 CHUNK = 256
 """Steps are stored in blocks of powers of 2, at most so many, so that few functions are compiled."""
@@ -26,9 +26,9 @@ MOST = 64
 
 def _fingerprint(graph: StepGraph) -> str:
     """The same for graphs of the same operations."""
-    rows = [(x.op, *[a.place for a in x.args], x.value) for x in needed(graph.outputs)]
-    layout = [x.place for x in graph.outputs], graph.size, len(graph.largest), len(graph.given)
-    optional = graph.passed is None, graph.runs is None, graph.sizes is None
+    rows = [(x.op, *[a.index for a in x.args], x.value) for x in needed(graph.outputs)]
+    layout = [x.index for x in graph.outputs], graph.size, len(graph.largest), len(graph.constant_functions)
+    optional = graph.elapsed is None, graph.ordinary is None, graph.sizes is None
     return hashlib.sha256(repr((rows, layout, optional)).encode()).hexdigest()
 
 
@@ -109,19 +109,19 @@ class JaxKernel:
         limit, constants, origin, direction = fixed
         graph, n = self.graph, self.graph.size
         inputs = {**dict(enumerate(m)), n: t, n + 1: h, **{-1 - i: c for i, c in enumerate(constants)}}
-        made = [jnp.broadcast_to(x, t.shape) for x in evaluated(graph.outputs, inputs)]
+        made = [jnp.broadcast_to(x, t.shape) for x in evaluate_with_jax(graph.outputs, inputs)]
         new = jnp.stack(made[:n])
         rest = made[n:]
         go = (alive > 0) & jnp.all(jnp.isfinite(new), axis=0)
-        if graph.passed is None:
+        if graph.elapsed is None:
             after = origin + (count + 1) * h
             go = go & (count + 1 <= limit)
         else:
             after = t + rest.pop(0)
-        if graph.runs is not None:
+        if graph.ordinary is not None:
             go = go & rest.pop(0)
         size, accepted, proposal = (h, True, h) if graph.sizes is None else [rest.pop(0) for _ in range(3)]
-        if graph.passed is not None:
+        if graph.elapsed is not None:
             go = go & (direction * (limit - after) > SLACK * jnp.abs(size))
         tried, go = go, go & accepted
         more = [jnp.maximum(extra[i], x) if i < len(graph.largest) else extra[i] + x for i, x in enumerate(rest)]

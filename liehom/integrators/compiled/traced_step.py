@@ -54,7 +54,7 @@ def traced_step(
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
     >>> graph = traced_step(lh.Action(field.representation), field, lh.Euler(), np.eye(2), 1, nominal=True)
-    >>> len(graph.point), graph.passed
+    >>> len(graph.point), graph.elapsed
     (2, None)
     """
     try:
@@ -78,7 +78,7 @@ def _traced(
         even = evenness(action, points, orbit_dimension)
     if even is not None and action.inner_product.invariant:
         form = even.trace
-        over = tape.given_number(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
+        over = tape.trajectory_constant(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
         even = even._replace(over=Traced(tape, over))
     action = action.on_even_orbits(even)
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
@@ -88,7 +88,7 @@ def _traced(
     given_limits: Limits | None = None
     certain: Any = True
     if limits is not None:
-        given_limits = Limits._make(Traced(tape, tape.given_number(_everywhere(x))) for x in limits)
+        given_limits = Limits._make(Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in limits)
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
     size = h[..., None]
     made = apply_factors(action, local.factors(size), m)
@@ -111,7 +111,7 @@ def _traced(
     calls = int(tape.calls.value) if tape.calls.constant else None
     if calls is None:
         summed["calls"] = tape.calls
-    return StepGraph(point, passed, runs, worst, summed, tuple(tape.given), clock, solved, sizes, calls)
+    return StepGraph(point, passed, runs, worst, summed, tuple(tape.constant_functions), clock, solved, sizes, calls)
 
 
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:

@@ -10,7 +10,7 @@ import pytest
 import liehom as lh
 from liehom.correctors import Clock, flow_series, leading_order
 from liehom.correctors.isotropy import completion as completion_module
-from liehom.correctors.isotropy.completion import isotropic_share
+from liehom.correctors.isotropy.completion import isotropy_fraction
 from tests.correctors.support import exact_flow, one_step, run, slopes, spin, unit
 
 A = np.array([[1.0, 0.3, -0.5], [-0.2, 0.7, 0.4], [0.1, -0.6, 0.9]])
@@ -107,8 +107,8 @@ def test_the_order_holds_through_a_zero_of_the_field(base: Any, order: int, star
 
 def test_by_isotropy_alone_the_order_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reason for the flow's own terms: corrections are series in h / t_0, so that order 2 is what remains."""
-    monkeypatch.setattr(completion_module, "NONE_UP_TO", -2.0)
-    monkeypatch.setattr(completion_module, "ALL_FROM", -1.0)
+    monkeypatch.setattr(completion_module, "NO_ISOTROPY_UP_TO", -2.0)
+    monkeypatch.setattr(completion_module, "ONLY_ISOTROPY_FROM", -1.0)
     field, m = power(2), unit(3, 3)
     errors = []
     for count in (40, 80):
@@ -122,13 +122,13 @@ def test_the_share_of_isotropy() -> None:
     action, m = lh.Action(spin()), unit(3, 3)
     times = np.linspace(-1.5, 1.5, 301)
     points = np.broadcast_to(m, (301, 3))
-    share = isotropic_share(action, flow_series(power(2), points, 4, times), 1, 4)
+    share = isotropy_fraction(action, flow_series(power(2), points, 4, times), 1, 4)
     assert share[150] == 0 and share[0] == share[-1] == 1
     assert np.abs(np.diff(share)).max() < 0.1
     fast = lh.GeneratorField(spin(), lambda m, t: 50 * power(2).psi(m, 50 * t))
-    assert np.allclose(isotropic_share(action, flow_series(fast, points, 4, times / 50), 1, 4), share, atol=1e-12)
+    assert np.allclose(isotropy_fraction(action, flow_series(fast, points, 4, times / 50), 1, 4), share, atol=1e-12)
     steady = lh.GeneratorField(spin(), lambda m, t: m @ A.T + 0.1 * np.sin(t)[..., None] * m)
-    assert np.all(isotropic_share(action, flow_series(steady, points, 4, times), 1, 4) == 1)
+    assert np.all(isotropy_fraction(action, flow_series(steady, points, 4, times), 1, 4) == 1)
 
 
 def test_next_to_a_zero_all_is_bounded() -> None:

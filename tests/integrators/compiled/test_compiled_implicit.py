@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.tracing import Kernel, StepGraph, Tape, Traced, repeated
-from liehom.tracing.jax_code import evaluated
+from liehom.tracing import Kernel, StepGraph, Tape, Traced, while_loop
+from liehom.tracing.jax_code import evaluate_with_jax
 from tests.integrators import spaces
 from tests.integrators.compiled.test_compiled import BODY, EPS, START, ULPS, a_field, assert_same, both, cache, sphere
 
@@ -89,7 +89,7 @@ def heron(tape: Tape, a: Traced, limit: int) -> Traced:
     """Square roots, each lane until nothing changes; a loop inside a loop computes the half."""
 
     def half(x: Any) -> Any:
-        done = repeated(lambda y, k: ([y - x / 8, k + 1], k < 3), [x, 0.0], tape, 10)
+        done = while_loop(lambda y, k: ([y - x / 8, k + 1], k < 3), [x, 0.0], tape, 10)
         return done[0]
 
     def body(x: Any) -> Any:
@@ -97,14 +97,14 @@ def heron(tape: Tape, a: Traced, limit: int) -> Traced:
         going = np.abs(new - x) > 1e-14 * new
         return [np.where(going, new, x)], going
 
-    return repeated(body, [a], tape, limit)[0]
+    return while_loop(body, [a], tape, limit)[0]
 
 
 def test_loops_within_loops_by_both_emitters() -> None:
     tape = Tape()
     found = heron(tape, Traced(tape, tape.input(0)), 60).entries[()]
     values = np.array([2.0, 1e-3, 5.0, 1e6, 1.0, 3.0, 7.0, 0.5])
-    np.testing.assert_allclose(np.asarray(evaluated([found], {0: values})[0]), np.sqrt(values), rtol=1e-6)
+    np.testing.assert_allclose(np.asarray(evaluate_with_jax([found], {0: values})[0]), np.sqrt(values), rtol=1e-6)
     for width in (1, 8):
         m, one, zero = values[None].copy(), np.ones(8), np.zeros(8)
         kernel = Kernel(StepGraph([found], None, None, {}, {}), width)
@@ -116,6 +116,6 @@ def test_loops_within_loops_by_both_emitters() -> None:
 def test_a_limit_is_kept() -> None:
     tape = Tape()
     x = tape.input(0)
-    found = repeated(lambda y: ([y + 1], y < 1e9), [Traced(tape, x)], tape, 7)[0].entries[()]
+    found = while_loop(lambda y: ([y + 1], y < 1e9), [Traced(tape, x)], tape, 7)[0].entries[()]
     for whole in (False, True):
-        assert float(evaluated([found], {0: 0.0}, differentiable=whole)[0]) == 7.0
+        assert float(evaluate_with_jax([found], {0: 0.0}, differentiable=whole)[0]) == 7.0
