@@ -26,9 +26,11 @@ The layers, in reading order; each imports only those above it in this list:
 from __future__ import annotations
 
 import importlib
+import sys
 from typing import TYPE_CHECKING, Any
 
 from liehom import errors as errors
+from liehom.compatibility import OldModules
 
 if TYPE_CHECKING:
     from liehom.algebra import Homomorphism as Homomorphism
@@ -228,6 +230,9 @@ _NAMES = {
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
+
+
+sys.meta_path.append(OldModules())  # asked last: where the modules of 0.1.0 are now, for its pickles
 
 
 def __getattr__(name: str) -> Any:

@@ -16,6 +16,7 @@ PACKAGE = ROOT / "liehom"
 BELOW: dict[str, tuple[str, ...]] = {
     "errors": (),
     "typing": (),
+    "compatibility": ("errors",),
     "parallel": ("errors", "typing"),
     "scalars": ("errors", "typing"),
     "algebra": ("scalars",),
@@ -35,7 +36,7 @@ BELOW: dict[str, tuple[str, ...]] = {
     "testing": ("catalog", "fullness", "integrators", "io"),
     "cli": ("io", "atlas", "paper", "testing"),
     "__main__": ("cli",),
-    "": ("cli",),  # liehom/__init__.py, which everybody below must leave alone
+    "": ("cli", "compatibility"),  # liehom/__init__.py, which everybody below must leave alone
 }
 
 # folder -> its wings and the modules that stand directly in it, lowest first; each may import only what is listed
