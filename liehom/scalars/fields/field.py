@@ -280,3 +280,6 @@ class Field(ABC):
 
 MatrixLike: TypeAlias = Sequence[VectorLike] | npt.NDArray[Any] | Matrix
 """What a field reads as a matrix: rows of numbers, arrays of numpy, scipy and sympy, a `Matrix`."""
+
+MatricesLike: TypeAlias = Sequence[MatrixLike] | npt.NDArray[Any]
+"""Several matrices of one shape: a sequence of them, or an array of shape (k, m, n)."""
