@@ -73,8 +73,6 @@ CLASS_FILES = (
 CIRCLES_LEFT = {
     "run state",
     "closed_forms exact_orbit rigid_body updates",
-    "assembly jet jet_functions jet_ufuncs",
-    "expr graph",
 }
 
 MAX_MODULES = 14

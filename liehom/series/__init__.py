@@ -5,6 +5,7 @@ In reading order: `node` (coefficients on demand), `recurrences`, `jet` (with `j
 kinds of numbers.
 """
 
+import liehom.series.jet_functions  # noqa: F401 (enters itself in `jet_dispatch`)
 from liehom.series.assembly import as_jet as as_jet
 from liehom.series.assembly import on_series as on_series
 from liehom.series.bilinear import Bilinear as Bilinear

@@ -14,6 +14,7 @@ from liehom.errors import SeriesError, ShapeError
 from liehom.series import recurrences
 from liehom.series.arrays import constant_like, is_exact, is_lazy, namespace
 from liehom.series.jet import Jet
+from liehom.series.jet_dispatch import dispatch
 from liehom.series.node import Node
 
 
@@ -157,3 +158,6 @@ def on_series(function: Callable[..., Any], *arguments: Any) -> Any:
         if reason is None or reason is error:
             raise
         raise SeriesError(str(reason)) from error
+
+
+dispatch.nodes = nodes

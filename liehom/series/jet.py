@@ -18,6 +18,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import jet_views, recurrences
 from liehom.series.arrays import as_values, namespace, owned, zeros
+from liehom.series.jet_dispatch import dispatch
 from liehom.series.jet_views import View, ViewOperation
 from liehom.series.node import Node, rewind
 
@@ -266,14 +267,10 @@ class Jet(NDArrayOperatorsMixin):
         def __array__(self) -> npt.NDArray[Any]: ...
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        from liehom.series.jet_ufuncs import apply_ufunc
-
-        return apply_ufunc(ufunc, method, inputs, options)
+        return dispatch.apply_ufunc(ufunc, method, inputs, options)
 
     def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> Any:
-        from liehom.series.jet_functions import apply_function
-
-        return apply_function(function, args, options)
+        return dispatch.apply_function(function, args, options)
 
     # -- what branches on values -------------------------------------------------------------------------
     def __bool__(self) -> bool:
@@ -318,14 +315,12 @@ class Jet(NDArrayOperatorsMixin):
         return Jet.from_node(recurrences.linear(lambda x: x[key], [self.node]), writable=kind == "copy")
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        from liehom.series.assembly import nodes
-
         key = jet_views.checked_index(key, self.node.value)
         if not self.shares():
             raise SeriesError(
                 "this series is given, or a part of one: write into a copy (m.copy(), np.zeros_like(m)) or use np.stack"
             )
-        whole, part = nodes(self, value)
+        whole, part = dispatch.nodes(self, value)
         if self._view is None:
             self._node = jet_views.replaced(whole, key, part)
         else:
@@ -378,9 +373,7 @@ class Jet(NDArrayOperatorsMixin):
 
     def __getattr__(self, name: str) -> Any:
         # the other methods of arrays; numpy itself calls x.sin() for the entries of arrays of objects
-        from liehom.series.jet_functions import method
-
-        return method(self, name)
+        return dispatch.method(self, name)
 
     def __repr__(self) -> str:
         return f"<series of order {self.order} with values of shape {self.shape}>"

@@ -18,6 +18,7 @@ from liehom.series import recurrences
 from liehom.series.arrays import is_lazy, namespace, solve, zeros
 from liehom.series.assembly import as_jet, holds_jets, nodes
 from liehom.series.jet import Jet
+from liehom.series.jet_dispatch import dispatch
 from liehom.series.jet_ufuncs import bilinear, fresh, jax_counterpart, refused
 from liehom.series.jet_views import frozen
 
@@ -400,3 +401,6 @@ SPECIAL: dict[str, Callable[..., Any]] = {
     "isrealobj": lambda x: x.dtype.kind != "c",
     "result_type": lambda *args: np.result_type(*[a.dtype if isinstance(a, Jet) else a for a in args]),
 }
+
+dispatch.apply_function = apply_function
+dispatch.method = method

@@ -18,6 +18,7 @@ from liehom.series import recurrences
 from liehom.series.arrays import across_lanes, constant_like, elementary, is_jax, namespace
 from liehom.series.assembly import holds_jets, nodes
 from liehom.series.jet import Jet
+from liehom.series.jet_dispatch import dispatch
 from liehom.series.node import Node
 
 # ufuncs that are linear
@@ -205,3 +206,5 @@ OPERATORS: dict[str, Callable[..., Node]] = {
     "hypot": _hypot,
     "logaddexp": _logaddexp,
 }
+
+dispatch.apply_ufunc = apply_ufunc

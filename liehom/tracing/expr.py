@@ -5,12 +5,9 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, Protocol, final
 
 from liehom.errors import TraceError
-
-if TYPE_CHECKING:
-    from liehom.tracing.graph import Tape
 
 FOLDED: dict[str, Callable[..., float]] = {
     "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log,
@@ -22,6 +19,20 @@ FOLDED: dict[str, Callable[..., float]] = {
     "cosq": lambda q: cmath.cos(cmath.sqrt(q)).real,
 }  # fmt: skip
 BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
+
+
+class Recorder(Protocol):
+    """What arithmetic on an `Expr` calls: the methods of `liehom.tracing.Tape`, which stands above `Expr`."""
+
+    def of(self, x: Any) -> Expr: ...
+    def number(self, x: Expr) -> Expr: ...
+    def add(self, a: Expr, b: Expr) -> Expr: ...
+    def sub(self, a: Expr, b: Expr) -> Expr: ...
+    def mul(self, a: Expr, b: Expr) -> Expr: ...
+    def div(self, a: Expr, b: Expr) -> Expr: ...
+    def neg(self, a: Expr) -> Expr: ...
+    def power(self, a: Expr, b: Expr) -> Expr: ...
+    def call(self, name: str, *args: Expr) -> Expr: ...
 
 
 @final
@@ -44,7 +55,7 @@ class Expr:
 
     __slots__ = ("args", "boolean", "index", "op", "tape", "terms", "value")
 
-    def __init__(self, tape: Tape, op: str, args: tuple[Expr, ...], value: Any, index: int) -> None:
+    def __init__(self, tape: Recorder, op: str, args: tuple[Expr, ...], value: Any, index: int) -> None:
         self.tape, self.op, self.args, self.value, self.index = tape, op, args, value, index
         self.terms: Any = None
         self.boolean = op in BOOLEAN
