@@ -6,8 +6,8 @@ Python's import system asks last. For an old name it gives an `OldModule`, whose
 the new place, so that old pickles load. It is asked for no name that exists, and so costs nothing.
 
 Something is looked for by its name: in modules of the same name in the wings of the folder, in the folder, in its
-wings. Two kinds of changes need an entry below: a class with another name (`CLASSES`), and a class whose objects have
-other fields (`CHANGED`), of which an old object would be filled wrongly.
+wings. Changes of three kinds need an entry below: classes with another name (`CLASSES`), attributes with another name
+(`ATTRIBUTES`), and classes whose objects hold something else than in 0.1.0 (`CHANGED`), which are refused.
 """
 
 from __future__ import annotations
@@ -99,8 +99,13 @@ MODULES = {
 CLASSES: dict[str, str] = {}
 """Classes and functions with another name, 'old module:old name' -> new name."""
 
+ATTRIBUTES: dict[str, dict[str, str]] = {
+    "liehom.algebra.root_system:RootSystem": {"_places": "_index"},
+}
+"""Attributes with another name, 'old module:old name' -> {old: new}."""
+
 CHANGED: frozenset[str] = frozenset()
-"""Classes with other fields than in 0.1.0, 'old module:old name'."""
+"""Classes whose objects hold something else than in 0.1.0, 'old module:old name'."""
 
 
 @final
@@ -170,7 +175,8 @@ class OldModule(ModuleType):
         wanted = CLASSES.get(written, name)
         for place in _places(self._folder, self._stem) if written not in CHANGED else ():
             if hasattr(place, wanted):
-                return getattr(place, wanted)
+                found = getattr(place, wanted)
+                return _renaming(found, ATTRIBUTES[written]) if written in ATTRIBUTES else found
         raise FormatError(
             f"{self.__name__}.{name} is from liehom {VERSION}, and this version has nothing that its pickled objects "
             f"fit: in {VERSION} write what they hold as JSON or .npz (liehom.dump, to_json, "
@@ -188,3 +194,17 @@ def _places(folder: ModuleType, stem: str) -> Iterator[ModuleType]:
             yield importlib.import_module(f"{wing}.{stem}")
     yield folder
     yield from map(importlib.import_module, wings)
+
+
+def _renaming(kind: Any, names: dict[str, str]) -> Any:
+    """A class for pickle to fill, whose objects take attributes by their old names and are then of the class `kind`."""
+    if hasattr(kind, "__setstate__"):  # dataclasses with slots: by position
+        return kind
+
+    def fill(self: Any, state: Any) -> None:
+        object.__setattr__(self, "__class__", kind)
+        for values in state if isinstance(state, tuple) else (state,):
+            for name, value in (values or {}).items():
+                object.__setattr__(self, names.get(name, name), value)
+
+    return type(kind)(kind.__name__, (kind,), {"__slots__": (), "__setstate__": fill})
