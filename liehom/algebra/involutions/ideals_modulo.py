@@ -8,58 +8,14 @@ complete.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-IntArray = npt.NDArray[np.int64]
+from liehom.scalars.modular.modular_span import ModularSpan, invariant_span, left_kernel
+from liehom.typing import IntegerArray
+
 LARGEST_PRIME = 1000
 
 
-def echelon_modulo(table: IntArray, p: int) -> tuple[IntArray, list[int]]:
-    """The non-zero rows of the reduced echelon form modulo a small prime, and the pivots.
-
-    Examples
-    --------
-    >>> echelon_modulo(np.array([[2, 4], [1, 2]]), 5)
-    (array([[1, 2]]), [0])
-    """
-    table = table % p
-    pivots: list[int] = []
-    for column in range(table.shape[1]):
-        rank = len(pivots)
-        places = np.flatnonzero(table[rank:, column])
-        if not len(places):
-            continue
-        found = rank + int(places[0])
-        table[[rank, found]] = table[[found, rank]]
-        table[rank] = table[rank] * pow(int(table[rank, column]), -1, p) % p
-        factors = table[:, column].copy()
-        factors[rank] = 0
-        table = (table - np.outer(factors, table[rank])) % p
-        pivots.append(column)
-        if len(pivots) == len(table):
-            break
-    return table[: len(pivots)], pivots
-
-
-def kernel_rows(table: IntArray, p: int) -> IntArray:
-    """A basis of the rows x with x A = 0.
-
-    Examples
-    --------
-    >>> kernel_rows(np.array([[1], [4]]), 5)
-    array([[1, 1]])
-    """
-    n = len(table)
-    reduced, pivots = echelon_modulo(table.T, p)
-    free = [j for j in range(n) if j not in set(pivots)]
-    rows = np.zeros((len(free), n), dtype=np.int64)
-    for i, j in enumerate(free):
-        rows[i, j] = 1
-        rows[i, pivots] = -reduced[:, j] % p
-    return rows
-
-
-def ideals_modulo(constants: IntArray, p: int, tries: int, limit: int) -> list[IntArray]:
+def ideals_modulo(constants: IntegerArray, p: int, tries: int, limit: int) -> list[IntegerArray]:
     """Some proper non-zero ideals, each by its reduced echelon basis, by dimension.
 
     Parameters
@@ -84,19 +40,19 @@ def ideals_modulo(constants: IntArray, p: int, tries: int, limit: int) -> list[I
     rng = np.random.default_rng(n)
     maps = constants % p  # rows y: y @ maps[i] = [e_i, y]
     dual = np.ascontiguousarray(maps.transpose(0, 2, 1))
-    found: dict[bytes, IntArray] = {}
+    found: dict[bytes, IntegerArray] = {}
     for attempt in range(tries):
         a, b, c = (np.einsum("i,ijk->jk", rng.integers(0, p, n), maps) % p for _ in range(3))
         action = (a + b @ c) % p if attempt % 2 else a
         for t in range(min(p, 3)):
             shifted = (action - int(rng.integers(p) if p > 3 else t) * np.eye(n, dtype=np.int64)) % p
-            for module, rows in ((maps, kernel_rows(shifted, p)), (dual, kernel_rows(shifted.T, p))):
+            for module, rows in ((maps, left_kernel(shifted, p)), (dual, left_kernel(shifted.T, p))):
                 if not len(rows):
                     continue
                 seed = rng.integers(0, p, len(rows)) @ rows % p
-                space = _spun(module, seed[None, :], p)
+                space = invariant_span(module, seed[None, :], p).echelon()[0]
                 if module is dual and len(space):
-                    space = echelon_modulo(kernel_rows(space.T, p), p)[0]
+                    space = _annihilator(space, p)
                 if 0 < len(space) < n:
                     found[space.tobytes()] = space
         if len(found) >= limit:
@@ -104,15 +60,8 @@ def ideals_modulo(constants: IntArray, p: int, tries: int, limit: int) -> list[I
     return sorted(found.values(), key=lambda x: (len(x), x.tolist()))
 
 
-def _spun(module: IntArray, rows: IntArray, p: int) -> IntArray:
-    """The reduced echelon basis of the submodule that rows generate."""
-    n = module.shape[1]
-    space = echelon_modulo(rows, p)[0]
-    new = space
-    while len(new) and len(space) < n:
-        images = np.einsum("aj,ijk->aik", new, module).reshape(-1, n) % p
-        larger = echelon_modulo(np.concatenate([space, images]), p)[0]
-        if len(larger) == len(space):
-            break
-        space = new = larger
-    return space
+def _annihilator(space: IntegerArray, p: int) -> IntegerArray:
+    """The reduced echelon basis of the vectors on which all rows of a space vanish."""
+    span = ModularSpan(p, space.shape[1])
+    span.extend(left_kernel(space.T, p))
+    return span.echelon()[0]

@@ -17,9 +17,10 @@ from typing import Any
 import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.involutions.ideals_modulo import LARGEST_PRIME, echelon_modulo, ideals_modulo
+from liehom.algebra.involutions.ideals_modulo import LARGEST_PRIME, ideals_modulo
 from liehom.scalars import QQ
 from liehom.scalars.lattices.lattice import integral_preimage, kernel_modulo, pairwise_coprime, reduced_rows
+from liehom.scalars.modular.modular_span import ModularSpan
 
 STEPS = 60
 SPARE = 20
@@ -110,7 +111,9 @@ class _Order:
         while d < LARGEST_PRIME:
             rows = integral_preimage(QQ.stack_columns([QQ.identity(self.n), killing.scale(QQ.one / power)], self.n))
             table = np.array([int(x) % d for x in rows.parts[0].entries()], dtype=np.int64).reshape(self.n, self.n)
-            space, pivots = echelon_modulo(table, d)
+            span = ModularSpan(d, self.n)
+            span.extend(table)
+            space, pivots = span.echelon()
             if not pivots:
                 return
             if len(pivots) < last:

@@ -19,7 +19,7 @@ from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.subalgebra import Subalgebra, products
 from liehom.algebra.structure.radical import radical
 from liehom.errors import FieldError, InternalError, SingularError
-from liehom.scalars.modular.modular import pivot_columns, stacked_residues
+from liehom.scalars.modular.modular import extending_rows, stacked_residues
 from liehom.scalars.spaces.quotient import echelon_quotient
 
 Word = tuple[int, int]  # (generator, index of the word it acts on); the generators are words 0 and 1
@@ -120,8 +120,7 @@ def _spanning_words(algebra: LieAlgebra, pair: list[Any]) -> list[Word] | None:
     while len(words) < n and frontier:
         options = [(g, p) for p in frontier for g in (0, 1)]
         images = [words[p] * actions[g] for g, p in options]
-        stacked = stacked_residues([*words, *images])
-        kept = [i - len(words) for i in pivot_columns(stacked.transpose()) if i >= len(words)]
+        kept = extending_rows(words, images)
         frontier = list(range(len(words), len(words) + len(kept)))
         steps += [options[i] for i in kept]
         words += [images[i] for i in kept]

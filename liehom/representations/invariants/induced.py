@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.errors import InputError
 from liehom.scalars import FloatField, FloatMatrix
-from liehom.scalars.spaces.placed_entries import matrix_of_places
+from liehom.scalars.spaces.matrix_from_entries import matrix_from_entries
 
 Term = tuple[tuple[int, int], tuple[int, int], int]
 
@@ -62,7 +62,7 @@ class EntryMap:
                 for at, factor in self._by_source.get(place, ()) if value else ():
                     table[at] = table.get(at, 0) + factor * value
             tables.append(table)
-        return matrix_of_places(field, tables, m, m, matrix.den)
+        return matrix_from_entries(field, tables, m, m, matrix.den)
 
 
 def dual_map(n: int) -> EntryMap:

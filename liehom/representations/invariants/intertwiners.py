@@ -16,7 +16,7 @@ from typing import Any, final
 
 from liehom.errors import InternalError, ShapeError
 from liehom.scalars import Field, Subspace
-from liehom.scalars.modular.modular import pivot_columns, primitive_residues
+from liehom.scalars.modular.modular import extending_rows, pivot_columns, primitive_residues
 from liehom.scalars.modular.modular_maps import intertwining_residues
 from liehom.scalars.modular.modular_span import rational_lifts
 
@@ -229,12 +229,10 @@ def _grow(
     for start in range(0, len(pairs), 2 * d):
         batch = pairs[start : start + 2 * d]
         images = [source[g] @ vectors[p] for g, p in batch]
-        old = len(vectors)
-        for x in pivot_columns(_residues([*vectors, *images], d).transpose()):
-            if x >= old:
-                added.append(len(vectors))
-                vectors.append(images[x - old])
-                words.append(batch[x - old])
+        for x in extending_rows([_residues(vectors, d)], [_residues(images, d)]):
+            added.append(len(vectors))
+            vectors.append(images[x])
+            words.append(batch[x])
         if len(vectors) == d:
             break
     return added

@@ -35,12 +35,11 @@ def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
     """
     n = span.ncols
     images = [m.modulo() for m in maps]
-    current, rank = _row_basis(span.modulo())
-    before = -1
-    while before < rank < n:
-        before = rank
-        current, rank = _row_basis(stacked_residues([current, *[current * image for image in images]]))
-    return rank
+    current, before = row_basis(span.modulo()), -1
+    while before < current.nrows() < n:
+        before = current.nrows()
+        current = row_basis(stacked_residues([current, *[current * image for image in images]]))
+    return int(current.nrows())
 
 
 def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
@@ -143,20 +142,64 @@ def _primitive(row: ExactMatrix) -> ExactMatrix:
     return row if content == 0 else row.scale(flint.fmpq(row.den, content))
 
 
-def pivot_columns(image: Any) -> list[int]:
+def pivot_columns(image: flint.nmod_mat) -> list[int]:
     """The pivot columns of a matrix modulo a prime (``flint.nmod_mat``)."""
     reduced, rank = image.rref()
     return echelon_pivots((reduced,), int(rank))
 
 
-def _row_basis(image: Any) -> tuple[Any, int]:
+def row_basis(image: flint.nmod_mat) -> flint.nmod_mat:
+    """The non-zero rows of the reduced echelon form of a matrix modulo a prime.
+
+    Examples
+    --------
+    >>> row_basis(flint.nmod_mat(2, 2, [2, 4, 1, 2], 7))
+    [1, 2]
+    """
     reduced, rank = image.rref()
-    n, rank = image.ncols(), int(rank)
-    return flint.nmod_mat(rank, n, [int(x) for x in reduced.entries()[: rank * n]], image.modulus()), rank
+    return selected_rows(reduced, range(int(rank)))
 
 
-def stacked_residues(blocks: Sequence[Any]) -> Any:
-    """Matrices modulo one prime (``flint.nmod_mat``) with the same number of columns, one below the other."""
+def selected_rows(image: flint.nmod_mat, indices: Sequence[int]) -> flint.nmod_mat:
+    """The rows with the given indices of a matrix modulo a prime.
+
+    Examples
+    --------
+    >>> selected_rows(flint.nmod_mat(2, 2, [2, 4, 1, 2], 7), [1])
+    [1, 2]
+    """
+    n, entries = image.ncols(), image.entries()
+    chosen = [int(x) for i in indices for x in entries[i * n : (i + 1) * n]]
+    return flint.nmod_mat(len(indices), n, chosen, image.modulus())
+
+
+def stacked_residues(blocks: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
+    """Matrices modulo one prime with the same number of columns, one below the other; at least one.
+
+    Examples
+    --------
+    >>> stacked_residues([flint.nmod_mat(1, 2, [2, 4], 7), flint.nmod_mat(1, 2, [1, 2], 7)])
+    [2, 4]
+    [1, 2]
+    """
     rows = sum(b.nrows() for b in blocks)
     entries = [int(x) for b in blocks for x in b.entries()]
     return flint.nmod_mat(rows, blocks[0].ncols(), entries, blocks[0].modulus())
+
+
+def extending_rows(known: Sequence[flint.nmod_mat], candidates: Sequence[flint.nmod_mat]) -> list[int]:
+    """Indices of candidate rows that are independent of all known rows and of the earlier candidates.
+
+    Parameters
+    ----------
+    known, candidates : sequences of flint.nmod_mat
+        Blocks of rows modulo one prime; the known rows are independent.
+
+    Examples
+    --------
+    >>> extending_rows([flint.nmod_mat(1, 2, [2, 4], 7)], [flint.nmod_mat(2, 2, [1, 2, 0, 1], 7)])
+    [1]
+    """
+    rank = sum(b.nrows() for b in known)
+    pivots = pivot_columns(stacked_residues([*known, *candidates]).transpose())
+    return [i - rank for i in pivots if i >= rank]

@@ -15,7 +15,7 @@ from typing import Any
 import flint
 
 from liehom.scalars.fields.exact_field import ExactMatrix
-from liehom.scalars.modular.modular import pivot_columns
+from liehom.scalars.modular.modular import extending_rows, pivot_columns, row_basis, selected_rows, stacked_residues
 
 LARGEST_KERNEL = 64
 SEED_TRIALS = 12
@@ -47,7 +47,7 @@ def intertwining_residues(source: Sequence[ExactMatrix], target: Sequence[ExactM
     if any(m is None for m in (*left, *right)):
         return None
     rng = random.Random(left[0].nrows())
-    spun = _Spun(left, right)
+    spun = _SpunModule(left, right)
     while spun.rank < spun.d:
         if not any(spun.seed(rng) for _ in range(SEED_TRIALS)):
             return None
@@ -64,16 +64,6 @@ def _matrix(nrows: int, ncols: int, entries: list[Any], modulus: int) -> Any:
     return flint.nmod_mat(nrows, ncols, [int(x) for x in entries], modulus)
 
 
-def _stack(blocks: Sequence[Any], ncols: int, modulus: int) -> Any:
-    entries = [x for b in blocks for x in b.entries()]
-    return _matrix(sum(b.nrows() for b in blocks), ncols, entries, modulus)
-
-
-def _rows(matrix: Any, kept: Sequence[int]) -> Any:
-    n, entries = matrix.ncols(), matrix.entries()
-    return _matrix(len(kept), n, [x for i in kept for x in entries[i * n : (i + 1) * n]], matrix.modulus())
-
-
 def _kernel(matrix: Any) -> Any:
     """Rows x with x M = 0."""
     vectors, nullity = matrix.transpose().nullspace()
@@ -82,7 +72,7 @@ def _kernel(matrix: Any) -> Any:
     return _matrix(int(nullity), n, columns, matrix.modulus())
 
 
-class _Spun:
+class _SpunModule:
     """Rows v_j that are independent, each with its images T v_j for every unknown of its seed."""
 
     def __init__(self, left: list[Any], right: list[Any]) -> None:
@@ -97,12 +87,6 @@ class _Spun:
     def rank(self) -> int:
         return int(self.vectors.nrows())
 
-    def _extending(self, rows: Any) -> list[int]:
-        """The numbers of rows that extend the span, in order."""
-        old = self.rank
-        pivots = pivot_columns(_stack([self.vectors, rows], self.d, self.p).transpose())
-        return [x - old for x in pivots if x >= old]
-
     def seed(self, rng: random.Random) -> bool:
         """Spin a vector of a small kernel; whether it was outside the span."""
         kernels = self._kernels(rng)
@@ -111,19 +95,19 @@ class _Spun:
         own, other = kernels
         weights = _matrix(1, own.nrows(), [rng.randrange(self.p) for _ in range(own.nrows())], self.p)
         frontier = weights * own
-        if not self._extending(frontier):
+        if not extending_rows([self.vectors], [frontier]):
             return False
         start = self.rank
-        unknowns = [_rows(other, [c]) for c in range(other.nrows())]
+        unknowns = [selected_rows(other, [c]) for c in range(other.nrows())]
         images = list(unknowns)
-        self.vectors = _stack([self.vectors, frontier], self.d, self.p)
+        self.vectors = stacked_residues([self.vectors, frontier])
         while frontier.nrows() and self.rank < self.d:
-            grown = _stack([frontier * a for a in self.left], self.d, self.p)
-            kept = self._extending(grown)
-            frontier = _rows(grown, kept)
-            unknowns = [_rows(_stack([u * b for b in self.right], self.e, self.p), kept) for u in unknowns]
-            images = [_stack([w, u], self.e, self.p) for w, u in zip(images, unknowns, strict=True)]
-            self.vectors = _stack([self.vectors, frontier], self.d, self.p)
+            grown = stacked_residues([frontier * a for a in self.left])
+            kept = extending_rows([self.vectors], [grown])
+            frontier = selected_rows(grown, kept)
+            unknowns = [selected_rows(stacked_residues([u * b for b in self.right]), kept) for u in unknowns]
+            images = [stacked_residues([w, u]) for w, u in zip(images, unknowns, strict=True)]
+            self.vectors = stacked_residues([self.vectors, frontier])
         self.seeds.append((range(start, self.rank), images))
         return True
 
@@ -143,7 +127,7 @@ class _Spun:
         """The matrix of an element (acting on rows) on the span of the vectors, which is invariant."""
         places = pivot_columns(self.vectors)
         turned = self.vectors.transpose()
-        square, moved = _rows(turned, places), _rows((self.vectors * a).transpose(), places)
+        square, moved = selected_rows(turned, places), selected_rows((self.vectors * a).transpose(), places)
         return square.inv() * moved
 
     def _element(self, rng: random.Random) -> tuple[Any, Any]:
@@ -180,13 +164,12 @@ class _Spun:
         flat = []
         for i in range(weights.nrows()):
             flat += (inverse * self._combined(weights, i)).transpose().entries()
-        found, rank = _matrix(weights.nrows(), self.d * self.e, flat, self.p).rref()
-        return _rows(found, range(int(rank)))
+        return row_basis(_matrix(weights.nrows(), self.d * self.e, flat, self.p))
 
     def _applied(self, coefficients: Any) -> list[Any]:
         """For each unknown the rows sum_j coefficients[., j] T v_j."""
         turned = coefficients.transpose()
-        return [_rows(turned, places).transpose() * w for places, images in self.seeds for w in images]
+        return [selected_rows(turned, places).transpose() * w for places, images in self.seeds for w in images]
 
     def _combined(self, weights: Any, i: int) -> Any:
         """The rows T v_j for the i-th solution."""
@@ -198,7 +181,7 @@ class _Spun:
                 c += 1
             blocks.append(total)
         missing = [_matrix(len(places), self.e, [0] * (len(places) * self.e), self.p) for places, _ in self.seeds]
-        return _stack([m if b is None else b for b, m in zip(blocks, missing, strict=True)], self.e, self.p)
+        return stacked_residues([m if b is None else b for b, m in zip(blocks, missing, strict=True)])
 
 
 def _evaluated(f: Any, a: Any) -> Any:

@@ -17,11 +17,12 @@ import numpy.typing as npt
 
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 from liehom.scalars.fields.rational import prime
-from liehom.scalars.modular.modular import small_residues
+from liehom.scalars.modular.modular import row_basis, small_residues
+from liehom.typing import Array, IntegerArray
 
 PRIMES = 12
 TERMS = 512
-Residues = npt.NDArray[np.float64]
+Residues = Array
 
 
 @final
@@ -56,27 +57,97 @@ class ModularSpan:
     def extend(self, rows: npt.ArrayLike) -> list[int]:
         """Add rows; the numbers of those that are independent of all earlier ones."""
         p = self.modulus
-        rest = np.mod(np.array(rows, dtype=np.float64).reshape(-1, self.ncols), p)
+        rest = remainders(np.array(rows, dtype=np.float64).reshape(-1, self.ncols), p)
         if self.rank:
-            rest = np.mod(rest - product(rest[:, self.pivots], self.rows, p), p)
+            rest = remainders(rest - product(rest[:, self.pivots], self.rows, p), p)
         found, pivots = [], []
-        for i in range(len(rest)):
-            places = np.flatnonzero(rest[i])
-            if not len(places):
+        for i in np.flatnonzero(rest.any(axis=1)).tolist():
+            if self.rank + len(found) == self.ncols:
+                break
+            pivot = int((rest[i] != 0).argmax())
+            if not rest[i, pivot]:
                 continue
-            pivot = int(places[0])
-            rest[i] = np.mod(rest[i] * pow(int(rest[i, pivot]), -1, p), p)
+            rest[i] = remainders(rest[i] * pow(int(rest[i, pivot]), -1, p), p)
             others = np.flatnonzero(rest[:, pivot])
             others = others[others != i]
-            rest[others] = np.mod(rest[others] - rest[others, pivot, None] * rest[i], p)
+            rest[others] = remainders(rest[others] - rest[others, pivot, None] * rest[i], p)
             found.append(i)
             pivots.append(pivot)
         if found:
             new = rest[found]
-            old = np.mod(self.rows - product(self.rows[:, pivots], new, p), p) if self.rank else self.rows
+            old = remainders(self.rows - product(self.rows[:, pivots], new, p), p) if self.rank else self.rows
             self.rows = np.concatenate([old, new])
             self.pivots += pivots
         return found
+
+    def echelon(self) -> tuple[IntegerArray, list[int]]:
+        """The reduced echelon basis (rank, ncols) as int64, and its pivots in increasing order."""
+        order = np.argsort(self.pivots)
+        return self.rows[order].astype(np.int64), sorted(self.pivots)
+
+
+def invariant_span(maps: npt.ArrayLike, rows: npt.ArrayLike, modulus: int) -> ModularSpan:
+    """The smallest space of rows modulo a prime below 2^22 that contains the given rows and is invariant under maps.
+
+    Parameters
+    ----------
+    maps : (k, n, n) array
+        Matrices that act on rows from the right.
+    rows : (m, n) array
+    modulus : int
+
+    Examples
+    --------
+    >>> shift = [[0, 1, 0], [0, 0, 1], [0, 0, 0]]
+    >>> invariant_span([shift], [[0, 2, 0]], 7).echelon()[0].tolist()
+    [[0, 1, 0], [0, 0, 1]]
+    """
+    frontier, matrices = np.asarray(rows, dtype=np.float64), np.asarray(maps, dtype=np.float64)
+    n = frontier.shape[1]
+    span = ModularSpan(modulus, n)
+    frontier = frontier[span.extend(frontier)]
+    while len(frontier) and span.rank < n:
+        images = product(frontier, matrices, modulus).reshape(-1, n)
+        frontier = images[span.extend(images)]
+    return span
+
+
+def left_kernel(matrix: npt.ArrayLike, modulus: int) -> IntegerArray:
+    """A basis of the rows x with x A = 0 modulo a prime below 2^22, as int64.
+
+    Examples
+    --------
+    >>> left_kernel([[1], [4]], 5)
+    array([[1, 1]])
+    """
+    columns = np.asarray(matrix).T
+    n = columns.shape[1]
+    span = ModularSpan(modulus, n)
+    span.extend(columns)
+    reduced, pivots = span.echelon()
+    free = [j for j in range(n) if j not in set(pivots)]
+    rows: IntegerArray = np.zeros((len(free), n), dtype=np.int64)
+    for i, j in enumerate(free):
+        rows[i, j] = 1
+        rows[i, pivots] = -reduced[:, j] % modulus
+    return rows
+
+
+def remainders(values: Residues, modulus: int) -> Residues:
+    """Residues between 0 and p - 1 of integers of size at most 2^53 - p, exactly; faster than ``numpy.mod``.
+
+    Notes
+    -----
+    Where x = k p + r, 0 <= r < p, the quotient x/p is at most k + 1 - 1/p. Rounding cannot lift it to k + 1, because
+    1/p exceeds half the spacing (k + 1) / 2^52 of floats there: (k + 1) p <= x + p < 2^53. So the floor is k.
+
+    Examples
+    --------
+    >>> remainders(np.array([-1.0, 7.0, 2.0**51]), 7)
+    array([6., 0., 1.])
+    """
+    remainder: Residues = values - modulus * np.floor(values / modulus)
+    return remainder
 
 
 def product(left: Residues, right: Residues, modulus: int) -> Residues:
@@ -87,9 +158,9 @@ def product(left: Residues, right: Residues, modulus: int) -> Residues:
     >>> product(np.array([[4.0, 5.0]]), np.array([[2.0], [3.0]]), 7)
     array([[2.]])
     """
-    total: Residues = np.mod(left[..., :TERMS] @ right[..., :TERMS, :], modulus)
+    total: Residues = remainders(left[..., :TERMS] @ right[..., :TERMS, :], modulus)
     for start in range(TERMS, left.shape[-1], TERMS):
-        total = np.mod(total + left[..., start : start + TERMS] @ right[..., start : start + TERMS, :], modulus)
+        total = remainders(total + left[..., start : start + TERMS] @ right[..., start : start + TERMS, :], modulus)
     return total
 
 
@@ -117,12 +188,13 @@ def residues(matrix: ExactMatrix, modulus: int, root: int) -> Residues:
     total = np.zeros(matrix.nrows * matrix.ncols)
     power = 1
     for part in matrix.parts:
-        total = np.mod(total + power * np.array([int(x) % modulus for x in part.entries()], dtype=np.float64), modulus)
+        coordinates = np.array([int(x) % modulus for x in part.entries()], dtype=np.float64)
+        total = remainders(total + power * coordinates, modulus)
         power = power * root % modulus
     return total.reshape(matrix.shape)
 
 
-def flat_echelon(matrices: Sequence[Any]) -> Any:
+def flat_echelon(matrices: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
     """The reduced echelon form of flattened matrices modulo a prime (``flint.nmod_mat``), non-zero rows only.
 
     Examples
@@ -132,9 +204,7 @@ def flat_echelon(matrices: Sequence[Any]) -> Any:
     """
     width, p = matrices[0].nrows() * matrices[0].ncols(), matrices[0].modulus()
     entries = [int(x) for m in matrices for x in m.entries()]
-    reduced, rank = flint.nmod_mat(len(matrices), width, entries, p).rref()
-    kept = [int(x) for x in reduced.entries()[: int(rank) * width]]
-    return flint.nmod_mat(int(rank), width, kept, p)
+    return row_basis(flint.nmod_mat(len(matrices), width, entries, p))
 
 
 def rational_lifts(make: Callable[[int], Any], field: Any) -> Iterator[ExactMatrix]:

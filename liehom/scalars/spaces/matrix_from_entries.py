@@ -1,4 +1,4 @@
-"""Exact matrices from the few entries that are not zero."""
+"""Exact matrices from their non-zero entries."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import flint
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 
 
-def matrix_of_places(
+def matrix_from_entries(
     field: ExactField, tables: Sequence[Mapping[int, int]], nrows: int, ncols: int, den: int = 1
 ) -> ExactMatrix:
-    """The matrix with integer coordinates at flat places, zero elsewhere, over a common denominator.
+    """The matrix with the given integer coordinates at some indices and zero elsewhere, over a common denominator.
 
     Parameters
     ----------
@@ -22,17 +22,22 @@ def matrix_of_places(
     nrows, ncols : int
     den : int
 
+    Returns
+    -------
+    ExactMatrix
+        Shape (nrows, ncols).
+
     Examples
     --------
     >>> from liehom.scalars import QQ
-    >>> print(matrix_of_places(QQ, [{1: 2, 2: -1}], 2, 2, 2))
+    >>> print(matrix_from_entries(QQ, [{1: 2, 2: -1}], 2, 2, 2))
     [0, 1]
     [-1/2, 0]
     """
     parts = []
     for table in tables:
         part = flint.fmpz_mat(nrows, ncols)
-        for place, value in table.items():
-            part[place // ncols, place % ncols] = value
+        for index, value in table.items():
+            part[index // ncols, index % ncols] = value
         parts.append(part)
     return ExactMatrix(field, tuple(parts), den).normalized()
