@@ -13,7 +13,7 @@ from liehom.instances.rigid_body import ClosedFormUpdate as ClosedFormUpdate
 from liehom.instances.rigid_body import ExactOrbit as ExactOrbit
 from liehom.instances.rigid_body import ExactOrbitUpdate as ExactOrbitUpdate
 from liehom.instances.rigid_body import GeneratorTaylor as GeneratorTaylor
-from liehom.instances.rigid_body import OnTime as OnTime
+from liehom.instances.rigid_body import NominalTimeCorrected as NominalTimeCorrected
 from liehom.instances.rigid_body import RigidBody as RigidBody
 from liehom.instances.rigid_body import Update as Update
 from liehom.instances.rigid_body import update_names as update_names

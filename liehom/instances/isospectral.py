@@ -21,7 +21,7 @@ from liehom.homogeneous import GeneratorField
 from liehom.instances.sym_conjugation import SymmetricMatrices
 from liehom.series.jet import Jet
 
-SPREAD = 4.0
+MAX_SPREAD = 4.0
 """A factorization is made of exp(X) for eigenvalues of X at most this far apart: of a condition number of e^4."""
 SPECTRUM_RTOL = 1e-6
 
@@ -169,7 +169,7 @@ def qr_solution(start: Any, t: Any, function: Callable[[Any], Any] | None = None
     values = _values((lambda x: x) if function is None else function, eigenvalues)
     exponents = t[..., None] * values
     exponents = exponents - exponents.max(axis=-1, keepdims=True)
-    parts = max(1, ceil(float(-exponents.min(initial=0.0)) / SPREAD))
+    parts = max(1, ceil(float(-exponents.min(initial=0.0)) / MAX_SPREAD))
     sizes = np.exp(exponents / parts)[..., None, :]
     for _ in range(parts):
         q, r = np.linalg.qr(vectors * sizes @ np.swapaxes(vectors, -1, -2))

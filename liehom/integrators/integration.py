@@ -186,7 +186,7 @@ def integrate(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
         if compile is not None:
-            run.ahead = compiled_steps(run, compile)
+            run.fast_path = compiled_steps(run, compile)
         return run.execute(progress, path)
 
 

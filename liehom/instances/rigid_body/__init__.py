@@ -7,7 +7,7 @@ from liehom.instances.rigid_body.closed_forms import ClosedFormUpdate as ClosedF
 from liehom.instances.rigid_body.exact_orbit import ExactOrbit as ExactOrbit
 from liehom.instances.rigid_body.exact_orbit import ExactOrbitUpdate as ExactOrbitUpdate
 from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor as GeneratorTaylor
-from liehom.instances.rigid_body.nominal_time_corrected import OnTime as OnTime
+from liehom.instances.rigid_body.nominal_time_corrected import NominalTimeCorrected as NominalTimeCorrected
 from liehom.instances.rigid_body.rigid_body import RigidBody as RigidBody
 from liehom.instances.rigid_body.updates import Update as Update
 from liehom.instances.rigid_body.updates import update_names as update_names

@@ -10,17 +10,15 @@ and e_1, e_2, e_3 the elementary symmetric functions of Om.  Where X = 0: R = h 
 from __future__ import annotations
 
 from math import factorial
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 
 from liehom.errors import InputError
 from liehom.homogeneous import Action
+from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.updates import checked_name, scheme, step_sizes
 from liehom.integrators.run.points import points_of
-
-if TYPE_CHECKING:
-    from liehom.instances.rigid_body.rigid_body import RigidBody
 
 
 @final
@@ -41,7 +39,7 @@ class Ingredients:
     True
     """
 
-    def __init__(self, body: RigidBody, n: Any) -> None:
+    def __init__(self, body: FreeBody, n: Any) -> None:
         self.body, self.n = body, n
         once = body.apply(n)
         self.h = dot(n, once)
@@ -147,7 +145,7 @@ class ClosedFormUpdate:
     True
     """
 
-    def __init__(self, body: RigidBody, name: str, exponential: str = "cayley") -> None:
+    def __init__(self, body: FreeBody, name: str, exponential: str = "cayley") -> None:
         if exponential not in ("cayley", "exp"):
             raise InputError(f"closed forms are known for the exponentials 'cayley' and 'exp', not for {exponential!r}")
         self.body, self.name, self.exponential = body, checked_name(name), exponential

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-MEANS = 24  # of the arithmetic-geometric mean: enough for k' = 1e-300
-THETAS = 6  # q^(n^2) with q <= exp(-pi)
-IMAGES = 16  # exp(-pi n) in extended precision
+MEAN_ITERATIONS = 24  # of the arithmetic-geometric mean: enough for k' = 1e-300
+THETA_TERMS = 6  # q^(n^2) with q <= exp(-pi)
+IMAGE_TERMS = 16  # exp(-pi n) in extended precision
 
 
 def jacobi_elliptic(u: Any, square: Any, complement: Any) -> tuple[Any, Any, Any]:
@@ -72,7 +72,7 @@ def quarter_period(complement: Any) -> Any:
     """
     complement = np.asarray(complement)
     a, g = np.ones_like(complement), np.sqrt(np.where(complement > 0, complement, 1))
-    for _ in range(MEANS):
+    for _ in range(MEAN_ITERATIONS):
         a, g = (a + g) / 2, np.sqrt(a * g)
     return np.where(complement > 0, _pi(complement) / (2 * a), np.inf)
 
@@ -88,7 +88,7 @@ def _thetas(u: Any, half: Any, other: Any) -> tuple[Any, Any, Any]:
     ones = np.ones_like(u)
     theta = [np.zeros_like(u), np.zeros_like(u), ones, ones]  # at z
     null = [np.zeros_like(u), ones, ones]  # theta_2, theta_3, theta_4 at 0
-    for n in range(THETAS):
+    for n in range(THETA_TERMS):
         odd = q ** (n * (n + 1))
         theta[0] = theta[0] + 2 * (-1) ** n * odd * np.sin((2 * n + 1) * z)
         theta[1] = theta[1] + 2 * odd * np.cos((2 * n + 1) * z)
@@ -107,7 +107,7 @@ def _images(u: Any, modulus: Any, half: Any, other: Any) -> tuple[Any, Any, Any]
     scale = _pi(u) / (2 * other)
     x, period = scale * u, 2 * scale * half
     sn, cn, dn = np.tanh(x), _sech(x), _sech(x)
-    for n in range(1, IMAGES):
+    for n in range(1, IMAGE_TERMS):
         left, right = n * period - x, n * period + x
         both = _sech(left) + _sech(right)
         dn = dn + both

@@ -10,7 +10,7 @@ a cubic whose root next to t = 0 is sigma_i (1 + t rho + ...).  It always has a 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
 
@@ -18,18 +18,16 @@ from liehom.correctors.step import Generator, LocalStep, OneExponential, solve_i
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.instances.rigid_body.closed_forms import Ingredients, dot
+from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.updates import step_sizes
 from liehom.integrators.run.points import points_of
 from liehom.series.jet import Jet
 from liehom.tracing import Traced
 
-if TYPE_CHECKING:
-    from liehom.instances.rigid_body.rigid_body import RigidBody
-
-ITERATIONS = 8
+NEWTON_ITERATIONS = 8
 # |f'| below which the root is about to meet another one
-LEAST_SLOPE = 0.1
-HALVINGS = 12
+MIN_SLOPE = 0.1
+MAX_HALVINGS = 12
 
 
 @final
@@ -57,7 +55,7 @@ class ExactOrbit(OneExponential):
     True
     """
 
-    def __init__(self, body: RigidBody) -> None:
+    def __init__(self, body: FreeBody) -> None:
         self.body = body
 
     @property
@@ -93,7 +91,7 @@ class OrbitStep(LocalStep):
     (True, True)
     """
 
-    def __init__(self, body: RigidBody, m: Any) -> None:
+    def __init__(self, body: FreeBody, m: Any) -> None:
         self._size = np.sqrt(dot(m, m))
         self._size = np.where(self._size > 0, self._size, 1)
         at = self._at = Ingredients(body, m / self._size)
@@ -121,11 +119,11 @@ class OrbitStep(LocalStep):
         t = h * self._size
         start = self._at.sigma_i + 0 * t
         s = start
-        for _ in range(ITERATIONS):
+        for _ in range(NEWTON_ITERATIONS):
             slope = self._slope(s, t)
-            s = np.where(slope < -LEAST_SLOPE / 2, s - self._value(s, t) / np.where(slope < 0, slope, -1), s)
+            s = np.where(slope < -MIN_SLOPE / 2, s - self._value(s, t) / np.where(slope < 0, slope, -1), s)
         eps = float(np.finfo(s.dtype).eps)
-        kept = (np.abs(self._value(s, t)) <= 16 * eps * (1 + np.abs(s))) & (self._slope(s, t) < -LEAST_SLOPE)
+        kept = (np.abs(self._value(s, t)) <= 16 * eps * (1 + np.abs(s))) & (self._slope(s, t) < -MIN_SLOPE)
         if isinstance(s, Traced):  # where it does not hold the step is not made by compiled code
             s.tape.required.append(Traced(s.tape, np.all(kept)).entries[()])
             return s, kept
@@ -197,7 +195,7 @@ class ExactOrbitUpdate:
     ([0.572, 0.601, 0.558], 0.514)
     """
 
-    def __init__(self, body: RigidBody, step: ExactOrbit) -> None:
+    def __init__(self, body: FreeBody, step: ExactOrbit) -> None:
         self.body, self.step = body, step
         self._action = Action(body.representation, "cayley")
 
@@ -221,7 +219,7 @@ class ExactOrbitUpdate:
         h = step_sizes(dt, point)
         if not bool(np.isfinite(h).all()):
             raise InputError(f"the step size is {dt!r}, expected finite numbers")
-        return self._advance(point, h, HALVINGS)
+        return self._advance(point, h, MAX_HALVINGS)
 
     def _advance(self, m: Any, h: Any, halvings: int) -> tuple[Any, Any]:
         local = OrbitStep(self.body, m)

@@ -1,4 +1,6 @@
-"""OnTime(step, n): a step raised to order n as a trajectory at the nominal time, by isotropy and multiples of psi.
+"""NominalTimeCorrected(step, n): a step of order n as a trajectory at the nominal time.
+
+Isotropy and multiples of psi raise its order.
 
 The system of Theorem 5, (1/2) rho(zeta) w_1 - c w_1 = w_n - z_n, has two unknowns.  `liehom.Corrected` lets c change
 the clock; here the generator makes up for it: adding zeta t^(n-1) - c psi(m) t^n changes the coefficient of t^n by
@@ -49,7 +51,7 @@ class GeneratorTaylor(OneExponential):
 
 
 @final
-class OnTime(OneExponential):
+class NominalTimeCorrected(OneExponential):
     """A step raised in order by isotropy and by multiples of psi(m), without a clock.
 
     Parameters
@@ -69,8 +71,8 @@ class OnTime(OneExponential):
     Examples
     --------
     >>> import liehom as lh
-    >>> OnTime(lh.Euler(), 3)
-    OnTime(Euler(), order=3)
+    >>> NominalTimeCorrected(lh.Euler(), 3)
+    NominalTimeCorrected(Euler(), order=3)
     """
 
     def __init__(self, step: OneExponential, order: int) -> None:
@@ -100,7 +102,7 @@ class OnTime(OneExponential):
         return local
 
     def __repr__(self) -> str:
-        return f"OnTime({self.step!r}, order={self.order})"
+        return f"NominalTimeCorrected({self.step!r}, order={self.order})"
 
 
 @final

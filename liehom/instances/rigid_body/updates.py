@@ -8,7 +8,7 @@ The clock is the nominal one: energy and orbits gain from the correction, trajec
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor, OnTime
+from liehom.instances.rigid_body.free_body import FreeBody
+from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor, NominalTimeCorrected
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import Euler, Heun, LieTaylor
 from liehom.integrators.run.points import points_of
-
-if TYPE_CHECKING:
-    from liehom.instances.rigid_body.rigid_body import RigidBody
 
 
 class Orders(NamedTuple):
@@ -86,17 +84,19 @@ def scheme(name: str, *, cayley: bool = True) -> tuple[str, Step]:
     """The generator ("b" or "o") and the step that an update consists of.
 
     With the true exponential sy4_o is LieTaylor(4) on omega_o; with Cayley the paper chooses another isotropy, by
-    which the conditions of order 4 hold with xi_4 = omega''' + 3 <omega', omega> omega (`OnTime`).
+    which the conditions of order 4 hold with xi_4 = omega''' + 3 <omega', omega> omega (`NominalTimeCorrected`).
 
     Examples
     --------
     >>> scheme("sy4_ib"), scheme("sy4_o")
-    (('b', Corrected(LieTaylor(n=4), order=5)), ('o', OnTime(GeneratorTaylor(n=4), order=4)))
+    (('b', Corrected(LieTaylor(n=4), order=5)), ('o', NominalTimeCorrected(GeneratorTaylor(n=4), order=4)))
     """
     method, variant = checked_name(name).split("_")
     kind = "b" if variant.endswith("b") else "o"
     bases: dict[str, Step] = {"eul": Euler(), "rk2": Heun(), "sy4": LieTaylor(4), "rk4": RKMK("rk4")}
-    base = OnTime(GeneratorTaylor(4), 4) if (method, kind, cayley) == ("sy4", "o", True) else bases[method]
+    base = (
+        NominalTimeCorrected(GeneratorTaylor(4), 4) if (method, kind, cayley) == ("sy4", "o", True) else bases[method]
+    )
     # a step whose energy has order p has one of order p + 1 where its orbit has
     return kind, Corrected(base, ORDERS[name].energy) if "i" in variant else base
 
@@ -142,7 +142,7 @@ class Update:
     (Orders(energy=2, solution=1), (2, 3))
     """
 
-    def __init__(self, body: RigidBody, name: str, exponential: Any = "cayley") -> None:
+    def __init__(self, body: FreeBody, name: str, exponential: Any = "cayley") -> None:
         self.body, self.name = body, checked_name(name)
         self._action = Action(body.representation, exponential)
         kind, self.step = scheme(name, cayley=self._action.exponential.name.startswith("Cayley"))

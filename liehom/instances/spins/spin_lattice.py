@@ -15,7 +15,7 @@ import numpy as np
 
 from liehom.errors import InputError, ShapeError
 
-LEAST_PERIOD = 3
+MIN_PERIOD = 3
 
 
 @final
@@ -56,9 +56,9 @@ class SpinLattice:
         if len(periodic) != len(shape) or any(not isinstance(p, bool | np.bool_) for p in periodic):
             raise InputError(f"periodic is True, False or one of them for each of {len(shape)} axes, got {given!r}")
         for n, closed in zip(shape, periodic, strict=True):
-            if closed and n < LEAST_PERIOD:
+            if closed and n < MIN_PERIOD:
                 raise InputError(
-                    f"an axis of {n} spins cannot be periodic: the least is {LEAST_PERIOD}; take periodic=False"
+                    f"an axis of {n} spins cannot be periodic: the least is {MIN_PERIOD}; take periodic=False"
                 )
         object.__setattr__(self, "shape", tuple(int(n) for n in shape))
         object.__setattr__(self, "periodic", tuple(bool(p) for p in periodic))

@@ -17,7 +17,7 @@ import numpy as np
 from liehom.correctors.conserving.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
-from liehom.integrators.compiled.traced_size import Limits
+from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.run.clock import SLACK
 from liehom.tracing import Kernel, StepGraph, needed, padded
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     from liehom.integrators.run.run import Run
 
 BACKENDS = ("llvm", "jax")
-WIDTH, NARROW = 16, 8
-LONG = 700
+WIDE_LANES, NARROW_LANES = 16, 8
+LONG_OPERATIONS = 700
 """Operations between two loops, from which on blocks are narrow."""
-PATH_BYTES = 64_000_000
-BREATH = 4_000_000_000
+PATH_BYTES_PER_CALL = 64_000_000
+OPERATIONS_PER_CALL = 4_000_000_000
 """Operations, of all lanes together, between two looks at progress, checkpoints and interruptions."""
-ITERATIONS = 5
+ASSUMED_ITERATIONS = 5
 """For so many iterations a loop in a step is taken."""
-LEAST = 8
+MIN_STEPS_PER_CALL = 8
 """Steps that are made in any case, as a pause takes as long as some steps."""
-SHARED = 50_000
+LANE_STEPS_FOR_THREADS = 50_000
 """From so many steps of lanes on, threads share the blocks."""
 
 
@@ -66,7 +66,7 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
     points = run.start.reshape(-1, run.start.shape[-1])
     groups, kept_order = [], None
     if isinstance(run.step, Conserving) and run.options.dt is None and not run.step.linear:
-        kept_order = run.step.kept_order(run.action, run.psi, run.m, run.t)
+        kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
     for d in np.unique(dimensions):
         lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(
@@ -76,20 +76,20 @@ def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
             points[lanes],
             int(d),
             nominal=run.options.nominal,
-            limits=_limits(run) if run.options.dt is None else None,
+            limits=_size_limits(run) if run.options.dt is None else None,
             kept_order=kept_order,
         )
-        groups.append(Group(graph, lanes, backend, points[lanes]))
-    return Compiled(groups)
+        groups.append(LaneGroup(graph, lanes, backend, points[lanes]))
+    return FastPath(groups)
 
 
-def _limits(run: Run) -> Limits:
+def _size_limits(run: Run) -> SizeLimits:
     o = run.options
-    return Limits(o.rtol, o.atol, o.max_step, float(run.end), float(run.direction), float(run.tiny))
+    return SizeLimits(o.rtol, o.atol, o.max_step, float(run.end), float(run.direction), float(run.tiny))
 
 
 @final
-class Group:
+class LaneGroup:
     """The lanes with orbits of one dimension, and their kernel.
 
     Parameters
@@ -104,12 +104,8 @@ class Group:
 
     def __init__(self, graph: StepGraph, lanes: Any, backend: str, points: Any) -> None:
         self.graph, self.lanes = graph, lanes
-        self.kernel: Kernel | JaxKernel
-        self.width = 1 if len(lanes) < NARROW // 2 else NARROW if len(lanes) < 4 * WIDTH else _width(graph)
-        if backend == "jax":
-            self.width, self.kernel = 1, JaxKernel(graph)
-        else:
-            self.kernel = Kernel(graph, self.width)
+        self.width = 1 if backend == "jax" else _width(graph, len(lanes))
+        self.kernel: Kernel | JaxKernel = JaxKernel(graph) if backend == "jax" else Kernel(graph, self.width)
         self.blocks = padded(len(lanes), self.width) // self.width
         rows = [self.padded_row(x) for x in graph.constants(points)]
         self.constants = np.array(rows) if rows else None
@@ -132,7 +128,7 @@ class Group:
     def run(self, arrays: list[Any], steps: int, origin: float, direction: float) -> None:
         """Step all blocks, in threads where that is worth while."""
         count = self.blocks * self.width
-        shared = count * steps >= SHARED and isinstance(self.kernel, Kernel)
+        shared = count * steps >= LANE_STEPS_FOR_THREADS and isinstance(self.kernel, Kernel)
         workers = min(_cores(), self.blocks) if shared else 1
         if workers == 1:
             self.kernel(arrays, count, (0, self.blocks), steps, (origin, direction))
@@ -149,17 +145,17 @@ class Group:
 
 
 @final
-class Compiled:
+class FastPath:
     """The plain steps of a run, made ahead between steps of its own.
 
     How many are made in one call is of no effect on the results: where a call has to pause, the next one goes on.
 
     Parameters
     ----------
-    groups : list of Group
+    groups : list of LaneGroup
     """
 
-    def __init__(self, groups: list[Group]) -> None:
+    def __init__(self, groups: list[LaneGroup]) -> None:
         self.groups = groups
         self.work = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
         self.calls: Any = 0
@@ -167,20 +163,20 @@ class Compiled:
     def __call__(self, run: Run) -> bool:
         """Make plain steps until every trajectory rests, or for a while; whether there are more to be made."""
         lanes = int(np.prod(run.shape, dtype=int))
-        if not run.active.any() or (run.tried is None and not run.taken.any()):
+        if not run.state.active.any() or (run.tried is None and not run.state.taken.any()):
             return False  # the first step is that of the run
-        pace = max(LEAST, BREATH // (self.work * lanes))
-        steps = int(min(run.options.max_steps - 1 - int(np.max(run.taken)), pace))
+        most = max(MIN_STEPS_PER_CALL, OPERATIONS_PER_CALL // (self.work * lanes))
+        steps = int(min(run.options.max_steps - 1 - int(np.max(run.state.taken)), most))
         if run.keeps:
-            steps = min(steps, max(1, PATH_BYTES // (8 * lanes * (run.start.shape[-1] + 2))))
+            steps = min(steps, max(1, PATH_BYTES_PER_CALL // (8 * lanes * (run.start.shape[-1] + 2))))
         if steps < 1:
             return False
-        state = _State(run)
+        state = _Lanes(run)
         for group in self.groups:
             state.step(group, steps)
         # psi is counted for the trajectory that calls it most, over all calls
         before, self.calls = np.max(self.calls), self.calls + state.calls
-        run.calls += int(np.max(self.calls) - before)
+        run.state.calls += int(np.max(self.calls) - before)
         state.hand_back()
         return bool((state.going > 0).any())
 
@@ -188,38 +184,38 @@ class Compiled:
 def _operations(graph: StepGraph) -> int:
     """About how many operations a step has."""
     rows = needed(graph.outputs)
-    return len(rows) + ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop")
+    return len(rows) + ASSUMED_ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop")
 
 
-class _State:
+class _Lanes:
     """The lanes of a run as rows, while kernels change them."""
 
     def __init__(self, run: Run) -> None:
         self.run = run
         size = run.start.shape[-1]
-        self.m = run.m.reshape(-1, size).T.astype(np.float64, order="C", copy=True)
-        self.t = np.array(run.t, dtype=np.float64).reshape(-1)
+        self.m = run.state.m.reshape(-1, size).T.astype(np.float64, order="C", copy=True)
+        self.t = np.array(run.state.t, dtype=np.float64).reshape(-1)
         self.adaptive = run.options.dt is None
         if self.adaptive:  # proposed sizes, without a sign
-            self.h = np.array(run.h, dtype=np.float64).reshape(-1)
+            self.h = np.array(run.state.h, dtype=np.float64).reshape(-1)
         else:
             self.h = (run.direction * np.broadcast_to(run.options.dt, run.shape)).reshape(-1)
         self.limit = np.full(self.t.shape, float(run.end))
-        if run.samples is not None and len(run.samples.times):
-            done, times = run.samples.done.reshape(-1), run.samples.times
+        if run.state.samples is not None and len(run.state.samples.times):
+            done, times = run.state.samples.done.reshape(-1), run.state.samples.times
             ahead = times[np.minimum(done, len(times) - 1)]
             self.limit = np.where(done < len(times), ahead, self.limit)
         # without a proposal the first size is for the run to find
-        self.alive = run.active.reshape(-1) & np.isfinite(self.h)
+        self.alive = run.state.active.reshape(-1) & np.isfinite(self.h)
         self.going = np.zeros(self.t.shape)
-        self.before = run.taken.reshape(-1).astype(np.float64)
+        self.before = run.state.taken.reshape(-1).astype(np.float64)
         self.count = self.before.copy()
         self.tries = np.zeros(self.t.shape)
         self.paths: list[tuple[Any, Any, Any, Any]] = []
         self.accounts: list[tuple[Any, dict[str, Any]]] = []
         self.calls = np.zeros(self.t.shape)
 
-    def step(self, group: Group, steps: int) -> None:
+    def step(self, group: LaneGroup, steps: int) -> None:
         """Let a kernel step its lanes."""
         run, graph, lanes = self.run, group.graph, group.lanes
         m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
@@ -265,13 +261,13 @@ class _State:
         most = int(self.tries.max(initial=0))
         if most == 0:
             return
-        run.m = self.m.T.copy().reshape(run.start.shape)
-        run.t = self.t.reshape(shape) if shape else np.asarray(self.t[0])
+        run.state.m = self.m.T.copy().reshape(run.start.shape)
+        run.state.t = self.t.reshape(shape) if shape else np.asarray(self.t[0])
         if self.adaptive:
-            run.h = self.h.reshape(shape)
-        run.taken = run.taken + new.reshape(shape)
+            run.state.h = self.h.reshape(shape)
+        run.state.taken = run.state.taken + new.reshape(shape)
         for lanes, extra in self.accounts:
-            run.account.add_compiled(lanes, extra)
+            run.state.statistics.add_compiled(lanes, extra)
         if run.keeps:
             self._keep(new, most)
 
@@ -292,7 +288,7 @@ class _State:
         else:
             moved = np.arange(most)[:, None] < new
             sizes = np.where(moved, self.h, 0.0)
-        run.path.extend(
+        run.state.path.extend(
             times.reshape(most, *shape),
             points.reshape(most, *run.start.shape),
             sizes.reshape(most, *shape),
@@ -300,10 +296,12 @@ class _State:
         )
 
 
-def _width(graph: StepGraph) -> int:
-    """Lanes of a block: wide ones hide how long operations take, in long code they run out of registers."""
+def _width(graph: StepGraph, lanes: int) -> int:
+    """Lanes of a block: wide blocks hide how long operations take; in long code they run out of registers."""
+    if lanes < 4 * WIDE_LANES:
+        return 1 if lanes < NARROW_LANES // 2 else NARROW_LANES
     ops = needed(graph.outputs)
-    return WIDTH if len(ops) < LONG * (1 + sum(x.op in ("expv", "loop") for x in ops)) else NARROW
+    return WIDE_LANES if len(ops) < LONG_OPERATIONS * (1 + sum(x.op in ("expv", "loop") for x in ops)) else NARROW_LANES
 
 
 def _cores() -> int:

@@ -23,9 +23,9 @@ from liehom.series.arrays import is_traced
 from liehom.tracing import StepGraph
 from liehom.tracing.jax_code import evaluate_with_jax
 
-SPARE = 1.5
+STEPS_PER_NOMINAL_STEP = 1.5
 """A corrected clock may take so many times the nominal number of steps; where it takes more the result is nan."""
-NEWTON = 6
+NEWTON_ITERATIONS = 6
 
 
 def integrate_on_jax(
@@ -122,7 +122,7 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
     h, n = direction * dt, graph.size
     constants = {-1 - i: c for i, c in enumerate(_constants(graph, m))}
     gaps = np.abs(np.diff(np.concatenate([[span[0]], np.asarray(times)])))
-    most = ceil(float(gaps.max(initial=0.0)) / dt * (1.0 if graph.elapsed is None else SPARE)) + 1
+    most = ceil(float(gaps.max(initial=0.0)) / dt * (1.0 if graph.elapsed is None else STEPS_PER_NOMINAL_STEP)) + 1
 
     def step(m: Any, t: Any, size: Any) -> tuple[Any, Any]:
         outputs = [*graph.point, *[x for x in (graph.elapsed, graph.solved) if x is not None]]
@@ -138,7 +138,7 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
         made = evaluate_with_jax(coefficients, {**dict(enumerate(m)), n: t, **constants}, differentiable=True)
         found = dict(zip([k for k, _ in graph.clock], made, strict=True))
         s = left
-        for _ in range(NEWTON if found else 0):
+        for _ in range(NEWTON_ITERATIONS if found else 0):
             tau = s + sum(c * s**k for k, c in found.items())
             s = s + (left - tau) / (1 + sum(k * c * s ** (k - 1) for k, c in found.items()))
         return s
@@ -154,7 +154,7 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
         state, _ = lax.scan(plain, state, None, length=most)
         m, t, _ = state
         left = time - t
-        reached = direction * left <= SPARE * 2 * dt
+        reached = direction * left <= STEPS_PER_NOMINAL_STEP * 2 * dt
         return state, jnp.where(reached, step(m, t, size_for(m, t, left))[0], jnp.nan)
 
     t = jnp.full(m.shape[1:], span[0], dtype=m.dtype)

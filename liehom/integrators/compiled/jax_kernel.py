@@ -15,13 +15,13 @@ from liehom.integrators.run.clock import SLACK
 from liehom.tracing import StepGraph, needed
 from liehom.tracing.jax_code import evaluate_with_jax
 
-CHUNK = 256
+MAX_STORED_STEPS = 256
 """Steps are stored in blocks of powers of 2, at most so many, so that few functions are compiled."""
 
 
-SLOWER = 16
+CPU_OPERATION_COST = 16
 _JITTED: dict[str, Any] = {}
-MOST = 64
+MAX_JITTED = 64
 
 
 def _fingerprint(graph: StepGraph) -> str:
@@ -54,10 +54,10 @@ class JaxKernel:
         except ImportError:
             raise TraceError('compile="jax" needs the extra: pip install "liehom[jax]"') from None
         self.graph = graph
-        self.cost = SLOWER if jax.default_backend() == "cpu" else 1
+        self.cost = CPU_OPERATION_COST if jax.default_backend() == "cpu" else 1
         key = _fingerprint(graph)
         if key not in _JITTED:
-            if len(_JITTED) >= MOST:
+            if len(_JITTED) >= MAX_JITTED:
                 _JITTED.pop(next(iter(_JITTED)))
             _JITTED[key] = jax.jit(self._loop, static_argnames="stored", **_how())
         self._jit = _JITTED[key]
@@ -73,7 +73,7 @@ class JaxKernel:
                 state, _ = self._jit(state, fixed, steps, stored=0)
             done = 0
             while path is not None and done < steps and np.any(np.asarray(state[3]) > 0):
-                size = min(CHUNK, 1 << (steps - done).bit_length() - 1)
+                size = min(MAX_STORED_STEPS, 1 << (steps - done).bit_length() - 1)
                 state, (points, times, sizes) = self._jit(state, fixed, size, stored=size)
                 path[done : done + size], path_t[done : done + size] = points, times
                 if path_h is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.homogeneous import Action
 from liehom.integrators.run.control import (
-    GROWTH,
+    MAX_GROWTH,
     Tolerance,
     defects_of,
     is_large_enough,
@@ -21,7 +21,7 @@ from liehom.integrators.run.control import (
 )
 
 
-class Limits(NamedTuple):
+class SizeLimits(NamedTuple):
     """What sizes are adapted to: numbers of a run, the same or not for all trajectories.
 
     Attributes
@@ -45,13 +45,13 @@ class Limits(NamedTuple):
 
 
 def tried_size(
-    limits: Limits, action: Action, psi: Generator, local: LocalStep, step: Step, m: Any, t: Any, proposal: Any
+    limits: SizeLimits, action: Action, psi: Generator, local: LocalStep, step: Step, m: Any, t: Any, proposal: Any
 ) -> tuple[Any, Any]:
     """The signed size of the next step, and whether it is one that a run would not fail by.
 
     Parameters
     ----------
-    limits : Limits
+    limits : SizeLimits
     action, psi
     local : LocalStep
         ``step.at(action, psi, m, t)``
@@ -65,7 +65,7 @@ def tried_size(
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
     >>> action, psi, m = lh.Action(field.representation), Generator(field, 1), np.array([1.0, 0.0])
     >>> local = lh.RKMK("heun").at(action, psi, m, np.array([0.0]))
-    >>> limits = Limits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
+    >>> limits = SizeLimits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
     >>> h, certain = tried_size(limits, action, psi, local, lh.RKMK("heun"), m, np.array(1.0), np.array(8.0))
     >>> float(h), bool(certain)
     (-0.5, True)
@@ -79,12 +79,12 @@ def tried_size(
     return limits.direction * h, is_large_enough(h, limits.tiny, left)
 
 
-def judgement(limits: Limits, local: LocalStep, m: Any, size: Any) -> tuple[Any, Any]:
+def judgement(limits: SizeLimits, local: LocalStep, m: Any, size: Any) -> tuple[Any, Any]:
     """Whether a step is accepted, and the size that is proposed for the next one, for a signed size (..., 1).
 
     Examples
     --------
-    >>> limits = Limits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
+    >>> limits = SizeLimits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
     >>> accepted, proposal = judgement(limits, LocalStep(lambda h: ()), np.zeros(3), np.array([-0.25]))
     >>> bool(accepted), float(proposal)
     (True, 2.0)
@@ -92,6 +92,6 @@ def judgement(limits: Limits, local: LocalStep, m: Any, size: Any) -> tuple[Any,
     h = size[..., 0]
     estimate = getattr(local, "estimate", None)
     if estimate is None:
-        return True, GROWTH * np.abs(h)
+        return True, MAX_GROWTH * np.abs(h)
     allowed = Tolerance(limits.rtol, limits.atol).norm(m)
     return judged(estimate(size), allowed, h, local.estimate_order)  # type: ignore[attr-defined]

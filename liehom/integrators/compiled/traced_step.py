@@ -15,19 +15,19 @@ from liehom.correctors.step import Generator, Step, apply_factors
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import evenness
-from liehom.integrators.compiled.traced_size import Limits, judgement, tried_size
-from liehom.integrators.run.clock import has_clock, pace
-from liehom.integrators.run.conservation_account import REACHED
+from liehom.integrators.compiled.traced_size import SizeLimits, judgement, tried_size
+from liehom.integrators.run.clock import clock_at, has_clock
+from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
 from liehom.integrators.run.control import ERROR_TERMS
 from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
 
-CALM = 0.8
+MAX_CLOCK_DEVIATION = 0.8
 """A clock certainly runs if tau' is that close to 1 over the whole step."""
 
 
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, *, nominal: bool,
-    limits: Limits | None = None, kept_order: int | None = None,
+    limits: SizeLimits | None = None, kept_order: int | None = None,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
@@ -39,7 +39,7 @@ def traced_step(
     orbit_dimension : int
     nominal : bool
         Whether time advances by the step size rather than by the step's own clock.
-    limits : Limits, optional
+    limits : SizeLimits, optional
         Adapt the step size to them.
     kept_order : int, optional
         ``Conserving.kept_order``, which the sizes of a conserving step depend on.
@@ -70,7 +70,7 @@ def traced_step(
 
 def _traced(
     action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool,
-    limits: Limits | None, kept_order: int | None,
+    limits: SizeLimits | None, kept_order: int | None,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
     even = action.even
@@ -85,10 +85,10 @@ def _traced(
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     psi.prepared[step] = kept_order
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
-    given_limits: Limits | None = None
+    given_limits: SizeLimits | None = None
     certain: Any = True
     if limits is not None:
-        given_limits = Limits._make(Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in limits)
+        given_limits = SizeLimits._make(Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in limits)
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
     size = h[..., None]
     made = apply_factors(action, local.factors(size), m)
@@ -96,14 +96,14 @@ def _traced(
     clock: tuple[tuple[int, Expr], ...] = ()
     if has_clock(local) and not nominal:
         passed, inner = _number(tape, local.time(h)), local.base if isinstance(local, ConservingStep) else local
-        runs, clock = _runs(tape, inner, h), _coefficients(tape, inner)
+        runs, clock = _clock_is_admissible(tape, inner, h), _coefficients(tape, inner)
         if limits is not None:  # larger steps than fixed ones: the clock is looked at as closely as it can be
-            runs = _number(tape, pace(local, h)[0])
+            runs = _number(tape, clock_at(local, h)[0])
     sizes = None
     if given_limits is not None:
         passed = _number(tape, h) if passed is None else passed
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
-    worst, summed = _account(tape, local, step, size)
+    worst, summed = _statistics(tape, local, step, size)
     solved = reduce(tape.both, tape.required) if tape.required else None
     plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
     runs = reduce(tape.both, plain) if plain else None
@@ -135,7 +135,7 @@ def _coefficients(tape: Tape, local: Any) -> tuple[tuple[int, Expr], ...]:
     return tuple((k, _number(tape, c)) for k, c in enumerate(local.correction.clock) if k > 1 and c is not None)
 
 
-def _runs(tape: Tape, local: Any, h: Any) -> Expr | None:
+def _clock_is_admissible(tape: Tape, local: Any, h: Any) -> Expr | None:
     """Whether |tau' - 1| is small over the step, by the sizes of the coefficients."""
     if not isinstance(local, CorrectedStep):
         raise TraceError("a clock that is not that of a corrected step is not compiled")
@@ -147,10 +147,10 @@ def _runs(tape: Tape, local: Any, h: Any) -> Expr | None:
         if c is not None:
             term = k * abs(c) * power
             total = term if total is None else total + term
-    return None if total is None else _number(tape, total < CALM)
+    return None if total is None else _number(tape, total < MAX_CLOCK_DEVIATION)
 
 
-def _account(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str, Expr], dict[str, Expr]]:
+def _statistics(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str, Expr], dict[str, Expr]]:
     """What the report has of a step: numbers of which the largest is kept, and numbers that are summed up."""
     largest: dict[str, Any] = {}
     summed: dict[str, Any] = {}
@@ -159,7 +159,7 @@ def _account(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str, E
         tape.required.append(_number(tape, made.left | (made.rank >= made.wanted)))
         largest |= {"iterations": made.iterations, "defect": made.defect}
         summed |= {
-            "missed": np.where(made.units > REACHED, 1.0, 0.0),
+            "missed": np.where(made.units > CONSERVED_ROUNDOFFS, 1.0, 0.0),
             "left": np.where(made.left, 1.0, 0.0),
             "usual": np.where(made.left, 0.0, 1.0),
         }

@@ -12,7 +12,7 @@ MARGIN = 10.0
 NAN = math.nan
 
 
-class Row(NamedTuple):
+class ConvergenceRow(NamedTuple):
     """One step size; the slopes are to the previous row, NaN where they mean nothing."""
 
     dt: float
@@ -96,10 +96,10 @@ class ConvergenceTable:
         return _last(self.orbit_slopes), _last(self.trajectory_slopes)
 
     @property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[ConvergenceRow, ...]:
         """The rows of the table."""
         columns = (self.dts, self.orbit_errors, self.orbit_slopes, self.trajectory_errors, self.trajectory_slopes)
-        return tuple(Row(*row) for row in zip(*columns, self.floors, strict=True))
+        return tuple(ConvergenceRow(*row) for row in zip(*columns, self.floors, strict=True))
 
     def __str__(self) -> str:
         count = f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
@@ -144,7 +144,7 @@ class ConvergenceTable:
         dt,orbit_error,orbit_slope,trajectory_error,trajectory_slope,floor
         """
         rows = [",".join("" if math.isnan(x) else repr(float(x)) for x in row) for row in self.rows]
-        return "\n".join([",".join(Row._fields), *rows]) + "\n"
+        return "\n".join([",".join(ConvergenceRow._fields), *rows]) + "\n"
 
     def _cells(self) -> list[list[str]]:
         body = []

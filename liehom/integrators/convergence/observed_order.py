@@ -20,7 +20,7 @@ from liehom.homogeneous import GeneratorField
 from liehom.integrators.convergence.convergence_table import MARGIN, NAN, ConvergenceTable
 from liehom.integrators.convergence.orbit_error import orbit_distance
 from liehom.integrators.convergence.reference import Reference
-from liehom.integrators.ensembles.ensemble_problem import Problem, all_solved
+from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, all_solved
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike
@@ -94,7 +94,7 @@ def observed_order(
     if reference is not None and not isinstance(reference, Reference):
         raise InputError(f"reference is {reference!r}, expected a liehom.integrators.Reference")
     options = {"step": step, "exponential": exponential, "clock": clock, "compile": compile}
-    problems = [Problem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
+    problems = [EnsembleProblem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
     if not any(run.success for run in runs):
         raise ConvergenceError(f"no step size came through; the smallest, {sizes[-1]}: {runs[-1].message}")

@@ -16,7 +16,7 @@ from liehom.integrators.run.points import points_of
 ITERATIONS = 100
 HALVINGS = 30
 # a Newton step goes at most this share of |F'| / |F''|, over which the tangent turns or changes its length by itself
-TRUST = 0.5
+TRUST_FRACTION = 0.5
 
 
 def orbit_distance(reference: Reference, y: Any, t: Any, *, window: Any = None) -> tuple[Any, Any]:
@@ -113,7 +113,7 @@ def _newton_step(reference: Reference, y: Any, s: Any) -> tuple[Any, Any]:
     ahead = np.sum(rest * first / safe[..., None], axis=-1)
     curvature = np.sum(rest * second / safe[..., None], axis=-1)
     steepness = np.where(curvature < 0.75 * safe, safe - curvature, safe)
-    bound = TRUST * np.divide(safe, bend, out=np.full_like(safe, np.inf), where=bend > 0)
+    bound = TRUST_FRACTION * np.divide(safe, bend, out=np.full_like(safe, np.inf), where=bend > 0)
     return np.where(moves, np.clip(ahead / steepness, -bound, bound), 0), speed
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.integrators.ensembles.ensemble_problem import Fields, Problem, solved
+from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, Fields, solved
 from liehom.integrators.ensembles.merging import from_shard, merged, to_shard
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.progress import Progress
@@ -25,7 +25,7 @@ from liehom.parallel import ExecutorLike, completed, open_store
 
 CHUNK = 1024
 """Trajectories of a chunk, where the caller does not say: many enough to hide what a step costs besides them."""
-NOT_HERE = {
+UNSUPPORTED_OPTIONS = {
     "dense_output": "take t_eval: the interpolant of an ensemble is not put together from chunks",
     "checkpoint": "give store=...: what is finished is kept there",
     "checkpoint_every": "give store=...: what is finished is kept there",
@@ -169,14 +169,14 @@ def ensemble_parts(
     0 1 (1, 2, 5)
     1 3 (2, 2, 5)
     """
-    for name in NOT_HERE.keys() & options.keys():
-        raise InputError(f"{name} is no option of an ensemble in chunks; {NOT_HERE[name]}")
+    for name in UNSUPPORTED_OPTIONS.keys() & options.keys():
+        raise InputError(f"{name} is no option of an ensemble in chunks; {UNSUPPORTED_OPTIONS[name]}")
     start = points_of(y0)
     if start.ndim < 2 or not len(start):
         raise ShapeError(f"y0 has shape {start.shape}, expected an ensemble, (n, ..., N); one run is `integrate`'s")
     if isinstance(chunk, bool) or not isinstance(chunk, int | np.integer) or chunk < 1:
         raise InputError(f"chunk is {chunk!r}, expected the number of trajectories of a task")
-    problem = Problem(field, t_span, start, _checked(parameters, field, len(start)), options)
+    problem = EnsembleProblem(field, t_span, start, _checked(parameters, field, len(start)), options)
     bounds = _bounds(len(start), int(chunk))
     whole = problem.check(bounds)
     kept = None if store is None else open_store(store, problem.fingerprint(whole, bounds))

@@ -1,9 +1,8 @@
-"""Problem: one call of `integrate`, as a value that can be cut into rows, sent to a worker and told from others."""
+"""EnsembleProblem: one call of `integrate` as a value, which can be cut into rows, sent to a worker and compared."""
 
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -14,7 +13,7 @@ from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.ensembles.merging import from_shard, to_shard
 from liehom.integrators.integration import integrate
-from liehom.integrators.run.checkpoint import digest
+from liehom.integrators.run.checkpoint import digest, stable_repr
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike, completed, open_store
 
@@ -24,14 +23,14 @@ ARRAYS = ("dt", "t_eval")
 Fields = GeneratorField | Callable[..., GeneratorField]
 
 
-class Problem(NamedTuple):
+class EnsembleProblem(NamedTuple):
     """One call of `integrate`, or of an ensemble that is cut into such calls: the tasks that workers get.
 
     Examples
     --------
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
-    >>> Problem(field, (0, 1), np.eye(2), {}, {"dt": 0.5}).task((1, 2)).start
+    >>> EnsembleProblem(field, (0, 1), np.eye(2), {}, {"dt": 0.5}).task((1, 2)).start
     array([[0., 1.]])
     """
 
@@ -41,7 +40,7 @@ class Problem(NamedTuple):
     parameters: dict[str, Any]
     options: dict[str, Any]
 
-    def task(self, rows: tuple[int, int]) -> Problem:
+    def task(self, rows: tuple[int, int]) -> EnsembleProblem:
         """The problem of some rows."""
         here = slice(*rows)
         options = self.options
@@ -52,7 +51,7 @@ class Problem(NamedTuple):
             except ValueError:
                 raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
         mine = {name: array[here] for name, array in self.parameters.items()}
-        return Problem(self.field, self.t_span, self.start[here], mine, options)
+        return EnsembleProblem(self.field, self.t_span, self.start[here], mine, options)
 
     def ends(self) -> tuple[float, float]:
         """Start and end as floats; what is no time is refused by `integrate`."""
@@ -104,21 +103,21 @@ class Problem(NamedTuple):
         return digest(repr(texts), repr(bounds), span, self.start, *numbers, *parameters, *matrices, here, there)
 
 
-def solved(task: Problem) -> Solution:
+def solved(task: EnsembleProblem) -> Solution:
     """The solution of a problem: what workers do.
 
     Examples
     --------
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
-    >>> solved(Problem(field, (0, 1), np.array([1.0, 0.0]), {}, {"dt": 0.5})).n_steps
+    >>> solved(EnsembleProblem(field, (0, 1), np.array([1.0, 0.0]), {}, {"dt": 0.5})).n_steps
     2
     """
     return integrate(task.made(), task.t_span, task.start, **task.options)
 
 
 def all_solved(
-    problems: Sequence[Problem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
+    problems: Sequence[EnsembleProblem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
 ) -> list[Solution]:
     """The solutions of some problems in their order, on an executor; kept in a store, if one is given.
 
@@ -126,7 +125,7 @@ def all_solved(
     --------
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
-    >>> problems = [Problem(field, (0, 1), np.eye(2), {}, {"dt": dt}) for dt in (0.5, 0.25)]
+    >>> problems = [EnsembleProblem(field, (0, 1), np.eye(2), {}, {"dt": dt}) for dt in (0.5, 0.25)]
     >>> [solution.y.shape for solution in all_solved(problems, None, None)]
     [(2, 2, 3), (2, 2, 5)]
     """
@@ -160,4 +159,4 @@ def _text(value: Any) -> str:
     if callable(value) and hasattr(value, "__qualname__"):
         marks = [repr(getattr(value, name, None)) for name in ("terminal", "direction")]
         return f"{value.__module__}.{value.__qualname__} {marks}"
-    return re.sub(" at 0x[0-9a-f]+", "", repr(value))
+    return stable_repr(value)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from liehom.errors import FormatError
-from liehom.integrators.run.conservation_account import ConservationReport
+from liehom.integrators.run.conservation_statistics import ConservationReport
 from liehom.integrators.run.solution import Report, Solution
 
-SPLIT = ", trajectory "
+TRAJECTORY_MARK = ", trajectory "
 """What follows it in a message says which trajectory of the part failed."""
 
 
@@ -199,7 +199,7 @@ def _message(parts: Sequence[Solution], statuses: Any, status: int) -> str:
     failed = np.argwhere(statuses < 0)
     index = tuple(int(i) for i in failed[0])
     shown = index[0] if len(index) == 1 else index
-    return f"{message.split(SPLIT)[0]}{SPLIT}{shown}; {len(failed)} of {statuses.size} failed."
+    return f"{message.split(TRAJECTORY_MARK)[0]}{TRAJECTORY_MARK}{shown}; {len(failed)} of {statuses.size} failed."
 
 
 def _least_rank(ranks: Sequence[int]) -> int:

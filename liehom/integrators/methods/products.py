@@ -27,7 +27,7 @@ from liehom.series.arrays import is_exact
 RTOL = 1e-10
 
 
-class Point(NamedTuple):
+class StagePoint(NamedTuple):
     """How a point is reached: from which earlier one, by rows of coefficients, first applied first."""
 
     start: int
@@ -67,12 +67,12 @@ class Scheme:
             )
 
     @property
-    def stages(self) -> tuple[Point, ...]:
+    def stages(self) -> tuple[StagePoint, ...]:
         """How Y_1 = m, Y_2, ... are reached."""
         return self._read[:-1]
 
     @property
-    def result(self) -> Point:
+    def result(self) -> StagePoint:
         """How the result is reached."""
         return self._read[-1]
 
@@ -82,11 +82,12 @@ class Scheme:
         return self._times[:-1]
 
     @cached_property
-    def _read(self) -> tuple[Point, ...]:
+    def _read(self) -> tuple[StagePoint, ...]:
         rest = (
-            Point(s, tuple(tuple(map(Fraction, row.split())) for row in rows.split(";"))) for s, rows in self.points
+            StagePoint(s, tuple(tuple(map(Fraction, row.split())) for row in rows.split(";")))
+            for s, rows in self.points
         )
-        return (Point(0, ()), *rest)
+        return (StagePoint(0, ()), *rest)
 
     @cached_property
     def _times(self) -> tuple[Fraction, ...]:

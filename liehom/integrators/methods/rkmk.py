@@ -23,17 +23,17 @@ from liehom.integrators.tableaux.tableaux import tableau as tableau_of
 from liehom.scalars import QQ
 from liehom.series.arrays import is_exact, is_jax, namespace, zeros
 
-Row = tuple[tuple[int, Any], ...]
+SparseRow = tuple[tuple[int, Any], ...]
 """The entries of a row of coefficients that are not zero, with their places."""
 
 
 class Coefficients(NamedTuple):
     """A tableau in the numbers of a computation; `difference` is b - embedded_b."""
 
-    a: tuple[Row, ...]
-    b: Row
+    a: tuple[SparseRow, ...]
+    b: SparseRow
     c: tuple[Any, ...]
-    difference: Row
+    difference: SparseRow
 
 
 @final
@@ -205,7 +205,7 @@ class _Stages:
         self._kept: Any = None
         self._known: list[Any] = []
 
-    def combined(self, weights: Row, h: Any) -> Any:
+    def combined(self, weights: SparseRow, h: Any) -> Any:
         """sum_i weights[i] k_i."""
         return _combined(weights, self._through(h, weights[-1][0] + 1))
 
@@ -286,11 +286,11 @@ def _coefficients(rows: list[list[Any]]) -> Coefficients:
     return Coefficients(tuple(_sparse(row) for row in a), _sparse(b), tuple(c), _sparse(difference))
 
 
-def _sparse(row: list[Any]) -> Row:
+def _sparse(row: list[Any]) -> SparseRow:
     return tuple((j, x) for j, x in enumerate(row) if x != 0)
 
 
-def _combined(row: Row, terms: Any) -> Any:
+def _combined(row: SparseRow, terms: Any) -> Any:
     """sum_j row[j] terms[j]; None if the row has no entries."""
     total = None
     for j, weight in row:

@@ -4,7 +4,7 @@
 user gets. Used by `liehom.integrators.integration` and by the compiled runs; see docs/tutorials/integrating.md.
 """
 
-from liehom.integrators.run.conservation_account import ConservationReport as ConservationReport
+from liehom.integrators.run.conservation_statistics import ConservationReport as ConservationReport
 from liehom.integrators.run.dense import DenseSolution as DenseSolution
 from liehom.integrators.run.solution import Report as Report
 from liehom.integrators.run.solution import Solution as Solution

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import re
 import struct
 import zipfile
 import zlib
@@ -20,6 +21,8 @@ import numpy as np
 from liehom.errors import FormatError, InputError
 
 FORMAT = "liehom-checkpoint 1"
+FORMER_NAMES = {"NominalTimeCorrected(": "OnTime("}
+"""Parts of a repr, with what stood there in version 0.1.0, whose checkpoints and stores are still continued."""
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
 """What reading a damaged archive may raise, besides the errors of the archive's own formats."""
 
@@ -149,6 +152,20 @@ def digest(*parts: Any) -> str:
             array = np.stack([array.astype(np.float64), (array - array.astype(np.float64)).astype(np.float64)])
         found.update(np.ascontiguousarray(array).tobytes() if array.dtype.kind != "O" else repr(part).encode())
     return found.hexdigest()
+
+
+def stable_repr(value: object) -> str:
+    """The repr of a step or an option, equal in every process and as version 0.1.0 wrote it in fingerprints.
+
+    Examples
+    --------
+    >>> stable_repr(print), stable_repr([object()])
+    ('<built-in function print>', '[<object object>]')
+    """
+    text = re.sub(" at 0x[0-9a-f]+", "", repr(value))
+    for name, former in FORMER_NAMES.items():
+        text = text.replace(name, former)
+    return text
 
 
 def _temporary(target: Path) -> Path:

@@ -11,11 +11,11 @@ import numpy as np
 
 from liehom.correctors.step import LocalStep
 
-ITERATIONS = 60
-SLOWEST = 0.2
-FASTEST = 5.0
-PARTS = 4
-HALVINGS = 40
+NEWTON_ITERATIONS = 60
+MIN_RATE = 0.2
+MAX_RATE = 5.0
+RATE_SAMPLES = 4
+MAX_HALVINGS = 40
 SLACK = 1e-9
 """A step that ends this close to the end of the integration, in units of the step, ends there."""
 
@@ -31,23 +31,23 @@ def has_clock(local: LocalStep) -> bool:
     return type(local).time is not LocalStep.time
 
 
-def pace(local: LocalStep, h: Any) -> tuple[Any, Any]:
+def clock_at(local: LocalStep, h: Any) -> tuple[Any, Any]:
     """Whether the clock runs over [0, h], bool (...,), and tau(h), for h of shape (...,).
 
     Examples
     --------
     >>> import numpy as np
-    >>> runs, passed = pace(LocalStep(lambda h: ()), np.array(0.1))
+    >>> runs, passed = clock_at(LocalStep(lambda h: ()), np.array(0.1))
     >>> bool(runs), float(passed)
     (True, 0.1)
     """
     if not has_clock(local):
         return np.ones(np.shape(h), dtype=bool), h
-    parts = np.arange(PARTS + 1).reshape(-1, *[1] * np.ndim(h)) / PARTS * h
+    parts = np.arange(RATE_SAMPLES + 1).reshape(-1, *[1] * np.ndim(h)) / RATE_SAMPLES * h
     times = local.time(parts)
     advance = (times[1:] - times[:-1]) * np.sign(h)
-    part = np.abs(h) / PARTS
-    runs = ((advance > SLOWEST * part) & (advance < FASTEST * part)).all(axis=0)
+    part = np.abs(h) / RATE_SAMPLES
+    runs = ((advance > MIN_RATE * part) & (advance < MAX_RATE * part)).all(axis=0)
     return runs | (h == 0), times[-1]
 
 
@@ -76,13 +76,13 @@ def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
     low, high = 0 * s, np.where(within, guess, np.sign(time) * np.inf)
     eps = np.finfo(s.dtype).eps
     settled = np.zeros(np.shape(s), dtype=bool)  # a trajectory does not depend on those it is solved with
-    for _ in range(ITERATIONS):
+    for _ in range(NEWTON_ITERATIONS):
         before, now, beyond = local.time(np.stack([s - 1e-4 * s, s, s + 1e-4 * s]))
         missing = time - now
         short = missing * np.sign(time) > 0
         low, high = np.where(short, s, low), np.where(short, high, s)
         slope = (beyond - before) / np.where(s == 0, 1.0, 2e-4 * s)
-        new = s + missing / np.clip(slope, SLOWEST, FASTEST)
+        new = s + missing / np.clip(slope, MIN_RATE, MAX_RATE)
         outside = (new - low) * (new - high) > 0
         new = np.where(outside, np.where(np.isfinite(high), (low + high) / 2, 2 * s), new)
         done = (np.abs(new - s) <= 2 * eps * np.abs(s)) | (missing == 0)
@@ -118,17 +118,17 @@ def fitted(local: LocalStep, h: Any, left: Any, *, halve: bool) -> tuple[Any, An
     >>> [float(x) for x in fitted(LocalStep(lambda h: ()), np.array(0.5), np.array(0.25), halve=False)]
     [0.25, 0.25, 1.0, 1.0]
     """
-    runs, passed = pace(local, h)
-    for _ in range(HALVINGS if halve else 0):
+    runs, passed = clock_at(local, h)
+    for _ in range(MAX_HALVINGS if halve else 0):
         if bool(runs.all()):
             break
         h = np.where(runs, h, h / 2)
-        runs, passed = pace(local, h)
+        runs, passed = clock_at(local, h)
     over = (h != 0) & (np.sign(h) * (left - passed) <= SLACK * np.abs(h))
     # where the clock does not run over the whole step it may still run up to the end
-    last = over if bool(runs.all()) else np.where(runs, over, np.abs(left) <= FASTEST * np.abs(h))
+    last = over if bool(runs.all()) else np.where(runs, over, np.abs(left) <= MAX_RATE * np.abs(h))
     if not bool(last.any()):
         return h, passed, last, runs
     s = size_for(local, np.where(last, left, 0), np.where(runs, h, left))
-    last = last & pace(local, s)[0] & (np.abs(s) <= np.abs(h) * (1 + SLACK * 2 * FASTEST))
+    last = last & clock_at(local, s)[0] & (np.abs(s) <= np.abs(h) * (1 + SLACK * 2 * MAX_RATE))
     return np.where(last, s, h), np.where(last, left, passed), last, last | (runs & ~over)

@@ -19,16 +19,16 @@ from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
 
 SAFETY = 0.9
-LARGEST_GROWTH = 5.0
-SMALLEST_SHRINK = 0.2
+MAX_PAIR_GROWTH = 5.0
+MAX_SHRINK = 0.2
 ERROR_TERMS = 2
-SHARE = 0.1
-GROWTH = 8.0
+SERIES_FRACTION = 0.1
+MAX_GROWTH = 8.0
 """Without an embedded pair the next size is bounded by so many times the last one."""
-HOPELESS = 1e10
+NONFINITE_RATIO = 1e10
 """What an error that is not finite counts as, in units of the tolerance."""
-MOST_TRIALS = 200
-FINEST = 10.0
+MAX_TRIALS = 200
+MIN_ROUNDOFFS = 10.0
 
 
 @final
@@ -50,7 +50,7 @@ class Tolerance:
 
     def norm(self, m: Any) -> Any:
         """The 2-norm of the error that is allowed at m, shape (...,)."""
-        relative = np.maximum(self.rtol, FINEST * float(np.finfo(m.dtype).eps))
+        relative = np.maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(m.dtype).eps))
         return self.atol * m.shape[-1] ** 0.5 + relative * length(m)
 
 
@@ -128,7 +128,7 @@ def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, speed:
         safe = np.where(some, size, 1.0)
         found = (allowed / safe) ** (1 / k)
         if k > 2:  # not for k = 2: next to a time at which X vanishes steps would shrink with X
-            series = (SHARE * speed / safe) ** (1 / (k - 1))
+            series = (SERIES_FRACTION * speed / safe) ** (1 / (k - 1))
             found = np.where(speed > 0, np.minimum(found, series), found)
         h = np.minimum(h, np.where(some, SAFETY * found, np.where(np.isnan(size), np.nan, np.inf)))
     return h
@@ -168,7 +168,7 @@ def judged(error: Any, allowed: Any, h: Any, order: int) -> tuple[Any, Any]:
     (True, 0.107)
     """
     ratio = length(error) / allowed
-    ratio = np.where(np.isfinite(ratio), ratio, HOPELESS)
+    ratio = np.where(np.isfinite(ratio), ratio, NONFINITE_RATIO)
     return ratio <= 1, next_size(np.abs(h), ratio, order)
 
 
@@ -182,8 +182,8 @@ def next_size(h: Any, ratio: Any, order: int) -> Any:
     (0.5, 0.02)
     """
     safe = np.where(ratio > 0, ratio, 1.0)
-    factor = np.where(ratio > 0, SAFETY * safe ** (-1 / order), LARGEST_GROWTH)
-    return h * np.clip(factor, SMALLEST_SHRINK, LARGEST_GROWTH)
+    factor = np.where(ratio > 0, SAFETY * safe ** (-1 / order), MAX_PAIR_GROWTH)
+    return h * np.clip(factor, MAX_SHRINK, MAX_PAIR_GROWTH)
 
 
 def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
@@ -210,7 +210,7 @@ def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
         # of the first group it is known
         if trials and _is_solvable(local, np.where(chosen.reshape(np.shape(h)), h, 0)):
             trials += 1
-        elif len(group) <= 1 or trials > MOST_TRIALS:
+        elif len(group) <= 1 or trials > MAX_TRIALS:
             found[group] = True
         else:
             trials += 1

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, TypeAlias, final
+
+import numpy as np
+
+Span: TypeAlias = tuple[np.floating[Any], np.floating[Any]]
+"""Start and end of the time span, in the floating type of the points."""
 
 END, EVENT, NOT_FINITE, PSI, CLOCK, TOO_SMALL, IMPLICIT, LINEAR, TOO_MANY = 0, 1, -1, -2, -3, -4, -5, -6, -7
 MESSAGES = {
@@ -45,12 +50,12 @@ class Options:
     max_steps: float
     checkpoint_every: float
 
-    def texts(self) -> str:
-        """What of it is not an array, and not free to change when a run is continued.
+    def fixed_text(self) -> str:
+        """String of the scalar options that must not change when a run is continued.
 
         Examples
         --------
-        >>> Options(None, 1e-6, 1e-9, None, False, None, False, 1.0, None, 10, 30.0).texts()
+        >>> Options(None, 1e-6, 1e-9, None, False, None, False, 1.0, None, 10, 30.0).fixed_text()
         'adaptive 1e-06 1e-09 steps False corrected 1.0 None'
         """
         return (

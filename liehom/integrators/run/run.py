@@ -1,17 +1,18 @@
 """Run: the loop of `integrate` over the steps of one trajectory or an ensemble.
 
-All trajectories are stepped together, each with its own time, clock and step size.  One that has ended takes steps of
-size 0 from its start, where psi is known to be finite.
-With compiled code, runs of plain steps are made ahead by it, and the steps between them here.
+All trajectories are stepped together, each with its own time, step size and time reparametrization τ (its "clock": a
+step of size h takes the time τ(h)). A trajectory that has ended takes steps of size 0 from its initial point, where
+psi is known to be finite. With compiled code, the fast path makes ordinary steps, those without an output time, an
+end or a failure in them, and `Run.advance` makes the steps between.
 """
 
 from __future__ import annotations
 
 import time as wall
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path as File
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -22,12 +23,11 @@ from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators.run import checkpoint as files
-from liehom.integrators.run import state
-from liehom.integrators.run.clock import SLACK, fitted, has_clock, size_for
+from liehom.integrators.run.clock import SLACK, fitted, has_clock
 from liehom.integrators.run.control import (
     ERROR_TERMS,
-    GROWTH,
-    SMALLEST_SHRINK,
+    MAX_GROWTH,
+    MAX_SHRINK,
     Tolerance,
     defects_of,
     is_large_enough,
@@ -52,35 +52,26 @@ from liehom.integrators.run.options import (
     TOO_MANY,
     TOO_SMALL,
     Options,
+    Span,
 )
-from liehom.integrators.run.path import Path
 from liehom.integrators.run.progress import Progress
-from liehom.integrators.run.records import Account, Found, Samples
+from liehom.integrators.run.proposal import StepProposal
+from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples
 from liehom.integrators.run.solution import Solution
+from liehom.integrators.run.state import RunState
 from liehom.series.arrays import in_lanes
 from liehom.series.jet import Jet
+from liehom.typing import Array, BooleanArray, Real, Values
 
-FIRST = 0.01
-WITH_EVENTS = 0.5
-"""Events are seen at the ends of steps: where there are some, a step moves a point by at most half its size."""
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class Move:
-    """A step that is made: parameter h, time and point after it, where it is made and where it is the last."""
-
-    local: LocalStep
-    h: Any
-    after: Any
-    made: Any
-    moves: Any
-    last: Any
+FIRST_STEP_FRACTION = 0.01
+"""The first step of an embedded pair, in units of |m| / |X|."""
+MAX_MOVE_WITH_EVENTS = 0.5
+"""Events are noticed at the ends of steps, so with events an adaptive step moves a point by at most |m| times this."""
 
 
 @final
 class Run:
-    """The state of an integration and its loop.
+    """An integration: what is integrated, its `state`, and the loop over steps.
 
     Parameters
     ----------
@@ -90,61 +81,79 @@ class Run:
     span : (float, float)
     start : array of shape (..., N)
     options : Options
+
+    Attributes
+    ----------
+    state : RunState
+        All that changes from step to step, except `tried` and `psi_raised`, which belong to one step.
+    fast_path : callable or None
+        Makes ordinary steps of the run by compiled code; returns whether there are more to be made.
     """
 
-    def __init__(
-        self, action: Action, psi: Generator, step: Step, span: tuple[Any, Any], start: Any, options: Options
-    ) -> None:
+    def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.step, self.options = action, step, options
-        self.calls, self.psi_raised = 0, False
+        self.psi_raised = False
         self.field = psi.field
         self.psi = Generator(self._counted(psi.field), psi.orbit_dimension, start)
         self.span, self.start, self.shape, self.dtype = span, in_lanes(start), start.shape[:-1], start.dtype
         self.end, self.direction = span[1], self.dtype.type(1 if span[1] >= span[0] else -1)
-        self.t, self.m = np.full(self.shape, span[0], dtype=self.dtype), self.start
-        self.active = np.full(self.shape, bool(span[0] != span[1]))
-        self.code = np.zeros(self.shape, dtype=int)
-        self.ended_at = self.t
-        self.h = np.full(self.shape, options.first_step or np.inf, dtype=self.dtype)
-        self.taken = np.zeros(self.shape, dtype=int)
-        self.tried: tuple[LocalStep, Any] | None = None
+        self.tried: tuple[LocalStep, Array] | None = None
         self.tolerance = Tolerance(options.rtol, options.atol)
         self.tiny = 8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))
         self.total = None if options.dt is None else self._number_of_steps(options.dt)
-        self.account = Account(step, self.shape)
         self.events = None if options.events is None else Events(options.events)
-        self.found = Found(self.events.count if self.events else 0, self.shape, start.shape[-1])
-        self.before = self.events.values(self.t, self.m) if self.events else []
-        self.samples: Samples | None = None
-        if options.t_eval is not None:
-            self.samples = Samples(options.t_eval, start.shape, self.dtype, float(self.direction))
-            self.samples.start(span[0], start)
-        self.path = Path(self.t, self.m)
-        self.ahead: Callable[[Run], bool] | None = None
+        self.fast_path: Callable[[Run], bool] | None = None
         self.keeps = options.t_eval is None or options.dense_output
+        self.state = self._initial_state(start)
+
+    def _initial_state(self, start: Array) -> RunState:
+        options, span = self.options, self.span
+        t = np.full(self.shape, span[0], dtype=self.dtype)
+        samples = None
+        if options.t_eval is not None:
+            samples = Samples(options.t_eval, start.shape, self.dtype, float(self.direction))
+            samples.start(span[0], start)
+        return RunState(
+            t=t,
+            m=self.start,
+            active=np.full(self.shape, bool(span[0] != span[1])),
+            code=np.zeros(self.shape, dtype=int),
+            ended_at=t,
+            h=np.full(self.shape, options.first_step or np.inf, dtype=self.dtype),
+            taken=np.zeros(self.shape, dtype=int),
+            calls=0,
+            event_values=self.events.values(t, self.start) if self.events else [],
+            path=Path(t, self.start),
+            statistics=CorrectionStatistics(self.step, self.shape),
+            event_log=EventLog(self.events.count if self.events else 0, self.shape, start.shape[-1]),
+            samples=samples,
+        )
 
     def _counted(self, field: GeneratorField) -> GeneratorField:
-        def psi(m: Any, t: Any = 0.0) -> Any:
-            self.calls += 1
+        """The field, with psi counted and its linear algebra errors noted."""
+
+        def psi(m: Values, t: Real = 0.0) -> Values:
+            self.state.calls += 1
             try:
-                return in_lanes(field.psi(m, t))
+                made: Values = in_lanes(field.psi(m, t))
             except np.linalg.LinAlgError:
                 self.psi_raised = bool(np.isfinite(m.value if isinstance(m, Jet) else m).all())
                 raise
+            return made
 
         return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
 
-    def _number_of_steps(self, dt: Any) -> Any:
-        """How many steps of size dt reach the end; a rest below 1e-9 dt, or below round-off, is no step."""
+    def _number_of_steps(self, dt: Array) -> Array:
+        """Numbers of steps of size dt to the end; a rest below 1e-9 dt, or below round-off, is not a step."""
         rest = SLACK + self.tiny / dt
         return np.maximum(np.ceil(abs(self.end - self.span[0]) / dt - rest), 1)
 
     # -- the loop ----------------------------------------------------------------------------------------
-    def execute(self, show: bool | Callable[[float], Any], path: File | None) -> Solution:
-        """Run to the end, with progress and checkpoints."""
+    def execute(self, show: bool | Callable[[float], object], path: File | None) -> Solution:
+        """Integrate to the end, with progress and checkpoints; returns the solution."""
         with Progress(show) as progress:
             if path is None:
-                while self.active.any():
+                while self.state.active.any():
                     self._go_on()
                     progress.update(self._fraction)
             else:
@@ -156,269 +165,280 @@ class Run:
         return solution
 
     def _execute_with_checkpoints(self, progress: Progress, path: File) -> None:
-        fingerprint = state.fingerprint(self)
+        fingerprint, state = self._fingerprint(), self.state
         if path.exists():
-            state.restore(self, files.load(path, fingerprint))
-        mark, due = state.mark(self), wall.monotonic() + self.options.checkpoint_every
+            state.restore(files.load(path, fingerprint))
+        snapshot, due = state.snapshot(), wall.monotonic() + self.options.checkpoint_every
         try:
-            while self.active.any():
+            while state.active.any():
                 self._go_on()
-                mark = state.mark(self)
+                snapshot = state.snapshot()
                 progress.update(self._fraction)
                 if wall.monotonic() >= due:
                     begin = wall.monotonic()
-                    files.save(path, fingerprint, state.arrays(self))
+                    files.save(path, fingerprint, state.arrays())
                     # a long history takes long to write: at most a tenth of the time goes into it
                     cost = wall.monotonic() - begin
                     due = begin + cost + max(self.options.checkpoint_every, 10 * cost)
         except BaseException:
-            state.back_to(self, mark)
-            files.save(path, fingerprint, state.arrays(self))
+            state.rollback(snapshot)
+            files.save(path, fingerprint, state.arrays())
             raise
 
+    def _fingerprint(self) -> str:
+        """Digest that distinguishes this problem from others: numbers, strings, psi at the start and next to it."""
+        o, events, field = self.options, self.events, self.field
+        strings = f"{files.stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}"
+        strings += "" if events is None else f" {events.directions} {events.terminal}"
+        matrices = [a.to_numpy() for a in field.representation.matrices]
+        t = np.full(self.shape, self.span[0])
+        here = np.asarray(field.psi(self.start, t))
+        ahead = 1e-3 * (self.end - self.span[0])
+        near = self.action.act((ahead * here).astype(self.dtype), self.start)
+        there = np.asarray(field.psi(near, t + ahead))
+        numbers = [np.array(self.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
+        return files.digest(strings, self.start, *numbers, *matrices, here, near, there, *self.state.event_values)
+
     def _fraction(self) -> float:
-        passed = np.min(np.abs(self.t - self.span[0]), where=self.active, initial=np.inf)
+        passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)
         whole = float(abs(self.end - self.span[0])) or 1.0
         return float(min(passed / whole, 1.0))
 
     def _go_on(self) -> None:
-        """Plain steps ahead, for a while; where there are none to be made, one step of all active trajectories."""
-        if self.ahead is None or not self.ahead(self):
+        """Ordinary steps on the fast path; if there are none to be made, one step of all active trajectories."""
+        if self.fast_path is None or not self.fast_path(self):
             self.advance()
 
     def advance(self) -> None:
-        """One step of all active trajectories."""
-        active = self.active
+        """Make one step of all active trajectories."""
+        now = self.state
+        active = now.active
         try:
-            move = self._proposed()
+            proposal = self._proposed()
         except (np.linalg.LinAlgError, ConvergenceError) as error:
-            if np.array_equal(active, self.active):  # else the step is tried again without those that failed
+            if np.array_equal(active, now.active):  # else the step is tried again without those that failed
                 self._diagnose(error)
             return
-        if not move.moves.any():
+        if not proposal.moves.any():
             return
-        self.account.take(move.local, move.h, self.t, self.m, move.moves)
+        now.statistics.take(proposal.local, proposal.h, now.t, now.m, proposal.moves)
         halted = np.zeros(self.shape, dtype=bool)
         if self.events is not None:
-            move, halted = self._watched(self.events, move)
-        if self.samples is not None:
-            self.samples.fill(lambda time, here: self._point(move, time, here), move.after, move.moves)
-        self._commit(move, halted)
+            proposal, halted = self._watched(self.events, proposal)
+        if now.samples is not None:
+            now.samples.fill(proposal.point, proposal.after, proposal.moves)
+        self._commit(proposal, halted)
 
-    def _proposed(self) -> Move:
-        """A step of the right size, where it is accepted."""
-        adaptive, self.tried = self.options.dt is None, None
-        self.m = in_lanes(self.m)
-        local = self.step.at(
-            self.action, self.psi, self.m, self.t[..., None], error_terms=ERROR_TERMS if adaptive else 0
-        )
+    def _proposed(self) -> StepProposal:
+        """A step of the right size, of the trajectories for which it is accepted."""
+        now, adaptive, self.tried = self.state, self.options.dt is None, None
+        now.m = in_lanes(now.m)
+        local = self.step.at(self.action, self.psi, now.m, now.t[..., None], error_terms=ERROR_TERMS if adaptive else 0)
         estimate = getattr(local, "estimate", None) if adaptive else None
-        size = self._size(local, estimate is not None) if adaptive else self.options.dt
+        size = self._size(local, estimate is not None) if self.options.dt is None else self.options.dt
         h, after, last = self._fitted(local, size)
         self.tried = local, h
-        made = apply_factors(self.action, local.factors(h[..., None]), self.m)
-        moves = self.active
+        made = apply_factors(self.action, local.factors(h[..., None]), now.m)
+        moves = now.active
         if estimate is not None:
             moves = moves & self._judged(estimate(h[..., None]), h, local.estimate_order)  # type: ignore[attr-defined]
         elif adaptive:
-            self.h = GROWTH * np.abs(h)
+            now.h = MAX_GROWTH * np.abs(h)
         inner = local.base if isinstance(local, ConservingStep) else local
         if isinstance(inner, CorrectedStep):
-            _ = inner.correction.singular_value  # computed when it is asked for, and fails where psi is not finite
+            _ = inner.correction.singular_value  # computed when it is asked for, and fails if psi is not finite
         good = np.isfinite(made).all(axis=-1)
         if not good.all():
             if adaptive:
-                self.h = np.where(good, self.h, np.abs(h) * SMALLEST_SHRINK)
+                now.h = np.where(good, now.h, np.abs(h) * MAX_SHRINK)
             else:
                 self._fail_by_psi(moves & ~good, NOT_FINITE)
             moves = moves & good
         if not moves.all():
-            h, after = np.where(moves, h, 0), np.where(moves, after, self.t)
-            made = np.where(moves[..., None], made, self.m)
-        return Move(local, h, after, made.astype(self.dtype, copy=False), moves, last)
+            h, after = np.where(moves, h, 0), np.where(moves, after, now.t)
+            made = np.where(moves[..., None], made, now.m)
+        made = made.astype(self.dtype, copy=False)
+        return StepProposal(self.action, local, now.t, now.m, h, after, made, moves, last, self.options.nominal)
 
     # -- step sizes --------------------------------------------------------------------------------------
-    def _size(self, local: LocalStep, embedded: bool) -> Any:
+    def _size(self, local: LocalStep, embedded: bool) -> Array:
         """The step size that the tolerance asks for, positive, (...,)."""
-        left = np.abs(self.end - self.t)
+        now = self.state
+        left = np.abs(self.end - now.t)
         bound = largest_size(self.options.max_step, left)
-        first = embedded and bool(np.isinf(self.h).any())
-        scale = np.inf if embedded and not first and self.events is None else time_scale(self.psi.field, self.m, self.t)
+        first = embedded and bool(np.isinf(now.h).any())
+        needed = not embedded or first or self.events is not None
+        scale = time_scale(self.psi.field, now.m, now.t) if needed else np.inf
         if self.events is not None:
-            bound = np.minimum(bound, WITH_EVENTS * scale)
+            bound = np.minimum(bound, MAX_MOVE_WITH_EVENTS * scale)
         if first:
-            self.h = np.where(np.isinf(self.h), np.minimum(bound, FIRST * scale), self.h)
-        h = np.minimum(self.h, bound)
+            now.h = np.where(np.isinf(now.h), np.minimum(bound, FIRST_STEP_FRACTION * scale), now.h)
+        h = np.minimum(now.h, bound)
         if not embedded:
-            defects = defects_of(self.action, self.psi, local, self.m, self.t, self.step.order)
-            speed = length(self.m) / scale
-            h = size_from_defects(defects, self.tolerance.norm(self.m), speed, h).astype(self.dtype)
-        small = self.active & ~is_large_enough(h, self.tiny, left)
+            defects = defects_of(self.action, self.psi, local, now.m, now.t, self.step.order)
+            speed = length(now.m) / scale
+            h = size_from_defects(defects, self.tolerance.norm(now.m), speed, h).astype(self.dtype)
+        small = now.active & ~is_large_enough(h, self.tiny, left)
         if small.any():
             self._fail(small & np.isnan(h), PSI)
             self._fail_by_psi(small, TOO_SMALL)
-            h = np.where(self.active, h, 0)
+            h = np.where(now.active, h, 0)
         return h
 
-    def _fitted(self, local: LocalStep, size: Any) -> tuple[Any, Any, Any]:
-        """Signed step sizes that end at the end, the times after them, and which steps are the last."""
-        h = self.direction * np.where(self.active, size, 0).astype(self.dtype)
-        left = self.end - self.t
+    def _fitted(self, local: LocalStep, size: Array) -> tuple[Array, Array, BooleanArray]:
+        """Signed step sizes that do not pass the end, the times after them, and which steps are the last."""
+        now = self.state
+        h = self.direction * np.where(now.active, size, 0).astype(self.dtype)
+        left = self.end - now.t
         if not self.options.nominal and has_clock(local):
             h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
             if not runs.all():
-                self._fail_by_psi(self.active & ~runs, CLOCK)
-                h, passed = np.where(self.active, h, 0), np.where(self.active, passed, 0)
-            after, last = self.t + passed, last & self.active
+                self._fail_by_psi(now.active & ~runs, CLOCK)
+                h, passed = np.where(now.active, h, 0), np.where(now.active, passed, 0)
+            after, last = now.t + passed, last & now.active
             return h, np.where(last, self.end, after) if last.any() else after, last
         if self.total is None:
-            last = self.active & (self.direction * (left - h) <= SLACK * np.abs(h))
-            after = self.t + h
+            last = now.active & (self.direction * (left - h) <= SLACK * np.abs(h))
+            after = now.t + h
         else:  # by counting, so that round-off does not add up
-            count = self.taken + 1
-            last = self.active & (count >= self.total)
+            count = now.taken + 1
+            last = now.active & (count >= self.total)
             after = self.span[0] + count * (self.direction * self.options.dt)
         if last.any():
             h, after = np.where(last, left, h), np.where(last, self.end, after)
         return h, after, last
 
-    def _judged(self, error: Any, h: Any, order: int) -> Any:
-        """Where an embedded pair accepts the step; adapts the next step size."""
-        accepted, self.h = judged(error, self.tolerance.norm(self.m), h, order)
+    def _judged(self, error: Array, h: Array, order: int) -> BooleanArray:
+        """For which trajectories an embedded pair accepts the step; adapts the next step size."""
+        accepted, self.state.h = judged(error, self.tolerance.norm(self.state.m), h, order)
         return accepted
 
-    # -- events and samples ------------------------------------------------------------------------------
-    def _position(self, move: Move, s: Any) -> tuple[Any, Any]:
-        """(t, y) within a step at the parameter s (...,)."""
-        passed = s if self.options.nominal else move.local.time(s)
-        low, high = np.minimum(self.t, move.after), np.maximum(self.t, move.after)
-        t = np.where(s == move.h, move.after, np.clip(self.t + passed, low, high))
-        return t, apply_factors(self.action, move.local.factors(s[..., None]), self.m)
-
-    def _point(self, move: Move, time: Any, here: Any) -> Any:
-        """The point at a time within the step."""
-        aim = np.where(here, time - self.t, 0)
-        s = aim if self.options.nominal else size_for(move.local, aim, np.where(here, move.h, 0))
-        return self._position(move, np.where(here & (time == move.after), move.h, s))[1]
-
-    def _watched(self, events: Events, move: Move) -> tuple[Move, Any]:
-        """Record events; where a terminal one occurs, the step is shortened."""
-        values, before, moves = events.values(move.after, move.made), self.before, move.moves
-        self.before = [np.where(moves, v, g) for v, g in zip(values, before, strict=True)]
+    # -- events -------------------------------------------------------------------------------------------
+    def _watched(self, events: Events, proposal: StepProposal) -> tuple[StepProposal, BooleanArray]:
+        """Record the events in a step; returns the step, shortened at a terminal event, and where it was."""
+        now, log, moves = self.state, self.state.event_log, proposal.moves
+        values, before = events.values(proposal.after, proposal.made), now.event_values
+        now.event_values = [np.where(moves, v, g) for v, g in zip(values, before, strict=True)]
         halted = np.zeros(self.shape, dtype=bool)
-        crossed, where, stop = [], [], move.h
+        crossed, sizes, stop = [], [], proposal.h
         for i, (start, end) in enumerate(zip(before, values, strict=True)):
-            at_start = moves & (self.taken == 0) & events.left(i, start, end)
+            at_start = moves & (now.taken == 0) & events.left(i, start, end)
             if at_start.any():
-                self.found.add(i, at_start, self.t, self.m, counted=False)
+                log.add(i, at_start, now.t, now.m, counted=False)
             here = moves & events.crossed(i, start, end)
-            s = move.h
+            s = proposal.h
             if here.any():
-                s = events.locate(i, lambda s: self._position(move, s), move.h, (start, end), here)
-                ends = here & (self.found.occurrences[i] + 1 >= events.terminal[i])
+                s = events.locate(i, proposal.position, proposal.h, (start, end), here)
+                ends = here & (log.occurrences[i] + 1 >= events.terminal[i])
                 stop = np.where(ends & (np.abs(s) <= np.abs(stop)), s, stop)
                 halted = halted | ends
             crossed.append(here)
-            where.append(s)
-        for i, (here, s) in enumerate(zip(crossed, where, strict=True)):
+            sizes.append(s)
+        for i, (here, s) in enumerate(zip(crossed, sizes, strict=True)):
             kept = here & (np.abs(s) <= np.abs(stop))
             if kept.any():
-                self.found.add(i, kept, *self._position(move, np.where(kept, s, 0)))
+                log.add(i, kept, *proposal.position(np.where(kept, s, 0)))
         if not halted.any():
-            return move, halted
-        t, y = self._position(move, np.where(halted, stop, 0))
-        after, made = np.where(halted, t, move.after), np.where(halted[..., None], y, move.made)
-        return Move(move.local, np.where(halted, stop, move.h), after, made, moves, move.last), halted
+            return proposal, halted
+        t, y = proposal.position(np.where(halted, stop, 0))
+        after, made = np.where(halted, t, proposal.after), np.where(halted[..., None], y, proposal.made)
+        return replace(proposal, h=np.where(halted, stop, proposal.h), after=after, made=made), halted
 
-    # -- state -------------------------------------------------------------------------------------------
-    def _commit(self, move: Move, halted: Any) -> None:
-        self.t, self.m = move.after, move.made
-        self.taken = self.taken + move.moves
+    # -- the end of a step -------------------------------------------------------------------------------
+    def _commit(self, proposal: StepProposal, halted: BooleanArray) -> None:
+        now = self.state
+        now.t, now.m = proposal.after, proposal.made
+        now.taken = now.taken + proposal.moves
         if self.keeps:
-            self.path.add(self.t, self.m, move.h, move.moves)
-        done = move.moves & (move.last | halted)
+            now.path.add(now.t, now.m, proposal.h, proposal.moves)
+        done = proposal.moves & (proposal.last | halted)
         if done.any():
             self._stop(done & ~halted, END)
             self._stop(halted, EVENT)
-        if np.max(self.taken) >= self.options.max_steps:
-            self._fail(self.taken >= self.options.max_steps, TOO_MANY)
+        if np.max(now.taken) >= self.options.max_steps:
+            self._fail(now.taken >= self.options.max_steps, TOO_MANY)
 
-    def _stop(self, where: Any, code: int) -> None:
-        """End trajectories: from now on they rest at the start."""
-        self.code = np.where(where, code, self.code)
-        self.ended_at = np.where(where, self.t, self.ended_at)
-        self.active = self.active & ~where
-        self.t, self.m = np.where(where, self.span[0], self.t), np.where(where[..., None], self.start, self.m)
+    def _stop(self, where: BooleanArray, code: int) -> None:
+        """End trajectories: from now on they stay at their initial points."""
+        now = self.state
+        now.code = np.where(where, code, now.code)
+        now.ended_at = np.where(where, now.t, now.ended_at)
+        now.active = now.active & ~where
+        now.t, now.m = np.where(where, self.span[0], now.t), np.where(where[..., None], self.start, now.m)
 
-    def _fail(self, where: Any, code: int) -> None:
-        where = self.active & where
+    def _fail(self, where: BooleanArray, code: int) -> None:
+        where = self.state.active & where
         if where.any():
             self._stop(where, code)
 
-    def _fail_by_psi(self, where: Any, code: int) -> None:
-        """End trajectories, by a code of their own where psi is not finite."""
-        finite = np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
+    def _fail_by_psi(self, where: BooleanArray, code: int) -> None:
+        """End trajectories by a code; by `PSI` if psi is not finite at their points."""
+        finite = np.isfinite(self.field.psi(self.state.m, self.state.t)).all(axis=-1)
         self._fail(where & ~finite, PSI)
         self._fail(where & finite, code)
 
     def _diagnose(self, error: Exception) -> None:
-        """A step could not be computed: find out for which trajectories, or take smaller steps."""
+        """A step could not be computed: end the trajectories that are the cause, or halve their step sizes."""
         if self.psi_raised:
             raise error
-        bad = self.active & ~np.isfinite(self.field.psi(self.m, self.t)).all(axis=-1)
+        now = self.state
+        bad = now.active & ~np.isfinite(self.field.psi(now.m, now.t)).all(axis=-1)
         if isinstance(error, np.linalg.LinAlgError) and not bad.any():
-            series = flow_series(self.field, self.m, self.step.order + ERROR_TERMS, self.t)
+            series = flow_series(self.field, now.m, self.step.order + ERROR_TERMS, now.t)
             points = [series.point(k) for k in range(series.points.order + 1)]
-            bad = self.active & ~np.isfinite(points).all(axis=(0, -1))
+            bad = now.active & ~np.isfinite(points).all(axis=(0, -1))
         if bad.any():
             self._fail(bad, PSI)
             return
         code = IMPLICIT if isinstance(error, ConvergenceError) else LINEAR
         if self.tried is None:
-            self._fail(self.active, code)
+            self._fail(now.active, code)
             return
-        where = self.active & unsolvable(*self.tried, self.active)
+        where = now.active & unsolvable(*self.tried, now.active)
         sizes = np.abs(self.tried[1])
-        self.h = np.where(where, sizes / 2, self.h)
+        now.h = np.where(where, sizes / 2, now.h)
         self._fail(where & ((self.total is not None) | (sizes <= 2 * self.tiny)), code)
 
+    # -- the result --------------------------------------------------------------------------------------
     def _solution(self) -> Solution:
-        o = self.options
-        times, points, sizes = self.path.compact()
+        o, now = self.options, self.state
+        times, points, sizes = now.path.compact()
         dense = None
         if o.dense_output:
             psi = Generator(self.field, self.psi.orbit_dimension, self.start)
             dense = DenseSolution(self.action, psi, self.step, times, points, sizes, nominal=o.nominal)
-        if self.samples is None:
+        if now.samples is None:
             t, y = np.moveaxis(times, 0, -1), np.moveaxis(points, 0, -1)
         else:
-            t, y = self.samples.times, self.samples.points
+            t, y = now.samples.times, now.samples.points
             if not self.shape:
-                t, y = t[: int(self.samples.done)], y[..., : int(self.samples.done)]
-        t_events, y_events = self.found.lists() if self.events is not None else (None, None)
-        statuses = np.maximum(self.code, -1)
+                t, y = t[: int(now.samples.done)], y[..., : int(now.samples.done)]
+        t_events, y_events = now.event_log.lists() if self.events is not None else (None, None)
+        statuses = np.maximum(now.code, -1)
         worst = -1 if np.any(statuses < 0) else int(np.max(statuses, initial=0))
+        clock = "nominal" if o.nominal else "corrected"
         return Solution(
             t=t,
             y=y,
             sol=dense,
             t_events=t_events,
             y_events=y_events,
-            nfev=self.calls,
+            nfev=now.calls,
             status=worst,
             message=self._message(worst),
-            n_steps=self.taken if self.shape else int(self.taken),
-            report=self.account.report(self.action, "nominal" if o.nominal else "corrected", self.psi.orbit_dimension),
+            n_steps=now.taken if self.shape else int(now.taken),
+            report=now.statistics.report(self.action, clock, self.psi.orbit_dimension),
             statuses=statuses if self.shape else int(statuses),
         )
 
     def _message(self, status: int) -> str:
         if status >= 0:
             return MESSAGES[status]
-        failed = np.argwhere(self.code < 0)
+        now = self.state
+        failed = np.argwhere(now.code < 0)
         index = tuple(int(i) for i in failed[0])
-        message = f"{MESSAGES[int(self.code[index])]} At t = {float(self.ended_at[index]):.10g}"
+        message = f"{MESSAGES[int(now.code[index])]} At t = {float(now.ended_at[index]):.10g}"
         if self.shape:
             shown = index[0] if len(index) == 1 else index
-            message += f", trajectory {shown}; {len(failed)} of {self.code.size} failed"
+            message += f", trajectory {shown}; {len(failed)} of {now.code.size} failed"
         return message + "."

@@ -9,7 +9,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.integrators.run.conservation_account import ConservationReport
+from liehom.integrators.run.conservation_statistics import ConservationReport
 
 
 @final

@@ -1,76 +1,129 @@
-"""The state of a run: what a checkpoint keeps, what an interrupted step is undone to, and what tells problems apart."""
+"""RunState: the part of a run that changes from step to step; saved in checkpoints, rolled back after an interruption.
+
+Steps replace the arrays of the state and never write into them, so a snapshot needs no copies.
+"""
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.integrators.run.checkpoint import digest
+from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples
+from liehom.typing import Array, BooleanArray, IntegerArray
 
-if TYPE_CHECKING:
-    from liehom.integrators.run.run import Run
-
-REPLACED = ("t", "m", "active", "code", "ended_at", "h", "taken", "calls", "before")
-"""Attributes whose arrays are replaced in a step, never written into."""
+ARRAYS = ("t", "m", "active", "code", "ended_at", "h", "taken")
+"""Attributes with one entry for each trajectory; also their names in a checkpoint."""
 
 
-def mark(run: Run) -> tuple[Any, ...]:
-    """The state between two steps, without copies."""
-    kept = {name: getattr(run, name) for name in REPLACED}
-    done = None if run.samples is None else run.samples.done
-    return kept, len(run.path), run.account.arrays(), run.found.occurrences, len(run.found.rows), done
+class Snapshot(NamedTuple):
+    """A state between two steps: its arrays, and how much of the records belongs to it."""
+
+    arrays: dict[str, Any]
+    path_length: int
+    statistics: dict[str, Any]
+    occurrences: IntegerArray
+    event_rows: int
+    samples_done: IntegerArray | None
 
 
-def back_to(run: Run, mark: tuple[Any, ...]) -> None:
-    """Undo what an interrupted step has done."""
-    kept, points, account, run.found.occurrences, rows, done = mark
-    for name, value in kept.items():
-        setattr(run, name, value)
-    run.path.cut(points)
-    del run.found.rows[rows:]
-    run.account.restore(account)
-    if run.samples is not None:
-        run.samples.done = done
+@final
+@dataclass(slots=True)
+class RunState:
+    """State of a run between two steps.
 
+    Attributes
+    ----------
+    t, m : arrays of shape (...,) and (..., N)
+        Times and points; those of the start for trajectories that have ended.
+    active : bool array of shape (...,)
+        Which trajectories go on.
+    code : int array of shape (...,)
+        How trajectories have ended: a code of `liehom.integrators.run.options`.
+    ended_at : array of shape (...,)
+        When they have ended.
+    h : array of shape (...,)
+        Step sizes proposed for the next step, positive; inf if there is no proposal yet.
+    taken : int array of shape (...,)
+        Numbers of steps.
+    calls : int
+        Number of calls of psi.
+    event_values : list of arrays of shape (...,)
+        The event functions at (t, m).
+    path, statistics, event_log, samples
+        What was recorded so far; `samples` is None without t_eval.
 
-def arrays(run: Run) -> dict[str, Any]:
-    """All that `restore` needs, as arrays."""
-    made = {name: np.asarray(getattr(run, name)) for name in REPLACED if name != "before"}
-    made |= {f"before_{i}": g for i, g in enumerate(run.before)}
-    for part, record in _records(run).items():
-        made |= {f"{part}_{name}": value for name, value in record.arrays().items()}
-    return made
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> t, m, zero = np.zeros(()), np.zeros(3), np.zeros((), dtype=int)
+    >>> state = RunState(
+    ...     t, m, zero == 0, zero, t, t + np.inf, zero, 0, [], Path(t, m), CorrectionStatistics(lh.Euler(), ()),
+    ...     EventLog(0, (), 3), None,
+    ... )
+    >>> before = state.snapshot()
+    >>> state.t, state.taken = np.array(0.5), np.array(1)
+    >>> state.path.add(state.t, m, state.t, np.array(True))
+    >>> state.rollback(before)
+    >>> float(state.t), int(state.taken), len(state.path)
+    (0.0, 0, 1)
+    """
 
+    t: Array
+    m: Array
+    active: BooleanArray
+    code: IntegerArray
+    ended_at: Array
+    h: Array
+    taken: IntegerArray
+    calls: int
+    event_values: list[Array]
+    path: Path
+    statistics: CorrectionStatistics
+    event_log: EventLog
+    samples: Samples | None
 
-def restore(run: Run, made: dict[str, Any]) -> None:
-    """Take a state back, bit for bit."""
-    for name in REPLACED:
-        if name != "before":
-            setattr(run, name, made[name])
-    run.calls = int(run.calls)
-    run.before = [made[f"before_{i}"] for i in range(len(run.before))]
-    for part, record in _records(run).items():
-        start = f"{part}_"
-        record.restore({name[len(start) :]: x for name, x in made.items() if name.startswith(start)})
+    # -- interruptions -----------------------------------------------------------------------------------
+    def snapshot(self) -> Snapshot:
+        """The state as it is now, for `rollback`; nothing is copied."""
+        kept = {name: getattr(self, name) for name in (*ARRAYS, "calls", "event_values")}
+        done = None if self.samples is None else self.samples.done
+        log = self.event_log
+        return Snapshot(kept, len(self.path), self.statistics.arrays(), log.occurrences, len(log.rows), done)
 
+    def rollback(self, snapshot: Snapshot) -> None:
+        """Undo what an interrupted step has done since the snapshot."""
+        for name, value in snapshot.arrays.items():
+            setattr(self, name, value)
+        self.path.cut(snapshot.path_length)
+        self.event_log.occurrences = snapshot.occurrences
+        del self.event_log.rows[snapshot.event_rows :]
+        self.statistics.restore(snapshot.statistics)
+        if self.samples is not None and snapshot.samples_done is not None:
+            self.samples.done = snapshot.samples_done
 
-def fingerprint(run: Run) -> str:
-    """What tells the problem from others: numbers, texts, and psi at the start and next to it."""
-    o, events, field = run.options, run.events, run.field
-    texts = f"{re.sub(' at 0x[0-9a-f]+', '', repr(run.step))} {run.action.exponential.name} {o.texts()}"
-    texts += "" if events is None else f" {events.directions} {events.terminal}"
-    matrices = [a.to_numpy() for a in field.representation.matrices]
-    t = np.full(run.shape, run.span[0])
-    here = np.asarray(field.psi(run.start, t))
-    ahead = 1e-3 * (run.end - run.span[0])
-    near = run.action.act((ahead * here).astype(run.dtype), run.start)
-    there = np.asarray(field.psi(near, t + ahead))
-    numbers = [np.array(run.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
-    return digest(texts, run.start, *numbers, *matrices, here, near, there, *run.before)
+    # -- checkpoints -------------------------------------------------------------------------------------
+    def arrays(self) -> dict[str, Any]:
+        """All that `restore` needs, as named arrays: the content of a checkpoint."""
+        made = {name: np.asarray(getattr(self, name)) for name in (*ARRAYS, "calls")}
+        made |= {f"before_{i}": g for i, g in enumerate(self.event_values)}
+        for part, record in self._records().items():
+            made |= {f"{part}_{name}": value for name, value in record.arrays().items()}
+        return made
 
+    def restore(self, made: dict[str, Any]) -> None:
+        """Replace the state by that of a checkpoint, bit for bit."""
+        for name in ARRAYS:
+            setattr(self, name, made[name])
+        self.calls = int(made["calls"])
+        self.event_values = [made[f"before_{i}"] for i in range(len(self.event_values))]
+        for part, record in self._records().items():
+            start = f"{part}_"
+            record.restore({name[len(start) :]: x for name, x in made.items() if name.startswith(start)})
 
-def _records(run: Run) -> dict[str, Any]:
-    found = {"path": run.path, "account": run.account, "found": run.found}
-    return found if run.samples is None else {**found, "samples": run.samples}
+    def _records(self) -> dict[str, Path | CorrectionStatistics | EventLog | Samples]:
+        """The records by the names that they have in checkpoints since version 0.1.0."""
+        found: dict[str, Path | CorrectionStatistics | EventLog | Samples]
+        found = {"path": self.path, "account": self.statistics, "found": self.event_log}
+        return found if self.samples is None else {**found, "samples": self.samples}

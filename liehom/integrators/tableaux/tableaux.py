@@ -13,7 +13,7 @@ from functools import cache
 from liehom.errors import InputError
 from liehom.integrators.tableaux.collocation import collocation, gauss
 from liehom.integrators.tableaux.tableau import Tableau
-from liehom.integrators.tableaux.tableaux_data import COLLOCATION, EXPLICIT, IMPLICIT, Data
+from liehom.integrators.tableaux.tableaux_data import COLLOCATION, EXPLICIT, IMPLICIT, ButcherData
 
 _ALIASES = {
     "explicit euler": "euler",
@@ -101,7 +101,7 @@ def _made(name: str) -> Tableau:
     return _from_data(name, EXPLICIT[name] if name in EXPLICIT else IMPLICIT[name])
 
 
-def _from_data(name: str, data: Data) -> Tableau:
+def _from_data(name: str, data: ButcherData) -> Tableau:
     return Tableau(
         name,
         [row.split() for row in data.a.split(";")],

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Data(NamedTuple):
+class ButcherData(NamedTuple):
     """One method: `embedded` and `embedded_order` where it has a second row of weights; `source` says whence."""
 
     order: int
@@ -20,7 +20,7 @@ class Data(NamedTuple):
     source: str = ""
 
 
-class Nodes(NamedTuple):
+class CollocationData(NamedTuple):
     """One collocation method: its order, its nodes separated by commas, and its usual name."""
 
     order: int
@@ -29,16 +29,16 @@ class Nodes(NamedTuple):
 
 
 EXPLICIT = {
-    "euler": Data(1, "", "1", source="L. Euler 1768"),
-    "midpoint": Data(2, "; 1/2", "0 1", source="C. Runge 1895"),
-    "heun": Data(2, "; 1", "1/2 1/2", "1 0", 1, "the explicit trapezoidal rule, with Euler embedded"),
-    "ralston": Data(2, "; 2/3", "1/4 3/4", source="A. Ralston 1962: least error bound of two stages"),
-    "kutta3": Data(3, "; 1/2; -1 2", "1/6 2/3 1/6", source="W. Kutta 1901"),
-    "heun3": Data(3, "; 1/3; 0 2/3", "1/4 0 3/4", source="K. Heun 1900"),
-    "ssprk3": Data(3, "; 1; 1/4 1/4", "1/6 1/6 2/3", source="C.-W. Shu, S. Osher 1988"),
-    "rk4": Data(4, "; 1/2; 0 1/2; 0 0 1", "1/6 1/3 1/3 1/6", source="W. Kutta 1901"),
-    "3/8": Data(4, "; 1/3; -1/3 1; 1 -1 1", "1/8 3/8 3/8 1/8", source="W. Kutta 1901"),
-    "rk23": Data(
+    "euler": ButcherData(1, "", "1", source="L. Euler 1768"),
+    "midpoint": ButcherData(2, "; 1/2", "0 1", source="C. Runge 1895"),
+    "heun": ButcherData(2, "; 1", "1/2 1/2", "1 0", 1, "the explicit trapezoidal rule, with Euler embedded"),
+    "ralston": ButcherData(2, "; 2/3", "1/4 3/4", source="A. Ralston 1962: least error bound of two stages"),
+    "kutta3": ButcherData(3, "; 1/2; -1 2", "1/6 2/3 1/6", source="W. Kutta 1901"),
+    "heun3": ButcherData(3, "; 1/3; 0 2/3", "1/4 0 3/4", source="K. Heun 1900"),
+    "ssprk3": ButcherData(3, "; 1; 1/4 1/4", "1/6 1/6 2/3", source="C.-W. Shu, S. Osher 1988"),
+    "rk4": ButcherData(4, "; 1/2; 0 1/2; 0 0 1", "1/6 1/3 1/3 1/6", source="W. Kutta 1901"),
+    "3/8": ButcherData(4, "; 1/3; -1/3 1; 1 -1 1", "1/8 3/8 3/8 1/8", source="W. Kutta 1901"),
+    "rk23": ButcherData(
         3,
         "; 1/2; 0 3/4; 2/9 1/3 4/9",
         "2/9 1/3 4/9 0",
@@ -46,7 +46,7 @@ EXPLICIT = {
         2,
         "P. Bogacki, L. F. Shampine 1989",
     ),
-    "rk45": Data(
+    "rk45": ButcherData(
         5,
         """; 1/5; 3/40 9/40; 44/45 -56/15 32/9; 19372/6561 -25360/2187 64448/6561 -212/729;
         9017/3168 -355/33 46732/5247 49/176 -5103/18656; 35/384 0 500/1113 125/192 -2187/6784 11/84""",
@@ -55,7 +55,7 @@ EXPLICIT = {
         4,
         "J. R. Dormand, P. J. Prince 1980",
     ),
-    "rkf45": Data(
+    "rkf45": ButcherData(
         5,
         """; 1/4; 3/32 9/32; 1932/2197 -7200/2197 7296/2197; 439/216 -8 3680/513 -845/4104;
         -8/27 2 -3544/2565 1859/4104 -11/40""",
@@ -64,7 +64,7 @@ EXPLICIT = {
         4,
         "E. Fehlberg 1969; continued with the weights of order 5",
     ),
-    "verner65": Data(
+    "verner65": ButcherData(
         6,
         """; 1/6; 4/75 16/75; 5/6 -8/3 5/2; -165/64 55/6 -425/64 85/96;
         12/5 -8 4015/612 -11/36 88/255; -8263/15000 124/75 -643/680 -81/250 2484/10625 0;
@@ -77,16 +77,18 @@ EXPLICIT = {
 }
 
 IMPLICIT = {
-    "lobatto3c": Data(4, "1/6 -1/3 1/6; 1/6 5/12 -1/12; 1/6 2/3 1/6", "1/6 2/3 1/6", source="F. H. Chipman 1971"),
-    "sdirk2": Data(
+    "lobatto3c": ButcherData(
+        4, "1/6 -1/3 1/6; 1/6 5/12 -1/12; 1/6 2/3 1/6", "1/6 2/3 1/6", source="F. H. Chipman 1971"
+    ),
+    "sdirk2": ButcherData(
         2, "1-sqrt(2)/2 0; sqrt(2)/2 1-sqrt(2)/2", "sqrt(2)/2 1-sqrt(2)/2", source="R. Alexander 1977, L-stable"
     ),
 }
 
 COLLOCATION = {
-    "implicit euler": Nodes(1, "1"),
-    "implicit midpoint": Nodes(2, "1/2"),
-    "trapezoidal": Nodes(2, "0, 1", "Lobatto IIIA of two stages"),
-    "radau2a": Nodes(3, "1/3, 1", "Radau IIA of two stages, B. L. Ehle 1969"),
-    "radau2a3": Nodes(5, "2/5 - sqrt(6)/10, 2/5 + sqrt(6)/10, 1", "Radau IIA of three stages"),
+    "implicit euler": CollocationData(1, "1"),
+    "implicit midpoint": CollocationData(2, "1/2"),
+    "trapezoidal": CollocationData(2, "0, 1", "Lobatto IIIA of two stages"),
+    "radau2a": CollocationData(3, "1/3, 1", "Radau IIA of two stages, B. L. Ehle 1969"),
+    "radau2a3": CollocationData(5, "2/5 - sqrt(6)/10, 2/5 + sqrt(6)/10, 1", "Radau IIA of three stages"),
 }

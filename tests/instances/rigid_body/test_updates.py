@@ -111,7 +111,7 @@ def test_refusals() -> None:
     with pytest.raises(lh.errors.InputError, match="m = 0"):
         body.update("eul_i")(np.zeros((2, 3)), 0.1)
     with pytest.raises(lh.errors.InputError, match="several exponentials"):
-        lh.instances.OnTime(lh.CommutatorFree4(), 5)  # type: ignore[arg-type]
+        lh.instances.NominalTimeCorrected(lh.CommutatorFree4(), 5)  # type: ignore[arg-type]
     with pytest.raises(lh.errors.InputError, match="finite"):
         body.exact_orbit()(unit(1, 3), np.inf)
 
@@ -223,6 +223,6 @@ def test_on_time_is_of_its_order_without_a_clock() -> None:
     body, m = BODIES["triaxial"], unit(24, 3)
     reference = Reference(body.field("o"), m.astype(np.longdouble))
     for order in (2, 3, 4):
-        step = lh.instances.OnTime(lh.Euler(), order)
+        step = lh.instances.NominalTimeCorrected(lh.Euler(), order)
         table = lh.observed_order(body.field("o"), m, step, [0.1, 0.05, 0.025], t_span=(0, 2), reference=reference)
         assert abs(slopes(table.dts, table.trajectory_errors)[-1] - order) < 0.15

@@ -10,7 +10,7 @@ import numpy as np
 from liehom.correctors.conserving.conservation import combination
 from liehom.correctors.conserving.conserving import Conserving, ConservingStep
 
-REACHED = 32.0
+CONSERVED_ROUNDOFFS = 32.0
 """F counts as conserved up to this many units of its round-off."""
 NO_RANK = int(np.iinfo(np.int64).max)
 
@@ -81,13 +81,13 @@ class ConservationReport:
 
 
 @final
-class ConservationAccount:
+class ConservationStatistics:
     """The extremes of what conserving steps reported.
 
     Examples
     --------
     >>> import liehom as lh
-    >>> ConservationAccount(lh.Heun(), (3,)).report() is None
+    >>> ConservationStatistics(lh.Heun(), (3,)).report() is None
     True
     """
 
@@ -115,7 +115,7 @@ class ConservationAccount:
             "wanted": np.where(usual, np.maximum(old["wanted"], made.wanted), old["wanted"]),
             "iterations": np.where(active, np.maximum(old["iterations"], made.iterations), old["iterations"]),
             "defect": np.where(active, np.maximum(old["defect"], made.defect), old["defect"]),
-            "missed": old["missed"] + (active & (made.units > REACHED)),
+            "missed": old["missed"] + (active & (made.units > CONSERVED_ROUNDOFFS)),
             "left": old["left"] + (active & made.left),
             "short": old["short"] + short,
             "place": old["place"],

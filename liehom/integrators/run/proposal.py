@@ -1,0 +1,69 @@
+"""StepProposal: a step of all trajectories of a run before it is committed, with the positions within it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from liehom.correctors.step import LocalStep, apply_factors
+from liehom.homogeneous import Action
+from liehom.integrators.run.clock import size_for
+from liehom.typing import Array, BooleanArray
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class StepProposal:
+    """A step of all trajectories before it is committed.
+
+    Attributes
+    ----------
+    action : Action
+    local : LocalStep
+    t, m : arrays of shape (...,) and (..., N)
+        Times and points before the step.
+    h : array of shape (...,)
+        Signed step sizes; 0 for trajectories that do not move.
+    after, made : arrays of shape (...,) and (..., N)
+        Times and points after the step.
+    moves, last : bool arrays of shape (...,)
+        Which trajectories move, and for which the step ends at the end of the time span.
+    nominal : bool
+        Whether time advances by the parameter of the step rather than by its time reparametrization τ.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> action, m, t, yes = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0]), np.array(0.0), np.array(True)
+    >>> local = LocalStep(lambda h: (h * np.array([1.0]),))
+    >>> made = action.act(np.array([0.5]), m)
+    >>> proposal = StepProposal(action, local, t, m, t + 0.5, t + 0.5, made, yes, yes, nominal=False)
+    >>> proposal.point(np.array(0.25), yes).round(6).tolist() == [round(np.cos(0.25), 6), round(np.sin(0.25), 6)]
+    True
+    """
+
+    action: Action
+    local: LocalStep
+    t: Array
+    m: Array
+    h: Array
+    after: Array
+    made: Array
+    moves: BooleanArray
+    last: BooleanArray
+    nominal: bool
+
+    def position(self, s: Array) -> tuple[Array, Array]:
+        """(t, y) within the step at the parameter s (...,)."""
+        passed = s if self.nominal else self.local.time(s)
+        low, high = np.minimum(self.t, self.after), np.maximum(self.t, self.after)
+        t = np.where(s == self.h, self.after, np.clip(self.t + passed, low, high))
+        return t, apply_factors(self.action, self.local.factors(s[..., None]), self.m)
+
+    def point(self, time: Array, here: BooleanArray) -> Array:
+        """The points (..., N) at a time within the step, for the trajectories `here`."""
+        elapsed = np.where(here, time - self.t, 0)
+        s = elapsed if self.nominal else size_for(self.local, elapsed, np.where(here, self.h, 0))
+        return self.position(np.where(here & (time == self.after), self.h, s))[1]
