@@ -12,6 +12,7 @@ import pytest
 
 import liehom as lh
 from liehom.correctors import flow_series, leading_order
+from liehom.homogeneous.fields.field import check_point
 from tests.correctors.support import OMEGA, exact_flow, one_step, quadratic, rigid_body, run, spin, unit
 
 BASES = [lh.Euler(), lh.BackwardEuler(), lh.Heun(), lh.LieTaylor(3)]
@@ -176,7 +177,7 @@ def test_equilibria_of_other_spaces(name: str) -> None:
     """Points next to an equilibrium of a field on an orbit without the range condition: no false alarms."""
     rho = lh.sym_conjugation(3) if name == "Sym(3)" else lh.adjoint(lh.su(3))
     base = np.array([1.0, 0, 0, 2.0, 0, 3.0]) if name == "Sym(3)" else np.random.default_rng(0).normal(size=8)
-    frame = lh.Action(rho).isotropy_frame(base, lh.homogeneous.field.check_point(rho, base))
+    frame = lh.Action(rho).isotropy_frame(base, check_point(rho, base))
     inside = frame.basis[:, 0] if frame.basis.shape[1] else np.zeros(rho.algebra.dimension)
     slope = quadratic(rho, 2, 0.1)
     for d in (0.0, 1e-300, 1e-17, 1e-12, 1e-4):
