@@ -89,7 +89,11 @@ DOORS: dict[str, tuple[str, ...]] = {
 }
 
 # what the independent checker of certificates may import of liehom
-CHECKER = ("liehom.fullness.certificates.certificate", "liehom.fullness.checker")
+CHECKER = (
+    "liehom.fullness.certificates.certificate",
+    "liehom.fullness.certificates.certificate_fields",
+    "liehom.fullness.checker",
+)
 CHECKER_MAY_IMPORT = (*CHECKER, "liehom.scalars", "liehom.errors")
 
 MAX_FILE_LINES = 450

@@ -200,12 +200,11 @@ def _numbers(pair: lh.Pair, certificate: lh.Certificate, name: str) -> Any:
         d = pair.dimension
         shape = {"form": (n, n), "elements": (None, n), "complement": (d, n), "matrix": (d, d)}[name]
         return certificate.matrix(name, *shape).to_rows()
-    if isinstance(value, str):
+    if not isinstance(value, tuple):
         return certificate.number(name)
-    texts = [(x,) if isinstance(x, str) else x for x in value]
     out = []
-    for entry in texts:
-        numbers = [certificate.field.convert(t) for t in entry]
+    for entry in value:
+        numbers = list(entry) if isinstance(entry, tuple) else [entry]
         while len(numbers) > 1 and numbers[-1] == 0:
             numbers.pop()
         out.append(numbers)

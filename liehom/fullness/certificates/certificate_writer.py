@@ -1,4 +1,4 @@
-"""How the decision writes certificates: from vectors and matrices on V to the fields that a checker reads."""
+"""How the decision writes certificates: from vectors and matrices on V to numbers in g."""
 
 from __future__ import annotations
 
@@ -8,11 +8,8 @@ from typing import Any
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
 
-RATIONAL_MINPOLY, RATIONAL_INTERVAL = ["0", "1"], ["-1", "1"]
-
-
-def _texts(action: IsotropyAlgebra, row: Any) -> list[str]:
-    return [action.field.format(v) for v in row.row(0)]
+RATIONAL_MINPOLY, RATIONAL_INTERVAL = (0, 1), (-1, 1)
+"""t and an interval around its root 0: for a witness over the field itself."""
 
 
 def trivial(action_field: Any) -> Certificate:
@@ -23,15 +20,13 @@ def trivial(action_field: Any) -> Certificate:
 def rational_witness(action: IsotropyAlgebra, x: Any, phi: Any) -> Certificate:
     """NOT FULL: a column x of V over the input field and a row phi with phi(L x) = 0; both made primitive."""
     x, phi = x.primitive(), phi.primitive()
-    return Certificate(
-        "witness",
-        {
-            "minpoly": RATIONAL_MINPOLY,
-            "interval": RATIONAL_INTERVAL,
-            "eta": _texts(action, action.lifted(x)),
-            "phi": _texts(action, action.covector(phi)),
-        },
+    return Certificate.over(
         action.field,
+        "witness",
+        minpoly=RATIONAL_MINPOLY,
+        interval=RATIONAL_INTERVAL,
+        eta=action.lifted(x).row(0),
+        phi=action.covector(phi).row(0),
     )
 
 
@@ -40,44 +35,38 @@ def algebraic_witness(
 ) -> Certificate:
     """NOT FULL: x = sum theta^j xs[j] (columns) and phi = sum theta^j phis[j] (rows), theta a root of minpoly."""
 
-    def coordinates(rows: list[Any]) -> list[list[str]]:
-        columns = [_texts(action, row) for row in rows]
-        out = []
-        for values in zip(*columns, strict=True):
-            kept = list(values)
-            while len(kept) > 1 and kept[-1] == "0":
-                kept.pop()
-            out.append(kept)
-        return out
-
-    return Certificate(
-        "witness",
-        {
-            "minpoly": [action.field.format(c) for c in minpoly],
-            "interval": [action.field.format(action.field.convert(c)) for c in interval],
-            "eta": coordinates([action.lifted(x) for x in xs]),
-            "phi": coordinates([action.covector(phi) for phi in phis]),
-        },
+    return Certificate.over(
         action.field,
+        "witness",
+        minpoly=minpoly,
+        interval=interval,
+        eta=_polynomials([action.lifted(x) for x in xs]),
+        phi=_polynomials([action.covector(phi) for phi in phis]),
     )
+
+
+def _polynomials(rows: Sequence[Any]) -> list[list[Any]]:
+    """For each coordinate of sum theta^j rows[j] its coefficients, without leading (last) zeros but at least one."""
+    out = []
+    for coefficients in zip(*(row.row(0) for row in rows), strict=True):
+        degree = max((j for j, c in enumerate(coefficients) if c != 0), default=0)
+        out.append(list(coefficients[: degree + 1]))
+    return out
 
 
 def full(action: IsotropyAlgebra, form: Any, elements: Any, x: Any) -> Certificate:
     """FULL: a definite form on V, rows of h acting conformally skew, and a point where they span."""
     projection = action.quotient.projection
     lifted = projection @ form @ projection.T
-    entries = lifted.to_strings()
-    sparse = [[i, j, v] for i, row in enumerate(entries) for j, v in enumerate(row) if v != "0"]
-    dense = len(sparse) * 2 > lifted.nrows**2
-    return Certificate(
-        "full",
-        {
-            "form": entries if dense else sparse,
-            "elements": elements.to_strings(),
-            "eta": _texts(action, action.lifted(x)),
-        },
-        action.field,
-    )
+    rows = lifted.to_rows()
+    entries = [(i, j, v) for i, row in enumerate(rows) for j, v in enumerate(row) if v != 0]
+    is_dense = len(entries) * 2 > lifted.nrows**2
+    fields = {
+        "form": rows if is_dense else entries,
+        "elements": elements.to_rows(),
+        "eta": action.lifted(x).row(0),
+    }
+    return Certificate("full", fields, action.field)
 
 
 def commutant_cut(action: IsotropyAlgebra, matrix: Any, cut: Any) -> Certificate:

@@ -20,21 +20,20 @@ def eta_of_witness(
     Over a number field k, an eta in k(theta) with theta outside k is left as the certificate states it.
     """
     coordinates = certificate.fields["eta"]
-    if all(isinstance(c, str) or len(c) == 1 for c in coordinates):
-        values = [action.field.convert(c if isinstance(c, str) else c[0]) for c in coordinates]
+    if all(not isinstance(c, tuple) or len(c) == 1 for c in coordinates):
+        values = [c[0] if isinstance(c, tuple) else c for c in coordinates]
         row = action.field.matrix([values]) @ action.quotient.projection
         return values, action.field, action.rank_at(row.T)
     if action.field != QQ:
         return None, None, None
-    minpoly = [QQ.convert(c) for c in certificate.fields["minpoly"]]
-    ends = [QQ.convert(c) for c in certificate.fields["interval"]]
-    extension = NumberField("theta", minpoly, (ends[0], ends[1]))
+    low, high = certificate.vector("interval", 2)
+    extension = NumberField("theta", certificate.vector("minpoly"), (low, high))
     theta = extension.generator
     values = []
     for c in coordinates:
         total = extension.zero
-        for text in reversed([c] if isinstance(c, str) else list(c)):
-            total = total * theta + extension.convert(text)
+        for coefficient in reversed(c if isinstance(c, tuple) else (c,)):
+            total = total * theta + extension.convert(coefficient)
         values.append(total)
     row = extension.matrix([values]) @ extension.matrix(action.quotient.projection.to_rows())
     moved = [row, *[row @ extension.matrix(a.T.to_rows()) for a in action.matrices]]

@@ -17,7 +17,7 @@ from liehom.scalars import QQ, RR, NumberField
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 SAMPLES: list[tuple[str, dict[str, Any]]] = [
     ("trivial", {}),
-    ("full", {"form": [[0, 0, "1"], [1, 1, "1/2"]], "elements": [["0", "0", "2"]], "eta": ["1", "0", "sqrt(4)"]}),
+    ("full", {"form": [[0, 0, "1"], [1, 1, "1/2"]], "elements": [["0", "0", "2"]], "eta": ["1", "0", "2"]}),
     ("full", {"form": [["1", "0"], ["0", "1"]], "elements": [[1, 0, "2"], [0, 1, "3"]], "eta": ["1", "0"]}),
     ("witness", {"minpoly": ["-2", "0", "1"], "interval": ["1", "2"], "eta": ["1", ["0", "1"]], "phi": [["3"], "0"]}),
     ("commutant", {"matrix": [["1", "2"], ["3", "4"]], "complement": [["0", "1"], ["1", "0"]], "cut": "-7/3"}),
@@ -40,7 +40,7 @@ def test_round_trip(kind: str, fields: dict[str, Any], field: Any) -> None:
     certificate = Certificate(kind, fields, field)
     data = certificate.to_json()
     assert ("field" in data) == (field is ROOT2)
-    assert data | fields == data  # the texts are kept as they were given
+    assert data | fields == data  # numbers are written as they were given, dense or sparse
     read = Certificate.from_json(json.loads(json.dumps(data)))
     assert read == certificate and hash(read) == hash(certificate) and read.to_json() == data
     assert pickle.loads(pickle.dumps(certificate)) == certificate
@@ -67,7 +67,7 @@ def test_frozen() -> None:
     with pytest.raises(TypeError):
         certificate.fields["cut"] = "0"  # type: ignore[index]
     certificate.to_fields()["element"].append("1")
-    assert certificate.fields["element"] == ("1", "0")
+    assert certificate.fields["element"] == (1, 0)
 
 
 def test_numbers_written_and_read() -> None:
@@ -77,7 +77,7 @@ def test_numbers_written_and_read() -> None:
     assert certificate.matrix("complement", 2, 2) == ROOT2.matrix([[0, 1], ["a", 0]])
     assert certificate.number("cut") == 1
     sparse = Certificate.over(QQ, "full", form=QQ.identity(12), elements=QQ.identity(12), eta=[1] * 12)
-    assert sparse.fields["form"][3] == (3, 3, "1")
+    assert sparse.fields["form"][3] == (3, 3, 1)
     assert sparse.matrix("form", 12, 12) == sparse.matrix("elements", None, 12) == QQ.identity(12)
     dense = Certificate.over(QQ, "full", form=QQ.zeros(12, 12), elements=QQ.zeros(12, 12), eta=[1] * 12)
     assert dense.matrix("elements", None, 12) == QQ.zeros(12, 12)
@@ -87,6 +87,16 @@ def test_numbers_written_and_read() -> None:
         quadratic.generator
     )
     assert Certificate(*SAMPLES[3]).polynomials("eta", 2, 2) == QQ.matrix([[1, 0], [0, 1]])
+
+
+def test_numbers_are_written_in_their_normal_form() -> None:
+    fields = {"element": ["2/4", "sqrt(4)"], "cut": "1/4 + 1", "eps": "0"}
+    certificate = Certificate("dominance", fields)
+    assert certificate.to_fields() == {"element": ["1/2", "2"], "cut": "5/4", "eps": "0"}
+    assert certificate == Certificate("dominance", certificate.fields)  # numbers are read as well as strings
+    for value in (1, 1.5, RR.one, ROOT2.generator):
+        with pytest.raises(CertificateFormatError, match="write numbers as strings"):
+            Certificate("dominance", fields | {"cut": value})
 
 
 def test_lengths_that_do_not_fit_the_pair() -> None:
@@ -141,16 +151,16 @@ def test_every_field_is_required_and_no_other_allowed(kind: str, fields: dict[st
         ("form", [[0, 0, "1"], [0, 0, "1"]], r"entry \(0, 0\) twice"),
         ("form", [[0, -1, "1"]], "indices from 0"),
         ("form", [[0, True, "1"]], "indices from 0"),
-        ("form", [[0, 0, "1"], ["1", "0"]], "expected .i, j, text"),
+        ("form", [[0, 0, "1"], ["1", "0"]], "expected .i, j, number"),
         ("form", [["1", "0"], [0, 0, "1"]], "holds 0, of type int"),
-        ("form", [[0, 0]], "expected .i, j, text"),
+        ("form", [[0, 0]], "expected .i, j, number"),
         ("form", [[0, 0, 1]], "holds 1, of type int"),
-        ("form", [[0.0, 0, "1"]], "expected .i, j, text"),
+        ("form", [[0.0, 0, "1"]], "expected .i, j, number"),
         ("form", "11", "must be a list"),
         ("form", ["10", "01"], "a row of form must be a list"),
         ("elements", [[1, 0, "2"]], "row without entries"),
         ("elements", [[0, 0, "2"], [2, 0, "1"]], "row without entries"),
-        ("eta", ["1", 0.5], "0.5, a float; write numbers as texts"),
+        ("eta", ["1", 0.5], "0.5, a float; write numbers as strings"),
         ("eta", ["1", "0.5"], "is not a value"),
         ("eta", ["1", "sqrt(2)"], "not in QQ"),
         ("eta", ["1", "a"], "the name 'a' is not known"),
