@@ -54,7 +54,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "verdict",
         "numerical",
         "search",
-        "describe",
+        "reasons",
         "decide",
     ),
     "correctors": ("step", "expansion", "points", "isotropy", "conserving", "symbolic"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from liehom.cli import describe, numerical, reproduce
+from liehom.cli import describe_command, numerical_commands, reproduce
 from liehom.cli.guard import NO, NUMERICAL, YES, guarded
 
 if TYPE_CHECKING:
@@ -272,9 +272,9 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     return code
 
 
-app.command()(describe.describe)
-app.command()(numerical.integrate)
-app.command()(numerical.order)
+app.command()(describe_command.describe)
+app.command()(numerical_commands.integrate)
+app.command()(numerical_commands.order)
 app.command()(reproduce.reproduce)
 
 

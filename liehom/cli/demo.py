@@ -9,10 +9,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import liehom.io
-from liehom.cli.convergence import measured, table_json
 from liehom.cli.guard import YES
 from liehom.cli.inputs import examples_folder
-from liehom.cli.problem import can_draw
+from liehom.cli.problem_options import can_draw
+from liehom.cli.run_order import measured, table_json
 from liehom.cli.show import show_json, show_table
 from liehom.errors import FormatError
 from liehom.fullness.decide import decide_fullness

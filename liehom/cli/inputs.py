@@ -10,8 +10,8 @@ from typing import Any
 from liehom.algebra import LieAlgebra
 from liehom.errors import CatalogError, FormatError
 from liehom.io import from_gap, from_sage, load, load_pair
-from liehom.io.json_text import parse_object
-from liehom.io.values import vector
+from liehom.io.json_reader import parse_object
+from liehom.io.number_lists import vector
 from liehom.representations import Pair, Representation
 from liehom.scalars import RR, common_field
 

@@ -27,7 +27,7 @@ def reproduce(
 
 def run_reproduce(name: str, out: str, quick: bool, seed: int | None, as_json: bool) -> int:
     """Make the tables, write them, print what was found."""
-    from liehom.cli.problem import can_draw
+    from liehom.cli.problem_options import can_draw
     from liehom.cli.show import show_json
     from liehom.errors import InputError
     from liehom.paper import NAMES, reproduce

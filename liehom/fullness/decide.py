@@ -15,15 +15,15 @@ from liehom.errors import InputError, InternalError
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.certificates.witnesses import eta_of_witness, numerical_eta, numerical_eta_of_commutant
-from liehom.fullness.describe import full_reason
 from liehom.fullness.numerical import decide_numerically
+from liehom.fullness.reasons import full_reason
 from liehom.fullness.search.dominance import Dominant, find_dominant
-from liehom.fullness.search.eigenwitness import eigenvector_witness
-from liehom.fullness.search.forms import decide_by_forms
+from liehom.fullness.search.eigenvector_witness import eigenvector_witness
 from liehom.fullness.search.frame import balanced_frame, plain_frame
 from liehom.fullness.search.positive_form import full_by_positive_form
-from liehom.fullness.search.reducible import certificate_of, kernel_witness
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.search.reducible import certificate_of_reduction, kernel_witness
+from liehom.fullness.search.symmetric_forms import decide_by_forms
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.fullness.verdict import Full, NotFull, Verdict
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import commutant, invariant_forms
@@ -77,7 +77,7 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None
     if pair.dimension <= 1:
         reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
         return Full(pair, certificate_writer.trivial(pair.field), reason[pair.dimension])
-    action = IsotropyAlgebra(pair)
+    action = TracelessIsotropyAction(pair)
     for attempt in range(3):
         verdict = _decide(action, seed + attempt, report)
         if verdict is not None:
@@ -89,7 +89,7 @@ def _silent(_: str) -> None:
     return
 
 
-def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | None:
+def _decide(action: TracelessIsotropyAction, seed: int, report: Report) -> Verdict | None:
     report("rank at sample points")
     rng = random.Random(seed)
     x, certificate = _sample(action, rng)
@@ -109,7 +109,7 @@ def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | Non
     imaginary = traceless(basis, action.size, action.field)
     split = split_by_commutant(imaginary, action.size, action.field)
     if split is not None:
-        return _reducible(action, certificate_of(action, split))
+        return _reducible(action, certificate_of_reduction(action, split))
     report("definite form")
     certificate = full_by_positive_form(action, imaginary)
     if certificate is not None:
@@ -117,14 +117,14 @@ def _decide(action: IsotropyAlgebra, seed: int, report: Report) -> Verdict | Non
     return _by_dominance(action, seed, report)
 
 
-def _few_directions(action: IsotropyAlgebra) -> str:
+def _few_directions(action: TracelessIsotropyAction) -> str:
     size = action.dimension + 1
     if size < action.size:
         return f"rho(h) + R has dimension {size}, fewer than the {action.size} directions of g/h, at every eta"
     return "h moves a sample point in too few directions"
 
 
-def _sample(action: IsotropyAlgebra, rng: random.Random) -> tuple[Any, Certificate | None]:
+def _sample(action: TracelessIsotropyAction, rng: random.Random) -> tuple[Any, Certificate | None]:
     """A point of rank d, or a rational witness: random points first, then the axes."""
     first = None
     points = [action.random_point(rng) for _ in range(3)]
@@ -137,7 +137,7 @@ def _sample(action: IsotropyAlgebra, rng: random.Random) -> tuple[Any, Certifica
     return first, None
 
 
-def _by_forms(action: IsotropyAlgebra, symmetric: tuple[Any, ...], x: Any) -> Verdict:
+def _by_forms(action: TracelessIsotropyAction, symmetric: tuple[Any, ...], x: Any) -> Verdict:
     certificate = decide_by_forms(action, symmetric, x)
     if certificate.full:
         dimension = len(commutant(action.traceless, action.size, action.field))
@@ -148,7 +148,7 @@ def _by_forms(action: IsotropyAlgebra, symmetric: tuple[Any, ...], x: Any) -> Ve
     return _not_full(action, certificate, f"the isotropy keeps {kind} up to scale, and the rank drops on a null vector")
 
 
-def _reducible(action: IsotropyAlgebra, certificate: Certificate) -> NotFull:
+def _reducible(action: TracelessIsotropyAction, certificate: Certificate) -> NotFull:
     reason = "the isotropy representation is reducible over the reals: its commutant is not a division algebra"
     if certificate.kind == "commutant":
         eta = numerical_eta_of_commutant(action, certificate)
@@ -156,7 +156,7 @@ def _reducible(action: IsotropyAlgebra, certificate: Certificate) -> NotFull:
     return _not_full(action, certificate, reason)
 
 
-def _by_dominance(action: IsotropyAlgebra, seed: int, report: Report) -> NotFull | None:
+def _by_dominance(action: TracelessIsotropyAction, seed: int, report: Report) -> NotFull | None:
     tries, frame = FIRST_TRIES, plain_frame(action)
     for round_number in range(ROUNDS):
         if frame is not None:
@@ -171,7 +171,7 @@ def _by_dominance(action: IsotropyAlgebra, seed: int, report: Report) -> NotFull
     return None
 
 
-def _with_exact_eta(action: IsotropyAlgebra, dominant: Dominant) -> NotFull:
+def _with_exact_eta(action: TracelessIsotropyAction, dominant: Dominant) -> NotFull:
     reason = "the top eigenspace of an element of h moves in too few directions (weight count below d)"
     witness = eigenvector_witness(action, [dominant.element])
     if witness is None:
@@ -181,7 +181,7 @@ def _with_exact_eta(action: IsotropyAlgebra, dominant: Dominant) -> NotFull:
     return _not_full(action, both, reason)
 
 
-def _not_full(action: IsotropyAlgebra, certificate: Certificate, reason: str) -> NotFull:
+def _not_full(action: TracelessIsotropyAction, certificate: Certificate, reason: str) -> NotFull:
     eta, field, rank = eta_of_witness(action, certificate)
     if rank == action.size:
         raise InternalError("the rank does not drop at the eta that was found; please report this pair")

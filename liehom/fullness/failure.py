@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.fullness.certificates.certificate import Certificate
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.homogeneous import FailureSet, RangeCondition, failure_cone, range_condition
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import invariant_forms
@@ -60,7 +60,7 @@ def failure_report(pair: Pair, certificate: Certificate | None = None) -> Failur
     generic = range_condition(pair)
     if generic.holds is False:
         return FailureReport(generic, ())
-    action = IsotropyAlgebra(pair)
+    action = TracelessIsotropyAction(pair)
     forms: list[Any] = []
     subspaces: list[Any] = []
     for form in invariant_forms(action.traceless, action.size, action.field).symmetric:

@@ -1,4 +1,4 @@
-"""IsotropyAlgebra: what the decision works on, the matrices of h on V = g/h, made traceless, with their lifts.
+"""TracelessIsotropyAction: what the decision works on, the matrices of h on V = g/h, made traceless, with their lifts.
 
 L0 = {rho(z) - (tr rho(z)/d) 1}; a pair is full iff rank [L0 x, x] = d for every x != 0 in V.
 """
@@ -15,7 +15,7 @@ from liehom.scalars.modular.modular import independent_columns, independent_rows
 
 
 @final
-class IsotropyAlgebra:
+class TracelessIsotropyAction:
     """The isotropy representation of an exact pair, prepared for the decision.
 
     Attributes

@@ -26,10 +26,10 @@ from liehom.io.files import loads as loads
 from liehom.io.files import to_json as to_json
 from liehom.io.gap_format import from_gap as from_gap
 from liehom.io.gap_format import to_gap as to_gap
-from liehom.io.json_text import parse_object as parse_object
-from liehom.io.json_text import read_object as read_object
-from liehom.io.latex_text import latex as latex
-from liehom.io.problem import Problem as Problem
+from liehom.io.json_reader import parse_object as parse_object
+from liehom.io.json_reader import read_object as read_object
+from liehom.io.latex_format import latex as latex
+from liehom.io.problem_file import Problem as Problem
 from liehom.io.sage_format import from_sage as from_sage
 from liehom.io.sage_format import to_sage as to_sage
 from liehom.io.solution_file import save_solution as save_solution

@@ -13,8 +13,8 @@ import numpy as np
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FormatError
-from liehom.io.json_text import as_list, check_header, check_keys, is_float64, kind_of, shown
-from liehom.io.values import RawList, field_for, write_field, write_number
+from liehom.io.json_reader import as_list, check_header, check_keys, is_float64, kind_of, shown
+from liehom.io.number_lists import RawList, field_for, write_field, write_number
 from liehom.scalars import Field
 
 FORMAT = "liehom-algebra"

@@ -11,8 +11,8 @@ from typing import Any, Literal, overload
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
-from liehom.io.json_text import kind_of, parse_object, read_object, shown
-from liehom.io.problem import Problem
+from liehom.io.json_reader import kind_of, parse_object, read_object, shown
+from liehom.io.problem_file import Problem
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from liehom.algebra import LieAlgebra
 from liehom.errors import FormatError
 from liehom.io.algebra_file import MAX_DIMENSION
-from liehom.io.json_text import shown
+from liehom.io.json_reader import shown
 from liehom.scalars import QQ, Scalar
 
 MAX_DEPTH = 8

@@ -8,8 +8,8 @@ from typing import Any
 from liehom.algebra import LieAlgebra
 from liehom.io.algebra_file import FORMAT as ALGEBRA
 from liehom.io.algebra_file import algebra_keys, made_table, read_dimension, read_entries, read_names
-from liehom.io.json_text import check_header, check_keys, is_float64
-from liehom.io.values import field_for, table_of_rows, write_number
+from liehom.io.json_reader import check_header, check_keys, is_float64
+from liehom.io.number_lists import field_for, table_of_rows, write_number
 from liehom.representations.core.pair import Pair
 
 FORMAT = "liehom-pair"

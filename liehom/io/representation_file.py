@@ -13,9 +13,9 @@ from typing import Any
 from liehom.algebra.closure.closure import lie_closure
 from liehom.errors import FormatError, ShapeError
 from liehom.io.algebra_file import read_dimension
-from liehom.io.json_text import as_list, check_header, check_keys, is_float64
-from liehom.io.problem import NUMERICAL, Problem, read_fields, read_options
-from liehom.io.values import RawList, field_for, table_of_rows, vector, write_field, write_number
+from liehom.io.json_reader import as_list, check_header, check_keys, is_float64
+from liehom.io.number_lists import RawList, field_for, table_of_rows, vector, write_field, write_number
+from liehom.io.problem_file import NUMERICAL, Problem, read_fields, read_options
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.scalars import RR

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, FormatError, ParseError
 from liehom.io.gap_format import require_rational
-from liehom.io.json_text import shown
+from liehom.io.json_reader import shown
 from liehom.scalars import QQ, Scalar
 
 VARIABLE = re.compile(r"[A-Za-z][A-Za-z_0-9]*", re.ASCII)

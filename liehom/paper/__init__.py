@@ -12,9 +12,9 @@ from liehom.paper.energy_errors import figure4 as figure4
 from liehom.paper.energy_errors import figure5 as figure5
 from liehom.paper.figures import NAMES as NAMES
 from liehom.paper.figures import reproduce as reproduce
+from liehom.paper.reproduction import Check as Check
+from liehom.paper.reproduction import Reproduction as Reproduction
+from liehom.paper.reproduction import Table as Table
 from liehom.paper.separatrices import separatrix as separatrix
-from liehom.paper.tables import Check as Check
-from liehom.paper.tables import Reproduction as Reproduction
-from liehom.paper.tables import Table as Table
 from liehom.paper.trajectories import figure1 as figure1
 from liehom.paper.trajectories import figure2 as figure2

@@ -19,15 +19,15 @@ from liehom.paper.costs import Cost, costs
 from liehom.paper.energy_errors import (
     SETTINGS,
     Scale,
-    deck_averages,
+    batch_averages,
     kernels_agree,
     scale,
 )
 from liehom.paper.orders import Orders, measured_orders
-from liehom.paper.pictures import Curve, draw_costs
+from liehom.paper.plots import Curve, draw_costs
 from liehom.paper.printed_data import CROSSOVER, EULER, FIGURE_6, UPDATES
-from liehom.paper.samples import LAW, SEED, described, spread
-from liehom.paper.tables import Check, Reproduction, Table
+from liehom.paper.reproduction import Check, Reproduction, Table
+from liehom.paper.samples import MOMENTS, SEED, described, spread
 
 PANELS = (
     ("Euler", EULER),
@@ -47,14 +47,14 @@ class Accuracy:
     Attributes
     ----------
     steps : array of shape (sizes,)
-    errors : array of shape (sizes, decks)
+    errors : array of shape (sizes, batches)
     """
 
     steps: Any
     errors: Any
 
     def fits(self, cost: float) -> Any:
-        """a and b of every deck, shape (2, decks)."""
+        """a and b of every batch, shape (2, batches)."""
         x, y = -np.log(self.errors), np.log(cost * self.steps)[:, None]
         x0, y0 = x.mean(axis=0), y.mean(axis=0)
         a = ((x - x0) * (y - y0)).sum(axis=0) / ((x - x0) ** 2).sum(axis=0)
@@ -71,7 +71,7 @@ def accuracy(size: Scale, name: str, quick: bool) -> Accuracy:
     """
     setting = next(s for s in SETTINGS if name in s.updates)
     dts = setting.dts[:3] if quick else setting.dts
-    errors = np.stack([deck_averages(size, "triaxial", name, dt) for dt in dts])
+    errors = np.stack([batch_averages(size, "triaxial", name, dt) for dt in dts])
     return Accuracy(size.span / np.array(dts), errors)
 
 
@@ -126,7 +126,7 @@ def figure6(quick: bool = False, seed: int = SEED) -> Reproduction:
         ),
         kernels_agree(size, UPDATES),
     )
-    text = f"{described(LAW, size.decks, seed)} Orders: 20 bodies with moments uniform on (1, 3)."
+    text = f"{described(MOMENTS, size.batches, seed)} Orders: 20 bodies with moments uniform on (1, 3)."
     return Reproduction("fig6", "Figure 6: orders and costs of the 13 updates", text, tables, checks)
 
 
@@ -157,7 +157,7 @@ def figure7(quick: bool = False, seed: int = SEED) -> Reproduction:
     return Reproduction(
         "fig7",
         "Figure 7: cost over orbit accuracy",
-        described(LAW, size.decks, seed) + " Cost: steps times measured cost of a step, in steps of xi_b^Eul.",
+        described(MOMENTS, size.batches, seed) + " Cost: steps times measured cost of a step, in steps of xi_b^Eul.",
         {"": Table("Points", ("update", "dt", "average error", "-ln error", "ln cost"), rows)},
         (
             Check(

@@ -12,9 +12,10 @@ import numpy as np
 from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.kernels import kernel
 from liehom.paper.printed_data import EULER, FIGURE_3, FIGURE_4, FIGURE_5, FOURTH, HEUN, Errors
+from liehom.paper.reproduction import Check, Reproduction, Table
 from liehom.paper.samples import (
     KINDS,
-    LAW,
+    MOMENTS,
     SEED,
     Sample,
     Spread,
@@ -25,10 +26,9 @@ from liehom.paper.samples import (
     slope,
     spread,
 )
-from liehom.paper.tables import Check, Reproduction, Table
 
-SPAN, DECKS = 100.0, 40
-QUICK_SPAN, QUICK_DECKS = 25.0, 3
+SPAN, BATCHES = 100.0, 40
+QUICK_SPAN, QUICK_BATCHES = 25.0, 3
 ZERO = 1e-13
 # orders of the energy on [0, T]; where the leading term is odd in D = <X, Om^2 m> it only oscillates, and long runs
 # show up to one order more
@@ -61,13 +61,13 @@ SETTINGS = (
 class Scale:
     """How large a sample is, how long runs are."""
 
-    decks: int
+    batches: int
     span: float
     seed: int
 
     def sample(self, kind: str) -> Sample:
         """The bodies of a kind."""
-        return random_bodies(kind, 10 * self.decks, seed=self.seed)
+        return random_bodies(kind, 10 * self.batches, seed=self.seed)
 
 
 def scale(quick: bool, seed: int = SEED) -> Scale:
@@ -76,14 +76,14 @@ def scale(quick: bool, seed: int = SEED) -> Scale:
     Examples
     --------
     >>> scale(False)
-    Scale(decks=40, span=100.0, seed=2001)
+    Scale(batches=40, span=100.0, seed=2001)
     """
-    return Scale(QUICK_DECKS, QUICK_SPAN, seed) if quick else Scale(DECKS, SPAN, seed)
+    return Scale(QUICK_BATCHES, QUICK_SPAN, seed) if quick else Scale(BATCHES, SPAN, seed)
 
 
 @cache
 def energy_errors(scale: Scale, kind: str, name: str, dt: float, printed: bool = False) -> Any:
-    """The largest energy error of every run, shape (10 decks,), for an update of Figure 6 or its misprint.
+    """The largest energy error of every run, shape (10 batches,), for an update of Figure 6 or its misprint.
 
     Examples
     --------
@@ -97,8 +97,8 @@ def energy_errors(scale: Scale, kind: str, name: str, dt: float, printed: bool =
     return found
 
 
-def deck_averages(scale: Scale, kind: str, name: str, dt: float) -> Any:
-    """Averages over ten runs, shape (decks,)."""
+def batch_averages(scale: Scale, kind: str, name: str, dt: float) -> Any:
+    """Averages over ten runs, shape (batches,)."""
     return averages(energy_errors(scale, kind, name, dt))
 
 
@@ -217,7 +217,7 @@ def _reproduction(
     return Reproduction(
         f"fig{setting.figure}",
         f"Figure {setting.figure}: energy errors of {names[setting.figure]} on [0, {size.span:g}]",
-        described(LAW, size.decks, size.seed),
+        described(MOMENTS, size.batches, size.seed),
         tables,
         (*every, *checks, kernels_agree(size, setting.updates)),
         notes,
@@ -226,7 +226,7 @@ def _reproduction(
 
 def _error_row(size: Scale, setting: Setting, kind: str, dt: float, name: str) -> tuple[Any, ...]:
     paper = setting.printed[kind, dt, name]
-    found: Spread = spread(deck_averages(size, kind, name, dt))
+    found: Spread = spread(batch_averages(size, kind, name, dt))
     exact_zero = found.high < ZERO and paper < ZERO
     return kind, dt, name, *found, paper, "yes" if exact_zero or found.has(paper) else "no"
 

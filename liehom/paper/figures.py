@@ -7,8 +7,8 @@ from collections.abc import Callable
 from liehom.errors import InputError
 from liehom.paper.efficiency import figure6, figure7
 from liehom.paper.energy_errors import figure3, figure4, figure5
+from liehom.paper.reproduction import Reproduction
 from liehom.paper.separatrices import separatrix
-from liehom.paper.tables import Reproduction
 from liehom.paper.trajectories import figure1, figure2
 
 _FIGURES: dict[str, Callable[..., Reproduction]] = {

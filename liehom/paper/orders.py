@@ -9,7 +9,7 @@ import numpy as np
 from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.kernels import Body, kernel
 from liehom.paper.printed_data import UPDATES
-from liehom.paper.samples import QUICK_LAW, SEED, random_bodies
+from liehom.paper.samples import NARROW_MOMENTS, SEED, random_bodies
 
 SPAN = 6.0
 SIZES = (1 / 16, 1 / 32, 1 / 64)
@@ -35,7 +35,7 @@ def measured_orders(bodies: int = BODIES, sizes: tuple[float, ...] = SIZES, seed
     >>> round(orders["eul_i"].energy), round(orders["eul_i"].solution)
     (2, 1)
     """
-    sample = random_bodies("triaxial", bodies, QUICK_LAW, seed)
+    sample = random_bodies("triaxial", bodies, NARROW_MOMENTS, seed)
     moments, start = sample.moments.astype(np.longdouble), sample.start.astype(np.longdouble)
     start /= np.sqrt((start**2).sum(axis=0))
     w = 1 / moments

@@ -16,9 +16,9 @@ from liehom.paper.kernels import Body, Update, Vector
 
 RUNS = 10
 SEED = 2001
-LAW = (1.0, 20.0)
+MOMENTS = (1.0, 20.0)
 # of a law with w about 1 and bodies that all turn: for orders of convergence
-QUICK_LAW = (1.0, 3.0)
+NARROW_MOMENTS = (1.0, 3.0)
 KINDS = ("triaxial", "axisymmetric")
 
 
@@ -54,7 +54,7 @@ class Sample:
         return self.start[0], self.start[1], self.start[2]
 
 
-def random_bodies(kind: str, count: int, law: tuple[float, float] = LAW, seed: int = SEED) -> Sample:
+def random_bodies(kind: str, count: int, law: tuple[float, float] = MOMENTS, seed: int = SEED) -> Sample:
     """Principal moments uniform on the interval `law`, independent; starting points uniform on the unit sphere.
 
     Axisymmetric bodies have I_1 = I_2. A random rotation of the tensor would change nothing but the names of the axes:
@@ -81,12 +81,12 @@ def random_bodies(kind: str, count: int, law: tuple[float, float] = LAW, seed: i
     return Sample(kind, moments, start / np.linalg.norm(start, axis=0))
 
 
-def described(law: tuple[float, float], decks: int, seed: int) -> str:
+def described(law: tuple[float, float], batches: int, seed: int) -> str:
     """The data of the tables of errors, in words."""
     return (
         f"Principal moments independent and uniform on ({law[0]:g}, {law[1]:g}), I_1 = I_2 for axisymmetric bodies; "
         f"starting points uniform on the unit sphere; seed {seed}. Errors are averages over {RUNS} runs: medians of "
-        f"{decks} such averages with the range from the 5th to the 95th percentile, {RUNS * decks} bodies in all."
+        f"{batches} such averages with the range from the 5th to the 95th percentile, {RUNS * batches} bodies in all."
     )
 
 

@@ -11,10 +11,10 @@ from liehom.paper.energy_errors import kernels_agree, scale
 from liehom.paper.kernels import kernel
 from liehom.paper.printed_data import EULER
 from liehom.paper.printed_data import SEPARATRIX as PRINTED
-from liehom.paper.samples import LAW, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
-from liehom.paper.tables import Check, Reproduction, Table
+from liehom.paper.reproduction import Check, Reproduction, Table
+from liehom.paper.samples import MOMENTS, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
 
-SPAN, DECKS = 500.0, 40
+SPAN, BATCHES = 500.0, 40
 ZERO = 1e-12
 
 
@@ -26,8 +26,8 @@ def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
     >>> separatrix(quick=True).holds
     True
     """
-    span, decks = (50.0, 2) if quick else (SPAN, DECKS)
-    sample = separatrix_sample(10 * decks, seed)
+    span, batches = (50.0, 2) if quick else (SPAN, BATCHES)
+    sample = separatrix_sample(10 * batches, seed)
     dts = [dt for dt in PRINTED if not quick or dt > 0.05]
     rows, largest, apart = [], 0.0, 0.0
     for dt in dts:
@@ -48,7 +48,7 @@ def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
         kernels_agree(scale(True, seed), EULER),
     )
     columns = ("dt", "update", "average error", "low", "high", "paper", "paper in range")
-    law = described(LAW, decks, seed).replace(
+    law = described(MOMENTS, batches, seed).replace(
         "I_1 = I_2 for axisymmetric bodies; starting points uniform on the unit sphere",
         "starting points at uniform angles on the separatrices",
     )
@@ -66,7 +66,7 @@ def separatrix_sample(count: int, seed: int = SEED) -> Sample:
     >>> bool(np.allclose(2 * sample.body.energy(sample.points), middle))
     True
     """
-    drawn: Sample = random_bodies("triaxial", count, LAW, seed)
+    drawn: Sample = random_bodies("triaxial", count, MOMENTS, seed)
     rng = np.random.default_rng([seed, 2])
     angles, branches = rng.uniform(0, 2 * np.pi, count), rng.choice([-1, 1], count)
     points: list[Any] = [RigidBody(drawn.moments[:, i]).separatrix(angles[i], int(branches[i])) for i in range(count)]

@@ -8,19 +8,19 @@ import numpy as np
 
 from liehom.paper.energy_errors import kernels_agree, scale
 from liehom.paper.kernels import kernel
-from liehom.paper.pictures import draw_spheres
+from liehom.paper.plots import draw_spheres
 from liehom.paper.printed_data import EULER, FIGURE_2
-from liehom.paper.samples import KINDS, QUICK_LAW, Sample, largest_energy_error, random_bodies, spread
-from liehom.paper.tables import Check, Reproduction, Table
+from liehom.paper.reproduction import Check, Reproduction, Table
+from liehom.paper.samples import KINDS, NARROW_MOMENTS, Sample, largest_energy_error, random_bodies, spread
 
 SPAN, DT = 200.0, 0.1
 STARTS, MANY = 3, 400
-SEED_OF_PICTURE = 44  # most starting points in front, both bodies far from spheres
+FIGURE_SEED = 44  # most starting points in front, both bodies far from spheres
 EVERY = 10  # of the steps in the CSV file
 ZERO = 1e-12
 
 
-def figure1(quick: bool = False, seed: int = SEED_OF_PICTURE) -> Reproduction:
+def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
     """Figure 1: trajectories on the sphere for a triaxial and an axisymmetric body.
 
     Examples
@@ -62,7 +62,7 @@ def figure1(quick: bool = False, seed: int = SEED_OF_PICTURE) -> Reproduction:
     )
 
 
-def figure2(quick: bool = False, seed: int = SEED_OF_PICTURE) -> Reproduction:
+def figure2(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
     """Figure 2: the largest energy error of these trajectories, and of many others.
 
     Examples
@@ -75,7 +75,7 @@ def figure2(quick: bool = False, seed: int = SEED_OF_PICTURE) -> Reproduction:
     for kind in KINDS:
         for name in EULER:
             here = float(_errors(name, _one_body(kind, seed), span).max())
-            others = _errors(name, random_bodies(kind, count, QUICK_LAW, seed + 1), span)
+            others = _errors(name, random_bodies(kind, count, NARROW_MOMENTS, seed + 1), span)
             found = spread(others)
             middles[kind, name] = found.median
             if (kind, name) == ("axisymmetric", "eul_i"):
@@ -126,7 +126,7 @@ def trajectory(name: str, sample: Sample, span: float) -> Any:
 
 def _one_body(kind: str, seed: int) -> Sample:
     """One body, several starting points."""
-    several = random_bodies(kind, STARTS, QUICK_LAW, seed)
+    several = random_bodies(kind, STARTS, NARROW_MOMENTS, seed)
     return Sample(kind, several.moments[:, :1], several.start)
 
 
@@ -135,7 +135,7 @@ def _errors(name: str, sample: Sample, span: float) -> Any:
 
 
 def _described(seed: int) -> str:
-    low, high = QUICK_LAW
+    low, high = NARROW_MOMENTS
     return (
         f"Principal moments uniform on ({low:g}, {high:g}), I_1 = I_2 for the axisymmetric body; {STARTS} starting "
         f"points uniform on the unit sphere; seed {seed}. The paper does not give the data of its figure."

@@ -12,9 +12,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import liehom as lh
-from liehom.cli import problem as cli_problem
+from liehom.cli import problem_options as cli_problem
 from liehom.cli.app import app
-from liehom.cli.integration import invariant_drift
+from liehom.cli.run_integrate import invariant_drift
 from liehom.integrators.run.run import Run
 
 RIGID, SYM3, SPIN = "examples/rigid_body.json", "examples/sym3_generic.json", "examples/driven_spin.json"

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom import errors, io
-from liehom.io import algebra_file, json_text, values
-from liehom.io.values import RawList
+from liehom.io import algebra_file, json_reader, number_lists
+from liehom.io.number_lists import RawList
 from liehom.scalars import QQ, RR
 
 SPHERE: dict[str, Any] = {
@@ -517,10 +517,10 @@ def parse_cost(data: dict[str, Any]) -> float:
     text = json.dumps(data)
 
     def parse() -> None:
-        read = json_text.parse_object(text)
+        read = json_reader.parse_object(text)
         index, constants = algebra_file.read_entries(read["structure_constants"], read["dimension"], False)
-        rows, k, n = values.table_of_rows(read["subalgebra"], "subalgebra", read["dimension"])
-        field = values.field_for(read, [constants, rows], False)
+        rows, k, n = number_lists.table_of_rows(read["subalgebra"], "subalgebra", read["dimension"])
+        field = number_lists.field_for(read, [constants, rows], False)
         algebra_file.made_table(field, n, index, constants)
         rows.matrix(field, k, n)
 

@@ -22,7 +22,7 @@ from liehom.paper.efficiency import accuracy, own_consistency
 from liehom.paper.energy_errors import energy_errors, scale
 from liehom.paper.kernels import MISPRINTS, Body, kernel
 from liehom.paper.orders import measured_orders
-from liehom.paper.pictures import draw_spheres
+from liehom.paper.plots import draw_spheres
 from liehom.paper.printed_data import CROSSOVER, FIGURE_3, FIGURE_4, FIGURE_5, FIGURE_6, UPDATES
 from liehom.paper.samples import largest_energy_error, random_bodies
 from liehom.paper.separatrices import separatrix_sample

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from liehom.fullness.certificates.certificate import Certificate
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 
 RATIONAL_MINPOLY, RATIONAL_INTERVAL = (0, 1), (-1, 1)
 """t and an interval around its root 0: for a witness over the field itself."""
@@ -17,7 +17,7 @@ def trivial(action_field: Any) -> Certificate:
     return Certificate("trivial", {}, action_field)
 
 
-def rational_witness(action: IsotropyAlgebra, x: Any, phi: Any) -> Certificate:
+def rational_witness(action: TracelessIsotropyAction, x: Any, phi: Any) -> Certificate:
     """NOT FULL: a column x of V over the input field and a row phi with phi(L x) = 0; both made primitive."""
     x, phi = x.primitive(), phi.primitive()
     return Certificate.over(
@@ -31,7 +31,11 @@ def rational_witness(action: IsotropyAlgebra, x: Any, phi: Any) -> Certificate:
 
 
 def algebraic_witness(
-    action: IsotropyAlgebra, minpoly: Sequence[Any], interval: tuple[Any, Any], xs: Sequence[Any], phis: Sequence[Any]
+    action: TracelessIsotropyAction,
+    minpoly: Sequence[Any],
+    interval: tuple[Any, Any],
+    xs: Sequence[Any],
+    phis: Sequence[Any],
 ) -> Certificate:
     """NOT FULL: x = sum theta^j xs[j] (columns) and phi = sum theta^j phis[j] (rows), theta a root of minpoly."""
 
@@ -54,7 +58,7 @@ def _polynomials(rows: Sequence[Any]) -> list[list[Any]]:
     return out
 
 
-def full(action: IsotropyAlgebra, form: Any, elements: Any, x: Any) -> Certificate:
+def full(action: TracelessIsotropyAction, form: Any, elements: Any, x: Any) -> Certificate:
     """FULL: a definite form on V, rows of h acting conformally skew, and a point where they span."""
     projection = action.quotient.projection
     lifted = projection @ form @ projection.T
@@ -69,11 +73,11 @@ def full(action: IsotropyAlgebra, form: Any, elements: Any, x: Any) -> Certifica
     return Certificate("full", fields, action.field)
 
 
-def commutant_cut(action: IsotropyAlgebra, matrix: Any, cut: Any) -> Certificate:
+def commutant_cut(action: TracelessIsotropyAction, matrix: Any, cut: Any) -> Certificate:
     """NOT FULL: a matrix that commutes with rho(h) and has eigenvalues on both sides of the cut."""
     return Certificate.over(action.field, "commutant", matrix=matrix, complement=action.quotient.lift, cut=cut)
 
 
-def dominance(action: IsotropyAlgebra, element: Any, cut: Any, eps: Any) -> Certificate:
+def dominance(action: TracelessIsotropyAction, element: Any, cut: Any, eps: Any) -> Certificate:
     """NOT FULL: an element of h whose top eigenspace moves in too few directions."""
     return Certificate.over(action.field, "dominance", element=element.row(0), cut=cut, eps=eps)

@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.fullness.certificates.certificate import Certificate
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.scalars import QQ, Field, NumberField
 
 
 def eta_of_witness(
-    action: IsotropyAlgebra, certificate: Certificate
+    action: TracelessIsotropyAction, certificate: Certificate
 ) -> tuple[list[Any] | None, Field | None, int | None]:
     """eta, its field and the exact rank of [rho(h) eta, eta] there; Nones where the field would be a tower.
 
@@ -40,13 +40,13 @@ def eta_of_witness(
     return values, extension, extension.stack_rows(moved, action.size).rank()
 
 
-def numerical_eta(action: IsotropyAlgebra, x: npt.NDArray[np.float64] | None) -> list[float] | None:
+def numerical_eta(action: TracelessIsotropyAction, x: npt.NDArray[np.float64] | None) -> list[float] | None:
     """A vector of V, rounded, as an element of g; None where numbers are too large for floats."""
     lift = action.quotient.lift.to_numpy()
     return [float(v) for v in x @ lift] if x is not None and np.isfinite(lift).all() else None
 
 
-def numerical_eta_of_commutant(action: IsotropyAlgebra, certificate: Certificate) -> list[float] | None:
+def numerical_eta_of_commutant(action: TracelessIsotropyAction, certificate: Certificate) -> list[float] | None:
     """A vector of the invariant subspace where the commuting matrix has its larger real parts, rounded, or None."""
     matrix = certificate.matrix("matrix", action.size, action.size).to_numpy()
     if not np.isfinite(matrix).all():

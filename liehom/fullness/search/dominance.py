@@ -18,7 +18,7 @@ import numpy.typing as npt
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.search.frame import Frame
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.scalars import Polynomial
 from liehom.scalars.modular.modular import independent_columns
 from liehom.scalars.roots.roots import bounds, complex_root_balls, count_or_none, simplest_between
@@ -46,7 +46,7 @@ class Dominant:
     top: Array | None
 
 
-def find_dominant(action: IsotropyAlgebra, frame: Frame, tries: int, seed: int = 0) -> Dominant | None:
+def find_dominant(action: TracelessIsotropyAction, frame: Frame, tries: int, seed: int = 0) -> Dominant | None:
     """A dominance certificate found in a frame, or None after the given number of random elements."""
     search = _Search(action, frame)
     for coefficients in search.candidates(tries, seed):
@@ -77,7 +77,7 @@ def _roundings(coefficients: Array) -> Iterator[Array]:
 class _Search:
     """Floating copies of L0 in an orthonormal basis, and the exact counting of what they propose."""
 
-    def __init__(self, action: IsotropyAlgebra, frame: Frame) -> None:
+    def __init__(self, action: TracelessIsotropyAction, frame: Frame) -> None:
         self.action, self.frame = action, frame
         d, raw = action.size, frame.matrices
         self.flat = raw.reshape(len(raw), d * d)

@@ -13,7 +13,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import combination
 from liehom.scalars import QQ
 from liehom.scalars.lattices.fixed_point import balancing_rows, fixed_point, lattice_reduction, power_of_two
@@ -44,14 +44,14 @@ class Frame:
     members: Any
     vectors: Array
 
-    def element(self, action: IsotropyAlgebra, coefficients: Array) -> tuple[list[Any], Any]:
+    def element(self, action: TracelessIsotropyAction, coefficients: Array) -> tuple[list[Any], Any]:
         """Integer coefficients in the frame's basis as coefficients in that of L0, and the exact matrix."""
         row = action.field.from_integers([int(c) for c in coefficients], 1, len(coefficients)) @ self.members
         numbers = row.row(0)
         return numbers, combination(action.traceless, numbers)
 
 
-def plain_frame(action: IsotropyAlgebra) -> Frame | None:
+def plain_frame(action: TracelessIsotropyAction) -> Frame | None:
     """The given coordinates; None where numbers are too large for floats."""
     matrices = np.array([a.to_numpy() for a in action.traceless])
     if not np.abs(matrices).max() < LARGE:
@@ -59,12 +59,12 @@ def plain_frame(action: IsotropyAlgebra) -> Frame | None:
     return Frame(matrices, action.field.identity(len(matrices)), np.eye(action.size))
 
 
-def balanced_frame(action: IsotropyAlgebra) -> Frame | None:
+def balanced_frame(action: TracelessIsotropyAction) -> Frame | None:
     """Coordinates that do not depend on the given ones up to rotation, and a reduced basis of L0; or None."""
     return next((frame for frame in (_balanced(action, bits) for bits in BITS) if frame is not None), None)
 
 
-def _balanced(action: IsotropyAlgebra, bits: int) -> Frame | None:
+def _balanced(action: TracelessIsotropyAction, bits: int) -> Frame | None:
     """In rounds: the sizes of the generators, taken from the coordinates, are better in better coordinates."""
     rng, d, k = random.Random(5), action.size, len(action.traceless)
     basis, flat, members = QQ.identity(d), None, None
@@ -88,7 +88,7 @@ def _balanced(action: IsotropyAlgebra, bits: int) -> Frame | None:
     return Frame(flat.to_numpy().reshape(k, d, d), action.field.matrix(members.to_rows(), (k, k)), vectors)
 
 
-def _in_frame(action: IsotropyAlgebra, basis: Any, bits: int) -> tuple[Any, Any]:
+def _in_frame(action: TracelessIsotropyAction, basis: Any, bits: int) -> tuple[Any, Any]:
     """A well-conditioned basis of L0 as matrices in the basis of the rows, flat, and in terms of the given one."""
     d, k = action.size, len(action.traceless)
     left, left_scale = fixed_point(basis.T.inverse(), 2 * bits)

@@ -13,14 +13,14 @@ from liehom.algebra import lie_closure
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.search.spinor_form import vector_module_form
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.intertwiners import commutant, invariant_forms
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, trace_form, traceless
 from liehom.scalars.modular.modular import independent_columns, independent_rows
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
-def full_by_positive_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Certificate | None:
+def full_by_positive_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Certificate | None:
     """A `full` certificate for a transitive non-compact L0, or None where no form is recognised.
 
     Parameters
@@ -34,7 +34,7 @@ def full_by_positive_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Cert
     return certify_form(action, form)
 
 
-def certify_form(action: IsotropyAlgebra, form: Any) -> Certificate | None:
+def certify_form(action: TracelessIsotropyAction, form: Any) -> Certificate | None:
     """The certificate if the elements of L0 that keep the form span at one point; None if they do not."""
     field, d = action.field, action.size
     rows = [(a.T @ form + form @ a).reshape(1, d * d) for a in action.traceless]
@@ -48,7 +48,7 @@ def certify_form(action: IsotropyAlgebra, form: Any) -> Certificate | None:
     return certificate_writer.full(action, form, chosen @ action.quotient.subspace.select(rows=action.members), x)
 
 
-def propose_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Any:
+def propose_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Any:
     """A symmetric form on V by the shape (d, dim L0, commutant) of L0, or None."""
     d, size, kind = action.size, action.dimension, len(imaginary)
     m = d // 4
@@ -70,7 +70,7 @@ def propose_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Any:
     return None
 
 
-def _complex_case(action: IsotropyAlgebra, imaginary: list[Any], m: int) -> Any:
+def _complex_case(action: TracelessIsotropyAction, imaginary: list[Any], m: int) -> Any:
     d, size = action.size, action.dimension
     half = d // 2
     if size in (2 * half * half - 2, 2 * half * half - 1):
@@ -89,7 +89,7 @@ def _complex_case(action: IsotropyAlgebra, imaginary: list[Any], m: int) -> Any:
     return None
 
 
-def _derived(action: IsotropyAlgebra) -> list[Any]:
+def _derived(action: TracelessIsotropyAction) -> list[Any]:
     """A basis of [L0, L0]."""
     field, square = action.field, action.size**2
     basis = action.traceless
@@ -98,7 +98,7 @@ def _derived(action: IsotropyAlgebra) -> list[Any]:
     return table.select(rows=independent_rows(table)).split_rows(action.size, action.size)
 
 
-def quaternionic_form(action: IsotropyAlgebra, imaginary: list[Any]) -> Any:
+def quaternionic_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Any:
     """1 + sum u^T u / |u|^2 over orthogonal imaginary units u of the commutant; None if some square is not negative."""
     gram = anticommutator_gram(imaginary, action.size, action.field)
     if gram is None:
@@ -174,7 +174,7 @@ def complex_symplectic_form(skew: Any, structure: Any) -> Any:
     return inverse @ weights @ inverse.T
 
 
-def _with_quaternion_factor(action: IsotropyAlgebra, m: int) -> Any:
+def _with_quaternion_factor(action: TracelessIsotropyAction, m: int) -> Any:
     """sl(m,H) + sp(1): the three-dimensional ideal, where Killing form = (2/m) trace form, gives the units."""
     field = action.field
     algebra = lie_closure(action.traceless).algebra

@@ -6,13 +6,13 @@ from typing import Any
 
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import Reduction
 from liehom.scalars import Polynomial
 from liehom.scalars.roots.roots import largest_real_root_interval
 
 
-def certificate_of(action: IsotropyAlgebra, reduction: Reduction) -> Certificate:
+def certificate_of_reduction(action: TracelessIsotropyAction, reduction: Reduction) -> Certificate:
     """The certificate that a reduction of L0 gives."""
     match reduction.kind:
         case "kernel":
@@ -22,17 +22,17 @@ def certificate_of(action: IsotropyAlgebra, reduction: Reduction) -> Certificate
     polynomial = reduction.polynomial
     if polynomial is None:
         raise TypeError("a reduction by an eigenvalue carries its polynomial")
-    return eigenvector_witness(action, reduction.matrix, polynomial)
+    return commuting_eigenvector_witness(action, reduction.matrix, polynomial)
 
 
-def kernel_witness(action: IsotropyAlgebra, matrix: Any) -> Certificate:
+def kernel_witness(action: TracelessIsotropyAction, matrix: Any) -> Certificate:
     """The witness x in the kernel of a matrix whose kernel is invariant, phi one of its rows."""
     rows = (matrix.select(rows=[i]) for i in range(matrix.nrows))
     phi = next(row for row in rows if not row.is_zero())
     return certificate_writer.rational_witness(action, matrix.null_space().select(rows=[0]).T, phi)
 
 
-def eigenvector_witness(action: IsotropyAlgebra, t: Any, f: Polynomial) -> Certificate:
+def commuting_eigenvector_witness(action: TracelessIsotropyAction, t: Any, f: Polynomial) -> Certificate:
     """The witness x in ker(T - theta), phi a row of T - theta, for a real root theta of the irreducible f."""
     field, size, m = action.field, action.size, f.degree
     powers = [field.identity(size)]

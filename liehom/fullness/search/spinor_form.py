@@ -10,13 +10,13 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import combination, trace_form
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
-def vector_module_form(action: IsotropyAlgebra) -> Any:
+def vector_module_form(action: TracelessIsotropyAction) -> Any:
     """A definite symmetric form on V = K^16 whose stabiliser in L0 is so(9), or None if L0 is not spin(9,1)."""
     module = _small_module(action)
     if module is None:
@@ -45,7 +45,7 @@ def _moved(a: Any, p: Any) -> Any:
     return a.T @ p + p @ a
 
 
-def _small_module(action: IsotropyAlgebra) -> list[Any] | None:
+def _small_module(action: TracelessIsotropyAction) -> list[Any] | None:
     """A basis of the ten-dimensional invariant space of symmetric forms, or None."""
     field, d = action.field, action.size
     basis = action.traceless
@@ -93,7 +93,7 @@ def _two_eigenvalues(start: Any, once: Any, twice: Any) -> tuple[Any, Any] | Non
     return (total - root) / 2, (total + root) / 2
 
 
-def _spanned(action: IsotropyAlgebra, seed: Any) -> list[Any] | None:
+def _spanned(action: TracelessIsotropyAction, seed: Any) -> list[Any] | None:
     field, d = action.field, action.size
     span, before = seed.reshape(1, d * d), 0
     while before < span.nrows:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.errors import FormatError, InputError, ParseError
-from liehom.io.json_text import as_list, shown
-from liehom.io.values import vector
+from liehom.io.json_reader import as_list, shown
+from liehom.io.number_lists import vector
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.scalars import RR

@@ -11,12 +11,12 @@ from typing import Any, NoReturn
 
 from liehom.errors import FormatError
 
-SHOWN = 60
+MAX_SHOWN = 60
 OTHER_TOOLS = (
     "`liehom describe` reads a file of GAP if it ends in .g or .gap, one of Sage if it ends in .sage; "
     "liehom.io.from_gap and from_sage read their text"
 )
-LONGEST_INT = 4000
+MAX_INTEGER_DIGITS = 4000
 """Integers of more digits are kept as texts: Python refuses to read them, the grammar of values does not."""
 
 
@@ -87,7 +87,7 @@ def _decoded(text: str) -> Any:
 
 
 def _integer(digits: str) -> int | str:
-    return int(digits) if len(digits) <= LONGEST_INT else digits
+    return int(digits) if len(digits) <= MAX_INTEGER_DIGITS else digits
 
 
 def _distinct(items: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -169,7 +169,7 @@ def shown(value: Any) -> str:
         text = ascii(value)
     except (ValueError, RecursionError):  # an integer of too many digits for Python to print
         return f"{kind_of(value)} too long to show"
-    return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
+    return text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 3] + "..."
 
 
 def fraction_for(value: float) -> str:

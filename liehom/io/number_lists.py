@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.errors import FieldError, FormatError, InputError, ParseError, ShapeError
-from liehom.io.json_text import as_list, check_keys, fraction_for, kind_of, shown
+from liehom.io.json_reader import as_list, check_keys, fraction_for, kind_of, shown
 from liehom.scalars import QQ, RR, Field, FloatField, NumberField, Scalar, common_field
 
 DIGITS = b"0123456789-,"

@@ -20,8 +20,8 @@ GREEK = re.compile(
     "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|upsilon|phi|chi|psi|"
     "omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Upsilon|Phi|Psi|Omega"
 )
-DIGITS = 6
-WIDEST = 10
+SIGNIFICANT_DIGITS = 6
+MAX_PMATRIX_COLUMNS = 10
 """Matrices of amsmath have no more columns, unless a counter of LaTeX is raised."""
 
 _SPECIAL = {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
@@ -113,7 +113,7 @@ def _brackets(algebra: LieAlgebra, names: Sequence[str], sign: int = 1) -> dict[
 
 def _matrix(matrix: Any) -> str:
     rows = [" & ".join(_number(matrix.field, x) for x in row) for row in matrix.to_rows()]
-    if matrix.ncols <= WIDEST:
+    if matrix.ncols <= MAX_PMATRIX_COLUMNS:
         return _environment("pmatrix", rows)
     body = " \\\\\n".join(rows)
     return f"\\left(\\begin{{array}}{{{'r' * matrix.ncols}}}\n{body}\n\\end{{array}}\\right)"
@@ -150,7 +150,7 @@ def _sum(field: Field, terms: Sequence[tuple[Any, str]]) -> str:
 
 def _number(field: Field, value: Any) -> str:
     if isinstance(field, FloatField):
-        digits, _, exponent = f"{value:.{DIGITS}g}".partition("e")
+        digits, _, exponent = f"{value:.{SIGNIFICANT_DIGITS}g}".partition("e")
         return rf"{digits}\cdot10^{{{int(exponent)}}}" if exponent else digits
     if not isinstance(field, NumberField):
         return _fraction(value)

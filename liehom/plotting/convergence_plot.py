@@ -12,11 +12,11 @@ from liehom.integrators import ConvergenceTable
 from liehom.plotting.canvas import COLOURS, GREY, MARKERS, PALE, figure_of, finished, new_figure, style
 
 # a triangle is drawn where a measured order is so close to an integer
-NEAR = 0.3
+SLOPE_TOLERANCE = 0.3
 # the lower edge of a triangle below its curve, as a factor of the error
-BELOW = 0.4
+TRIANGLE_OFFSET = 0.4
 # round-off is shown if an error comes so close to it
-SHOWN = 300.0
+FLOOR_MARGIN = 300.0
 
 
 class _Curve(NamedTuple):
@@ -170,14 +170,14 @@ def _draw_triangles(axes: Any, curves: Sequence[_Curve]) -> None:
         p = round(curve.slope)
         if (
             p > 0
-            and abs(curve.slope - p) < NEAR
+            and abs(curve.slope - p) < SLOPE_TOLERANCE
             and (p not in lowest or min(curve.points)[1] < min(lowest[p].points)[1])
         ):
             lowest[p] = curve
     for p, curve in lowest.items():
         (left, low), (right, high) = sorted(curve.points)[:2]
         del high
-        base = BELOW * low
+        base = TRIANGLE_OFFSET * low
         corners = [(left, base), (right, base), (right, base * (right / left) ** p)]
         axes.fill(*zip(*corners, strict=True), facecolor=PALE, edgecolor=GREY, linewidth=0.8, alpha=0.6, zorder=1)
         middle = math.sqrt(corners[1][1] * corners[2][1])
@@ -191,7 +191,7 @@ def _draw_floor(axes: Any, tables: Sequence[ConvergenceTable]) -> None:
     """The highest floor, where errors come near it."""
     highest = max(max(table.floors) for table in tables)
     errors = [e for t in tables for e in (*t.orbit_errors, *t.trajectory_errors) if e > 0]
-    if errors and min(errors) < SHOWN * highest:
+    if errors and min(errors) < FLOOR_MARGIN * highest:
         axes.axhspan(min(0.3 * min(errors), 0.05 * highest), highest, color=PALE, alpha=0.35, zorder=0, linewidth=0)
         axes.text(
             0.01, 0.8 * highest, "round-off or accuracy of the reference", transform=axes.get_yaxis_transform(),

@@ -12,7 +12,7 @@ from typing import Any, final
 from liehom.cli.inputs import file_argument, number_value
 from liehom.errors import FormatError, InputError
 from liehom.io import Problem, load_problem
-from liehom.io.problem import read_options
+from liehom.io.problem_file import read_options
 from liehom.io.solution_file import check_target
 
 PICTURES = (".png", ".pdf", ".svg")
@@ -20,14 +20,14 @@ PICTURES = (".png", ".pdf", ".svg")
 
 @final
 @dataclass(frozen=True, slots=True)
-class Words:
+class ProblemOptions:
     """The options of the command line that change the problem of a file, as they were typed.
 
     Examples
     --------
-    >>> Words(dt="0.1", order=4).values()
+    >>> ProblemOptions(dt="0.1", order=4).values()
     {'dt': 0.1, 'order': 4}
-    >>> Words(dt="0").values()
+    >>> ProblemOptions(dt="0").values()
     Traceback (most recent call last):
     ...
     liehom.errors.FormatError: dt is '0', expected a positive number
@@ -61,7 +61,7 @@ def _number(text: str | None) -> Any:
     return None if text is None else number_value(text)
 
 
-def problem_of(file: str, words: Words) -> Problem:
+def problem_of(file: str, given: ProblemOptions) -> Problem:
     """The problem of a file with the options of the command line in place of those of the file.
 
     A tolerance without a step size asks for adapted steps, and another time span for other times of output.
@@ -72,7 +72,7 @@ def problem_of(file: str, words: Words) -> Problem:
         As `load_problem`; for a step size together with a tolerance; and for a field, point or t_span that is
         missing, so that nothing has been computed when it is noticed.
     """
-    options = words.values()
+    options = given.values()
     problem = load_problem(file_argument(file))
     tolerances = {"rtol", "atol"} & options.keys()
     if "dt" in options and tolerances:

@@ -12,11 +12,11 @@ from typing import Any
 from liehom.errors import FieldError
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
-def decide_by_forms(action: IsotropyAlgebra, symmetric: tuple[Any, ...], x: Any) -> Certificate:
+def decide_by_forms(action: TracelessIsotropyAction, symmetric: tuple[Any, ...], x: Any) -> Certificate:
     """The verdict where L0 keeps a symmetric form; x is a point where the rank is d.
 
     Parameters
@@ -39,7 +39,7 @@ def decide_by_forms(action: IsotropyAlgebra, symmetric: tuple[Any, ...], x: Any)
     return certificate_writer.full(action, definite, action.quotient.subspace.select(rows=members), x)
 
 
-def null_witness(action: IsotropyAlgebra, form: Any) -> Certificate:
+def null_witness(action: TracelessIsotropyAction, form: Any) -> Certificate:
     """A witness on the null cone of an invariant form that is not definite; rational where one is found."""
     field = action.field
     rows, values = orthogonal_basis(form)

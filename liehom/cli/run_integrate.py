@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.cli.guard import NO, YES
-from liehom.cli.problem import Words, check_picture, problem_of
+from liehom.cli.problem_options import ProblemOptions, check_picture, problem_of
 from liehom.cli.show import show_json, show_table
 from liehom.errors import FormatError, InputError
 from liehom.io import save_solution
@@ -55,12 +55,12 @@ class Output:
         return replace(self, out=out)
 
 
-def run_integrate(file: str, words: Words, wanted: Output) -> int:
+def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
     """Integrate, write the files, print the table and the report."""
     import numpy as np
 
     output = wanted.checked(file)
-    problem = problem_of(file, words)
+    problem = problem_of(file, given)
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
     options["compile"] = output.compile
     options["dense_output"] = output.plot is not None

@@ -11,11 +11,11 @@ from liehom.errors import InputError
 from liehom.integrators import Solution
 from liehom.plotting.canvas import COLOURS, DASHES, GREY, PALE, finished, matplotlib_module, new_figure, style
 
-MOST_TRAJECTORIES = 50
-MOST_LINES = 8
-FINE = 400
+MAX_TRAJECTORIES = 50
+MAX_LINES = 8
+CURVE_POINTS = 400
 # |m| is constant, and a sphere is drawn, if it varies by less than this share
-ON_SPHERE = 1e-6
+SPHERE_TOLERANCE = 1e-6
 ELEVATION, AZIMUTH = 22.0, 35.0
 SIDES = np.array([-1.0, 1.0])
 
@@ -62,11 +62,11 @@ def plot_trajectory(solution: Solution, path: str | os.PathLike[str] | None = No
             figure = _in_space(y)
         elif size == 2:
             figure = _in_the_plane(y)
-        elif size <= MOST_LINES:
+        elif size <= MAX_LINES:
             figure = _over_time(t, y)
         else:
             figure = _as_colours(t[0], y[0])
-        shown = 1 if size > MOST_LINES else len(y)
+        shown = 1 if size > MAX_LINES else len(y)
         radius = _radius(y) if size == 3 else None
         where = "" if radius is None else f", $|m|$ = {radius:.4g}"
         more = f", the first {shown} of {count} trajectories" if shown < count else ""
@@ -81,14 +81,14 @@ def _paths(solution: Solution) -> tuple[Any, Any, int]:
     t, y = t.reshape(-1, t.shape[-1]), y.reshape(-1, *y.shape[-2:])
     count = len(y)
     if solution.sol is not None and y.shape[-1] > 1:
-        times = np.linspace(np.nanmin(t), np.nanmax(t), FINE)
-        y = np.asarray(solution.sol(times), dtype=float).reshape(count, y.shape[1], FINE)
+        times = np.linspace(np.nanmin(t), np.nanmax(t), CURVE_POINTS)
+        y = np.asarray(solution.sol(times), dtype=float).reshape(count, y.shape[1], CURVE_POINTS)
         low, high = np.nanmin(t, axis=-1)[:, None], np.nanmax(t, axis=-1)[:, None]
         y = np.where(((times >= low) & (times <= high))[:, None, :], y, np.nan)
-        t = np.broadcast_to(times, (count, FINE))
+        t = np.broadcast_to(times, (count, CURVE_POINTS))
         if solution.t[..., 0].flat[0] == np.nanmax(solution.t):  # backwards: the start comes first
             t, y = t[:, ::-1], y[..., ::-1]
-    return t[:MOST_TRAJECTORIES], y[:MOST_TRAJECTORIES], count
+    return t[:MAX_TRAJECTORIES], y[:MAX_TRAJECTORIES], count
 
 
 def _span(t: Any) -> str:
@@ -165,7 +165,7 @@ def _radius(y: Any) -> float | None:
     """The common |m| of all points, None if there is none."""
     sizes = np.linalg.norm(y, axis=1)
     largest = float(np.nanmax(sizes))
-    return largest if largest - float(np.nanmin(sizes)) <= ON_SPHERE * largest and largest > 0 else None
+    return largest if largest - float(np.nanmin(sizes)) <= SPHERE_TOLERANCE * largest and largest > 0 else None
 
 
 def _towards_the_eye() -> Any:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from liehom.cli.guard import YES
 from liehom.cli.inputs import number_value
-from liehom.cli.problem import Words, check_picture, problem_of
+from liehom.cli.problem_options import ProblemOptions, check_picture, problem_of
 from liehom.cli.show import show_json
 from liehom.errors import FormatError
+from liehom.io.number_lists import vector
 from liehom.io.solution_file import plain
-from liehom.io.values import vector
 from liehom.scalars import RR
 
 if TYPE_CHECKING:
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 SIZES = "0.1,0.05,0.025,0.0125"
 
 
-def run_order(file: str, words: Words, sizes: str | None, plot: str | None, as_json: bool) -> int:
+def run_order(file: str, given: ProblemOptions, sizes: str | None, plot: str | None, as_json: bool) -> int:
     """Measure, draw, print the table."""
     import numpy as np
 
     check_picture(plot)
     dts = step_sizes(SIZES if sizes is None else sizes)
-    problem = problem_of(file, words)
+    problem = problem_of(file, given)
     with np.errstate(all="ignore"):
         table = measured(problem, dts)
     if plot is not None:

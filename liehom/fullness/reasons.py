@@ -5,7 +5,7 @@ Names of transitive linear groups are read off (d, dim L0, commutant); the certi
 
 from __future__ import annotations
 
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 
 
 def compact_name(d: int, size: int, commutant: int) -> str:
@@ -52,7 +52,7 @@ def noncompact_name(d: int, size: int, commutant: int) -> str:
     return table.get((size, commutant), "a non-compact algebra")
 
 
-def full_reason(action: IsotropyAlgebra, commutant: int, compact: bool) -> str:
+def full_reason(action: TracelessIsotropyAction, commutant: int, compact: bool) -> str:
     """The sentence for a full pair of codimension at least 2."""
     d, size = action.size, action.dimension
     scalars = " (up to scalars)" if any(a.trace() != 0 for a in action.matrices) else ""

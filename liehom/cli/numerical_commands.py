@@ -50,11 +50,11 @@ def integrate(
     """Integrate the problem of a file.  Exit code 0: the end was reached, 1: the run stopped before it."""
 
     def action() -> int:
-        from liehom.cli.integration import Output, run_integrate
-        from liehom.cli.problem import Words
+        from liehom.cli.problem_options import ProblemOptions
+        from liehom.cli.run_integrate import Output, run_integrate
 
-        words = Words(t_span, dt, base, order, rtol, atol, exponential, clock)
-        return run_integrate(file, words, Output(out, plot, checkpoint, force, json, progress, max_steps, compile))
+        given = ProblemOptions(t_span, dt, base, order, rtol, atol, exponential, clock)
+        return run_integrate(file, given, Output(out, plot, checkpoint, force, json, progress, max_steps, compile))
 
     _run(action)
 
@@ -75,11 +75,11 @@ def order(
     """Measure the order of convergence on the problem of a file: orbit and trajectory error for several step sizes."""
 
     def action() -> int:
-        from liehom.cli.convergence import run_order
-        from liehom.cli.problem import Words
+        from liehom.cli.problem_options import ProblemOptions
+        from liehom.cli.run_order import run_order
 
-        words = Words(t_span, None, base, order, None, None, exponential, clock)
-        return run_order(file, words, dt, plot, json)
+        given = ProblemOptions(t_span, None, base, order, None, None, exponential, clock)
+        return run_order(file, given, dt, plot, json)
 
     _run(action)
 

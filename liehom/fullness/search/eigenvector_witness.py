@@ -11,7 +11,7 @@ from typing import Any
 
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
-from liehom.fullness.traceless_isotropy_action import IsotropyAlgebra
+from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import combination
 from liehom.scalars import QQ, NumberField, Polynomial
 from liehom.scalars.roots.roots import largest_real_root_interval
@@ -19,7 +19,7 @@ from liehom.scalars.roots.roots import largest_real_root_interval
 MAX_DEGREE = 6
 
 
-def eigenvector_witness(action: IsotropyAlgebra, extra: list[Any], tries: int = 30) -> Certificate | None:
+def eigenvector_witness(action: TracelessIsotropyAction, extra: list[Any], tries: int = 30) -> Certificate | None:
     """A witness x in ker(X - theta), theta the largest real eigenvalue of some X in L0 of degree at most 6; or None.
 
     Parameters
@@ -43,7 +43,7 @@ def eigenvector_witness(action: IsotropyAlgebra, extra: list[Any], tries: int = 
     return None
 
 
-def _elements(action: IsotropyAlgebra, extra: list[Any], tries: int) -> Iterator[Any]:
+def _elements(action: TracelessIsotropyAction, extra: list[Any], tries: int) -> Iterator[Any]:
     basis = action.traceless
     yield from basis
     for coefficients in extra:
@@ -56,7 +56,7 @@ def _elements(action: IsotropyAlgebra, extra: list[Any], tries: int) -> Iterator
         yield a + b.scale(rng.choice((-1, 1, 2)))
 
 
-def _rational(action: IsotropyAlgebra, x: Any, value: Any) -> Certificate | None:
+def _rational(action: TracelessIsotropyAction, x: Any, value: Any) -> Certificate | None:
     kernel = (x - action.field.identity(action.size).scale(value)).null_space()
     for i in range(min(kernel.nrows, 6)):
         v = kernel.select(rows=[i]).T
@@ -65,7 +65,7 @@ def _rational(action: IsotropyAlgebra, x: Any, value: Any) -> Certificate | None
     return None
 
 
-def _algebraic(action: IsotropyAlgebra, x: Any, f: Polynomial) -> Certificate | None:
+def _algebraic(action: TracelessIsotropyAction, x: Any, f: Polynomial) -> Certificate | None:
     interval = largest_real_root_interval(f)
     extension = NumberField("theta", f.coefficients, interval)
     lifted = extension.matrix(x.to_rows())
@@ -81,7 +81,7 @@ def _algebraic(action: IsotropyAlgebra, x: Any, f: Polynomial) -> Certificate | 
     return None
 
 
-def _powers(action: IsotropyAlgebra, extension: NumberField, row: Any) -> list[Any]:
+def _powers(action: TracelessIsotropyAction, extension: NumberField, row: Any) -> list[Any]:
     """A row over QQ(theta) as rational rows, one per power of theta."""
     coordinates = [extension.coordinates(v) for v in row.row(0)]
     return [action.field.matrix([[c[j] * extension.leading**j for c in coordinates]]) for j in range(extension.degree)]
