@@ -96,7 +96,9 @@ MODULES = {
 }
 """The modules of 0.1.0 in each folder."""
 
-CLASSES: dict[str, str] = {}
+CLASSES: dict[str, str] = {
+    "liehom.homogeneous.own_exponential:OwnExponential": "CustomExponential",
+}
 """Classes and functions with another name, 'old module:old name' -> new name."""
 
 ATTRIBUTES: dict[str, dict[str, str]] = {

@@ -268,11 +268,11 @@ def vanishing(flow: Flow, k: int) -> Any:
 def _all_move(flow: Flow, size: Any) -> bool:
     """Whether w_1 with largest coordinates `size` is beyond round-off everywhere, by norms; False if not known."""
     m = flow.point(0)
-    norm = flow.field.sizes(flow.psi(0), m)
+    norm = flow.field.frobenius_norms(flow.psi(0), m)
     if norm is None or not bool((size > 0).all()):
         return False
     if flow.generator.order >= 1:
-        norm = norm + flow.field.sizes(in_lanes(flow.psi(1)), m) * (np.abs(m).max(axis=-1) / size)
+        norm = norm + flow.field.frobenius_norms(in_lanes(flow.psi(1)), m) * (np.abs(m).max(axis=-1) / size)
     return bool((size > 2 * ROUND_OFF_UNITS * np.finfo(m.dtype).eps * norm * np.sqrt(_square(m))).all())
 
 
@@ -289,7 +289,7 @@ def at_rest(action: Action, flow: Flow) -> Any:
     True
     """
     w, m = flow.point(1), flow.point(0)
-    bound = (ROUND_OFF_UNITS * float(np.finfo(w.dtype).eps) * action.size) ** 2
+    bound = (ROUND_OFF_UNITS * float(np.finfo(w.dtype).eps) * action.max_norm) ** 2
     speed, size = _square(w), _square(m)
     gram, twice = action.inner_product.matrix, flow.generator.order >= 1
     if isinstance(w, np.ndarray):  # mostly nothing is at rest, also by a larger norm

@@ -1,9 +1,9 @@
 """Homogeneous spaces: actions and generator fields; orbit types, the range condition and the cone on which it fails."""
 
 from liehom.homogeneous.exponentials import Cayley as Cayley
+from liehom.homogeneous.exponentials import CustomExponential as CustomExponential
 from liehom.homogeneous.exponentials import Exponential as Exponential
 from liehom.homogeneous.exponentials import MatrixExponential as MatrixExponential
-from liehom.homogeneous.exponentials import OwnExponential as OwnExponential
 from liehom.homogeneous.exponentials import Rodrigues as Rodrigues
 from liehom.homogeneous.exponentials import SeriesExponential as SeriesExponential
 from liehom.homogeneous.exponentials import TrueExponential as TrueExponential

@@ -135,14 +135,14 @@ class FieldMap:
             return (y @ self._turned).reshape(*y.shape[:-1], self.shape[2], self.shape[0])
         return self._matrix(y, "right")
 
-    def pulled(self, y: Any, z: Any) -> Any:
+    def right_transposed(self, y: Any, z: Any) -> Any:
         """R^T z for the matrix R of x -> B(x, y): the transpose of ``right(y)`` on z (..., c), shape (..., a)."""
         if self._pulled is None:
             a, b, c = self.shape
             self._pulled = FieldMap([(j, k, i, v) for i, j, k, v in self._entries], (b, c, a), self._field)
         return self._pulled(y, z)
 
-    def in_columns(self, x: Any, y: Any) -> bool:
+    def works_by_columns(self, x: Any, y: Any) -> bool:
         """Whether B(x, y) is worked column by column: for ensembles that are large, next to the number of entries."""
         return (
             self._table is not None
@@ -153,7 +153,7 @@ class FieldMap:
             and x.dtype == y.dtype == np.float64
         )
 
-    def sizes(self, x: Any) -> Any:
+    def frobenius_norms(self, x: Any) -> Any:
         """The Frobenius norms of the matrices ``left(x)``, for x (..., a) in float64, without making them."""
         if self._root is None:
             table = self._floating.tensor().reshape(self.shape[0], self.shape[1] * self.shape[2])
@@ -178,7 +178,7 @@ class FieldMap:
         if self._table is not None and type(x) is np.ndarray and x.dtype == y.dtype == np.float64:
             if x.ndim == y.ndim == 1:
                 return y.dot(x.dot(self._table).reshape(self.shape[1:]))
-            if self.in_columns(x, y):
+            if self.works_by_columns(x, y):
                 return self._by_columns(in_lanes(x), in_lanes(y))
             matrix = (x @ self._table).reshape(*x.shape[:-1], *self.shape[1:])
             return np.einsum("...b,...bc->...c", y, matrix)

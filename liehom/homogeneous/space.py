@@ -13,9 +13,9 @@ from typing import Any, final
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
+from liehom.homogeneous.exponentials.custom_exponential import exponential_of
 from liehom.homogeneous.exponentials.exponential import Exponential
-from liehom.homogeneous.exponentials.own_exponential import exponential_of
-from liehom.homogeneous.frames.branch_free_frames import Evenness, decomposed
+from liehom.homogeneous.frames.branch_free_frames import TightFrame, orthogonal_decomposition
 from liehom.homogeneous.frames.inner_product import InnerProduct, inner_product
 from liehom.homogeneous.maps import action_map, bracket_map
 from liehom.representations import Representation
@@ -53,7 +53,7 @@ class Action:
         "_basis",
         "_size",
         "bracket",
-        "even",
+        "even",  # behind `tight_frame`; pickles of 0.1.0 have this name
         "exponential",
         "infinitesimal",
         "inner_product",
@@ -71,8 +71,13 @@ class Action:
         self._basis = self.inner_product.orthonormal_basis()
         shape = (representation.algebra.dimension, representation.size**2)
         tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(shape)
-        self.even: Evenness | None = None
+        self.even: TightFrame | None = None
         self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
+
+    @property
+    def tight_frame(self) -> TightFrame | None:
+        """The data of orbits on which all singular values agree, or None; see `with_tight_frame`."""
+        return self.even
 
     @property
     def dimension(self) -> int:
@@ -80,7 +85,7 @@ class Action:
         return self.representation.algebra.dimension
 
     @property
-    def size(self) -> float:
+    def max_norm(self) -> float:
         """The largest norm of rho(x) for x in an orthonormal basis of g."""
         return self._size
 
@@ -116,9 +121,9 @@ class Action:
         (3, 1)
         """
         if self.even is not None and not is_jax(m):
-            return self._even_frame(self.even, m, orbit_dimension)
+            return self._frame_of_tight(self.even, m, orbit_dimension)
         if type(m) is Traced:
-            return self._lazy_frame(m, int(np.max(orbit_dimension)))
+            return self._branch_free_frame(m, int(np.max(orbit_dimension)))
         xp = namespace(m)
         columns = self.infinitesimal.right(m) @ self._basis
         extended = columns.dtype == np.longdouble
@@ -137,28 +142,28 @@ class Action:
             kernel, tangent, lift = _refined(columns, kernel, tangent, lift)
         return IsotropyFrame(self._basis @ kernel, tangent, self._basis @ lift, rank)
 
-    def on_even_orbits(self, even: Evenness | None) -> Action:
+    def with_tight_frame(self, frame: TightFrame | None) -> Action:
         """This action, where points (not of JAX) are known to be on orbits with these properties.
 
         Isotropy frames are then without a basis of g_m, and their tangent vectors those of V.
         """
         made = copy(self)
-        made.even = even
+        made.even = frame
         return made
 
-    def _even_frame(self, even: Evenness, m: Any, orbit_dimension: Any) -> IsotropyFrame:
+    def _frame_of_tight(self, tight: TightFrame, m: Any, orbit_dimension: Any) -> IsotropyFrame:
         columns = self.infinitesimal.right(m)
         rank = np.asarray(orbit_dimension)
-        over = np.max(rank) / np.sum((m @ even.trace) * m, axis=-1) if even.over is None else even.over
-        lift = even.inverse @ np.swapaxes(columns, -1, -2) * over[..., None, None]
+        over = np.max(rank) / np.sum((m @ tight.trace) * m, axis=-1) if tight.over is None else tight.over
+        lift = tight.inverse @ np.swapaxes(columns, -1, -2) * over[..., None, None]
         return IsotropyFrame(None, np.eye(m.shape[-1]), lift, rank)
 
-    def _lazy_frame(self, m: Any, rank: int) -> IsotropyFrame:
+    def _branch_free_frame(self, m: Any, rank: int) -> IsotropyFrame:
         """The projector on g_m in place of a basis, of which only the range matters."""
         xp = namespace(m)
         columns = self.infinitesimal.right(m)
         columns = columns @ xp.asarray(self._basis)
-        found = decomposed(columns, rank)
+        found = orthogonal_decomposition(columns, rank)
         kernel = np.eye(self.dimension) - found.rows @ xp.swapaxes(found.rows, -1, -2)
         return IsotropyFrame(self._basis @ kernel, found.image, self._basis @ found.lift, np.asarray(rank))
 
@@ -175,7 +180,7 @@ class IsotropyFrame:
     ----------
     basis : array of shape (..., dim, s), or None
         Columns span g_m, orthonormal in the inner product of the action (zero columns fill up where the orbits of an
-        ensemble have different dimensions). None on even orbits, where no basis is needed.
+        ensemble have different dimensions). None for a tight frame, where no basis is needed.
     tangent : array of shape (..., N, d)
         Columns span T_m M, orthonormal (zero columns fill up).
     lift : array of shape (..., dim, d)

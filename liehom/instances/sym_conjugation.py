@@ -18,7 +18,7 @@ from liehom.algebra import Subalgebra
 from liehom.algebra.closure.closure import square_matrices
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.homogeneous.fields.generator import joined, takes_time
+from liehom.homogeneous.fields.components import joined, takes_time
 from liehom.representations import Pair, Representation, sym_conjugation
 from liehom.scalars import ExactMatrix, Polynomial
 from liehom.series.jet import Jet

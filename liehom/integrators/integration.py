@@ -16,7 +16,7 @@ from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
-from liehom.homogeneous.frames.branch_free_frames import evenness
+from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.compiled.compiled import compiled_steps
 from liehom.integrators.compiled.jax_integration import integrate_on_jax
 from liehom.integrators.methods.steps import LieTaylor
@@ -181,7 +181,7 @@ def integrate(
     if options.dt is None and options.rtol == 0 and options.atol == 0:
         raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
     path = None if checkpoint is None else checked_path(checkpoint)
-    action = _on_even_orbits(action, step, start, orbit_dimension)
+    action = _with_tight_frame(action, step, start, orbit_dimension)
     # what is not finite is noticed, and ends a trajectory with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
@@ -190,12 +190,12 @@ def integrate(
         return run.execute(progress, path)
 
 
-def _on_even_orbits(action: Action, step: Step, start: Any, orbit_dimension: Any) -> Action:
+def _with_tight_frame(action: Action, step: Step, start: Any, orbit_dimension: Any) -> Action:
     """The action that knows what a corrected step can use of the orbits, if all are of one dimension."""
     dimensions = np.unique(orbit_dimension)
     if len(dimensions) != 1 or start.dtype != np.float64 or not isinstance(step, Corrected):
         return action
-    return action.on_even_orbits(evenness(action, start.reshape(-1, start.shape[-1]), int(dimensions[0])))
+    return action.with_tight_frame(tight_frame(action, start.reshape(-1, start.shape[-1]), int(dimensions[0])))
 
 
 def _on_jax(

@@ -192,7 +192,7 @@ def _value(tree: Node, m: Any, t: float, what: str) -> float:
     """One component at one point."""
     import numpy as np
 
-    from liehom.homogeneous.fields.generator import Components
+    from liehom.homogeneous.fields.components import Components
 
     try:
         with np.errstate(all="ignore"):

@@ -22,7 +22,7 @@ def assert_frame(action: lh.Action, m: Any, d: int, frame: Any, tolerance: float
     gram = action.inner_product.matrix
     basis, tangent, lift = frame
     assert basis.shape[0] == dim and tangent.shape[0] == size and lift.shape[0] == dim
-    bound = tolerance * max(1.0, float(np.abs(m).max())) * max(1.0, action.size)
+    bound = tolerance * max(1.0, float(np.abs(m).max())) * max(1.0, action.max_norm)
 
     def move(x: Any) -> Any:
         return action.infinitesimal(x.T, m).T
@@ -136,7 +136,7 @@ def test_the_infinitesimal_action_and_the_bracket(name: str) -> None:
     np.testing.assert_allclose(moved, action.infinitesimal(x, m), atol=1e-13)
     if rho.algebra.dimension:
         basis = action.inner_product.orthonormal_basis()
-        assert action.size == pytest.approx(max(np.linalg.norm(matrix(name, c)) for c in basis.T), abs=1e-12)
+        assert action.max_norm == pytest.approx(max(np.linalg.norm(matrix(name, c)) for c in basis.T), abs=1e-12)
 
 
 def test_maps_on_series_exact_numbers_and_mixed_leading_axes() -> None:

@@ -90,7 +90,7 @@ class Conservation:
         noise = ROUND_OFF_UNITS * float(np.finfo(m.dtype).eps)
         self._on_tangents = self.gradient
         if frame.basis is None:
-            tangential = self._on_even_orbit(frame)
+            tangential = self._on_tight_frame(frame)
         else:
             self.basis, tangential = frame.basis, self.gradient @ frame.tangent
         sizes = _length(tangential)
@@ -98,14 +98,14 @@ class Conservation:
         self._sizes = np.where(kept, sizes, 0.0)
         self.tangential = np.where(kept[..., None], tangential / np.where(kept, sizes, 1.0)[..., None], 0.0)
         velocity = action.infinitesimal(generator, m)
-        self._take(velocity, _length(velocity) > noise * action.size * _length(generator) * _length(m))
+        self._take(velocity, _length(velocity) > noise * action.max_norm * _length(generator) * _length(m))
 
-    def _on_even_orbit(self, frame: IsotropyFrame) -> Any:
+    def _on_tight_frame(self, frame: IsotropyFrame) -> Any:
         """DF on the tangent space, for a frame without a basis of g_m: what lengths are taken of is the same."""
-        action, even = self.action, self.action.even
+        action, tight = self.action, self.action.tight_frame
         columns, basis = action.infinitesimal.right(self.m), action.inner_product.orthonormal_basis()
         tangential = (self.gradient @ columns) @ frame.lift
-        if even is not None and even.symmetric:  # R(X)^T DF is in g_m if DF is tangential
+        if tight is not None and tight.symmetric:  # R(X)^T DF is in g_m if DF is tangential
             self.basis, self._on_tangents = basis, tangential
         else:
             self.basis = basis - frame.lift @ (columns @ basis)
@@ -113,9 +113,9 @@ class Conservation:
 
     def _take(self, velocity: Any, moving: Any) -> None:
         self._velocity, self.moving = velocity, moving
-        pulled = self.action.infinitesimal.pulled(velocity[..., None, :], self._on_tangents)
+        pulled = self.action.infinitesimal.right_transposed(velocity[..., None, :], self._on_tangents)
         self.matrix = self.factor * (pulled @ self.basis)
-        self._bound = self.factor * self.action.size * _length(velocity)[..., None] * self._sizes
+        self._bound = self.factor * self.action.max_norm * _length(velocity)[..., None] * self._sizes
 
     @property
     def hat(self) -> Any:
@@ -175,7 +175,7 @@ class Conservation:
         >>> found.along(np.ones(3)).shape
         (1, 1)
         """
-        pulled = self.action.infinitesimal.pulled(displacement[..., None, :], self.gradient)
+        pulled = self.action.infinitesimal.right_transposed(displacement[..., None, :], self.gradient)
         return self.factor * (pulled @ (self.basis if directions is None else directions))
 
     def __call__(self, zeta: Any) -> Any:

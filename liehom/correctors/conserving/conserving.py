@@ -198,7 +198,7 @@ class _Begun:
         for j in range(EXTRA_POINTS + 1):
             if j > 1 and short.size >= ENOUGH_TRAJECTORIES and not short.any():
                 break  # so many trajectories, moved once from where they may all be symmetric, are points enough
-            x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.size or 1.0)
+            x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.max_norm or 1.0)
             point = action.act(np.broadcast_to(x, (*start.shape[:-1], x.size)), start) if j else start
             point = point.astype(start.dtype, copy=False)
             time = t + TIME_SHIFT * j if psi.field.time_dependent else t
@@ -375,7 +375,7 @@ class ConservingStep(LocalStep):
                 found = found.toward(z - m)
             directions = found.directions
             jacobian = found.along(z - m, directions)
-            solution = solve_levels(residual, first, directions, jacobian, self._unit, action.size)
+            solution = solve_levels(residual, first, directions, jacobian, self._unit, action.max_norm)
             x, resolved, iterations, left = solution.x, solution.resolved, solution.iterations, solution.residual
         defect = np.abs(left)
         units = (defect / np.maximum(self._unit, float(np.finfo(defect.dtype).tiny))).max(axis=-1)

@@ -75,7 +75,7 @@ def generator_norm(action: Action, x: Any) -> Any:
     """
     xp = namespace(x)
     square = xp.einsum("...a,ab,...b->...", x, xp.asarray(action.inner_product.matrix), x)
-    return action.size * xp.sqrt(xp.maximum(square, 0.0))
+    return action.max_norm * xp.sqrt(xp.maximum(square, 0.0))
 
 
 def lifted(action: Action, frame: IsotropyFrame, m: Any, tangent: Any) -> Any:

@@ -14,7 +14,7 @@ import numpy as np
 
 from liehom.correctors.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
 from liehom.correctors.isotropy.completion import generator_norm, isotropy_fraction, lifted
-from liehom.correctors.isotropy.range_solver import EvenRangeSolver, RangeSolver
+from liehom.correctors.isotropy.range_solver import RangeSolver, TightFrameSolver
 from liehom.correctors.step import LocalStep, apply_factors, step_variable
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
 from liehom.series.arrays import is_jax, is_lazy, namespace
@@ -43,7 +43,7 @@ class Part:
 
     leading: int
     here: Any
-    solver: RangeSolver | EvenRangeSolver | None
+    solver: RangeSolver | TightFrameSolver | None
     fraction: Any
 
 
@@ -97,7 +97,7 @@ class OrderRecursion:
         # the values of traced arrays are not known: w_1 = 0 is then met by a fraction of 0
         if is_lazy(m):
             self.leading = np.ones(self.shape, dtype=int)
-        elif action.even is not None and not field.time_dependent:
+        elif action.tight_frame is not None and not field.time_dependent:
             self.leading = np.where(at_rest(action, self.flow), 0, 1)
         else:
             self.leading = leading_order(self.flow, total)
@@ -116,7 +116,7 @@ class OrderRecursion:
 
     @cached_property
     def frame(self) -> IsotropyFrame:
-        """At m, when it is first asked for: on even orbits mostly never."""
+        """At m, when it is first asked for: with a tight frame mostly never."""
         return self.action.isotropy_frame(self.m, self._orbit_dimension)
 
     def _no_correction(self) -> Jet:
@@ -137,9 +137,9 @@ class OrderRecursion:
                     parts.append(Part(self.total + 1, here, None, None))
                 continue
             velocity = _masked(self.xp, here, self.flow.point(l))
-            solver: RangeSolver | EvenRangeSolver
-            if self.action.even is not None and not is_jax(self.m):
-                solver = EvenRangeSolver(self.action, self.m, self._orbit_dimension, velocity, l, factor, self.moving)
+            solver: RangeSolver | TightFrameSolver
+            if self.action.tight_frame is not None and not is_jax(self.m):
+                solver = TightFrameSolver(self.action, self.m, self._orbit_dimension, velocity, l, factor, self.moving)
             else:
                 solver = RangeSolver(self.action, self.frame, velocity, l, factor, weight)
             fraction = isotropy_fraction(self.action, self.flow, l, self.total) if self.flow.time_dependent else None

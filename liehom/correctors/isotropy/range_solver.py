@@ -18,7 +18,7 @@ import numpy as np
 
 from liehom.errors import InternalError
 from liehom.homogeneous import Action, IsotropyFrame
-from liehom.homogeneous.frames.branch_free_frames import decomposed
+from liehom.homogeneous.frames.branch_free_frames import orthogonal_decomposition
 from liehom.series.arrays import across_lanes, namespace
 from liehom.tracing.array import Traced
 
@@ -82,7 +82,7 @@ class RangeSolver:
         moved = action.infinitesimal(xp.swapaxes(self._basis, -1, -2), unit[..., None, :])
         self._moves = factor * (self._down @ xp.swapaxes(moved, -1, -2))
         self._unit = _apply(self._down, unit)
-        self._cutoff = factor * RANK_RTOL * action.size
+        self._cutoff = factor * RANK_RTOL * action.max_norm
         self._inverse = _pseudo_inverse(xp, self._moves, self._cutoff)
         self._reaching = self._generator(self._unit)  # M^+ u
         rest = self._unit - _apply(self._moves, self._reaching)
@@ -145,16 +145,16 @@ class RangeSolver:
 
 
 @final
-class EvenRangeSolver:
-    """The same map where the orbits are even (`branch_free_frames`): it always has a solution.
+class TightFrameSolver:
+    """The same map on orbits with a tight frame (`branch_free_frames`): it always has a solution.
 
-    With w = w_l and mu of the evenness: c = -<w, r> / (l <w, w>), and zeta is the part in g_m of
+    With w = w_l and mu of the tight frame: c = -<w, r> / (l <w, w>), and zeta is the part in g_m of
     G^-1 R^T r / (e mu <w, w>), R = [rho(e_1) w, ...].
 
     Parameters
     ----------
     action : Action
-        With its `even` set.
+        With its `tight_frame` set.
     m : array of shape (..., N)
     orbit_dimension : int or array
     velocity : array of shape (..., N)
@@ -166,13 +166,13 @@ class EvenRangeSolver:
     Examples
     --------
     >>> import liehom as lh
-    >>> from liehom.homogeneous.frames.branch_free_frames import evenness
+    >>> from liehom.homogeneous.frames.branch_free_frames import tight_frame
     >>> from liehom.tracing import Tape, Traced
     >>> action = lh.Action(lh.defining(lh.so(3)))
-    >>> action = action.on_even_orbits(evenness(action, np.eye(3), 2))
+    >>> action = action.with_tight_frame(tight_frame(action, np.eye(3), 2))
     >>> tape = Tape()
     >>> m, w, r = (Traced(tape, x) for x in ([0, 0, 1.0], [1.0, 0, 0], [0.25, 0.5, 0]))
-    >>> zeta, c, _ = EvenRangeSolver(action, m, 2, w, 1, 0.5).solve(r)
+    >>> zeta, c, _ = TightFrameSolver(action, m, 2, w, 1, 0.5).solve(r)
     >>> float(c), [round(abs(float(x)), 12) for x in zeta]
     (-0.25, [1.0, 0.0, 0.0])
     """
@@ -195,14 +195,14 @@ class EvenRangeSolver:
 
     def solve(self, right: Any) -> tuple[Any, Any, None]:
         """zeta (..., dim g), c (...,) and None for no residual."""
-        action, even, w = self._action, self._action.even, self._velocity
-        if even is None:
-            raise InternalError("the orbits of an EvenRangeSolver are not known to be even")
+        action, tight, w = self._action, self._action.tight_frame, self._velocity
+        if tight is None:
+            raise InternalError("the action of a TightFrameSolver has no tight frame")
         along = inner(w, right) * self._over
         # r in place of r + l c w: R^T w has no part in g_m
-        turned = action.infinitesimal.pulled(w, right)
-        y = across_lanes(turned, even.inverse / (self._factor * even.isotropy)) * self._over[..., None]
-        if not even.symmetric:
+        turned = action.infinitesimal.right_transposed(w, right)
+        y = across_lanes(turned, tight.inverse / (self._factor * tight.isotropy)) * self._over[..., None]
+        if not tight.symmetric:
             lift = action.isotropy_frame(self._m, self._dimension).lift
             y = y - _apply(lift, action.infinitesimal(y, self._m))
         return y, -along / self._leading, None
@@ -210,7 +210,7 @@ class EvenRangeSolver:
     @property
     def singular_value(self) -> Any:
         """As of a `RangeSolver`: the least of e mu^(1/2), d - 1 times, and 1."""
-        isotropy = self._action.even.isotropy if self._action.even is not None else 0.0
+        isotropy = self._action.tight_frame.isotropy if self._action.tight_frame is not None else 0.0
         return np.full(np.shape(self._over), min(self._factor * isotropy**0.5, 1.0))
 
     @property
@@ -267,7 +267,7 @@ def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float, rank: int | None = None
     turned = xp.swapaxes(matrix, -1, -2)
     extended = matrix.dtype == np.longdouble
     if type(matrix) is Traced:
-        found = decomposed(matrix, min(matrix.shape[-2:]) if rank is None else rank, cutoff)
+        found = orthogonal_decomposition(matrix, min(matrix.shape[-2:]) if rank is None else rank, cutoff)
         return found.lift @ xp.swapaxes(found.image, -1, -2)
     if matrix.shape[-1] == 0:
         return matrix @ turned if extended else turned

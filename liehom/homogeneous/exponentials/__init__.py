@@ -4,10 +4,10 @@
 """
 
 from liehom.homogeneous.exponentials.cayley import Cayley as Cayley
+from liehom.homogeneous.exponentials.custom_exponential import CustomExponential as CustomExponential
+from liehom.homogeneous.exponentials.custom_exponential import exponential_of as exponential_of
 from liehom.homogeneous.exponentials.exponential import Exponential as Exponential
 from liehom.homogeneous.exponentials.exponential import MatrixExponential as MatrixExponential
 from liehom.homogeneous.exponentials.exponential import SeriesExponential as SeriesExponential
 from liehom.homogeneous.exponentials.exponential import TrueExponential as TrueExponential
-from liehom.homogeneous.exponentials.own_exponential import OwnExponential as OwnExponential
-from liehom.homogeneous.exponentials.own_exponential import exponential_of as exponential_of
 from liehom.homogeneous.exponentials.rodrigues import Rodrigues as Rodrigues

@@ -2,7 +2,7 @@
 
 `Exponential` is the interface: the action on a vector and, for the expansion of steps, on Jets.  Here are the true
 exponential by its series on the vector and by the matrix exponential; Rodrigues' formula is in `rodrigues.py`, the
-Cayley transform in `cayley.py`, a user's own map in `own_exponential.py`.
+Cayley transform in `cayley.py`, a user's own map in `custom_exponential.py`.
 """
 
 from __future__ import annotations
@@ -170,9 +170,9 @@ class SeriesExponential(TrueExponential):
     def act(self, x: Any, m: Any) -> Any:
         if is_exact(x) or is_exact(m):
             return exact_exponential(self.infinitesimal, x, m)
-        if self.infinitesimal.in_columns(x, m):  # of a large ensemble no matrices are made
+        if self.infinitesimal.works_by_columns(x, m):  # of a large ensemble no matrices are made
             x = in_lanes(x)
-            largest = float(self.infinitesimal.sizes(x).max(initial=0.0))
+            largest = float(self.infinitesimal.frobenius_norms(x).max(initial=0.0))
             if largest <= SUBSTEP:
                 return m + _increment(x, m, largest, self.infinitesimal)
         matrix = self.infinitesimal.left(x)

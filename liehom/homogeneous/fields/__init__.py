@@ -4,4 +4,5 @@
 of a tangent vector field. Correctors and integrators start from a `GeneratorField`; see docs/theory/correctors.md.
 """
 
+from liehom.homogeneous.fields.components import Components as Components
 from liehom.homogeneous.fields.field import GeneratorField as GeneratorField

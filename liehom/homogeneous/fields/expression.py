@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from liehom.errors import InputError, ParseError
-from liehom.homogeneous.fields.scope import Chain, Compiled, Constant, Function, Power
+from liehom.homogeneous.fields.evaluation import Chain, Compiled, Constant, Function, Power
 from liehom.scalars.fields.grammar import Call, Name, Node, Number, Operation, parse
 from liehom.scalars.fields.number_field import AlgebraicNumber
 
@@ -24,7 +24,7 @@ TREES = (Number, Name, Call, Operation)
 
 
 def compiled(part: Any, size: int, what: str) -> tuple[Compiled, bool]:
-    """One component as a function of a `Scope`, and whether it depends on t.
+    """One component as a function of a `Evaluation`, and whether it depends on t.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def compiled(part: Any, size: int, what: str) -> tuple[Compiled, bool]:
 
     Examples
     --------
-    >>> from liehom.homogeneous.fields.scope import Scope
+    >>> from liehom.homogeneous.fields.evaluation import Evaluation
     >>> function, timed = compiled("m0/2 + sin(t)", 1, "psi[0]")
-    >>> function(Scope(np.array([3.0]), 0.0)), timed
+    >>> function(Evaluation(np.array([3.0]), 0.0)), timed
     (np.float64(1.5), True)
     """
     if isinstance(part, str):

@@ -11,10 +11,10 @@ from typing import Any, final
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.fields.generator import Components
+from liehom.homogeneous.fields.components import Components
 from liehom.homogeneous.fields.least_norm import RANK_RTOL, TANGENCY_RTOL, LeastNorm
 from liehom.homogeneous.maps import action_map
-from liehom.homogeneous.range.batched_ranks import many_ranks
+from liehom.homogeneous.range.batched_ranks import batched_ranks
 from liehom.representations import Representation
 from liehom.series.arrays import as_values, is_traced, namespace, zeros
 from liehom.series.jet import Jet
@@ -167,9 +167,9 @@ class GeneratorField:
         """rho(x) m for x (..., r) and m (..., N)."""
         return self._action(x, m)
 
-    def sizes(self, x: Any, m: Any) -> Any:
+    def frobenius_norms(self, x: Any, m: Any) -> Any:
         """The Frobenius norms of rho(x), shape (...,), where that is cheap: for large ensembles (x, m); else None."""
-        return self._action.sizes(x) if self._action.in_columns(x, m) else None
+        return self._action.frobenius_norms(x) if self._action.works_by_columns(x, m) else None
 
     def __repr__(self) -> str:
         kind = "time-dependent " if self.time_dependent else ""
@@ -203,7 +203,7 @@ def check_point(representation: Representation, m: Any) -> Any:
         raise InputError(f"the point {m} is not finite")
     scale = max((float(np.abs(a.to_numpy()).max(initial=0.0)) for a in representation.matrices), default=0.0)
     bound = RANK_RTOL * scale * np.linalg.norm(point, axis=-1)
-    ranks = many_ranks(action_map(representation).right(point), bound)
+    ranks = batched_ranks(action_map(representation).right(point), bound)
     if bool(np.any(ranks == 0)):
         index = tuple(int(i) for i in np.argwhere(ranks == 0)[0])
         where = f" (trajectory {index[0] if len(index) == 1 else index})" if index else ""

@@ -14,7 +14,7 @@ import numpy as np
 
 from liehom.errors import InputError, TangencyError
 from liehom.homogeneous.exponentials.matrix_functions import inverse, solve
-from liehom.homogeneous.fields.generator import Components
+from liehom.homogeneous.fields.components import Components
 from liehom.homogeneous.frames.inner_product import inner_product
 from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation

@@ -16,10 +16,10 @@ import numpy as np
 from liehom.series.arrays import namespace
 
 SAMPLES = 16
-EVEN_RTOL = 1e-11
+TIGHT_RTOL = 1e-11
 
 
-class Decomposition(NamedTuple):
+class OrthogonalDecomposition(NamedTuple):
     """Of a matrix (..., n, k).
 
     Attributes
@@ -37,7 +37,7 @@ class Decomposition(NamedTuple):
     rows: Any
 
 
-def decomposed(matrix: Any, rank: int, cutoff: Any = 0.0) -> Decomposition:
+def orthogonal_decomposition(matrix: Any, rank: int, cutoff: Any = 0.0) -> OrthogonalDecomposition:
     """A complete orthogonal decomposition of a matrix of rank at most `rank`.
 
     Parameters
@@ -50,7 +50,7 @@ def decomposed(matrix: Any, rank: int, cutoff: Any = 0.0) -> Decomposition:
 
     Examples
     --------
-    >>> made = decomposed(np.array([[0.0, 3.0, 4.0], [0.0, 0.0, 0.0]]), 1)
+    >>> made = orthogonal_decomposition(np.array([[0.0, 3.0, 4.0], [0.0, 0.0, 0.0]]), 1)
     >>> (made.lift @ made.image.T).round(12).tolist()
     [[0.0, 0.0], [0.12, 0.0], [0.16, 0.0]]
     """
@@ -62,7 +62,7 @@ def decomposed(matrix: Any, rank: int, cutoff: Any = 0.0) -> Decomposition:
         columns = [c - _dot(xp, unit, c)[..., None] * unit for c in columns]
         chosen.append(unit)
     rows, lifts = _by_rows(xp, [(u[..., None, :] @ matrix)[..., 0, :] for u in chosen], cutoff)
-    return Decomposition(*[xp.stack(parts, axis=-1) for parts in (chosen, lifts, rows)])
+    return OrthogonalDecomposition(*[xp.stack(parts, axis=-1) for parts in (chosen, lifts, rows)])
 
 
 def _by_rows(xp: Any, rows: list[Any], cutoff: Any) -> tuple[list[Any], list[Any]]:
@@ -112,7 +112,7 @@ def _dot(xp: Any, a: Any, b: Any) -> Any:
     return xp.sum(a * b, axis=-1)
 
 
-class Evenness(NamedTuple):
+class TightFrame(NamedTuple):
     """What makes the linear systems at all points of some orbits short.
 
     Attributes
@@ -137,7 +137,7 @@ class Evenness(NamedTuple):
     over: Any = None
 
 
-def evenness(action: Any, points: Any, rank: int, seed: int = 0) -> Evenness | None:
+def tight_frame(action: Any, points: Any, rank: int, seed: int = 0) -> TightFrame | None:
     """What makes the systems short on the orbits of these points, all of one dimension; None if nothing does.
 
     That the singular values of A agree, and how isotropy acts on tangent vectors, is checked at the points and at
@@ -154,9 +154,9 @@ def evenness(action: Any, points: Any, rank: int, seed: int = 0) -> Evenness | N
     Examples
     --------
     >>> import liehom as lh
-    >>> round(evenness(lh.Action(lh.defining(lh.so(4))), np.eye(4), 3).isotropy, 12)
+    >>> round(tight_frame(lh.Action(lh.defining(lh.so(4))), np.eye(4), 3).isotropy, 12)
     0.5
-    >>> evenness(lh.Action(lh.sym_conjugation(3)), np.array([[1.0, 0, 0, 2, 0, 3]]), 3) is None
+    >>> tight_frame(lh.Action(lh.sym_conjugation(3)), np.array([[1.0, 0, 0, 2, 0, 3]]), 3) is None
     True
     """
     if rank < 2:
@@ -165,9 +165,9 @@ def evenness(action: Any, points: Any, rank: int, seed: int = 0) -> Evenness | N
     some = points[rng.permutation(len(points))[:SAMPLES]]
     some = np.repeat(some, -(-SAMPLES // len(some)), axis=0)[:SAMPLES]
     x = rng.normal(size=(len(some), action.dimension))
-    moved = action.act(x / max(1.0, float(action.size)), some)
+    moved = action.act(x / max(1.0, float(action.max_norm)), some)
     basis = action.inner_product.orthonormal_basis()
-    if not bool(is_even(action.infinitesimal.right(np.concatenate([points, moved])) @ basis, rank).all()):
+    if not bool(is_tight(action.infinitesimal.right(np.concatenate([points, moved])) @ basis, rank).all()):
         return None
     columns = action.infinitesimal.right(moved) @ basis
     square = np.sum(columns * columns, axis=(-2, -1))[:, None, None] / rank
@@ -179,29 +179,29 @@ def evenness(action: Any, points: Any, rank: int, seed: int = 0) -> Evenness | N
     made = across @ np.swapaxes(across, -1, -2)
     normal = tangent - u[:, :, None] * u[:, None, :]
     mu = float(np.trace(made[0]) / (rank - 1))
-    if not (mu > EVEN_RTOL and float(np.abs(made - mu * normal).max()) <= EVEN_RTOL * max(mu, 1.0)):
+    if not (mu > TIGHT_RTOL and float(np.abs(made - mu * normal).max()) <= TIGHT_RTOL * max(mu, 1.0)):
         return None
     r = (tangent @ rng.normal(size=(len(some), points.shape[-1], 1)))[..., 0]
     turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
     outside = np.abs(turned - kernel @ turned).max()
-    symmetric = bool(outside <= EVEN_RTOL * max(1.0, float(np.abs(turned).max())))
+    symmetric = bool(outside <= TIGHT_RTOL * max(1.0, float(np.abs(turned).max())))
     inverse = np.linalg.inv(action.inner_product.matrix)
     corners = action.infinitesimal.right(np.eye(points.shape[-1]))
     trace = np.einsum("pia,ab,qib->pq", corners, inverse, corners)
     near = float(Fraction(mu).limit_denominator(256))
-    return Evenness(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
+    return TightFrame(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
 
 
-def is_even(matrix: Any, rank: int) -> Any:
+def is_tight(matrix: Any, rank: int) -> Any:
     """Whether A A^T A = lambda A with lambda = tr(A A^T) / rank, bool (...,).
 
     Examples
     --------
-    >>> bool(is_even(np.eye(3), 3)), bool(is_even(np.diag([1.0, 2.0]), 2))
+    >>> bool(is_tight(np.eye(3), 3)), bool(is_tight(np.diag([1.0, 2.0]), 2))
     (True, False)
     """
     a = np.ascontiguousarray(np.moveaxis(matrix, (-2, -1), (0, 1)))  # sums over all matrices at once
     square = np.einsum("pq...,pq...->...", a, a) / rank
     left = np.einsum("pr...,qr...->pq...", a, a)
     defect = np.einsum("pr...,rq...->pq...", left, a) - square * a
-    return np.abs(defect).max(axis=(0, 1)) <= EVEN_RTOL * (square * np.abs(a).max(axis=(0, 1)))
+    return np.abs(defect).max(axis=(0, 1)) <= TIGHT_RTOL * (square * np.abs(a).max(axis=(0, 1)))

@@ -18,7 +18,7 @@ FEW, BLOCK = 64, 2048
 SLACK = 1e-6
 
 
-def many_ranks(matrices: Any, bounds: Any) -> Any:
+def batched_ranks(matrices: Any, bounds: Any) -> Any:
     """The numbers of singular values above a bound.
 
     Parameters
@@ -39,7 +39,7 @@ def many_ranks(matrices: Any, bounds: Any) -> Any:
 
     Examples
     --------
-    >>> many_ranks(np.array([np.eye(2), np.diag([1.0, 0.0]), np.diag([1.0, 1e-12])] * 30), np.full(90, 1e-9))[:3]
+    >>> batched_ranks(np.array([np.eye(2), np.diag([1.0, 0.0]), np.diag([1.0, 1e-12])] * 30), np.full(90, 1e-9))[:3]
     array([2, 1, 1])
     """
     lead, (p, q) = matrices.shape[:-2], matrices.shape[-2:]

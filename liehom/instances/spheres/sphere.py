@@ -19,7 +19,7 @@ from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.fields.generator import Components
+from liehom.homogeneous.fields.components import Components
 from liehom.homogeneous.maps import FieldMap
 from liehom.integrators.run.points import points_of
 from liehom.representations import Representation, adjoint, defining

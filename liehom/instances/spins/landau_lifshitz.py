@@ -18,7 +18,7 @@ from liehom.algebra import so
 from liehom.correctors import Conserving, Corrected, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.homogeneous.fields.generator import joined
+from liehom.homogeneous.fields.components import joined
 from liehom.instances.spins.joint_spins import JointSpins
 from liehom.instances.spins.spin_lattice import SpinLattice
 from liehom.integrators import Solution, integrate

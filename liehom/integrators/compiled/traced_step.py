@@ -10,11 +10,11 @@ import numpy as np
 
 from liehom.correctors.conserving.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
-from liehom.correctors.isotropy.range_solver import EvenRangeSolver
+from liehom.correctors.isotropy.range_solver import TightFrameSolver
 from liehom.correctors.step import Generator, Step, apply_factors
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.frames.branch_free_frames import evenness
+from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.compiled.traced_size import SizeLimits, judgement, tried_size
 from liehom.integrators.run.clock import clock_at, has_clock
 from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
@@ -73,14 +73,14 @@ def _traced(
     limits: SizeLimits | None, kept_order: int | None,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
-    even = action.even
-    if even is None and isinstance(step, Corrected | Conserving):  # others ask for no isotropy
-        even = evenness(action, points, orbit_dimension)
-    if even is not None and action.inner_product.invariant:
-        form = even.trace
+    tight = action.tight_frame
+    if tight is None and isinstance(step, Corrected | Conserving):  # others ask for no isotropy
+        tight = tight_frame(action, points, orbit_dimension)
+    if tight is not None and action.inner_product.invariant:
+        form = tight.trace
         over = tape.trajectory_constant(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
-        even = even._replace(over=Traced(tape, over))
-    action = action.on_even_orbits(even)
+        tight = tight._replace(over=Traced(tape, over))
+    action = action.with_tight_frame(tight)
     m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     psi.prepared[step] = kept_order
@@ -168,7 +168,7 @@ def _statistics(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str
         found = local.correction
         rest = Traced(tape, found.leading) == 0
         summed["equilibria"] = np.where(rest, 1.0, 0.0)
-        if not all(isinstance(part.solver, EvenRangeSolver) for part in found.parts):
+        if not all(isinstance(part.solver, TightFrameSolver) for part in found.parts):
             short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
             largest |= {"residual": found.residual, "short": short}
             summed["failed"] = np.where(short > 0, 1.0, 0.0)

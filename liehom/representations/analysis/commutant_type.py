@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from liehom.errors import InputError
-from liehom.representations.analysis.isotypic import Type
+from liehom.representations.analysis.isotypic import CommutantType
 from liehom.representations.invariants.intertwiners import commutant
 from liehom.representations.invariants.irreducibility import reduction, traceless
 from liehom.scalars import Field
 from liehom.scalars.spaces.forms import orthogonal_basis
 
-KINDS: dict[int, Type] = {1: "R", 2: "C", 4: "H"}
+KINDS: dict[int, CommutantType] = {1: "R", 2: "C", 4: "H"}
 
 
 def commutant_type(
@@ -26,7 +26,7 @@ def commutant_type(
     generating: Sequence[Any] | None = None,
     *,
     semisimple: bool = False,
-) -> Type:
+) -> CommutantType:
     """The type of an irreducible action of a linear Lie algebra on R^N; the arguments are those of `reduction`.
 
     Raises

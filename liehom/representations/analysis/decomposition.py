@@ -18,7 +18,7 @@ from liehom.algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import CertificateError, NotCompletelyReducibleError
 from liehom.representations.analysis.complete_reducibility import socle
-from liehom.representations.analysis.isotypic import Type, isotypic_pieces
+from liehom.representations.analysis.isotypic import CommutantType, isotypic_pieces
 from liehom.representations.analysis.splitting import irreducible_pieces
 from liehom.representations.analysis.submodules import restricted
 from liehom.representations.core.generating_matrices import exact_matrices, generating_matrices
@@ -58,7 +58,7 @@ class Component:
 
     subspace: Subspace
     representation: Representation
-    type: Type
+    type: CommutantType
     isotypic: int
     extension: Extension
 
@@ -99,7 +99,7 @@ class IsotypicComponent:
     """
 
     subspace: Subspace
-    type: Type
+    type: CommutantType
     multiplicity: int
     components: tuple[int, ...]
     extension: Extension
@@ -264,7 +264,7 @@ def decomposition(rho: Representation) -> Decomposition:
 class _Group:
     """An isotypic component, split: rows over fields, in the coordinates of the whole space."""
 
-    type: Type
+    type: CommutantType
     whole: Any
     extension: Extension
     rows: tuple[Any, ...]

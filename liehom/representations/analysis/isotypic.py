@@ -18,7 +18,7 @@ from liehom.representations.invariants.irreducibility import evaluated
 from liehom.representations.invariants.matrix_algebra import MatrixAlgebra
 from liehom.scalars.roots.extension import Extension, RealFactor, real_factors, trivial_extension
 
-Type = Literal["R", "C", "H"]
+CommutantType = Literal["R", "C", "H"]
 """What commutes with an irreducible representation: the reals, complex numbers or quaternions."""
 
 
@@ -85,7 +85,7 @@ class IsotypicPiece:
     """An isotypic component over the reals: `multiplicity` copies of one irreducible representation of a `type`."""
 
     piece: Piece
-    type: Type
+    type: CommutantType
     multiplicity: int
 
 

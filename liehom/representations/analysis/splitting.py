@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any, final
 
 from liehom.errors import InternalError
-from liehom.representations.analysis.isotypic import IsotypicPiece, Piece, Type
+from liehom.representations.analysis.isotypic import CommutantType, IsotypicPiece, Piece
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, evaluated, traceless
 from liehom.scalars import Polynomial
 from liehom.scalars.lattices.conic import rational_zero
@@ -48,12 +48,12 @@ def irreducible_pieces(component: IsotypicPiece) -> list[Piece]:
     return found
 
 
-def _multiplicity(piece: Piece, kind: Type) -> int:
+def _multiplicity(piece: Piece, kind: CommutantType) -> int:
     square = piece.commuting.dimension // {"R": 1, "C": 2, "H": 4}[kind]
     return next(m for m in range(1, square + 1) if m * m >= square)
 
 
-def _split(piece: Piece, kind: Type) -> list[Piece]:
+def _split(piece: Piece, kind: CommutantType) -> list[Piece]:
     """Two or more summands, over the field of the piece if one is found there."""
     roots: list[_Root] = []
     for element in islice(_tried(piece, kind), CANDIDATES + 2 * piece.commuting.dimension):
@@ -73,7 +73,7 @@ def _split(piece: Piece, kind: Type) -> list[Piece]:
     return _split_above(piece, min(roots, key=lambda root: root.cost))
 
 
-def _tried(piece: Piece, kind: Type) -> Any:
+def _tried(piece: Piece, kind: CommutantType) -> Any:
     """Commuting matrices, small ones first; with a complex structure also their products with it."""
     structure = None
     if kind == "C":
@@ -127,7 +127,7 @@ def _with_complement(piece: Piece, rows: Any) -> list[Any]:
     return [rows, projection.null_space().row_space()]
 
 
-def _nilpotent(piece: Piece, kind: Type) -> Any:
+def _nilpotent(piece: Piece, kind: CommutantType) -> Any:
     """An element of square 0 in a quaternion algebra over QQ that has one (M_2(QQ)), or None."""
     if kind != "R" or piece.commuting.dimension != 4 or piece.field.degree > 1:
         return None

@@ -33,7 +33,7 @@ from liehom.typing import VectorLike
 if TYPE_CHECKING:
     from liehom.representations.analysis.decomposition import Decomposition
     from liehom.representations.analysis.hermitian_forms import HermitianForms
-    from liehom.representations.analysis.isotypic import Type
+    from liehom.representations.analysis.isotypic import CommutantType
     from liehom.representations.analysis.symbolic import SymbolicIsotropy
 
 
@@ -357,7 +357,7 @@ class Representation:
         """
         return commutant(self._generating(), self.size, self.field)
 
-    def commutant_type(self) -> Type:
+    def commutant_type(self) -> CommutantType:
         """'R', 'C' or 'H': the algebra of real matrices that commute with an irreducible representation.
 
         Raises

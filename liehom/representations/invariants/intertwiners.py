@@ -60,20 +60,20 @@ def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int,
         lifted = _lifted(source, target, shape, over)
         if lifted is not None:
             return lifted
-    spun = _spin(source, target, shape, over)
+    words = _word_basis(source, target, shape, over)
     conditions: list[Any] = []
     rng = random.Random(7)
     for _ in range(3):
-        conditions.append(spun.condition(*_mixed(source, target, rng), rng))
+        conditions.append(words.condition(*_mixed(source, target, rng), rng))
     for _ in range(10 * len(source) + 100):
-        unknown = over.stack_rows(conditions, e * spun.seeds).null_space()
-        candidates = [spun.map(unknown.select(rows=[i])) for i in range(unknown.nrows)]
+        unknown = over.stack_rows(conditions, e * words.seeds).null_space()
+        candidates = [words.map(unknown.select(rows=[i])) for i in range(unknown.nrows)]
         failing = _first_failing(candidates, source, target)
         if failing is None:
             return candidates
-        conditions = [over.stack_rows(conditions, e * spun.seeds).row_space()]
+        conditions = [over.stack_rows(conditions, e * words.seeds).row_space()]
         # Each round uses a generator that some candidate violates, at several vectors.
-        conditions += [spun.condition(source[failing], target[failing], rng) for _ in range(2)]
+        conditions += [words.condition(source[failing], target[failing], rng) for _ in range(2)]
     raise InternalError("intertwiners: the conditions did not settle")
 
 
@@ -140,7 +140,7 @@ def _mixed(source: Sequence[Any], target: Sequence[Any], rng: random.Random, bat
 
 @final
 @dataclass(slots=True)
-class _Spun:
+class _WordBasis:
     """A basis v_j of the source made by words in the A_i, with T v_j = images[j] t for the unknown t."""
 
     over: Field
@@ -177,7 +177,7 @@ class _Spun:
         return self.over.stack_rows(columns, e).T @ self.inverse
 
 
-def _spin(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> _Spun:
+def _word_basis(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> _WordBasis:
     e, d = shape
     rng = random.Random(d)
     vectors: list[Any] = []
@@ -198,7 +198,7 @@ def _spin(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], 
         seeds += 1
         while frontier and len(vectors) < d:
             frontier = _grow(over, source, vectors, words, frontier, d, rng)
-    return _Spun(over, shape, seeds, vectors, _images(over, target, words, seeds, e), _inverse(over, vectors, d))
+    return _WordBasis(over, shape, seeds, vectors, _images(over, target, words, seeds, e), _inverse(over, vectors, d))
 
 
 def _inverse(over: Field, vectors: list[Any], d: int) -> Any:

@@ -32,16 +32,16 @@ def test_products_and_exponentials(name: str) -> None:
     act = action_map(rho)
     x, m = rng.normal(size=(COUNT, act.shape[0])), rng.normal(size=(COUNT, rho.size))
     z = rng.normal(size=(COUNT, rho.size))
-    assert act.in_columns(x, m) and not act.in_columns(x[:2], m[:2])
+    assert act.works_by_columns(x, m) and not act.works_by_columns(x[:2], m[:2])
     dense = np.einsum("aij,na->nij", [a.to_numpy() for a in rho.matrices], x)
     for a, b, c in ((x, m, z), (in_lanes(x), in_lanes(m), in_lanes(z))):
         np.testing.assert_allclose(act(a, b), np.einsum("nij,nj->ni", dense, m), rtol=0, atol=1e-12)
         right = act.right(m)
-        np.testing.assert_allclose(act.pulled(b, c), np.einsum("nia,ni->na", right, z), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(act.sizes(x), np.linalg.norm(dense, axis=(1, 2)), rtol=1e-13)
+        np.testing.assert_allclose(act.right_transposed(b, c), np.einsum("nia,ni->na", right, z), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(act.frobenius_norms(x), np.linalg.norm(dense, axis=(1, 2)), rtol=1e-13)
     exp, other = SeriesExponential(rho), MatrixExponential(rho)
     for size in (1e-3, 0.2, 5.0):  # the last is beyond what the series on columns takes
-        y = x * (size / act.sizes(x).max())
+        y = x * (size / act.frobenius_norms(x).max())
         made = exp.act(y, m)
         scale = max(1.0, float(np.abs(made).max()))
         np.testing.assert_allclose(made, other.act(y, m), rtol=0, atol=1e-12 * scale)
@@ -89,6 +89,6 @@ def test_what_is_at_rest_in_a_large_ensemble(some: int) -> None:
     m[:some] = [0.0, 0.6, 0.0]
     m[some : 2 * some, 1:] *= 1e-9  # near an equilibrium, but not there
     flow = flow_series(field, m, 2)
-    assert field.sizes(flow.psi(0), m) is not None and field.sizes(flow.psi(0)[:9], m[:9]) is None
+    assert field.frobenius_norms(flow.psi(0), m) is not None and field.frobenius_norms(flow.psi(0)[:9], m[:9]) is None
     for found in (vanishing(flow, 1), at_rest(lh.Action(rho), flow)):
         assert found.dtype == bool and found.tolist() == [True] * some + [False] * (COUNT - some)

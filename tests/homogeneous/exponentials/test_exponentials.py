@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.errors import FieldError, InputError, SeriesError, ShapeError
 from liehom.homogeneous import (
+    CustomExponential,
     Exponential,
     MatrixExponential,
-    OwnExponential,
     Rodrigues,
     SeriesExponential,
     TrueExponential,
@@ -435,7 +435,7 @@ def rotations() -> lh.Representation:
 def test_a_function_is_an_exponential() -> None:
     rho = rotations()
     exp = exponential_of(rho, product_of_two)
-    assert exp.name == "product_of_two" and isinstance(exp, OwnExponential)
+    assert exp.name == "product_of_two" and isinstance(exp, CustomExponential)
     x, m = np.random.default_rng(23).normal(size=(2, 5, 3))
     np.testing.assert_allclose(exp(ray(0.01 * x, 3), m)(1.0), exp(0.01 * x, m), atol=1e-7)
     with pytest.raises(InputError, match="inverse differential of product_of_two"):
@@ -507,7 +507,7 @@ def test_unknown_exponentials_are_named(which: Any) -> None:
     with pytest.raises(InputError, match=r"unknown exponential .*'cayley'"):
         exponential_of(rotations(), which)
     with pytest.raises(InputError, match="function"):
-        OwnExponential(rotations(), which)
+        CustomExponential(rotations(), which)
 
 
 # -- closed forms ----------------------------------------------------------------------------------------

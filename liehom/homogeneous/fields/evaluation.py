@@ -1,6 +1,6 @@
-"""Scope: in which numbers an expression is evaluated, and the nodes of expressions that are compiled to functions.
+"""Evaluation: in which numbers an expression is evaluated, and the nodes of expressions that are compiled to functions.
 
-A compiled expression is a function of a `Scope`, that is of m and t; its numbers are taken in the arithmetic of m,
+A compiled expression is a function of a `Evaluation`, that is of m and t; its numbers are taken in the arithmetic of m,
 which may be floats, extended floats, exact scalars or Jets of these.
 """
 
@@ -20,7 +20,7 @@ from liehom.series.jet import Jet
 
 
 @final
-class Scope:
+class Evaluation:
     """The coordinates of m, the time, and how numbers are written next to them, for one evaluation.
 
     Parameters
@@ -30,8 +30,8 @@ class Scope:
 
     Examples
     --------
-    >>> scope = Scope(np.array([2.0, 3.0]), 0.0)
-    >>> float(scope.coordinate(1)), scope.rational(Fraction(1, 4))
+    >>> at = Evaluation(np.array([2.0, 3.0]), 0.0)
+    >>> float(at.coordinate(1)), at.rational(Fraction(1, 4))
     (3.0, 0.25)
     """
 
@@ -77,7 +77,7 @@ class Scope:
         )
 
 
-Compiled = Callable[[Scope], Any]
+Compiled = Callable[[Evaluation], Any]
 
 
 @final
@@ -86,7 +86,7 @@ class Constant:
 
     Examples
     --------
-    >>> Constant(lambda s: s.rational(Fraction(1, 3)))(Scope(np.zeros(1), 0.0))
+    >>> Constant(lambda s: s.rational(Fraction(1, 3)))(Evaluation(np.zeros(1), 0.0))
     0.3333333333333333
     """
 
@@ -96,12 +96,12 @@ class Constant:
         self._inner = inner
         self._known: dict[str, Any] = {}
 
-    def __call__(self, scope: Scope) -> Any:
-        if scope.kind == "exact":
-            return self._inner(scope)
-        if scope.kind not in self._known:
-            self._known[scope.kind] = self._inner(scope)
-        return self._known[scope.kind]
+    def __call__(self, at: Evaluation) -> Any:
+        if at.kind == "exact":
+            return self._inner(at)
+        if at.kind not in self._known:
+            self._known[at.kind] = self._inner(at)
+        return self._known[at.kind]
 
 
 @final
@@ -115,7 +115,7 @@ class Chain:
 
     Examples
     --------
-    >>> Chain(lambda s: 6.0, [("/", lambda s: 2.0), ("-", lambda s: 1.0)])(Scope(np.zeros(1), 0.0))
+    >>> Chain(lambda s: 6.0, [("/", lambda s: 2.0), ("-", lambda s: 1.0)])(Evaluation(np.zeros(1), 0.0))
     2.0
     """
 
@@ -124,10 +124,10 @@ class Chain:
     def __init__(self, first: Compiled, steps: list[tuple[str, Compiled]]) -> None:
         self._first, self._steps = first, steps
 
-    def __call__(self, scope: Scope) -> Any:
-        total = self._first(scope)
+    def __call__(self, at: Evaluation) -> Any:
+        total = self._first(at)
         for operator, part in self._steps:
-            right = part(scope)
+            right = part(at)
             if operator == "+":
                 total = total + right
             elif operator == "-":
@@ -148,7 +148,7 @@ class Power:
 
     Examples
     --------
-    >>> Power(lambda s: 3.0, 2)(Scope(np.zeros(1), 0.0))
+    >>> Power(lambda s: 3.0, 2)(Evaluation(np.zeros(1), 0.0))
     9.0
     """
 
@@ -157,9 +157,9 @@ class Power:
     def __init__(self, base: Compiled, exponent: int) -> None:
         self._base, self._exponent = base, exponent
 
-    def __call__(self, scope: Scope) -> Any:
+    def __call__(self, at: Evaluation) -> Any:
         try:
-            return self._base(scope) ** self._exponent
+            return self._base(at) ** self._exponent
         except ZeroDivisionError:
             raise ParseError("a negative power of zero in a value") from None
 
@@ -170,7 +170,7 @@ class Function:
 
     Examples
     --------
-    >>> float(Function("arctan", lambda s: 0.0)(Scope(np.zeros(1), 0.0)))
+    >>> float(Function("arctan", lambda s: 0.0)(Evaluation(np.zeros(1), 0.0)))
     0.0
     """
 
@@ -179,11 +179,11 @@ class Function:
     def __init__(self, name: str, argument: Compiled) -> None:
         self._name, self._argument = name, argument
 
-    def __call__(self, scope: Scope) -> Any:
-        x = self._argument(scope)
+    def __call__(self, at: Evaluation) -> Any:
+        x = self._argument(at)
         if isinstance(x, Jet):
             return getattr(np, self._name)(x)
-        if self._name == "sqrt" and scope.kind == "exact":
+        if self._name == "sqrt" and at.kind == "exact":
             return np.vectorize(_exact_root, otypes=[object])(x) if np.ndim(x) else _exact_root(np.asarray(x).item())
         return elementary(self._name, x)
 

@@ -14,9 +14,9 @@ from typing import Any, final
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
+from liehom.homogeneous.fields.evaluation import Evaluation
 from liehom.homogeneous.fields.expression import FUNCTIONS as FUNCTIONS
 from liehom.homogeneous.fields.expression import compiled
-from liehom.homogeneous.fields.scope import Scope
 from liehom.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.series.jet import Jet
 
@@ -195,8 +195,8 @@ class Components:
         functions = [function for function, _ in made]
 
         def evaluated(m: Any, t: Any) -> Any:
-            scope = Scope(m, t)
-            return _stacked([function(scope) for function in functions], m)
+            at = Evaluation(m, t)
+            return _stacked([function(at) for function in functions], m)
 
         return evaluated, any(timed for _, timed in made)
 

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.errors import FieldError, InputError, ParseError, SeriesError, ShapeError
-from liehom.homogeneous.fields.generator import Components, takes_time
+from liehom.homogeneous.fields.components import Components, takes_time
 
 M0, M1, M2, T = sympy.symbols("m0 m1 m2 t")
 POINT = np.array([0.3, -0.7, 1.1])

@@ -21,7 +21,7 @@ STEP = 1e-3
 
 
 @final
-class OwnExponential(Exponential):
+class CustomExponential(Exponential):
     """A user's map, as a function (x, m) -> Exp(x) m that runs on arrays and Jets.
 
     Parameters
@@ -47,11 +47,13 @@ class OwnExponential(Exponential):
     >>> def tangent(x, m):  # rotation by 2 arctan(x/2)
     ...     turned = x * m[..., ::-1] * [-1, 1]
     ...     return m + (turned - x * x * m / 2) / (1 + x * x / 4)
-    >>> OwnExponential(rho, tangent, "my Cayley").name
+    >>> CustomExponential(rho, tangent, "my Cayley").name
     'my Cayley'
     """
 
-    def __init__(self, representation: Representation, function: Callable[[Any, Any], Any], name: str = "own") -> None:
+    def __init__(
+        self, representation: Representation, function: Callable[[Any, Any], Any], name: str = "custom"
+    ) -> None:
         if not callable(function):
             raise InputError(f"an exponential is a function (x, m) -> Exp(x) m, got {function!r}")
         self._function = function
@@ -72,7 +74,7 @@ def check_exponential(representation: Representation, exponential: Exponential) 
     Raises
     ------
     ShapeError, InputError
-        See `OwnExponential`.
+        See `CustomExponential`.
 
     Examples
     --------
@@ -169,7 +171,7 @@ def exponential_of(representation: Representation, which: Any = "exp") -> Expone
         if which in _BY_NAME:
             return _BY_NAME[which](representation)
     elif callable(which):
-        return OwnExponential(representation, which, getattr(which, "__name__", "own"))
+        return CustomExponential(representation, which, getattr(which, "__name__", "custom"))
     raise InputError(
         f"unknown exponential {which!r}; known: 'exp', {', '.join(map(repr, _BY_NAME))}, an Exponential, or a function "
         "(x, m) -> Exp(x) m"
