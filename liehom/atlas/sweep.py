@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import os
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from liehom.atlas.entry import Atlas, Entry
 from liehom.catalog import pair as named_pair
@@ -25,7 +25,7 @@ def sweep(
     retries: int = 2,
     seed: int = 0,
     verify: bool = True,
-    progress: Callable[[Entry], Any] | None = None,
+    progress: Callable[[Entry], object] | None = None,
 ) -> Atlas:
     """Decide the fullness of many pairs.
 

@@ -7,4 +7,5 @@ In reading order: `tasks` (a function of many tasks on any `concurrent.futures.E
 from liehom.parallel.store import Store as Store
 from liehom.parallel.store import open_store as open_store
 from liehom.parallel.tasks import ExecutorLike as ExecutorLike
+from liehom.parallel.tasks import TaskExecutor as TaskExecutor
 from liehom.parallel.tasks import completed as completed

@@ -14,9 +14,10 @@ import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import FormatError, InputError
 
@@ -26,7 +27,7 @@ UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeErro
 DAMAGED = (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error)
 """What reading a damaged file may raise."""
 
-Shard = tuple[dict[str, Any], dict[str, Any]]
+Shard: TypeAlias = tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]
 """Arrays by name, and facts that JSON can hold."""
 
 
@@ -49,7 +50,7 @@ class Store(ABC):
         """The names of the shards that are there, whole."""
 
     @abstractmethod
-    def save(self, name: str, arrays: Mapping[str, Any], facts: Mapping[str, Any]) -> None:
+    def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         """Write a shard; one that is there is replaced.
 
         Raises
@@ -134,7 +135,7 @@ class _Folder(Store):
         files = (f for f in self._folder.iterdir() if f.suffix in (".npz", ".json"))
         return frozenset(f.stem for f in files if f.name != ABOUT and not f.name.startswith("."))
 
-    def save(self, name: str, arrays: Mapping[str, Any], facts: Mapping[str, Any]) -> None:
+    def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         text = json.dumps(facts)
         if not arrays:
             self._write(f"{name}.json", text.encode())
@@ -142,7 +143,8 @@ class _Folder(Store):
         from io import BytesIO
 
         buffer = BytesIO()
-        np.savez(buffer, facts=np.array(text), **arrays)
+        entries: dict[str, Any] = {"facts": np.array(text), **arrays}
+        np.savez(buffer, **entries)
         self._write(f"{name}.npz", buffer.getbuffer())
 
     def load(self, name: str) -> Shard:
@@ -156,7 +158,7 @@ class _Folder(Store):
         except DAMAGED as error:
             raise _damaged(os.fspath(plain if plain.exists() else packed), error) from None
 
-    def _write(self, name: str, data: Any) -> None:
+    def _write(self, name: str, data: bytes | memoryview) -> None:
         target = self._folder / name
         temporary = target.with_name(f".{name}.{os.getpid()}.part")
         try:
@@ -198,7 +200,7 @@ class _Zarr(Store):
     def names(self) -> frozenset[str]:
         return frozenset(name for name, part in self._root.groups() if "facts" in part.attrs)
 
-    def save(self, name: str, arrays: Mapping[str, Any], facts: Mapping[str, Any]) -> None:
+    def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         with _writing(self.path):
             part = self._root.create_group(name, overwrite=True)
             for key, array in arrays.items():
@@ -215,11 +217,11 @@ class _Zarr(Store):
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _about(fingerprint: str) -> dict[str, Any]:
+def _about(fingerprint: str) -> dict[str, str | int]:
     return {"format": FORMAT, "version": 1, "fingerprint": fingerprint}
 
 
-def _check(path: str, found: Mapping[str, Any], fingerprint: str) -> None:
+def _check(path: str, found: Mapping[str, object], fingerprint: str) -> None:
     if found.get("format") != FORMAT or found.get("version") != 1:
         raise FormatError(f"{path!r} is not a store of liehom of this version")
     if found.get("fingerprint") != fingerprint:

@@ -9,14 +9,30 @@ from __future__ import annotations
 import pickle
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Future
 from queue import SimpleQueue
-from typing import Any, final
+from typing import Generic, Protocol, TypeAlias, TypeGuard, TypeVar, final
 
 from liehom.errors import InputError, WorkerLostError
 
-ExecutorLike = Executor | Callable[[], Executor] | None
-"""An executor; a function that makes one, called again where one is broken; None for the calling process."""
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+
+class TaskExecutor(Protocol):
+    """The methods that liehom calls of an executor; every `concurrent.futures.Executor` has them."""
+
+    def submit(self, function: Callable[[Task], Result], task: Task, /) -> Future[Result]:
+        """The future of ``function(task)``."""
+        ...
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Release the workers."""
+        ...
+
+
+ExecutorLike: TypeAlias = TaskExecutor | Callable[[], TaskExecutor] | None
+"""An executor, a function that makes one (called again if one breaks), or None for the calling process."""
 
 RETRIES = 2
 # dask's own exceptions for workers that died, by name, as dask is not imported here
@@ -24,8 +40,8 @@ WORKER_LOSS = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PCo
 
 
 def completed(
-    function: Callable[[Any], Any], tasks: Sequence[Any], executor: ExecutorLike = None, *, retries: int = RETRIES
-) -> Iterator[tuple[int, Any]]:
+    function: Callable[[Task], Result], tasks: Sequence[Task], executor: ExecutorLike = None, *, retries: int = RETRIES
+) -> Iterator[tuple[int, Result]]:
     """Pairs (number of the task, function(task)), in the order in which tasks are done.
 
     Parameters
@@ -68,28 +84,34 @@ def completed(
 class _Pool:
     """The executor of the moment."""
 
-    def __init__(self, source: Executor | Callable[[], Executor]) -> None:
-        given = not isinstance(source, type) and callable(getattr(source, "submit", None))
-        if not given and not callable(source):
+    def __init__(self, source: TaskExecutor | Callable[[], TaskExecutor]) -> None:
+        self._make: Callable[[], TaskExecutor] | None = None
+        self._executor: TaskExecutor | None = None
+        if _is_executor(source):
+            self._executor = source
+        elif callable(source):
+            self._make = source
+        else:
             raise InputError(
                 f"executor is {source!r}, expected a concurrent.futures.Executor, or a function that makes one"
             )
-        self._make: Any = None if given else source
-        self._executor: Any = source if given else None
 
     @property
     def renewable(self) -> bool:
         """Whether another executor can be made."""
         return self._make is not None
 
-    def submit(self, function: Callable[[Any], Any], task: Any) -> Future[Any]:
+    def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
         """Submit a task; BrokenExecutor where the executor takes none."""
+        if self._executor is None and self._make is not None:
+            made = self._make()
+            if not callable(getattr(made, "submit", None)):
+                raise InputError(f"the function that makes executors returned {made!r}")
+            self._executor = made
         if self._executor is None:
-            self._executor = self._make()
-            if not callable(getattr(self._executor, "submit", None)):
-                raise InputError(f"the function that makes executors returned {self._executor!r}")
+            raise BrokenExecutor("there is no executor")
         try:
-            return self._executor.submit(function, task)  # type: ignore[no-any-return]
+            return self._executor.submit(function, task)
         except RuntimeError as error:  # also what an executor raises that was shut down
             if isinstance(error, BrokenExecutor):
                 raise
@@ -103,18 +125,18 @@ class _Pool:
 
 
 @final
-class _Run:
+class _Run(Generic[Task, Result]):
     """One call of `completed`."""
 
-    def __init__(self, function: Callable[[Any], Any], tasks: Sequence[Any], pool: _Pool, retries: int) -> None:
+    def __init__(self, function: Callable[[Task], Result], tasks: Sequence[Task], pool: _Pool, retries: int) -> None:
         self.function, self.tasks, self.pool, self.retries = function, tasks, pool, retries
         self.todo = deque(range(len(tasks)))
-        self.waiting: dict[Future[Any], int] = {}
-        self.ready: SimpleQueue[Future[Any]] = SimpleQueue()
+        self.waiting: dict[Future[Result], int] = {}
+        self.ready: SimpleQueue[Future[Result]] = SimpleQueue()
         self.done, self.breaks = 0, 0
         self.lost: Counter[int] = Counter()
 
-    def results(self) -> Iterator[tuple[int, Any]]:
+    def results(self) -> Iterator[tuple[int, Result]]:
         """The results as they come."""
         try:
             while self.todo or self.waiting:
@@ -152,9 +174,9 @@ class _Run:
             future.add_done_callback(self.ready.put)
         return None
 
-    def _finished(self) -> list[Future[Any]]:
+    def _finished(self) -> list[Future[Result]]:
         """The futures that are done, at least one where there are some; none of an executor that is gone."""
-        found: list[Future[Any]] = []
+        found: list[Future[Result]] = []
         while self.waiting and (not found or not self.ready.empty()):
             future = self.ready.get()
             if future in self.waiting:
@@ -190,6 +212,11 @@ class _Run:
         )
 
 
+def _is_executor(source: object) -> TypeGuard[TaskExecutor]:
+    """Whether it has the methods of an executor and is not a class of executors."""
+    return not isinstance(source, type) and callable(getattr(source, "submit", None))
+
+
 def is_worker_loss(error: BaseException) -> bool:
     """Whether an exception says that a worker, or all of them, are gone, rather than that the task failed.
 
@@ -202,7 +229,7 @@ def is_worker_loss(error: BaseException) -> bool:
     return isinstance(error, kinds) or type(error).__name__ in WORKER_LOSS
 
 
-def _error_of(future: Future[Any]) -> BaseException | None:
+def _error_of(future: Future[Result]) -> BaseException | None:
     try:
         return future.exception()
     except CancelledError as error:

@@ -13,11 +13,13 @@ import itertools
 from bisect import bisect_left
 from collections.abc import Sequence
 from math import comb, lcm
-from typing import Any, final
+from typing import final
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.errors import InputError, RepresentationError, ShapeError
+from liehom.scalars import ExactField, ExactMatrix, Field, FloatField, Matrix, Scalar
+from liehom.scalars.fields.field import MatricesLike
 
 MAX_ENTRIES = 30_000_000
 
@@ -56,10 +58,10 @@ class CochainComplex:
 
     __slots__ = ("_differentials", "algebra", "matrices", "size")
 
-    def __init__(self, algebra: LieAlgebra, matrices: Any = None, *, size: int | None = None) -> None:
+    def __init__(self, algebra: LieAlgebra, matrices: MatricesLike | None = None, *, size: int | None = None) -> None:
         self.algebra = algebra
-        self._differentials: dict[int, Any] = {}
-        self.matrices: tuple[Any, ...] | None = None
+        self._differentials: dict[int, Matrix] = {}
+        self.matrices: tuple[Matrix, ...] | None = None
         self.size = 1
         if matrices is not None:
             made = square_matrices(matrices, algebra.field)
@@ -74,7 +76,7 @@ class CochainComplex:
         """The dimension of the space of k-cochains, 0 for k < 0."""
         return comb(self.algebra.dimension, degree) * self.size if degree >= 0 else 0
 
-    def differential(self, degree: int) -> Any:
+    def differential(self, degree: int) -> Matrix:
         """d from k-cochains to (k+1)-cochains: the matrix that rows are multiplied with from the right.
 
         Raises
@@ -97,16 +99,17 @@ class CochainComplex:
         return list(itertools.combinations(range(self.algebra.dimension), degree)) if degree >= 0 else []
 
     # -- the matrix --------------------------------------------------------------------------------------
-    def _made(self, degree: int, shape: tuple[int, int]) -> Any:
+    def _made(self, degree: int, shape: tuple[int, int]) -> Matrix:
         field = self.algebra.field
+        whole: Matrix = field.zeros(*shape)
         if 0 in shape:
-            return field.zeros(*shape)
-        whole = self._from_brackets(degree, shape)
-        if self.matrices is None or all(a.is_zero() for a in self.matrices):
             return whole
-        return whole + self._from_action(degree, shape)
+        whole = self._from_brackets(degree, shape)
+        if self.matrices is not None and not all(a.is_zero() for a in self.matrices):
+            whole = whole + self._from_action(degree, shape)
+        return whole
 
-    def _from_brackets(self, degree: int, shape: tuple[int, int]) -> Any:
+    def _from_brackets(self, degree: int, shape: tuple[int, int]) -> Matrix:
         """The second sum: for each c[i, j, l] and each set R without i, j, l, from R + l to R + i + j."""
         table, n, m = self.algebra.table, self.algebra.dimension, self.size
         source = {place: x for x, place in enumerate(self.index_tuples(degree))}
@@ -128,7 +131,7 @@ class CochainComplex:
                         part[(row + u) * shape[1] + column + u] += -value if negative else value
         return _matrix(self.algebra.field, parts, shape, table.den)
 
-    def _from_action(self, degree: int, shape: tuple[int, int]) -> Any:
+    def _from_action(self, degree: int, shape: tuple[int, int]) -> Matrix:
         """The first sum: from S to S + t, by the matrix of e_t."""
         m, field = self.size, self.algebra.field
         source = {place: x for x, place in enumerate(self.index_tuples(degree))}
@@ -144,25 +147,27 @@ class CochainComplex:
         return _matrix(field, parts, shape, den)
 
 
-def _matrix(field: Any, parts: list[list[Any]], shape: tuple[int, int], den: int) -> Any:
-    if not field.exact:
-        return field.from_entries(parts[0], *shape)
-    return field.from_parts(parts, *shape, den)
+def _matrix(field: Field, parts: list[list[Scalar]], shape: tuple[int, int], den: int) -> Matrix:
+    if isinstance(field, ExactField):
+        return field.from_parts(parts, *shape, den)
+    made: Matrix = field.from_entries(parts[0], *shape)
+    return made
 
 
-def _integral(matrices: Sequence[Any], field: Any) -> tuple[int, list[list[list[tuple[int, Any]]]]]:
+def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[list[tuple[int, Scalar]]]]]:
     """A common denominator, and for each matrix and coordinate of the field the non-zero numerators by place."""
     if not field.exact:
         return 1, [[[(x, v) for x, v in enumerate(a.entries()) if v != 0]] for a in matrices]
-    den = lcm(*(a.den for a in matrices))
+    exact = [a for a in matrices if isinstance(a, ExactMatrix)]
+    den = lcm(*(a.den for a in exact))
     made = []
-    for a in matrices:
+    for a in exact:
         factor = den // a.den
         made.append([[(x, int(v) * factor) for x, v in enumerate(part.entries()) if v] for part in a.parts])
     return den, made
 
 
-def _prove_representation(algebra: LieAlgebra, matrices: tuple[Any, ...]) -> None:
+def _prove_representation(algebra: LieAlgebra, matrices: tuple[Matrix, ...]) -> None:
     n, field = algebra.dimension, algebra.field
     if n == 0 or matrices[0].nrows == 0:
         return
@@ -183,6 +188,8 @@ def _prove_representation(algebra: LieAlgebra, matrices: tuple[Any, ...]) -> Non
                 )
 
 
-def _is_rounding(defect: Any, products: tuple[Any, Any]) -> bool:
+def _is_rounding(defect: Matrix, products: tuple[Matrix, Matrix]) -> bool:
+    field = defect.field
+    rtol = field.rtol if isinstance(field, FloatField) else 0.0
     largest = max(abs(x) for a in products for x in a.entries())
-    return bool(max(abs(x) for x in defect.entries()) <= defect.field.rtol * max(1.0, largest))
+    return bool(max(abs(x) for x in defect.entries()) <= rtol * max(1.0, largest))

@@ -6,17 +6,22 @@ vanish at places where the coboundaries are independent modulo the prime: they a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, final
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeAlias, final
 
 from liehom.algebra.cohomology.cochain_complex import CochainComplex
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import InputError, InternalError, ShapeError, SingularError
-from liehom.scalars import Subspace
+from liehom.scalars import ExactMatrix, Matrix, Scalar, Subspace
+from liehom.scalars.fields.field import MatricesLike
 from liehom.scalars.modular.modular import pivot_columns
+from liehom.typing import ScalarLike, VectorLike
 
-PRIMES = 5
+CochainLike: TypeAlias = VectorLike | Matrix
+"""A cochain: its coordinates as a sequence of numbers, or a row matrix."""
+
+MAX_PRIMES = 5
 
 
 @final
@@ -47,7 +52,7 @@ class Cohomology:
 
     __slots__ = ("cochains", "degree", "representatives")
 
-    def __init__(self, cochains: CochainComplex, degree: int, representatives: Any) -> None:
+    def __init__(self, cochains: CochainComplex, degree: int, representatives: Matrix) -> None:
         self.cochains = cochains
         self.degree = degree
         self.representatives = representatives
@@ -72,11 +77,11 @@ class Cohomology:
         """The space of cocycles."""
         return self.coboundaries() + Subspace(self.algebra.field, self.representatives, self._length())
 
-    def is_cocycle(self, cochain: Any) -> bool:
+    def is_cocycle(self, cochain: CochainLike) -> bool:
         """Whether d w = 0."""
         return bool((self._row(cochain) @ self.cochains.differential(self.degree)).is_zero())
 
-    def is_coboundary(self, cochain: Any) -> bool:
+    def is_coboundary(self, cochain: CochainLike) -> bool:
         """Whether w = d v for some v."""
         try:
             self.potential(cochain)
@@ -84,17 +89,18 @@ class Cohomology:
             return False
         return True
 
-    def potential(self, cochain: Any) -> Any:
+    def potential(self, cochain: CochainLike) -> Matrix:
         """Some v with d v = w, as a row matrix; `SingularError` if w is no coboundary."""
         row = self._row(cochain)
         before = self.cochains.differential(self.degree - 1)
-        if row.is_zero():
-            return self.algebra.field.zeros(1, before.nrows)
-        if 0 in before.shape:
-            raise SingularError("the cochain is not zero, and there are no coboundaries")
-        return before.T.solve(row.T).T
+        found: Matrix = self.algebra.field.zeros(1, before.nrows)
+        if not row.is_zero():
+            if 0 in before.shape:
+                raise SingularError("the cochain is not zero, and there are no coboundaries")
+            found = before.T.solve(row.T).T
+        return found
 
-    def coordinates(self, cochain: Any) -> Any:
+    def coordinates(self, cochain: CochainLike) -> Matrix:
         """The class of a cocycle in the basis of the representatives, as a row matrix (1, dim H^k).
 
         Raises
@@ -105,12 +111,13 @@ class Cohomology:
         row, field = self._row(cochain), self.algebra.field
         if not self.is_cocycle(row):
             raise InputError("the cochain is no cocycle: it has no class")
-        if self.dimension == 0 or row.is_zero():
-            return field.zeros(1, self.dimension)
-        rows = field.stack_rows([self.representatives, self.cochains.differential(self.degree - 1)], self._length())
-        return rows.T.solve(row.T).T.select(columns=range(self.dimension))
+        found: Matrix = field.zeros(1, self.dimension)
+        if self.dimension > 0 and not row.is_zero():
+            rows = field.stack_rows([self.representatives, self.cochains.differential(self.degree - 1)], self._length())
+            found = rows.T.solve(row.T).T.select(columns=range(self.dimension))
+        return found
 
-    def cochain(self, values: Mapping[Any, Any]) -> Any:
+    def cochain(self, values: Mapping[Any, ScalarLike | VectorLike]) -> Matrix:
         """The cochain with these values, as a row matrix.
 
         Parameters
@@ -134,21 +141,22 @@ class Cohomology:
             place = tuple(sorted(indices)) if all(isinstance(i, int) for i in indices) else indices
             if place not in found:
                 raise InputError(f"{key!r} are no {self.degree} different indices from 0 to {n - 1}")
-            given = list(value) if hasattr(value, "__iter__") and not isinstance(value, str) else [value]
+            given = [value] if isinstance(value, str) or not isinstance(value, Iterable) else list(value)
             if len(given) != m:
                 raise ShapeError(f"the value at {key!r} has {len(given)} coordinates, expected {m}")
             odd = sum(a > b for x, a in enumerate(indices) for b in indices[x + 1 :]) % 2
             for u, v in enumerate(map(field.convert, given)):
                 entries[found[place] * m + u] += -v if odd else v
-        return field.from_entries(entries, 1, self._length())
+        row: Matrix = field.from_entries(entries, 1, self._length())
+        return row
 
-    def values(self, cochain: Any) -> dict[tuple[int, ...], Any]:
+    def values(self, cochain: CochainLike) -> dict[tuple[int, ...], Scalar]:
         """The non-zero values by increasing indices: numbers, or lists of coordinates where dim V is not 1."""
         row, m = self._row(cochain).row(0), self.cochains.size
         blocks = {p: row[x * m : (x + 1) * m] for x, p in enumerate(self.cochains.index_tuples(self.degree))}
         return {p: v[0] if m == 1 else v for p, v in blocks.items() if any(x != 0 for x in v)}
 
-    def forms(self) -> list[Any]:
+    def forms(self) -> list[Matrix]:
         """The representatives of degree 2 with values in R as antisymmetric matrices, for `central_extension`.
 
         Raises
@@ -177,9 +185,9 @@ class Cohomology:
     def _length(self) -> int:
         return self.cochains.length(self.degree)
 
-    def _row(self, cochain: Any) -> Any:
+    def _row(self, cochain: CochainLike) -> Matrix:
         field, length = self.algebra.field, self._length()
-        row = field.read(cochain) if hasattr(cochain, "nrows") else field.matrix([cochain], (1, length))
+        row: Matrix = field.read(cochain) if isinstance(cochain, Matrix) else field.matrix([cochain], (1, length))
         if row.shape != (1, length):
             raise ShapeError(f"a cochain of degree {self.degree} is a row of length {length}, got shape {row.shape}")
         return row
@@ -190,7 +198,9 @@ class Cohomology:
         return f"<H^{self.degree} of {g}{module}: dimension {self.dimension}>"
 
 
-def cohomology(algebra: LieAlgebra, degree: int, matrices: Any = None, *, size: int | None = None) -> Cohomology:
+def cohomology(
+    algebra: LieAlgebra, degree: int, matrices: MatricesLike | None = None, *, size: int | None = None
+) -> Cohomology:
     """Implements `LieAlgebra.cohomology`."""
     require_size("degree", degree, 0)
     degree = int(degree)
@@ -213,8 +223,8 @@ class _Solver:
     def __init__(self, cochains: CochainComplex) -> None:
         self.cochains = cochains
         self.field = cochains.algebra.field
-        self._complements: dict[int, Any] = {}
-        self._images: dict[tuple[int, int], Any] = {}
+        self._complements: dict[int, Matrix] = {}
+        self._images: dict[tuple[int, int], list[int]] = {}
 
     def rank(self, degree: int) -> int:
         """The exact rank of d on k-cochains."""
@@ -230,23 +240,26 @@ class _Solver:
         """Columns of d that are independent modulo a prime, as many as its rank there."""
         if (degree, attempt) not in self._images:
             matrix = self.cochains.differential(degree)
-            image = [] if 0 in matrix.shape else pivot_columns(matrix.modulo(attempt))
+            image: list[int] = []
+            if isinstance(matrix, ExactMatrix) and 0 not in matrix.shape:
+                image = pivot_columns(matrix.modulo(attempt))
             self._images[degree, attempt] = image
-        return self._images[degree, attempt]  # type: ignore[no-any-return]
+        return self._images[degree, attempt]
 
-    def complement(self, degree: int) -> Any:
+    def complement(self, degree: int) -> Matrix:
         """Cocycles that are a basis of them modulo the coboundaries; rows."""
         if degree not in self._complements:
             self._complements[degree] = self._found(degree)
         return self._complements[degree]
 
-    def _found(self, degree: int) -> Any:
+    def _found(self, degree: int) -> Matrix:
         length = self.cochains.length(degree)
-        for attempt in range(PRIMES):
+        rows: Matrix = self.field.zeros(0, length)
+        for attempt in range(MAX_PRIMES):
             bounding, needed = self.pivots(degree - 1, attempt), self.pivots(degree, attempt)
             if len(bounding) + len(needed) == length:
                 # the ranks modulo a prime are at most the true ones, whose sum is at most the length
-                return self.field.zeros(0, length)
+                return rows
             if len(bounding) < self.rank(degree - 1):
                 continue
             kept = sorted(set(range(length)) - set(bounding))

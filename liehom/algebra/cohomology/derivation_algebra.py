@@ -9,7 +9,7 @@ needed, and proved to be derivations.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from liehom.algebra.cohomology.word_basis import word_bases
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import InputError, InternalError
+from liehom.scalars import Matrix
+from liehom.scalars.fields.field import MatrixLike
 
 
 @final
@@ -51,12 +53,12 @@ class Derivations:
 
     __slots__ = ("_algebra", "_flat", "inner_dimension", "matrices", "source")
 
-    def __init__(self, source: LieAlgebra, matrices: tuple[Any, ...], inner_dimension: int) -> None:
+    def __init__(self, source: LieAlgebra, matrices: tuple[Matrix, ...], inner_dimension: int) -> None:
         self.source = source
         self.matrices = matrices
         self.inner_dimension = inner_dimension
         self._algebra: LieAlgebra | None = None
-        self._flat: Any = None
+        self._flat: Matrix | None = None
 
     # -- properties --------------------------------------------------------------------------------------
     @property
@@ -90,11 +92,11 @@ class Derivations:
         rows = one.select(rows=range(self.inner_dimension))
         return Subalgebra(self.algebra(), rows, check=False)  # [D, ad x] = ad Dx
 
-    def outer_matrices(self) -> tuple[Any, ...]:
+    def outer_matrices(self) -> tuple[Matrix, ...]:
         """Derivations that are a basis of Der(g) modulo ad(g): the last members of `matrices`."""
         return self.matrices[self.inner_dimension :]
 
-    def coordinates(self, matrix: Any) -> Any:
+    def coordinates(self, matrix: MatrixLike) -> Matrix:
         """The coefficients of a derivation in the basis `matrices`, as a row matrix (1, dim Der).
 
         Raises
@@ -108,11 +110,12 @@ class Derivations:
         given = field.read(matrix, (n, n))
         if not is_derivation(self.source, given):
             raise InputError("the matrix is no derivation: D [x, y] differs from [D x, y] + [x, D y] for some x, y")
-        if self.dimension == 0:
-            return field.zeros(1, 0)
-        if self._flat is None:
-            self._flat = field.stack_rows([m.reshape(1, n * n) for m in self.matrices], n * n)
-        return self._flat.T.solve(given.reshape(n * n, 1)).T
+        row: Matrix = field.zeros(1, 0)
+        if self.dimension > 0:
+            if self._flat is None:
+                self._flat = field.stack_rows([m.reshape(1, n * n) for m in self.matrices], n * n)
+            row = self._flat.T.solve(given.reshape(n * n, 1)).T
+        return row
 
     def __repr__(self) -> str:
         of = self.source.name or f"a Lie algebra of dimension {self.source.dimension}"
@@ -131,7 +134,7 @@ def derivations(algebra: LieAlgebra) -> Derivations:
     return Derivations(algebra, inner + (_outer if field.exact else _numerical)(algebra, inner), len(inner))
 
 
-def is_derivation(algebra: LieAlgebra, matrix: Any) -> bool:
+def is_derivation(algebra: LieAlgebra, matrix: MatrixLike) -> bool:
     """Whether D [x, y] = [D x, y] + [x, D y] for all x, y; D of shape (n, n) acts on columns.
 
     Examples
@@ -148,13 +151,13 @@ def is_derivation(algebra: LieAlgebra, matrix: Any) -> bool:
     return all((a - b - c).is_zero() for a, b, c in zip(whole, left, right, strict=True))
 
 
-def _inner(algebra: LieAlgebra, indices: Sequence[int]) -> tuple[Any, ...]:
+def _inner(algebra: LieAlgebra, indices: Sequence[int]) -> tuple[Matrix, ...]:
     """ad e_i for basis elements that are independent modulo the centre."""
     one = algebra.field.identity(algebra.dimension)
     return tuple(block.T for block in algebra.table.contract(one.select(rows=indices), one, one))
 
 
-def _outer(algebra: LieAlgebra, inner: tuple[Any, ...]) -> tuple[Any, ...]:
+def _outer(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]:
     """Derivations that complete the inner ones to a basis, proved."""
     n, count = algebra.dimension, len(inner)
     for words in word_bases(algebra):
@@ -168,7 +171,7 @@ def _outer(algebra: LieAlgebra, inner: tuple[Any, ...]) -> tuple[Any, ...]:
     raise InternalError(f"no prime was of use for the derivations of {algebra!r}")
 
 
-def _numerical(algebra: LieAlgebra, inner: tuple[Any, ...]) -> tuple[Any, ...]:
+def _numerical(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]:
     """The null space of D -> D [x, y] - [D x, y] - [x, D y] over floats, orthogonal to the inner derivations."""
     n, field = algebra.dimension, algebra.field
     c = algebra.table.dense().to_numpy().reshape(n, n, n)

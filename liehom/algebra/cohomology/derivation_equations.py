@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.algebra.cohomology.word_basis import WordBasis, exact_words
 from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.scalars import Matrix, Scalar
 from liehom.scalars.modular.modular_span import ModularSpan, Residues, lifted, product
 
 
@@ -77,7 +78,7 @@ def modular_derivations(words: WordBasis) -> ModularDerivations:
     return ModularDerivations(words, current, tuple(needed))
 
 
-def small_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> Any:
+def small_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> Matrix | None:
     """Derivations that complete the inner ones, if there are such with small fractions as entries; else None.
 
     Modulo the prime there are no more derivations, so those that are independent there are all.
@@ -112,7 +113,7 @@ def small_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> A
     return proposed if proposed is not None and are_derivations(algebra, words.generators, proposed) else None
 
 
-def exact_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> Any:
+def exact_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> Matrix | None:
     """Derivations that complete the inner ones, from the exact solution of the equations that are needed.
 
     These equations are some of all: if their solutions are derivations, they are all derivations.  A complement of
@@ -146,10 +147,11 @@ def exact_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> A
     if not are_derivations(copy, one.select(rows=range(s)), made):
         return None
     moved = [(basis.T @ block @ inverse.T).reshape(1, n * n) for block in made.split_rows(n, n)]
-    return field.stack_rows(moved, n * n)
+    outer: Matrix = field.stack_rows(moved, n * n)
+    return outer
 
 
-def are_derivations(algebra: LieAlgebra, generators: Any, flat: Any) -> bool:
+def are_derivations(algebra: LieAlgebra, generators: Matrix, flat: Matrix) -> bool:
     """Whether flattened matrices (o, n * n) on columns are derivations; tested on generators of the algebra.
 
     Examples
@@ -197,16 +199,16 @@ def _grouped(needed: Iterable[tuple[int, int, int]]) -> list[tuple[tuple[int, in
     return sorted(groups.items())
 
 
-def _joined(columns: list[Any], n: int) -> Any:
+def _joined(columns: list[Matrix], n: int) -> Matrix:
     """From n matrices (n, o), the k-th with the images of w_k as columns, to o flattened matrices, rows (o, n * n)."""
     field, count = columns[0].field, columns[0].ncols
-    wide = field.stack_columns(columns, n).reshape(n * n, count)  # row r n + k: entry (r, k) of each matrix
+    wide: Matrix = field.stack_columns(columns, n).reshape(n * n, count)  # row r n + k: entry (r, k) of each matrix
     return wide.T
 
 
-def _exact_images(words: WordBasis, ads: list[Any]) -> list[Any]:
+def _exact_images(words: WordBasis, ads: list[Matrix]) -> list[Matrix]:
     s = words.generators.nrows
-    images: list[Any] = []
+    images: list[Matrix] = []
     for k, (i, v) in enumerate(words.words):
         if v < 0:
             images.append(_placed(ads[0].field.identity(len(ads)), k, s))
@@ -215,18 +217,19 @@ def _exact_images(words: WordBasis, ads: list[Any]) -> list[Any]:
     return images
 
 
-def _exact_equation(i: int, k: int, ads: list[Any], images: list[Any]) -> Any:
+def _exact_equation(i: int, k: int, ads: list[Matrix], images: list[Matrix]) -> Matrix:
     """The matrix (s n, n) that kills u if D [x_i, w_k] = [D x_i, w_k] + [x_i, D w_k]."""
     s = images[0].nrows // len(ads)
-    defect = _placed(ads[k], i, s) - images[k] @ ads[i]
-    terms: Iterable[tuple[int, Any]] = enumerate(ads[i].row(k))
+    defect: Matrix = _placed(ads[k], i, s) - images[k] @ ads[i]
+    terms: Iterable[tuple[int, Scalar]] = enumerate(ads[i].row(k))
     for m, c in terms:
         if c != 0:
             defect = defect + images[m].scale(c)
     return defect
 
 
-def _placed(block: Any, i: int, s: int) -> Any:
+def _placed(block: Matrix, i: int, s: int) -> Matrix:
     """The matrix (s n, n) with an (n, n) block as its i-th."""
     n, field = block.nrows, block.field
-    return field.stack_rows([field.zeros(i * n, n), block, field.zeros((s - 1 - i) * n, n)], n)
+    placed: Matrix = field.stack_rows([field.zeros(i * n, n), block, field.zeros((s - 1 - i) * n, n)], n)
+    return placed

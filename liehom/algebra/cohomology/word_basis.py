@@ -8,13 +8,15 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.algebra.closure.generated_span import Words, left_normed_words
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.errors import FieldError
+from liehom.scalars import ExactField, Matrix
 from liehom.scalars.modular.modular import small_residues
 from liehom.scalars.modular.modular_span import ModularSpan, Residues, product
 
@@ -42,7 +44,7 @@ class WordBasis:
     """
 
     modulus: int
-    generators: Any
+    generators: Matrix
     words: tuple[tuple[int, int], ...]
     basis: Residues
     inverse: Residues
@@ -58,18 +60,26 @@ def word_bases(algebra: LieAlgebra) -> Iterator[WordBasis]:
     algebra : LieAlgebra
         Over an exact field. The generators are a complement of [g, g] and as few small random elements as it takes.
 
+    Raises
+    ------
+    FieldError
+        Over float64.
+
     Examples
     --------
     >>> import liehom as lh
     >>> next(word_bases(lh.heisenberg(1))).words
     ((0, -1), (1, -1), (0, 1))
     """
-    for p, root in small_residues(algebra.field, PRIME_SUPPLY):  # type: ignore[arg-type]
+    field = algebra.field
+    if not isinstance(field, ExactField):
+        raise FieldError(f"words modulo primes exist over exact fields, got {field.name}")
+    for p, root in small_residues(field, PRIME_SUPPLY):
         if algebra.table.den % p:
             yield _words_modulo(algebra, p, root)
 
 
-def exact_words(algebra: LieAlgebra, found: WordBasis) -> Any:
+def exact_words(algebra: LieAlgebra, found: WordBasis) -> Matrix:
     """The words as rows (n, n), exactly."""
     n, field = algebra.dimension, algebra.field
     s = found.generators.nrows
@@ -77,7 +87,8 @@ def exact_words(algebra: LieAlgebra, found: WordBasis) -> Any:
     rows = [found.generators.select(rows=[i]) for i in range(s)]
     for i, v in found.words[s:]:
         rows.append(rows[v] @ actions[i])
-    return field.stack_rows(rows, n)
+    whole: Matrix = field.stack_rows(rows, n)
+    return whole
 
 
 def table_modulo(table: StructureConstants, p: int, root: int) -> Residues:

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import constants_from, field_of_values
 from liehom.errors import InputError, ShapeError, StructureError
-from liehom.scalars import Field
+from liehom.scalars import Field, Matrix, Scalar
 
 
 @final
@@ -50,7 +51,7 @@ class ComplexLieAlgebra:
     """
 
     algebra: LieAlgebra
-    complex_structure: Any
+    complex_structure: Matrix
 
     def __post_init__(self) -> None:
         g, n = self.algebra, self.algebra.dimension
@@ -80,7 +81,7 @@ def complexification(algebra: LieAlgebra, *, name: str | None = None) -> Complex
 
 
 def realification(
-    constants: Any,
+    constants: Mapping[tuple[int, int], object] | npt.ArrayLike,
     field: Field | None = None,
     *,
     dimension: int | None = None,
@@ -120,11 +121,7 @@ def realification(
       [y, i*x] = y
       [i*x, i*y] = -i*y
     """
-    if isinstance(constants, LieAlgebra):
-        raise InputError(
-            f"realification takes complex structure constants, got {constants!r}; complexification makes the complex "
-            "algebra, and .algebra of that is it as a real one"
-        )
+    _require_constants(constants)
     if not isinstance(constants, Mapping):
         constants, dimension = _as_mapping(constants)
     real: dict[Any, Any] = {}
@@ -162,7 +159,7 @@ def _realified(
     return ComplexLieAlgebra(algebra, field.stack_rows([top, bottom], 2 * n))
 
 
-def _failure_dense(table: StructureConstants, structure: Any) -> tuple[int, int] | None:
+def _failure_dense(table: StructureConstants, structure: Matrix) -> tuple[int, int] | None:
     """A pair (i, j) with [J e_i, e_j] different from J [e_i, e_j], or None."""
     one = table.field.identity(table.dimension)
     pairs = zip(table.contract(structure.T, one, one), table.contract(one, one, structure.T), strict=True)
@@ -173,19 +170,19 @@ def _failure_dense(table: StructureConstants, structure: Any) -> tuple[int, int]
     return None
 
 
-def _failure_sparse(table: StructureConstants, structure: Any) -> tuple[int, int] | None:
+def _failure_sparse(table: StructureConstants, structure: Matrix) -> tuple[int, int] | None:
     """The same for an exact table that is too large for dense blocks."""
     n, zero = table.dimension, table.field.zero
-    images: list[list[tuple[int, Any]]] = [[] for _ in range(n)]  # J e_k
+    images: list[list[tuple[int, Scalar]]] = [[] for _ in range(n)]  # J e_k
     for place, w in enumerate(structure.entries()):
         if w != 0:
             images[place % n].append((place // n, w))
-    brackets: list[list[tuple[int, int, Any]]] = [[] for _ in range(n)]  # [e_i, .]
+    brackets: list[list[tuple[int, int, Scalar]]] = [[] for _ in range(n)]  # [e_i, .]
     for i, j, k, v in table:
         brackets[i].append((j, k, v))
         brackets[j].append((i, k, -v))
     for i in range(n):
-        defect: defaultdict[tuple[int, int], Any] = defaultdict(lambda: zero)
+        defect: defaultdict[tuple[int, int], Scalar] = defaultdict(lambda: zero)
         for r, w in images[i]:
             for j, k, v in brackets[r]:
                 defect[j, k] += w * v
@@ -198,13 +195,22 @@ def _failure_sparse(table: StructureConstants, structure: Any) -> tuple[int, int
     return None
 
 
-def _as_mapping(constants: Any) -> tuple[dict[tuple[int, int], dict[int, Any]], int]:
+def _require_constants(value: object) -> None:
+    """`InputError` if the value is a Lie algebra instead of a table."""
+    if isinstance(value, LieAlgebra):
+        raise InputError(
+            f"realification takes complex structure constants, got {value!r}; complexification makes the complex "
+            "algebra, and .algebra of that is it as a real one"
+        )
+
+
+def _as_mapping(constants: object) -> tuple[dict[tuple[int, int], dict[int, object]], int]:
     """A nested list or array of shape (n, n, n) or (n, n, n, 2) as a mapping, and n."""
     rows = constants.tolist() if hasattr(constants, "tolist") else constants
     if not isinstance(rows, (list, tuple)):
         raise StructureError(f"{constants!r} are no structure constants; write {{(i, j): {{k: value}}}} or an array")
     n = len(rows)
-    table: dict[tuple[int, int], dict[int, Any]] = {}
+    table: dict[tuple[int, int], dict[int, object]] = {}
     for i, block in enumerate(rows):
         if not _has_length(block, n) or not all(_has_length(row, n) for row in block):
             raise ShapeError(f"structure constants have shape (n, n, n) or (n, n, n, 2); block {i} has another one")
@@ -212,11 +218,11 @@ def _as_mapping(constants: Any) -> tuple[dict[tuple[int, int], dict[int, Any]], 
     return table, n
 
 
-def _has_length(values: Any, n: int) -> bool:
+def _has_length(values: object, n: int) -> bool:
     return isinstance(values, (list, tuple)) and len(values) == n
 
 
-def _parts(value: Any) -> tuple[Any, Any]:
+def _parts(value: object) -> tuple[Scalar, Scalar]:
     """Real and imaginary part."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:

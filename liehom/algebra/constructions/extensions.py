@@ -9,11 +9,16 @@ from typing import Any
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import CocycleError, ShapeError, StructureError, shown
-from liehom.scalars import Field, FloatField
+from liehom.scalars import Field, FloatField, Matrix, Scalar
+from liehom.scalars.fields.field import MatricesLike, MatrixLike
 
 
 def central_extension(
-    algebra: LieAlgebra, cocycle: Any, *, basis: Sequence[str] | None = None, name: str | None = None
+    algebra: LieAlgebra,
+    cocycle: MatrixLike | MatricesLike,
+    *,
+    basis: Sequence[str] | None = None,
+    name: str | None = None,
 ) -> LieAlgebra:
     """The central extension g + R^m with [x, y]' = [x, y] + sum_a w_a(x, y) z_a.
 
@@ -63,11 +68,11 @@ def central_extension(
     return LieAlgebra(table, basis=names, name=name, check=False)
 
 
-def _listed(cocycle: Any, n: int) -> list[Any]:
+def _listed(cocycle: MatrixLike | MatricesLike, n: int) -> list[MatrixLike]:
     """One matrix or several, as a list of matrices."""
-    if hasattr(cocycle, "nrows"):
+    if isinstance(cocycle, Matrix):
         return [cocycle]
-    rows = cocycle.tolist() if hasattr(cocycle, "tolist") else cocycle
+    rows: Any = cocycle.tolist() if hasattr(cocycle, "tolist") else cocycle
     if not isinstance(rows, Sequence) or isinstance(rows, str):
         raise ShapeError(f"a cocycle is an antisymmetric matrix or a list of them, got {cocycle!r}")
     if all(hasattr(x, "nrows") or hasattr(x, "tolist") for x in rows):
@@ -79,11 +84,11 @@ def _listed(cocycle: Any, n: int) -> list[Any]:
     return [tables] if single else tables
 
 
-def _is_row(value: Any) -> bool:
+def _is_row(value: object) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, str)
 
 
-def _prove_cocycle(algebra: LieAlgebra, form: Any) -> None:
+def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
     """That w is antisymmetric and w([x, y], z) + cyclic = 0, on basis elements."""
     n, field = algebra.dimension, algebra.field
     bound = _rounding(field, form.entries())
@@ -103,12 +108,12 @@ def _prove_cocycle(algebra: LieAlgebra, form: Any) -> None:
             raise CocycleError((i, j, k), field.format(value), (names[i], names[j], names[k]))
 
 
-def _rounding(field: Field, values: list[Any]) -> float:
+def _rounding(field: Field, values: list[Scalar]) -> float:
     """What may count as zero: 0 over an exact field, rtol times the largest value over floats."""
     return field.rtol * max(map(abs, values), default=0.0) if isinstance(field, FloatField) else 0.0
 
 
-def _exceeds(value: Any, bound: float) -> bool:
+def _exceeds(value: Scalar, bound: float) -> bool:
     return bool(abs(value) > bound) if bound else bool(value != 0)
 
 

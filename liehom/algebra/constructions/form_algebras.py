@@ -10,16 +10,16 @@ These span {X : X^T F + F X = 0} if F is not degenerate, and no number is divide
 from __future__ import annotations
 
 import itertools
-from typing import Any
 
 from liehom.algebra.closure.closure import lie_closure, square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import Scalar
+from liehom.scalars import Matrix, Scalar
+from liehom.scalars.fields.field import MatrixLike
 
 
-def so_form(form: Any, *, name: str | None = None) -> LieAlgebra:
+def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     """The orthogonal algebra {X : X^T S + S X = 0} of a symmetric form S, which may be degenerate.
 
     Parameters
@@ -61,7 +61,7 @@ def so_form(form: Any, *, name: str | None = None) -> LieAlgebra:
     return _algebra(matrix, -1, name or f"so of a form of signature {signature}", zero > 0)
 
 
-def sp_form(form: Any, *, name: str | None = None) -> LieAlgebra:
+def sp_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     """The symplectic algebra {X : X^T J + J X = 0} of a skew form J, which may be degenerate.
 
     Parameters
@@ -108,7 +108,9 @@ def index_name(letter: str, *indices: int) -> str:
     return letter + ("_" if any(len(x) > 1 for x in shown) else "").join(shown)
 
 
-def form_brackets(matrix: Any, sign: int, places: dict[tuple[int, int], tuple[int, int]]) -> list[Any]:
+def form_brackets(
+    matrix: Matrix, sign: int, places: dict[tuple[int, int], tuple[int, int]]
+) -> list[tuple[int, int, int, Scalar]]:
     """The bracket table of the M_ab of a form, for a basis of them with signs.
 
     Parameters
@@ -128,7 +130,7 @@ def form_brackets(matrix: Any, sign: int, places: dict[tuple[int, int], tuple[in
     rows = matrix.to_rows()
     near = [[(b, v) for b, v in enumerate(row) if v != 0] for row in rows]
     basis = {k: pair for pair, (k, e) in places.items() if e == 1}
-    entries: list[Any] = []
+    entries: list[tuple[int, int, int, Scalar]] = []
     for i, (a, b) in basis.items():
         found: dict[tuple[int, int], Scalar] = {}
         # M_ab e_c = F_ac e_b + s F_bc e_a, and [X, M_cd] = M_{Xc, d} + M_{c, Xd}
@@ -166,12 +168,12 @@ def _add_images(
             found[j, k] = found.get((j, k), 0) + v * (e * f * (2 if c == d else 1))
 
 
-def _form(form: Any, sign: int) -> Any:
+def _form(form: MatrixLike, sign: int) -> Matrix:
     """The matrix of a form, of which the transpose is -sign times the form."""
-    rows = form.tolist() if hasattr(form, "tolist") else form
-    if hasattr(rows, "nrows"):
-        matrix = rows
+    if isinstance(form, Matrix):
+        matrix = form
     else:
+        rows = form.tolist() if hasattr(form, "tolist") else form
         if not hasattr(rows, "__iter__") or isinstance(rows, str):
             raise ShapeError(f"a form is given by a square matrix, got {form!r}")
         matrix = square_matrices([list(rows)])[0]
@@ -186,7 +188,7 @@ def _form(form: Any, sign: int) -> Any:
     return matrix
 
 
-def _algebra(matrix: Any, sign: int, name: str, degenerate: bool) -> LieAlgebra:
+def _algebra(matrix: Matrix, sign: int, name: str, degenerate: bool) -> LieAlgebra:
     if degenerate:
         return _degenerate(matrix, name)
     n = matrix.nrows
@@ -200,7 +202,7 @@ def _algebra(matrix: Any, sign: int, name: str, degenerate: bool) -> LieAlgebra:
     return LieAlgebra(table, basis=[index_name("m", *pair) for pair in pairs], name=name, check=False)
 
 
-def _degenerate(matrix: Any, name: str) -> LieAlgebra:
+def _degenerate(matrix: Matrix, name: str) -> LieAlgebra:
     """The null space of X -> X^T F + F X, as matrices."""
     n, field = matrix.nrows, matrix.field
     rows = []

@@ -6,7 +6,6 @@ Each is over QQ, with named basis elements.
 from __future__ import annotations
 
 import itertools
-from typing import Any
 
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.constructions.classical_algebras import so
@@ -17,6 +16,7 @@ from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.algebra.matrices.named_matrices import classical_matrices, linear_lie_algebra
 from liehom.scalars import QQ
+from liehom.scalars.fields.field import MatricesLike
 
 
 def euclidean(n: int) -> LieAlgebra:
@@ -183,7 +183,7 @@ def affine(n: int) -> LieAlgebra:
     return semidirect_sum(linear_lie_algebra(matrices), matrices, basis=names, name=f"aff({n})", check=False)
 
 
-def affine_of(matrices: Any, *, name: str | None = None) -> LieAlgebra:
+def affine_of(matrices: MatricesLike, *, name: str | None = None) -> LieAlgebra:
     """The affine algebra h + V of a linear Lie algebra h: the matrices first, then the translations of V.
 
     Parameters

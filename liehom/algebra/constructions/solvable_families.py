@@ -6,7 +6,6 @@ Of Bianchi's algebras of dimension three, types VIII and IX are simple.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.constructions.form_algebras import index_name
@@ -16,7 +15,9 @@ from liehom.algebra.core.tables import field_of_values
 from liehom.algebra.matrices.matrix_basis import require_size, stack, unit
 from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import QQ
+from liehom.scalars import QQ, Matrix, Scalar
+from liehom.scalars.fields.field import MatrixLike
+from liehom.typing import ScalarLike
 
 
 def abelian(n: int) -> LieAlgebra:
@@ -132,7 +133,7 @@ def filiform(n: int) -> LieAlgebra:
     return LieAlgebra(brackets, dimension=n, basis=[f"x{i + 1}" for i in range(n)], name=f"filiform({n})")
 
 
-def oscillator(n: int = 1, frequencies: Sequence[Any] | None = None) -> LieAlgebra:
+def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> LieAlgebra:
     """The oscillator algebra R + heisenberg(n): [t, x_i] = w_i y_i, [t, y_i] = -w_i x_i, [x_i, y_i] = z.
 
     Parameters
@@ -169,7 +170,7 @@ def oscillator(n: int = 1, frequencies: Sequence[Any] | None = None) -> LieAlgeb
     values = [field.convert(w) for w in given]
     if any(w == 0 for w in values):
         raise InputError(f"the frequencies of an oscillator are not zero, got {', '.join(map(field.format, values))}")
-    brackets: dict[tuple[int, int], dict[int, Any]] = {}
+    brackets: dict[tuple[int, int], dict[int, Scalar]] = {}
     for i, w in enumerate(values):
         x, y = 1 + i, 1 + n + i
         brackets |= {(0, x): {y: w}, (0, y): {x: -w}, (x, y): {2 * n + 1: 1}}
@@ -179,7 +180,7 @@ def oscillator(n: int = 1, frequencies: Sequence[Any] | None = None) -> LieAlgeb
     return LieAlgebra(brackets, field, dimension=2 * n + 2, basis=names, name=name)
 
 
-def almost_abelian(matrix: Any, *, name: str | None = None) -> LieAlgebra:
+def almost_abelian(matrix: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     """R + R^n with [t, x_j] = sum_i A_ij x_i: an abelian ideal of codimension one.
 
     Parameters
@@ -207,7 +208,7 @@ def almost_abelian(matrix: Any, *, name: str | None = None) -> LieAlgebra:
       [t, x1] = x1
       [t, x2] = -1/2*x2
     """
-    action = matrix if hasattr(matrix, "nrows") else square_matrices([matrix])[0]
+    action: Matrix = matrix if isinstance(matrix, Matrix) else square_matrices([matrix])[0]
     n = action.nrows
     if action.ncols != n or n == 0:
         raise ShapeError(f"an almost abelian algebra needs a square matrix of size at least 1, got {action.shape}")
@@ -217,7 +218,7 @@ def almost_abelian(matrix: Any, *, name: str | None = None) -> LieAlgebra:
     return LieAlgebra(brackets, action.field, dimension=n + 1, basis=names, name=name)
 
 
-def bianchi(kind: str, a: Any = None) -> LieAlgebra:
+def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
     """The real Lie algebra of dimension 3 with a type of Bianchi, 'I' to 'IX'.
 
     Parameters

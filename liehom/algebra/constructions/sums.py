@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import InputError, ShapeError
 from liehom.scalars import Scalar
+from liehom.scalars.fields.field import MatricesLike
 
 Entry = tuple[int, int, int, Scalar]
 
@@ -59,7 +59,7 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
 
 def semidirect_sum(
     algebra: LieAlgebra,
-    matrices: Any,
+    matrices: MatricesLike,
     ideal: LieAlgebra | None = None,
     *,
     size: int | None = None,

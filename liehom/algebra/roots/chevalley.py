@@ -18,6 +18,7 @@ import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.roots.dynkin import CartanMatrix
 from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
@@ -145,7 +146,7 @@ def root_brackets(system: RootSystem) -> RootBrackets:
     """
     cover, folding = _unfolded(system)
     a, b, c, number = _simply_laced_brackets(cover)
-    if cover is system:
+    if folding is None:
         return RootBrackets(a, b, c, number)
     place = np.array([system.index(x) for x in (cover.root_matrix() @ folding).tolist()], dtype=np.int64)
     # the sum over an orbit c has every e of the orbit with the same coefficient: read off one of them
@@ -172,7 +173,7 @@ def _simply_laced_brackets(system: RootSystem) -> RootBrackets:
     return RootBrackets(a, b, c, 1 - 2 * (parity % 2))
 
 
-def _unfolded(system: RootSystem) -> tuple[RootSystem, Any]:
+def _unfolded(system: RootSystem) -> tuple[RootSystem, IntegerArray | None]:
     """A simply laced system and the matrix that adds up the copies of a simple root; the system itself if it can be."""
     copies = [max(system.norms[k] for k in _component(system, i)) // norm for i, norm in enumerate(system.norms)]
     if set(copies) <= {1}:
@@ -197,5 +198,5 @@ def _component(system: RootSystem, node: int) -> list[int]:
     return max(supports, key=len)
 
 
-def _square(cartan: Any) -> IntegerArray:
+def _square(cartan: CartanMatrix) -> IntegerArray:
     return np.array(cartan, dtype=np.int64).reshape(len(cartan), len(cartan))

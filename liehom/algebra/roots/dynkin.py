@@ -8,11 +8,14 @@ Bourbaki, but from 0.  The diagram is a directed graph with an edge i -> j of we
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 from liehom.errors import CatalogError, InputError, InternalError
+
+if TYPE_CHECKING:
+    import networkx
 
 CartanMatrix = tuple[tuple[int, ...], ...]
 
@@ -75,7 +78,7 @@ def cartan_matrix(name: str) -> CartanMatrix:
     return tuple(map(tuple, matrix))
 
 
-def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> Any:
+def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph:
     """The Dynkin diagram as a networkx graph.
 
     Parameters
@@ -154,7 +157,7 @@ def type_name(cartan: Sequence[Sequence[int]]) -> str:
     return join_types(name for name, _ in diagram_components(cartan))
 
 
-def join_types(names: Any) -> str:
+def join_types(names: Iterable[str]) -> str:
     """The names of simple types as one sum, in order of letters and rank; '0' if there is none.
 
     Examples
@@ -196,7 +199,7 @@ def _identified(cartan: CartanMatrix) -> tuple[tuple[str, tuple[int, ...]], ...]
     return tuple(sorted(found, key=lambda pair: (pair[0][0], int(pair[0][1:]), pair[1])))
 
 
-def _isomorphisms(first: Any, second: Any) -> Iterator[tuple[int, ...]]:
+def _isomorphisms(first: networkx.DiGraph, second: networkx.DiGraph) -> Iterator[tuple[int, ...]]:
     """The isomorphisms of weighted graphs, as images of the nodes 0, 1, ... of the first."""
     from networkx.algorithms.isomorphism import DiGraphMatcher, numerical_edge_match
 

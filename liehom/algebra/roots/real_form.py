@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, final
+from typing import TYPE_CHECKING, final
 
 from liehom.algebra.roots.dynkin import parse_type
 from liehom.algebra.roots.real_form_names import (
@@ -22,6 +22,9 @@ from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.roots.satake import SatakeDiagram
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.errors import CatalogError
+
+if TYPE_CHECKING:
+    import networkx
 
 
 @final
@@ -146,7 +149,7 @@ class RealForm:
         """The root system of the complexification."""
         return self.vogan.root_system()
 
-    def satake_diagram(self) -> Any:
+    def satake_diagram(self) -> networkx.DiGraph:
         """The Satake diagram as a networkx graph; see `SatakeDiagram.graph`."""
         return self.satake.graph()
 

@@ -13,13 +13,16 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from math import prod
-from typing import Any, final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra.roots.dynkin import CartanMatrix, cartan_matrix, diagram_components, dynkin_diagram, join_types
 from liehom.errors import InputError, ShapeError
+
+if TYPE_CHECKING:
+    import networkx
 
 Root = tuple[int, ...]
 
@@ -132,7 +135,7 @@ class RootSystem:
         """
         return diagram_components(self.cartan)
 
-    def dynkin_diagram(self) -> Any:
+    def dynkin_diagram(self) -> networkx.DiGraph:
         """The Dynkin diagram as a networkx.DiGraph; see `liehom.algebra.dynkin_diagram`."""
         return dynkin_diagram(self.cartan)
 

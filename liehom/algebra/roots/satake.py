@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from liehom.algebra.roots.root_system import Root, RootSystem, root_system
 from liehom.algebra.roots.vogan import VoganDiagram, generic_form, gram_to_cartan, simple_system
 from liehom.errors import InputError, InternalError
 from liehom.typing import IntegerArray
+
+if TYPE_CHECKING:
+    import networkx
 
 
 @final
@@ -158,7 +161,7 @@ class SatakeDiagram:
         """
         return {root: times for root, times in self._projections().items() if any(root)}
 
-    def graph(self) -> Any:
+    def graph(self) -> networkx.DiGraph:
         """The diagram as a networkx graph.
 
         Returns

@@ -11,15 +11,16 @@ noncompact for s(a) = -1; the others, complex, come in pairs.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.algebra.roots.dynkin import diagram_components, join_types
-from liehom.algebra.roots.root_system import RootSystem, root_system
+from liehom.algebra.roots.root_system import Root, RootSystem, root_system
 from liehom.errors import InputError
-from liehom.typing import IntegerArray
+from liehom.typing import BooleanArray, IntegerArray
 
 
 @final
@@ -130,9 +131,10 @@ class VoganDiagram:
         orbits = sum(i <= j for i, j in enumerate(self.automorphism))
         return join_types(name for name, _ in diagram_components(gram_to_cartan(system, simple))), orbits - len(simple)
 
-    def _fixed(self) -> Any:
+    def _fixed(self) -> BooleanArray:
         roots = self.root_system().root_matrix()
-        return (roots[:, list(self.automorphism)] == roots).all(axis=1)
+        fixed: BooleanArray = (roots[:, list(self.automorphism)] == roots).all(axis=1)
+        return fixed
 
 
 def bilinear_form(system: RootSystem) -> IntegerArray:
@@ -152,7 +154,7 @@ def bilinear_form(system: RootSystem) -> IntegerArray:
     return np.triu(gram, 1) + np.diag(norms // 2)
 
 
-def simple_system(roots: Any, key: Any) -> list[tuple[int, ...]]:
+def simple_system(roots: Iterable[Root], key: Callable[[Root], tuple[int, ...]]) -> list[tuple[int, ...]]:
     """The simple roots of the positive system {a : key(a) > 0}, for an additive, injective key on the roots.
 
     Parameters
@@ -177,7 +179,7 @@ def simple_system(roots: Any, key: Any) -> list[tuple[int, ...]]:
     return simple
 
 
-def gram_to_cartan(system: RootSystem, vectors: Any) -> list[list[int]]:
+def gram_to_cartan(system: RootSystem, vectors: Sequence[Sequence[int]]) -> list[list[int]]:
     """The matrix 2 (u, v) / (v, v) of vectors of the root lattice that are simple roots of some root system.
 
     Examples
@@ -189,7 +191,7 @@ def gram_to_cartan(system: RootSystem, vectors: Any) -> list[list[int]]:
     return [[2 * system.inner(u, v) // norm for v, norm in zip(vectors, norms, strict=True)] for u in vectors]
 
 
-def generic_form(a: Any, base: int = 1024) -> int:
+def generic_form(a: Sequence[int], base: int = 1024) -> int:
     """A linear form without zeros on non-zero vectors whose coordinates are less than base / 2 in absolute value.
 
     Examples
