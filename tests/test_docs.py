@@ -23,7 +23,8 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 MAPPED = ("paper-map.md", "notation.md")
 BUILTIN = {"ValueError"}
-NO_API_PAGE = {"__init__", "__main__", "cli", "errors"}  # cli: docs/command-line.md; errors: docs/errors.md
+NO_API_PAGE = {"__init__", "__main__", "cli", "errors", "compatibility"}
+"""Besides them: docs/command-line.md on cli, docs/errors.md on errors, docs/formats.md on compatibility."""
 
 
 def read(*parts: str) -> str:
