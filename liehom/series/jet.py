@@ -8,7 +8,7 @@ factorials) and are computed on demand, so that a solution of a differential equ
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
@@ -265,6 +265,15 @@ class Jet(NDArrayOperatorsMixin):
     if TYPE_CHECKING:
         # numpy's functions reach Jets by `__array_function__`; type checkers know of `__array__` only
         def __array__(self) -> npt.NDArray[Any]: ...
+
+        # methods of arrays that `__getattr__` finds; the last four raise SeriesError
+        astype: Callable[..., Jet]
+        reshape: Callable[..., Jet]
+        sum: Callable[..., Jet]
+        max: Callable[..., Jet]
+        min: Callable[..., Jet]
+        any: Callable[..., Jet]
+        all: Callable[..., Jet]
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         return dispatch.apply_ufunc(ufunc, method, inputs, options)

@@ -7,7 +7,7 @@ run on that array; comparisons, extrema, `np.where` and linear systems are here.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
@@ -51,6 +51,15 @@ class Traced(NDArrayOperatorsMixin):
     """
 
     __slots__ = ("entries", "tape")
+    if TYPE_CHECKING:  # methods of arrays that `__getattr__` finds
+        astype: Callable[..., Traced]
+        copy: Callable[..., Traced]
+        reshape: Callable[..., Traced]
+        sum: Callable[..., Traced]
+        max: Callable[..., Traced]
+        min: Callable[..., Traced]
+        any: Callable[..., Traced]
+        all: Callable[..., Traced]
     __array_priority__ = 100.0
 
     def __init__(self, tape: Tape, entries: Any) -> None:
