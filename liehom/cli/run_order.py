@@ -59,7 +59,7 @@ def step_sizes(text: str) -> list[float]:
     dts = vector([number_value(part) for part in text.split(",")], "dt", floats=True).numbers(RR)
     if len(dts) < 2 or any(not h > 0 for h in dts) or len(set(dts)) < len(dts):
         raise FormatError(f"--dt is {text[:60]!r}, expected two or more different positive step sizes: 0.1,0.05,0.025")
-    return sorted(dts, reverse=True)
+    return sorted(map(RR.convert, dts), reverse=True)
 
 
 def measured(problem: Problem, dts: Sequence[float]) -> ConvergenceTable:

@@ -47,7 +47,7 @@ def read_problem(data: Mapping[str, Any]) -> Problem:
     if exact_point is not None:
         start: tuple[float, ...] | None = tuple(field.to_float(x) for x in exact_point)
     else:
-        start = None if point is None else tuple(point.numbers(RR))
+        start = None if point is None else tuple(map(RR.convert, point.numbers(RR)))
     representation = _closed(matrices, data)
     return Problem(
         representation,

@@ -100,7 +100,7 @@ def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
     one = field.identity(n)
     blocks = [block.to_rows() for block in algebra.table.contract(one, one, form)]  # [i][j][k] = w([e_i, e_j], e_k)
     if bound:
-        bound *= n * max((abs(x) for x in algebra.table.values()), default=0.0)
+        bound *= n * max((float(abs(x)) for x in algebra.table.values()), default=0.0)
     for i, j, k in itertools.combinations(range(n), 3):
         value = blocks[i][j][k] + blocks[j][k][i] + blocks[k][i][j]
         if _exceeds(value, bound):

@@ -699,7 +699,9 @@ class LieAlgebra:
         if not isinstance(field, Field):
             raise InputError(f"expected a field such as lh.QQ, lh.RR or lh.number_field('sqrt(2)'), got {field!r}")
         if isinstance(field, FloatField):
-            entries = [(i, j, k, self.field.to_float(v)) for i, j, k, v in self._constants]
+            entries: list[tuple[int, int, int, Scalar]] = [
+                (i, j, k, self.field.to_float(v)) for i, j, k, v in self._constants
+            ]
         else:
             entries = [(i, j, k, field.convert(v)) for i, j, k, v in self._constants]
         table = StructureConstants(field, self.dimension, entries)

@@ -45,7 +45,7 @@ def involution_obstruction(centre: CentroidField) -> str | None:
     if kinds == {"real"} and len(sizes) > 1:
         return f"dim p is {sizes[0]} at one real place of its centroid and {sizes[1]} at another"
     f = centre.polynomial
-    integral = f.field is QQ and all(c.q == 1 for c in f.coefficients)
+    integral = f.field is QQ and all(QQ.convert(c).q == 1 for c in f.coefficients)
     if kinds == {"complex"} and f.degree > 2 and integral and complex_conjugation(f) is None:
         return "its centroid is totally complex without complex multiplication"
     return None

@@ -347,4 +347,5 @@ def _height(f: Polynomial) -> Any:
     """How large the coefficients are over QQ, relative to their degree; 0 over other fields."""
     if f.field.degree > 1:
         return 0
-    return max((max(abs(int(c.p)), int(c.q)) ** (1 / (f.degree - i)) for i, c in enumerate(f.coefficients[:-1])))
+    rationals = map(QQ.convert, f.coefficients[:-1])
+    return max((max(abs(int(c.p)), int(c.q)) ** (1 / (f.degree - i)) for i, c in enumerate(rationals)))

@@ -149,7 +149,8 @@ class Certificate:
     # -- numbers -----------------------------------------------------------------------------------------
     def number(self, name: str) -> Scalar:
         """The number in the field `name`."""
-        return self.fields[name]
+        value: Scalar = self.fields[name]
+        return value
 
     def vector(self, name: str, length: int | None = None) -> list[Scalar]:
         """The field `name` as a list of numbers, of the given length."""

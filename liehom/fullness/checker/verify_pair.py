@@ -129,7 +129,7 @@ def check_same_field(field: ExactField, other: ExactField) -> None:
         return
     _check_field(other)
     low, high = (pick(a, b) for pick, a, b in zip((max, min), field.interval, other.interval, strict=True))
-    f = [QQ.convert(c) for c in field.minpoly]
+    f: list[Scalar] = [QQ.convert(c) for c in field.minpoly]
     if field.minpoly != other.minpoly or not low < high or count_real_roots(QQ, f, low, high) != 1:
         raise CertificateError(
             "field",

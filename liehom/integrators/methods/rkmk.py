@@ -148,7 +148,9 @@ class RKMK(OneExponential):
         embedded = tableau.b if tableau.embedded_b is None else tableau.embedded_b
         rows = (*tableau.a, tableau.b, tableau.c, embedded)
         if tableau.field == QQ:
-            return _coefficients([[exact_like(Fraction(int(x.p), int(x.q)), like) for x in row] for row in rows])
+            return _coefficients(
+                [[exact_like(Fraction(int(x.p), int(x.q)), like) for x in map(QQ.convert, row)] for row in rows]
+            )
         return _coefficients([list(row) for row in rows])
 
 

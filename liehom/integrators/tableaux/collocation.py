@@ -108,7 +108,7 @@ def _legendre_zeros(n: int) -> list[Scalar]:
     """The zeros of the Legendre polynomial on [0, 1], as rational numbers with `GAUSS_DIGITS` correct digits."""
     ascending = [(-1) ** k * comb(n, k) * comb(n + k, k) for k in range(n + 1)]
     scale = 10 ** (GAUSS_DIGITS + 5)
-    zeros = []
+    zeros: list[Scalar] = []
     for start in np.polynomial.legendre.leggauss(n)[0]:
         x = (1 + Fraction(float(start))) / 2
         for _ in range(3):  # Newton: 15 digits become 30, 60, 120

@@ -269,7 +269,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         """Row sums, then the conditions of both methods; sets `embedded_order` and `residual`."""
         sizes = [0.0]
         for i, (c, total) in enumerate(zip(self.c, self._row_sums(), strict=True)):
-            sizes += [] if self.exact else [abs(c - total)]
+            sizes += [] if self.exact else [float(abs(c - total))]
             if c != total if self.exact else not sizes[-1] <= self.tolerance:
                 shown = self.field.format
                 raise InputError(

@@ -206,7 +206,7 @@ def _lattice_basis(vectors: list[Vector]) -> tuple[list[tuple[Vector, Vector]], 
     entries = [vector.get(b, 0) for b in columns for vector in vectors]
     reduced, pivots = QQ.from_integers(entries, len(columns), len(vectors)).echelon()
     basis: list[tuple[Vector, Vector]] = [(vectors[x], {x: 1}) for x in pivots]
-    table = [[Fraction(int(v.p), int(v.q)) for v in row] for row in reduced.T.to_rows()]
+    table = [[Fraction(int(v.p), int(v.q)) for v in map(QQ.convert, row)] for row in reduced.T.to_rows()]
     while (found := _not_integral(table)) is not None:
         x, k = found
         nearest = [round(c) for c in table[x]]

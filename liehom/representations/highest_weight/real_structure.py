@@ -124,7 +124,7 @@ class RealBasis:
             for b, row in zip(block, inverse.to_rows(), strict=True):
                 self.readers[side][b] = {start + k: _number(v) for k, v in enumerate(row) if v != 0}
             for row in basis.to_rows():
-                self.vectors[side].append({b: int(v) for b, v in zip(block, row, strict=True) if v != 0})
+                self.vectors[side].append({b: int(QQ.convert(v)) for b, v in zip(block, row, strict=True) if v != 0})
 
     def matrices(self, operators: list[Operator]) -> list[list[Vector]]:
         """The operators on the real subspace."""

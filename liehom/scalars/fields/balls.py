@@ -33,7 +33,7 @@ def working_precision(bits: int) -> Iterator[None]:
         flint.ctx.prec = before
 
 
-def real_root_balls(polynomial: Any, precision: int) -> list[Any]:
+def real_root_balls(polynomial: flint.fmpz_poly, precision: int) -> list[flint.arb]:
     """Disjoint balls around the real roots of a squarefree integer polynomial, in increasing order.
 
     Parameters
@@ -53,16 +53,19 @@ def real_root_balls(polynomial: Any, precision: int) -> list[Any]:
     [-2.0, 2.0]
     """
     with working_precision(precision):
-        roots = [r.real for r, _ in polynomial.complex_roots() if r.imag.is_zero()]
+        found: Any = polynomial.complex_roots()  # pairs of a root and its multiplicity
+        roots = [r.real for r, _ in found if r.imag.is_zero()]
         return sorted(roots, key=lambda ball: ball.mid())
 
 
-def root_ball(polynomial: Any, index: int, precision: int) -> Any:
+def root_ball(polynomial: flint.fmpz_poly, index: int, precision: int) -> flint.arb:
     """A ball around the `index`-th real root (from the left) of a squarefree integer polynomial."""
     return real_root_balls(polynomial, precision)[index]
 
 
-def isolate_real_root(polynomial: Any, interval: tuple[Any, Any]) -> tuple[tuple[Any, Any], int]:
+def isolate_real_root(
+    polynomial: flint.fmpz_poly, interval: tuple[flint.fmpq, flint.fmpq]
+) -> tuple[tuple[flint.fmpq, flint.fmpq], int]:
     """Check that an interval holds exactly one root; return it with the root's index from the left.
 
     Parameters

@@ -50,11 +50,11 @@ class ExactField(Field):
         """The degree over QQ."""
 
     @abstractmethod
-    def coordinates(self, value: Scalar) -> list[Any]:
+    def coordinates(self, value: Scalar) -> list[flint.fmpq]:
         """The coordinates (``flint.fmpq``) of an element in powers of the integral generator."""
 
     @abstractmethod
-    def from_coordinates(self, coordinates: Sequence[Any]) -> Scalar:
+    def from_coordinates(self, coordinates: Sequence[flint.fmpq]) -> Scalar:
         """The element with these coordinates."""
 
     @abstractmethod
@@ -80,7 +80,8 @@ class ExactField(Field):
     def from_entries(self, entries: Sequence[Scalar], nrows: int, ncols: int) -> ExactMatrix:
         """The matrix with these field elements, row after row."""
         if self.degree == 1:
-            numerators, common = flint.fmpq_mat(nrows, ncols, list(entries)).numer_denom()
+            rationals: list[Any] = list(entries)
+            numerators, common = flint.fmpq_mat(nrows, ncols, rationals).numer_denom()
             return ExactMatrix(self, (numerators,), int(common))
         parts = list(zip(*map(self.coordinates, entries), strict=True)) or [()] * self.degree
         split = [flint.fmpq_mat(nrows, ncols, list(part)).numer_denom() for part in parts]
@@ -153,7 +154,8 @@ class ExactMatrix(Matrix):
     def entries(self) -> list[Scalar]:
         if self._field.degree == 1:
             first = self.parts[0]
-            return (flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)).entries()
+            whole = flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)
+            return list(whole.entries())
         columns = [a.entries() for a in self.parts]
         den = self.den
         return [self._field.from_coordinates([flint.fmpq(c, den) for c in x]) for x in zip(*columns, strict=True)]

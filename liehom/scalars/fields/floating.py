@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.errors import FieldError, ShapeError, SingularError
-from liehom.scalars.fields.field import Field, Matrix, rows_of
-
-Array = npt.NDArray[np.float64]
+from liehom.scalars.fields.field import Field, Matrix, Scalar, rows_of
+from liehom.typing import Array, ScalarLike
 
 
 @final
@@ -82,7 +80,7 @@ class FloatField(Field):
     def one(self) -> float:
         return 1.0
 
-    def convert(self, value: Any) -> float:
+    def convert(self, value: ScalarLike) -> float:
         if isinstance(value, str):
             from liehom.scalars.fields.number_fields import exact_value
 
@@ -90,20 +88,21 @@ class FloatField(Field):
         if isinstance(value, (bool, np.bool_)):
             raise FieldError(f"{value!r} is not a number")
         try:
-            number = int(value.p) / int(value.q) if hasattr(value, "p") else float(value)
+            given: Any = value
+            number = int(given.p) / int(given.q) if hasattr(given, "p") else float(given)
         except (TypeError, ValueError, OverflowError) as error:
             raise FieldError(f"{value!r} is not a float64 number: {error}") from None
         if not math.isfinite(number):
             raise FieldError(f"{value!r} is not finite")
         return number
 
-    def format(self, value: float) -> str:
+    def format(self, value: Scalar) -> str:
         return repr(float(value))
 
-    def sign(self, value: float) -> int:
+    def sign(self, value: Scalar) -> int:
         return int(value > 0) - int(value < 0)
 
-    def to_float(self, value: float) -> float:
+    def to_float(self, value: Scalar) -> float:
         return float(value)
 
     def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> FloatMatrix:
@@ -161,10 +160,10 @@ class FloatMatrix(Matrix):
     def __getitem__(self, index: tuple[int, int]) -> float:
         return float(self.array[index])
 
-    def entries(self) -> list[float]:
+    def entries(self) -> list[Scalar]:
         return [float(x) for x in self.array.ravel()]
 
-    def to_rows(self) -> list[list[float]]:
+    def to_rows(self) -> list[list[Scalar]]:
         return [[float(x) for x in row] for row in self.array]
 
     def to_numpy(self) -> Array:

@@ -19,8 +19,10 @@ from liehom.errors import FieldError
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
 from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.fields.rational import QQ, ExactNumber, prime, rational_from_text, rational_number, refused
+from liehom.typing import ScalarLike
 
 MAX_PRECISION = 1 << 22
 _SYMBOL = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]*|sqrt\([0-9]+\)", re.ASCII)
@@ -87,7 +89,7 @@ class NumberField(ExactField):
         self.interval, self.root_index = isolate_real_root(integral, ends)
         self._check_symbol()
         self._powers: dict[int, list[int]] = {}
-        self._balls: dict[int, Any] = {}
+        self._balls: dict[int, flint.arb] = {}
         self._residues: list[tuple[int, int]] = []
 
     def _check_symbol(self) -> None:
@@ -125,7 +127,7 @@ class NumberField(ExactField):
         """The monic minimal polynomial of b = c a, as ``flint.fmpz_poly``."""
         return self._modulus
 
-    def convert(self, value: Any) -> AlgebraicNumber:
+    def convert(self, value: ScalarLike) -> AlgebraicNumber:
         if isinstance(value, AlgebraicNumber):
             if value.field is self or value.field == self:
                 return value
@@ -179,14 +181,14 @@ class NumberField(ExactField):
             return value
         for factor, _ in Polynomial(self, [-value, *[self.zero] * (k - 1), self.one]).factor():
             if factor.degree == 1:
-                root: AlgebraicNumber = -factor.coefficients[0] / factor.coefficients[1]
+                root = self.convert(-factor.coefficients[0] / factor.coefficients[1])
                 if self.sign(root) > 0 or k % 2 == 0:
                     return root if self.sign(root) > 0 else -root
         raise FieldError(f"{what} is not in {self.name}")
 
-    def format(self, value: AlgebraicNumber) -> str:
+    def format(self, value: Scalar) -> str:
         terms = []
-        for power, c in enumerate(value.coordinates):
+        for power, c in enumerate(self.coordinates(value)):
             c = c * self.leading**power
             if c == 0:
                 continue
@@ -197,8 +199,8 @@ class NumberField(ExactField):
                 terms.append(f"{c}*{monomial}" if monomial else str(c))
         return " + ".join(terms).replace("+ -", "- ") or "0"
 
-    def sign(self, value: AlgebraicNumber) -> int:
-        polynomial = value.polynomial
+    def sign(self, value: Scalar) -> int:
+        polynomial = self.convert(value).polynomial
         if polynomial.is_zero():
             return 0
         precision = 64
@@ -210,25 +212,25 @@ class NumberField(ExactField):
             precision *= 2
         raise FieldError(f"the sign of {value} could not be found with {MAX_PRECISION} bits")
 
-    def _value_ball(self, polynomial: Any, precision: int) -> Any:
+    def _value_ball(self, polynomial: flint.fmpq_poly, precision: int) -> flint.arb:
         root = self.generator_ball(precision)
         total = flint.arb(0)
         for c in reversed(polynomial.coeffs()):
             total = total * root + flint.arb(c)
         return total
 
-    def generator_ball(self, precision: int) -> Any:
+    def generator_ball(self, precision: int) -> flint.arb:
         """A ball around b = c a, found with the given working precision in bits."""
         if precision not in self._balls:
             self._balls[precision] = root_ball(self._modulus, self.root_index, precision)
         return self._balls[precision]
 
-    def ball(self, value: AlgebraicNumber, precision: int) -> Any:
+    def ball(self, value: Scalar, precision: int) -> flint.arb:
         """A ball (``flint.arb``) around an element, found with the given working precision in bits."""
         with working_precision(precision):
-            return self._value_ball(value.polynomial, precision)
+            return self._value_ball(self.convert(value).polynomial, precision)
 
-    def to_float(self, value: AlgebraicNumber) -> float:
+    def to_float(self, value: Scalar) -> float:
         precision = 128
         while precision < MAX_PRECISION:
             ball = self.ball(value, precision)
@@ -237,10 +239,10 @@ class NumberField(ExactField):
             precision *= 2
         return float(ball)
 
-    def coordinates(self, value: AlgebraicNumber) -> list[Any]:
-        return value.coordinates
+    def coordinates(self, value: Scalar) -> list[flint.fmpq]:
+        return self.convert(value).coordinates
 
-    def from_coordinates(self, coordinates: Sequence[Any]) -> AlgebraicNumber:
+    def from_coordinates(self, coordinates: Sequence[flint.fmpq]) -> AlgebraicNumber:
         return AlgebraicNumber(self, flint.fmpq_poly(list(coordinates)))
 
     def power_coordinates(self, exponent: int) -> list[int]:
@@ -302,7 +304,7 @@ class AlgebraicNumber(ExactNumber):
         self.polynomial = polynomial
 
     @property
-    def coordinates(self) -> list[Any]:
+    def coordinates(self) -> list[flint.fmpq]:
         """Rational coordinates in powers of the integral generator."""
         return [self.polynomial[i] for i in range(self.field.degree)]
 
@@ -376,6 +378,9 @@ class AlgebraicNumber(ExactNumber):
     def __eq__(self, other: object) -> bool:
         right = self._operand(other)
         return NotImplemented if right is None else bool(self.polynomial == right)
+
+    def __abs__(self) -> AlgebraicNumber:
+        return self if self.field.sign(self) >= 0 else -self
 
     def __hash__(self) -> int:
         return hash(tuple((int(c.p), int(c.q)) for c in self.coordinates))

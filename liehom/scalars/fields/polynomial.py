@@ -66,8 +66,9 @@ class Polynomial:
         return " + ".join(terms) or "0"
 
     # -- arithmetic --------------------------------------------------------------------------------------
-    def _flint(self) -> Any:
-        return flint.fmpq_poly(list(self.coefficients))
+    def _flint(self) -> flint.fmpq_poly:
+        """The polynomial over QQ as one of flint."""
+        return flint.fmpq_poly([QQ.convert(c) for c in self.coefficients])
 
     def _made(self, coefficients: Sequence[Any]) -> Polynomial:
         return Polynomial(self.field, coefficients)
@@ -99,8 +100,8 @@ class Polynomial:
         if other.degree < 0:
             raise ZeroDivisionError("division by the zero polynomial")
         if self.field.degree == 1:
-            quotient, remainder = divmod(self._flint(), other._flint())
-            return self._made(quotient.coeffs()), self._made(remainder.coeffs())
+            whole, remainder = divmod(self._flint(), other._flint())
+            return self._made(whole.coeffs()), self._made(remainder.coeffs())
         rest, inverse = list(self.coefficients), 1 / other.leading
         quotient = [self.field.zero] * max(0, len(rest) - other.degree)
         for i in range(len(rest) - 1 - other.degree, -1, -1):

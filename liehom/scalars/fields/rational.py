@@ -19,6 +19,7 @@ from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactField
 from liehom.scalars.fields.field import Field, Scalar
+from liehom.typing import ScalarLike
 
 FIRST_PRIME = (1 << 61) - 1
 _INTEGER = re.compile(r"[-+]?[0-9]+", re.ASCII)
@@ -35,7 +36,7 @@ class ExactNumber:
         """The rational number that this one equals, or None."""
 
 
-def rational_number(value: Any) -> Any:
+def rational_number(value: Any) -> flint.fmpq | None:
     """The ``flint.fmpq`` that a Python, numpy, flint or sympy rational number is, else None."""
     if isinstance(value, flint.fmpq):
         return value
@@ -50,7 +51,7 @@ def rational_number(value: Any) -> Any:
     return None
 
 
-def rational_from_text(text: str) -> Any:
+def rational_from_text(text: str) -> flint.fmpq | None:
     """The rational that a plain integer or fraction denotes, else None (fast path of the grammar)."""
     stripped = text.strip()
     if _INTEGER.fullmatch(stripped):
@@ -95,14 +96,14 @@ class RationalField(ExactField):
         return 1
 
     @property
-    def zero(self) -> Scalar:
+    def zero(self) -> flint.fmpq:
         return flint.fmpq(0)
 
     @property
-    def one(self) -> Scalar:
+    def one(self) -> flint.fmpq:
         return flint.fmpq(1)
 
-    def convert(self, value: Any) -> Scalar:
+    def convert(self, value: ScalarLike) -> flint.fmpq:
         if isinstance(value, str):
             rational = rational_from_text(value)
             return rational if rational is not None else self._evaluate(value)
@@ -114,10 +115,11 @@ class RationalField(ExactField):
             return rational
         raise refused(value, self)
 
-    def _evaluate(self, text: str) -> Scalar:
-        return grammar.evaluate(grammar.parse(text), flint.fmpq, {}, {"sqrt": self.sqrt})
+    def _evaluate(self, text: str) -> flint.fmpq:
+        value: flint.fmpq = grammar.evaluate(grammar.parse(text), flint.fmpq, {}, {"sqrt": self.sqrt})
+        return value
 
-    def sqrt(self, value: Scalar) -> Scalar:
+    def sqrt(self, value: flint.fmpq) -> flint.fmpq:
         """The non-negative square root; `FieldError` if it is not rational."""
         numerator, denominator = flint.fmpz(value.p), flint.fmpz(value.q)
         if numerator < 0:
@@ -134,16 +136,17 @@ class RationalField(ExactField):
         return int(value > 0) - int(value < 0)
 
     def to_float(self, value: Scalar) -> float:
+        number = self.convert(value)
         try:
-            return int(value.p) / int(value.q)
+            return int(number.p) / int(number.q)
         except OverflowError:
             with working_precision(64):
-                return float(flint.arb(value))
+                return float(flint.arb(number))
 
-    def coordinates(self, value: Scalar) -> list[Any]:
-        return [value]
+    def coordinates(self, value: Scalar) -> list[flint.fmpq]:
+        return [self.convert(value)]
 
-    def from_coordinates(self, coordinates: Sequence[Any]) -> Scalar:
+    def from_coordinates(self, coordinates: Sequence[flint.fmpq]) -> flint.fmpq:
         return coordinates[0]
 
     def power_coordinates(self, exponent: int) -> list[int]:

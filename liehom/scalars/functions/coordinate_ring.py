@@ -18,7 +18,7 @@ from typing import Any, final
 import flint
 
 from liehom.errors import FieldError
-from liehom.scalars.fields.rational import rational_number
+from liehom.scalars.fields.rational import QQ
 
 # a divisor of more terms is not factorized, and no shorter form of it is sought
 MAX_TERMS_TO_FACTOR = 3000
@@ -77,7 +77,7 @@ class CoordinateRing:
 
     def polynomial(self, terms: Mapping[tuple[int, ...], Any]) -> Any:
         """The polynomial with these terms."""
-        return self.context.from_dict({e: rational_number(c) for e, c in terms.items()})
+        return self.context.from_dict({e: QQ.convert(c) for e, c in terms.items()})
 
     def reduce(self, p: Any) -> Any:
         """The normal form of a polynomial modulo the constraints."""

@@ -60,7 +60,8 @@ class ModularSpan:
         rest = remainders(np.array(rows, dtype=np.float64).reshape(-1, self.ncols), p)
         if self.rank:
             rest = remainders(rest - product(rest[:, self.pivots], self.rows, p), p)
-        found, pivots = [], []
+        found: list[int] = []
+        pivots: list[int] = []
         for i in np.flatnonzero(rest.any(axis=1)).tolist():
             if self.rank + len(found) == self.ncols:
                 break

@@ -44,9 +44,10 @@ def complex_conjugation(f: Polynomial) -> Polynomial | None:
     >>> complex_conjugation(Polynomial(QQ, [-2, 0, 0, 1])), complex_conjugation(Polynomial(QQ, [-2, 0, 1]))
     (None, (1)*t**1)
     """
-    if f.field is not QQ or f.leading != 1 or any(c.q != 1 for c in f.coefficients):
+    coefficients = [QQ.convert(c) for c in f.coefficients] if f.field is QQ else []
+    if f.leading != 1 or any(c.q != 1 for c in coefficients) or not coefficients:
         raise InputError(f"conjugation is decided for monic polynomials with integer coefficients; got {f!r}")
-    integral = flint.fmpz_poly([int(c.p) for c in f.coefficients])
+    integral = flint.fmpz_poly([int(c.p) for c in coefficients])
     discriminant = int(integral.discriminant())
     bits = SPARE_BITS + discriminant.bit_length()
     for _ in range(DOUBLINGS):

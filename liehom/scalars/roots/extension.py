@@ -8,7 +8,7 @@ x -> f^x(c - s x).  The pair of roots alpha, conj(alpha) is adjoined through alp
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import comb, lcm
@@ -179,14 +179,14 @@ def _above(base: NumberField, f: Polynomial, index: int, name: str) -> tuple[Ext
     # b and den * alpha are integers: so is the ring that they generate
     integers = [image**i * (root * den) ** j for i in range(base.degree) for j in range(f.degree)]
     field, up = smaller_generator(large, integers)
-    image, root = (_carried(x, up) for x in (image, root))
+    image, root = (_carried(large.coordinates(x), up) for x in (image, root))
     return Extension(base, field, tuple(image**i if i else field.one for i in range(base.degree))), root
 
 
-def _carried(value: Scalar, generator: Scalar) -> Scalar:
-    """An element in the field of the image of its field's integral generator."""
+def _carried(coordinates: Sequence[flint.fmpq], generator: Scalar) -> Scalar:
+    """The element with these coordinates in powers of the integral generator, given the image of the generator."""
     total = generator * 0
-    for c in reversed(value.coordinates):
+    for c in reversed(coordinates):
         total = total * generator + c
     return total
 

@@ -20,6 +20,7 @@ from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.polynomial import Polynomial
+from liehom.scalars.fields.rational import QQ
 from liehom.scalars.roots.joint_spectrum import enclosure
 from liehom.scalars.roots.roots import complex_root_balls
 
@@ -164,7 +165,7 @@ def _ball_coefficients(polynomial: Polynomial, precision: int) -> list[Any]:
     field = polynomial.field
     if isinstance(field, NumberField):
         return [field.ball(c, precision) for c in polynomial.coefficients]
-    return [flint.arb(c) for c in polynomial.coefficients]
+    return [flint.arb(QQ.convert(c)) for c in polynomial.coefficients]
 
 
 def _evaluated(coefficients: list[Any], root: Any) -> Any:

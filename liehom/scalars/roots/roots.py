@@ -14,6 +14,7 @@ from liehom.errors import FieldError
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.number_field import MAX_PRECISION, NumberField
 from liehom.scalars.fields.polynomial import Polynomial
+from liehom.scalars.fields.rational import QQ
 
 
 def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
@@ -29,7 +30,7 @@ def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
     """
     if not isinstance(f.field, NumberField):
         with working_precision(precision):
-            pairs: Any = flint.fmpq_poly(list(f.coefficients)).complex_roots()
+            pairs: Any = flint.fmpq_poly([QQ.convert(c) for c in f.coefficients]).complex_roots()
             return [root for root, _ in pairs]
     while precision <= MAX_PRECISION:
         with working_precision(precision), suppress(ValueError):  # flint's: the roots are not isolated

@@ -10,6 +10,7 @@ from liehom.errors import ShapeError
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
+from liehom.scalars.fields.rational import QQ
 
 PRECISION_LIMIT = 1 << 14
 
@@ -54,4 +55,4 @@ def _balls(block: ExactMatrix, precision: int) -> list[list[flint.arb]]:
     field = block.field
     if isinstance(field, NumberField):
         return [[field.ball(x, precision) for x in row] for row in block.to_rows()]
-    return [[flint.arb(x) for x in row] for row in block.to_rows()]
+    return [[flint.arb(QQ.convert(x)) for x in row] for row in block.to_rows()]
