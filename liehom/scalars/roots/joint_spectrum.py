@@ -149,7 +149,9 @@ def _blocks(actions: Sequence[ExactMatrix]) -> list[list[int]]:
         places = [x for part in a.parts for x, v in enumerate(part.entries()) if v]
         rows += [x // size for x in places]
         columns += [x % size for x in places]
-    graph = sparse.coo_array((np.ones(len(rows)), (rows, columns)), shape=(size, size))
+    # int32: with wider indices connected_components of scipy 1.11 fails without an exception
+    entries = (np.array(rows, dtype=np.int32), np.array(columns, dtype=np.int32))
+    graph = sparse.coo_array((np.ones(len(rows)), entries), shape=(size, size))
     count, labels = sparse.csgraph.connected_components(graph, directed=False)
     return [np.flatnonzero(labels == c).tolist() for c in range(count)]
 
