@@ -9,16 +9,19 @@ Plain Taylor coefficients, not derivatives.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from liehom.correctors.step import LocalStep, apply_factors, step_variable
+from liehom.correctors.step import LocalStep, apply_factors, step_variable, with_correction
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import across_lanes, as_values, constant_like, in_lanes, is_exact, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
+from liehom.typing import Array, Real, Values
 
 ROUND_OFF_UNITS = 64
 
@@ -54,16 +57,18 @@ class Flow:
         """Whether the field depends on time."""
         return self.field.time_dependent
 
-    def point(self, k: int) -> Any:
+    def point(self, k: int) -> Values:
         """w_k, shape (..., N)."""
-        return self.points.coefficient(k)
+        found: Values = self.points.coefficient(k)
+        return found
 
-    def psi(self, k: int) -> Any:
+    def psi(self, k: int) -> Values:
         """psi_k, shape (..., dim g)."""
-        return self.generator.coefficient(k)
+        found: Values = self.generator.coefficient(k)
+        return found
 
 
-def flow_series(field: GeneratorField, m: Any, order: int, t: Any = 0.0) -> Flow:
+def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) -> Flow:
     """The flow of m' = rho(psi(m, t)) m from (m, t) to a given order.
 
     Parameters
@@ -114,11 +119,11 @@ def flow_series(field: GeneratorField, m: Any, order: int, t: Any = 0.0) -> Flow
     return Flow(points, generator, field)
 
 
-def _over(coefficient: Any, k: int) -> Any:
+def _over(coefficient: Values | None, k: int) -> Values | None:
     return coefficient if k == 1 or coefficient is None else coefficient / k
 
 
-def step_series(action: Action, local: LocalStep, m: Any, order: int, zeta: Jet | None = None) -> Jet:
+def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: Jet | None = None) -> Jet:
     """The expansion of a step in h: a Jet with values (..., N).
 
     Parameters
@@ -142,9 +147,7 @@ def step_series(action: Action, local: LocalStep, m: Any, order: int, zeta: Jet 
     [[1.0, 0.0], [0.0, 1.0], [-0.5, 0.0]]
     """
     factors = local.factors(step_variable(order, as_values(m)))
-    if zeta is not None:
-        factors = (factors[0] + zeta,) if len(factors) == 1 else (*factors, zeta)
-    made = apply_factors(action, factors, m)
+    made = apply_factors(action, with_correction(factors, zeta, len(factors) == 1), m)
     return made if isinstance(made, Jet) else Jet.constant(made, order)
 
 
@@ -174,16 +177,16 @@ class Clock:
         self._flow = flow
         self.order = order
         one = zeros(flow.points.value, shape) + 1
-        self.coefficients: list[Any] = [None, one, *[None] * (order - 1)]
-        self._powers: dict[tuple[int, int], Any] = {}
+        self.coefficients: list[Values | None] = [None, one, *[None] * (order - 1)]
+        self._powers: dict[tuple[int, int], Values | None] = {}
 
-    def set(self, k: int, value: Any) -> None:
+    def set(self, k: int, value: Values) -> None:
         """Set c_k, k >= 2 (add to it where it was set)."""
         old = self.coefficients[k]
         self.coefficients[k] = value if old is None else old + value
         self._powers = {key: x for key, x in self._powers.items() if key[1] - key[0] < k - 1}
 
-    def point(self, k: int) -> Any:
+    def point(self, k: int) -> Values:
         """Coefficient k of F_tau(t), shape (..., N)."""
         if k == 0:
             return self._flow.point(0)
@@ -196,7 +199,7 @@ class Clock:
                 total = total + lifted[..., None] * self._flow.point(i)
         return total
 
-    def _power(self, i: int, k: int) -> Any:
+    def _power(self, i: int, k: int) -> Values | None:
         """Coefficient k of tau^i, k >= i >= 1; None if it is a structural zero."""
         if i == 1 or i == k:
             return self.coefficients[1 if i == k else k]
@@ -211,7 +214,7 @@ class Clock:
         return self._powers[i, k]
 
 
-def leading_order(flow: Flow, order: int) -> Any:
+def leading_order(flow: Flow, order: int) -> Values:
     """The least l with w_l != 0, shape (...,); 0 where all coefficients up to `order` vanish.
 
     A coefficient counts as zero if it is below 64 units of round-off of the terms that make it; exact coefficients
@@ -231,10 +234,11 @@ def leading_order(flow: Flow, order: int) -> Any:
         found = np.where((found == 0) & ~vanishing(flow, k), k, found)
         if bool(np.all(found)):
             break
-    return found
+    made: Values = found
+    return made
 
 
-def vanishing(flow: Flow, k: int) -> Any:
+def vanishing(flow: Flow, k: int) -> Values:
     """Whether w_k is zero up to round-off, shape (...,); k >= 1.
 
     Round-off of the terms that make w_k, and for an autonomous field also of psi itself: psi cannot be better than
@@ -262,10 +266,11 @@ def vanishing(flow: Flow, k: int) -> Any:
         m = flow.point(0)
         floor = xp.maximum(size, np.finfo(w.dtype).tiny * (1 + xp.max(xp.abs(m), axis=-1)))
         terms = terms + _moved(xp, flow, flow.psi(1), m) * (xp.max(xp.abs(m), axis=-1) / floor)
-    return size <= ROUND_OFF_UNITS * np.finfo(w.dtype).eps * terms / k
+    found: Values = size <= ROUND_OFF_UNITS * np.finfo(w.dtype).eps * terms / k
+    return found
 
 
-def _all_move(flow: Flow, size: Any) -> bool:
+def _all_move(flow: Flow, size: Array) -> bool:
     """Whether w_1 with largest coordinates `size` is beyond round-off everywhere, by norms; False if not known."""
     m = flow.point(0)
     norm = flow.field.frobenius_norms(flow.psi(0), m)
@@ -276,7 +281,7 @@ def _all_move(flow: Flow, size: Any) -> bool:
     return bool((size > 2 * ROUND_OFF_UNITS * np.finfo(m.dtype).eps * norm * np.sqrt(_square(m))).all())
 
 
-def at_rest(action: Action, flow: Flow) -> Any:
+def at_rest(action: Action, flow: Flow) -> Values:
     """Whether w_1 of an autonomous field is zero up to round-off, from norms alone: `vanishing`, short.
 
     Examples
@@ -301,7 +306,7 @@ def at_rest(action: Action, flow: Flow) -> Any:
             return ~far
     root = np.linalg.cholesky(gram)
 
-    def square(x: Any) -> Any:
+    def square(x: Values) -> Values:
         return _square(across_lanes(x, root))
 
     still = speed <= bound * square(flow.psi(0)) * size
@@ -310,11 +315,13 @@ def at_rest(action: Action, flow: Flow) -> Any:
     return still | (speed * speed <= bound * square(flow.psi(1)) * size * size)
 
 
-def _square(x: Any) -> Any:
-    return np.einsum("...i,...i->...", x, x) if isinstance(x, np.ndarray) else namespace(x).sum(x * x, axis=-1)
+def _square(x: Values) -> Values:
+    found: Values = np.einsum("...i,...i->...", x, x) if isinstance(x, np.ndarray) else namespace(x).sum(x * x, axis=-1)
+    return found
 
 
-def _moved(xp: Any, flow: Flow, x: Any, m: Any) -> Any:
+def _moved(xp: ModuleType, flow: Flow, x: Values, m: Values) -> Values:
     """The largest coordinate of |rho(x)| |m|: what the coordinates of rho(x) m are rounded by."""
     columns = flow.field.infinitesimal(x[..., None, :], xp.eye(m.shape[-1], dtype=m.dtype))
-    return xp.max((xp.abs(m)[..., None, :] @ xp.abs(columns))[..., 0, :], axis=-1)
+    found: Values = xp.max((xp.abs(m)[..., None, :] @ xp.abs(columns))[..., 0, :], axis=-1)
+    return found

@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.fields.field import check_point
 from liehom.representations import Representation
 from liehom.series.arrays import as_values, is_exact
+from liehom.typing import IntegerArray
 
 
-def read_point(representation: Representation, m: Any) -> tuple[Any, Any]:
+def read_point(representation: Representation, m: ArrayLike) -> tuple[npt.NDArray[Any], IntegerArray]:
     """Floats, or numbers of the representation's field; and the dimensions of the orbits.
 
     Raises

@@ -7,18 +7,25 @@ On arrays a step integrates; with the Jet h = 0 + 1 t it is expanded in the step
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from importlib import import_module
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
 from liehom.errors import ConvergenceError
-from liehom.homogeneous import Action, GeneratorField
+from liehom.homogeneous import Action, Exponential, GeneratorField
 from liehom.series.arrays import is_jax, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
-from liehom.tracing import Traced, while_loop
+from liehom.tracing import Tape, Traced, while_loop
+from liehom.typing import IntegerArray, Real, Values
+
+Factors: TypeAlias = tuple[Values, ...]
+"""Generators x_1, ..., x_s of shape (..., dim g); their step is m -> Exp(x_s) ... Exp(x_1) m."""
+
+ExponentialLike: TypeAlias = str | Exponential | Callable[..., Any]
+"""A name such as "exp" or "cayley", an `Exponential`, or a function that `Action` takes as one."""
 
 MAX_ITERATIONS = 200
 JAX_ITERATIONS = 60
@@ -52,14 +59,15 @@ class Generator:
 
     __slots__ = ("field", "orbit_dimension", "prepared", "start")
 
-    def __init__(self, field: GeneratorField, orbit_dimension: Any, start: Any = None) -> None:
+    def __init__(self, field: GeneratorField, orbit_dimension: int | IntegerArray, start: Values | None = None) -> None:
         self.field = field
         self.orbit_dimension = orbit_dimension
         self.start = start
-        self.prepared: dict[Any, Any] = {}
+        self.prepared: dict[Hashable, Any] = {}
 
-    def __call__(self, m: Any, t: Any) -> Any:
-        return self.field.psi(m, t[..., 0] if np.ndim(t) else t)
+    def __call__(self, m: Values, t: Values) -> Values:
+        found: Values = self.field.psi(m, t[..., 0] if np.ndim(t) else t)
+        return found
 
 
 class Step(ABC):
@@ -91,10 +99,10 @@ class Step(ABC):
         return False
 
     @abstractmethod
-    def factors(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
+    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         """Generators x_1, ..., x_s; the step is m -> Exp(x_s) ... Exp(x_1) m."""
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         """The step at (m, t) as a function of h alone; methods that prepare something there override this.
 
         `error_terms` asks for `LocalStep.defects` of so many orders beyond `order`.
@@ -129,10 +137,10 @@ class OneExponential(Step, ABC):
         return True
 
     @abstractmethod
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         """xi(m, t, h), array or Jet of shape (..., dim g)."""
 
-    def factors(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
+    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         return (self.generator(action, psi, m, t, h),)
 
 
@@ -157,21 +165,21 @@ class LocalStep:
     ([0.5, 0.0], 0.5)
     """
 
-    defects: tuple[tuple[int, Any], ...] | None = None
+    defects: tuple[tuple[int, Values], ...] | None = None
 
-    def __init__(self, factors: Callable[[Any], tuple[Any, ...]]) -> None:
+    def __init__(self, factors: Callable[[Any], Factors]) -> None:
         self._factors = factors
 
-    def factors(self, h: Any) -> tuple[Any, ...]:
+    def factors(self, h: Values) -> Factors:
         """The generators of the step of size h (..., 1)."""
         return self._factors(h)
 
-    def time(self, h: Any) -> Any:
+    def time(self, h: Values) -> Values:
         """The time that passes in the step, h (...,) unless the step has a clock of its own."""
         return h
 
 
-def apply_factors(action: Action, factors: tuple[Any, ...], m: Any) -> Any:
+def apply_factors(action: Action, factors: Factors, m: Values) -> Values:
     """Exp(x_s) ... Exp(x_1) m.
 
     Examples
@@ -187,7 +195,22 @@ def apply_factors(action: Action, factors: tuple[Any, ...], m: Any) -> Any:
     return m
 
 
-def step_variable(order: int, like: Any) -> Jet:
+def with_correction(factors: Factors, zeta: Values | None, one_exponential: bool) -> Factors:
+    """The factors of a corrected step: zeta is added to the generator, or is an outermost factor.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, zeta = Jet([[0.0], [1.0]]), Jet([[0.0], [2.0]])
+    >>> len(with_correction((x,), zeta, True)), len(with_correction((x, x), zeta, False))
+    (1, 3)
+    """
+    if zeta is None:
+        return factors
+    return (factors[0] + zeta,) if one_exponential else (*factors, zeta)
+
+
+def step_variable(order: int, like: Values) -> Jet:
     """The Jet h = 0 + 1 t with values of shape (1,), of the kind of `like`.
 
     Examples
@@ -200,7 +223,7 @@ def step_variable(order: int, like: Any) -> Jet:
     return Jet.from_node(Node(order, zero, [None, zero + 1, *[None] * (order - 1)][: order + 1]))
 
 
-def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stacked: bool = False) -> Any:
+def solve_implicitly(function: Callable[[Any], Values], start: Values, h: Real, *, stacked: bool = False) -> Values:
     """The solution x of x = function(x), where function has a factor h.
 
     On Jets coefficient by coefficient; on arrays by iteration from `start` until x no longer changes, for every
@@ -219,14 +242,17 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stac
     """
     if isinstance(h, Jet):
         x = Jet.growing(zeros(start, np.shape(start)), h.order, zero=True)
-        made = function(x)
+        made: Any = function(x)
         x.node.depends((made.node, 0), rule=lambda k: made.node.known[k])
         return x
-    if isinstance(start, Traced) or isinstance(h, Traced):
-        return _solved_on_tape(function, start, h.tape if isinstance(h, Traced) else start.tape)
+    if isinstance(h, Traced):
+        return _solved_on_tape(function, start, h.tape)
+    if isinstance(start, Traced):
+        return _solved_on_tape(function, start, start.tape)
     if is_jax(start):
         # a loop, not sixty copies of the function, which would take minutes to compile
-        return import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
+        found: Values = import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
+        return found
     eps = np.finfo(np.result_type(start, float)).eps
     axes = (0, -1) if stacked else (-1,) if np.ndim(start) else ()
     before: Any = np.inf
@@ -234,10 +260,10 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stac
     settled: Any = np.zeros((), dtype=bool)
     for _ in range(MAX_ITERATIONS):
         with np.errstate(over="ignore", invalid="ignore"):  # an iteration that diverges says so below
-            x = function(start)
-            change = np.where(settled, 0.0, np.abs(x - start).max(axis=axes, keepdims=True, initial=0.0))
-        size = np.abs(x).max(axis=axes, keepdims=True, initial=0.0)
-        start = np.where(settled, start, x) if settled.any() else x
+            new = function(start)
+            change = np.where(settled, 0.0, np.abs(new - start).max(axis=axes, keepdims=True, initial=0.0))
+        size = np.abs(new).max(axis=axes, keepdims=True, initial=0.0)
+        start = np.where(settled, start, new) if settled.any() else new
         settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
         if settled.all():
             return start
@@ -250,15 +276,15 @@ def solve_implicitly(function: Callable[[Any], Any], start: Any, h: Any, *, stac
     )
 
 
-def _solved_on_tape(function: Callable[[Any], Any], start: Any, tape: Any) -> Any:
+def _solved_on_tape(function: Callable[[Any], Values], start: Values, tape: Tape) -> Traced:
     """The same iteration for one trajectory in compiled code; a step whose iteration fails is not made there."""
     eps = float(np.finfo(np.float64).eps)
 
-    def iteration(x: Any, before: Any, settled: Any) -> Any:
+    def iteration(x: Traced, before: Traced, settled: Values) -> tuple[list[Values], Values]:
         made = function(x)
-        change = np.where(settled, 0.0, np.abs(made - x).max())
+        change: Values = np.where(settled, 0.0, np.abs(made - x).max())
         size = np.abs(made).max()
-        kept = np.where(settled, x, made)
+        kept: Values = np.where(settled, x, made)
         settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
         return [kept, change, settled], ~settled & np.isfinite(change)
 

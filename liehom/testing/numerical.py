@@ -146,7 +146,7 @@ def _differences(step: Step, action: Action, total: int, rng: np.random.Generato
 def _clock(local: LocalStep, total: int) -> Any:
     """The Taylor coefficients 0 ... total of tau(t)."""
     t = Jet.variable(0.0, total)
-    made = local.time(t)
+    made: Any = local.time(t)
     return np.asarray(made.coefficients, dtype=float)
 
 

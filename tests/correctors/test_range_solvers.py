@@ -14,8 +14,8 @@ import pytest
 
 import liehom as lh
 from liehom.correctors import RangeSolver
-from liehom.correctors.symbolic.exact_range import solve_exactly
-from liehom.correctors.symbolic.symbolic_range import SymbolicRange, array
+from liehom.correctors.symbolic.exact_range import object_array, solve_exactly
+from liehom.correctors.symbolic.symbolic_range import SymbolicRange
 from liehom.scalars.functions.function_field import FunctionField
 from tests.correctors.support import spin
 
@@ -57,7 +57,7 @@ def system(name: str, seed: int, *, leading: int, factor: str, solvable: bool) -
     s, action = field.variables[0], lh.Action(representation)
 
     def line(count: int) -> Any:
-        a, b = (array([field.convert(x) for x in random_rational(rng, count)]) for _ in range(2))
+        a, b = (object_array([field.convert(x) for x in random_rational(rng, count)]) for _ in range(2))
         return a + s * b
 
     dimension = representation.algebra.dimension

@@ -8,7 +8,7 @@ from liehom.correctors.conserving.conservation import Conservation as Conservati
 from liehom.correctors.conserving.conservation import conservation_map as conservation_map
 from liehom.correctors.conserving.conserved_order import ConservedOrder as ConservedOrder
 from liehom.correctors.conserving.conserved_order import conserved_order as conserved_order
-from liehom.correctors.conserving.conserving import Conserved as Conserved
 from liehom.correctors.conserving.conserving import Conserving as Conserving
-from liehom.correctors.conserving.conserving import ConservingStep as ConservingStep
+from liehom.correctors.conserving.conserving_step import Conserved as Conserved
+from liehom.correctors.conserving.conserving_step import ConservingStep as ConservingStep
 from liehom.correctors.conserving.first_integral import FirstIntegral as FirstIntegral

@@ -8,19 +8,22 @@ chi_m(zeta) to the coefficient of t^n of F(step(t)) - F(m), and nothing before.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from typing import Any, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from liehom.correctors.conserving.first_integral import FirstIntegral, conditioning
+from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralSource, conditioning
 from liehom.correctors.expansion import ROUND_OFF_UNITS, flow_series
-from liehom.correctors.step import Step
+from liehom.correctors.step import ExponentialLike, Step
 from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
 from liehom.homogeneous.fields.field import check_point
 from liehom.series.arrays import as_values, is_exact
 from liehom.tracing import Traced
+from liehom.typing import Array, BooleanArray, IntegerArray, Real, Values
 
 RANK_RTOL = 1e-8
 
@@ -82,7 +85,7 @@ class Conservation:
     )
 
     def __init__(
-        self, action: Action, integral: FirstIntegral, frame: IsotropyFrame, m: Any, generator: Any, factor: float
+        self, action: Action, integral: FirstIntegral, frame: IsotropyFrame, m: Values, generator: Values, factor: float
     ) -> None:
         self.action, self.integral, self.m, self.factor = action, integral, m, factor
         self.value, self.gradient = integral.gradient(m)
@@ -100,7 +103,7 @@ class Conservation:
         velocity = action.infinitesimal(generator, m)
         self._take(velocity, _length(velocity) > noise * action.max_norm * _length(generator) * _length(m))
 
-    def _on_tight_frame(self, frame: IsotropyFrame) -> Any:
+    def _on_tight_frame(self, frame: IsotropyFrame) -> Values:
         """DF on the tangent space, for a frame without a basis of g_m: what lengths are taken of is the same."""
         action, tight = self.action, self.action.tight_frame
         columns, basis = action.infinitesimal.right(self.m), action.inner_product.orthonormal_basis()
@@ -109,16 +112,17 @@ class Conservation:
             self.basis, self._on_tangents = basis, tangential
         else:
             self.basis = basis - frame.lift @ (columns @ basis)
-        return tangential
+        found: Values = tangential
+        return found
 
-    def _take(self, velocity: Any, moving: Any) -> None:
+    def _take(self, velocity: Values, moving: Values) -> None:
         self._velocity, self.moving = velocity, moving
         pulled = self.action.infinitesimal.right_transposed(velocity[..., None, :], self._on_tangents)
         self.matrix = self.factor * (pulled @ self.basis)
         self._bound = self.factor * self.action.max_norm * _length(velocity)[..., None] * self._sizes
 
     @property
-    def hat(self) -> Any:
+    def hat(self) -> Values:
         """chi_m with each row divided by its largest possible size, as its rank is decided, shape (..., k, s).
 
         Its rows are at most of norm sqrt(s), and 0 where X or DF on the orbit vanish.
@@ -126,12 +130,12 @@ class Conservation:
         kept = self.moving[..., None] & (self._bound > 0)
         return np.where(kept[..., None], self.matrix / np.where(kept, self._bound, 1.0)[..., None], 0.0)
 
-    def _of_one(self) -> tuple[Any, Any]:
+    def _of_one(self) -> tuple[Values, Values]:
         """Of one integral: |chi_m|, and whether it counts as not 0, both (..., 1)."""
         size = _length(self.matrix)
         return size, self.moving[..., None] & (size > RANK_RTOL * self._bound)
 
-    def toward(self, displacement: Any) -> Conservation:
+    def toward(self, displacement: Values) -> Conservation:
         """The same with a displacement (..., N) of the step in place of X where X(m, t) = 0.
 
         A time-dependent field that vanishes at t moves the point all the same; the displacement has the direction of
@@ -151,17 +155,18 @@ class Conservation:
         made._take(np.where(self.moving[..., None], self._velocity, displacement), self.moving | moved)
         return made
 
-    def needs_motion(self, displacement: Any) -> None:
+    def needs_motion(self, displacement: Values) -> None:
         """In compiled code: only steps are made for which `toward` would change nothing."""
         moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(np.float64).eps) * _length(self.m)
-        self.m.tape.required.append((self.moving | ~moved).entries[()])
+        settled: Any = self.moving | ~moved
+        settled.tape.required.append(settled.entries[()])
 
     @property
     def dimension(self) -> int:
         """Of g."""
         return self.action.dimension
 
-    def along(self, displacement: Any, directions: Any = None) -> Any:
+    def along(self, displacement: Values, directions: Values | None = None) -> Values:
         """e DF(m) rho(zeta) displacement for zeta in a basis of g_m (or the directions (..., dim g, q) given).
 
         Shape (..., k, s). It is chi_m for the displacement rho(xi_1) m.
@@ -176,43 +181,51 @@ class Conservation:
         (1, 1)
         """
         pulled = self.action.infinitesimal.right_transposed(displacement[..., None, :], self.gradient)
-        return self.factor * (pulled @ (self.basis if directions is None else directions))
+        found: Values = self.factor * (pulled @ (self.basis if directions is None else directions))
+        return found
 
-    def __call__(self, zeta: Any) -> Any:
+    def __call__(self, zeta: Values) -> Values:
         """chi_m(zeta) for zeta (..., dim g) in g_m, shape (..., k)."""
         moved = self.action.infinitesimal(zeta, self._velocity)
-        return self.factor * (self.gradient @ moved[..., None])[..., 0]
+        found: Values = self.factor * (self.gradient @ moved[..., None])[..., 0]
+        return found
 
     @property
-    def singular_values(self) -> Any:
+    def singular_values(self) -> Values:
         """Of `hat`, shape (..., min(k, s)), decreasing."""
         if self.matrix.shape[-2] == 1:
-            return _length(self.hat)[..., : self.matrix.shape[-1]]
+            found: Values = _length(self.hat)[..., : self.matrix.shape[-1]]
+            return found
         needs_one(self.hat)
         return np.linalg.svd(_double(self.hat), compute_uv=False)
 
     @property
-    def rank(self) -> Any:
+    def rank(self) -> IntegerArray:
         """Of chi_m, shape (...,)."""
         if self.matrix.shape[-2] == 1:
-            return self._of_one()[1][..., 0].astype(int)
-        return (self.singular_values > RANK_RTOL).sum(axis=-1)
+            one: IntegerArray = self._of_one()[1][..., 0].astype(int)
+            return one
+        found: IntegerArray = (self.singular_values > RANK_RTOL).sum(axis=-1)
+        return found
 
     @property
-    def wanted(self) -> Any:
+    def wanted(self) -> IntegerArray:
         """How many of the integrals are independent on the orbit at m: the rank of DF(m) on its tangent space."""
         if self.tangential.shape[-2] == 1:
-            return (self._sizes[..., 0] > 0).astype(int)
+            one: IntegerArray = (self._sizes[..., 0] > 0).astype(int)
+            return one
         needs_one(self.tangential)
-        return (np.linalg.svd(_double(self.tangential), compute_uv=False) > RANK_RTOL).sum(axis=-1)
+        found: IntegerArray = (np.linalg.svd(_double(self.tangential), compute_uv=False) > RANK_RTOL).sum(axis=-1)
+        return found
 
     @property
-    def onto(self) -> Any:
+    def onto(self) -> BooleanArray:
         """Whether chi_m reaches all integrals that are not stationary on the orbit at m, shape (...,)."""
-        return self.rank == self.wanted
+        found: BooleanArray = self.rank == self.wanted
+        return found
 
     @property
-    def directions(self) -> Any:
+    def directions(self) -> Values:
         """V_m: an orthonormal basis of the complement of ker chi_m in g_m, shape (..., dim g, q); zeros fill up."""
         if self.matrix.shape[-2] == 1:
             size, kept = (x[..., None] for x in self._of_one())
@@ -221,9 +234,10 @@ class Conservation:
             needs_one(self.hat)
             _, sizes, right = np.linalg.svd(_double(self.hat), full_matrices=False)
             rows = right * (sizes > RANK_RTOL)[..., None]
-        return self.basis @ np.swapaxes(rows, -1, -2)
+        found: Values = self.basis @ np.swapaxes(rows, -1, -2)
+        return found
 
-    def preimage(self, target: Any) -> Any:
+    def preimage(self, target: Values) -> Values:
         """The zeta in g_m of least norm with chi_m(zeta) = target (..., k); in least squares where there is none."""
         directions = self.directions
         matrix = self.along(self._velocity, directions)
@@ -233,15 +247,16 @@ class Conservation:
             inverse = np.where(matrix == 0, 0.0, 1.0 / np.where(matrix == 0, 1.0, matrix))
         else:
             inverse = pseudo_inverse(matrix, 0.0)
-        return (directions @ (inverse @ (target / units)[..., None]))[..., 0]
+        found: Values = (directions @ (inverse @ (target / units)[..., None]))[..., 0]
+        return found
 
-    def range(self, index: tuple[int, ...] = ()) -> Any:
+    def range(self, index: tuple[int, ...] = ()) -> Array:
         """An orthonormal basis of chi_m(g_m) in W, columns, shape (k, rank); at the point of that index."""
         left, sizes, _ = np.linalg.svd(_double(self.matrix[index]))
         rank = int(np.asarray(self.rank)[index])
         return left[:, : min(rank, len(sizes))]
 
-    def unreachable(self, index: tuple[int, ...] = ()) -> Any:
+    def unreachable(self, index: tuple[int, ...] = ()) -> Array:
         """Covectors z, rows of shape (j, k), with z chi_m = 0 although z DF does not vanish on the orbit.
 
         The combination sum_i z_i F_i cannot be corrected by isotropy, at first order; j = wanted - rank.
@@ -255,7 +270,8 @@ class Conservation:
         sizes = self._sizes[index]
         rows = np.where(sizes > 0, rows / np.where(sizes > 0, sizes, 1.0), 0.0)
         largest = np.take_along_axis(rows, np.abs(rows).argmax(axis=-1)[:, None], axis=-1)
-        return rows / largest
+        found: Array = rows / largest
+        return found
 
     def __str__(self) -> str:
         if self.m.ndim > 1:
@@ -266,7 +282,7 @@ class Conservation:
         return state + "; isotropy does not reach " + ", ".join(combination(z) for z in self.unreachable())
 
 
-def needs_one(matrix: Any) -> None:
+def needs_one(matrix: Values) -> None:
     """Refuse several integrals where values are not known: a singular value decomposition branches on them."""
     if type(matrix) is Traced:
         raise TraceError(
@@ -275,7 +291,7 @@ def needs_one(matrix: Any) -> None:
         )
 
 
-def combination(covector: Any) -> str:
+def combination(covector: Sequence[float] | Array) -> str:
     """A covector on W as a combination of integrals, in words.
 
     Examples
@@ -296,7 +312,7 @@ def combination(covector: Any) -> str:
     return text
 
 
-def pseudo_inverse(matrix: Any, cutoff: Any) -> Any:
+def pseudo_inverse(matrix: Values, cutoff: float | Array) -> Array:
     """A^+ of matrices (..., k, q); singular values up to the cutoff (...,), or 1e-12 of the largest, count as 0.
 
     Examples
@@ -311,11 +327,18 @@ def pseudo_inverse(matrix: Any, cutoff: Any) -> Any:
     left, sizes, right = np.linalg.svd(_double(matrix), full_matrices=False)
     kept = sizes > np.maximum(np.asarray(cutoff)[..., None], 1e-12 * sizes[..., :1])
     inverse = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
-    return np.swapaxes(right, -1, -2) @ (inverse[..., None] * np.swapaxes(left, -1, -2))
+    found: Array = np.swapaxes(right, -1, -2) @ (inverse[..., None] * np.swapaxes(left, -1, -2))
+    return found
 
 
 def conservation_map(
-    field: GeneratorField, step: Step, m: Any, F: Any, *, t: Any = 0.0, exponential: Any = "exp"
+    field: GeneratorField,
+    step: Step,
+    m: ArrayLike,
+    F: IntegralSource,
+    *,
+    t: Real = 0.0,
+    exponential: ExponentialLike = "exp",
 ) -> Conservation:
     """chi_m: g_m -> W, the change of E_n by isotropy t^(n-1) zeta in a step.
 
@@ -370,10 +393,11 @@ def conservation_map(
     return Conservation(action, integral, action.isotropy_frame(point, dimension), point, field.psi(point, t), factor)
 
 
-def _length(x: Any) -> Any:
-    return np.sqrt((x * x).sum(axis=-1))
+def _length(x: Values) -> Values:
+    found: Values = np.sqrt((x * x).sum(axis=-1))
+    return found
 
 
-def _double(x: Any) -> Any:
+def _double(x: Values) -> Array:
     """The precision in which linear algebra is available, and no NaN, for which it raises."""
     return np.nan_to_num(np.asarray(x, dtype=np.float64), nan=0.0, posinf=0.0, neginf=0.0)

@@ -11,16 +11,18 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from liehom.correctors.conserving.first_integral import FirstIntegral, conditioning
+from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralSource, conditioning
 from liehom.correctors.expansion import ROUND_OFF_UNITS, Flow, flow_series
 from liehom.correctors.isotropy.order_by_order import round_off
 from liehom.correctors.points import read_point
-from liehom.correctors.step import Generator, LocalStep, Step, apply_factors, step_variable
+from liehom.correctors.step import ExponentialLike, Generator, LocalStep, Step, apply_factors, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import is_exact
 from liehom.series.jet import Jet
+from liehom.typing import Array, IntegerArray, Real, Values
 
 EXTRA_ORDERS = 4
 """How far beyond the order of a step coefficients are looked at by default."""
@@ -50,8 +52,8 @@ class ConservedOrder:
     conserved to order 5 at least
     """
 
-    order: Any
-    coefficients: tuple[Any, ...]
+    order: int | IntegerArray
+    coefficients: tuple[Values, ...]
     bound: int
 
     def __str__(self) -> str:
@@ -62,12 +64,12 @@ class ConservedOrder:
 def conserved_order(
     field: GeneratorField,
     step: Step,
-    m: Any,
-    F: Any,
+    m: ArrayLike,
+    F: IntegralSource,
     *,
     up_to: int | None = None,
-    t: Any = 0,
-    exponential: Any = "exp",
+    t: Real = 0,
+    exponential: ExponentialLike = "exp",
 ) -> ConservedOrder:
     """To which order a step conserves a first integral, with the coefficients E_n.
 
@@ -122,7 +124,7 @@ def conserved_order(
     return ConservedOrder(order if order.ndim else int(order), tuple(integral.squeezed(x) for x in made), bound)
 
 
-def agreement(coefficients: list[Any], noise: list[Any] | None) -> Any:
+def agreement(coefficients: list[Array], noise: list[Array] | None) -> IntegerArray:
     """The largest p with E_1 = ... = E_p = 0, shape (...,); exactly, or up to what may be round-off.
 
     Examples
@@ -143,7 +145,7 @@ def agreement(coefficients: list[Any], noise: list[Any] | None) -> Any:
     return order
 
 
-def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Any, bound: int) -> list[Any]:
+def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Values, bound: int) -> list[Array]:
     """E_0, ..., E_bound, arrays of shape (..., k).
 
     Examples
@@ -154,15 +156,15 @@ def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Any, 
     >>> [float(e[0]) for e in expanded(action, FirstIntegral("m0", 2), local, np.array([1.0, 0.0]), 2)]
     [0.0, 0.0, -0.5]
     """
-    made = integral(apply_factors(action, local.factors(step_variable(bound, m)), m))
+    made: Any = integral(apply_factors(action, local.factors(step_variable(bound, m)), m))
     if not isinstance(made, Jet):
         return [0 * made] * (bound + 1)
     return [0 * made.coefficient(0), *[made.coefficient(k) for k in range(1, bound + 1)]]
 
 
 def round_off_of(
-    action: Action, integral: FirstIntegral, flow: Flow, local: LocalStep, m: Any, bound: int
-) -> list[Any]:
+    action: Action, integral: FirstIntegral, flow: Flow, local: LocalStep, m: Values, bound: int
+) -> list[Array]:
     """What may be round-off in E_0, ..., E_bound, arrays of shape (..., k).
 
     Examples
@@ -178,7 +180,7 @@ def round_off_of(
     eps = np.finfo(m.dtype).eps
     scale = conditioning(*integral.gradient(m), m)
     size = np.linalg.norm(np.asarray(m, dtype=float), axis=-1)
-    factors = local.factors(step_variable(bound, m))
+    factors: Any = local.factors(step_variable(bound, m))
     rate, found = 0.0 * size, [ROUND_OFF_UNITS * eps * scale]
     for k in range(1, bound + 1):
         term = round_off(action, m, flow, factors, k) / (ROUND_OFF_UNITS * eps * size)

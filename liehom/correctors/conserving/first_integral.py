@@ -8,7 +8,8 @@ m0, m1, ....
 
 from __future__ import annotations
 
-from typing import Any, final
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
@@ -18,6 +19,10 @@ from liehom.homogeneous.fields.components import Components, joined, takes_time
 from liehom.homogeneous.fields.expression import TREES
 from liehom.series.arrays import as_values, is_exact, zeros
 from liehom.series.jet import Jet
+from liehom.typing import ScalarLike, Values
+
+IntegralSource: TypeAlias = Callable[[Any], Any] | ScalarLike | Sequence[Callable[[Any], Any] | ScalarLike]
+"""A function F(m), a string or sympy expression in m0, m1, ..., or a sequence of these or of numbers."""
 
 RTOL = 1e-8
 
@@ -61,7 +66,7 @@ class FirstIntegral:
 
     __slots__ = ("_components", "_source", "scalar", "size")
 
-    def __init__(self, source: Any, size: int) -> None:
+    def __init__(self, source: IntegralSource, size: int) -> None:
         self.size = size
         self._components: Components | None = None
         self._source: Any = source
@@ -80,10 +85,11 @@ class FirstIntegral:
         if self._components.time_dependent:
             raise InputError(f"F = {parts} depends on t: a first integral is a function of m alone")
 
-    def __call__(self, m: Any) -> Any:
+    def __call__(self, m: Values) -> Values:
         """F(m) for m (..., N), array or Jet of shape (..., k)."""
         if self._components is not None:
-            return self._components(m)
+            found: Values = self._components(m)
+            return found
         made = self._source(m)
         if not isinstance(made, np.ndarray | Jet):
             made = joined(made, m)
@@ -102,7 +108,7 @@ class FirstIntegral:
         self.scalar = scalar
         return made if isinstance(made, Jet) or made.dtype.kind == "f" else _real(made, m)
 
-    def gradient(self, m: Any) -> tuple[Any, Any]:
+    def gradient(self, m: Values) -> tuple[Values, Values]:
         """F(m), shape (..., k), and DF(m), shape (..., k, N), by series of order 1 in the N directions."""
         m = as_values(m)
         lead, n = m.shape[:-1], m.shape[-1]
@@ -114,11 +120,11 @@ class FirstIntegral:
             return made[0], zeros(m, (*lead, made.shape[-1], n))
         return made.value[0], np.moveaxis(made.coefficient(1), 0, -1)
 
-    def squeezed(self, value: Any) -> Any:
+    def squeezed(self, value: Values) -> Values:
         """Values of shape (..., k) as the user has them: (...,) for a number."""
         return value[..., 0][()] if self.scalar else value
 
-    def check(self, flow: Flow, order: int, scale: Any = None) -> None:
+    def check(self, flow: Flow, order: int, scale: Values | None = None) -> None:
         """Check that F is constant along the flow, in the Taylor coefficients 1, ..., order.
 
         Parameters
@@ -151,7 +157,7 @@ class FirstIntegral:
         m = flow.point(0)
         exact = is_exact(m)
         if not exact:
-            scale = conditioning(*self.gradient(m), m) if scale is None else scale
+            unit = conditioning(*self.gradient(m), m) if scale is None else scale
             sizes = [np.linalg.norm(np.asarray(flow.point(k), dtype=float), axis=-1) for k in range(order + 1)]
         rate: Any = 0.0
         for k in range(1, order + 1):
@@ -160,7 +166,7 @@ class FirstIntegral:
                 bad = np.array([x != 0 for x in wrong.flat], dtype=bool).reshape(wrong.shape)
             else:
                 rate = np.maximum(rate, (sizes[k] / np.where(sizes[0] > 0, sizes[0], 1.0)) ** (1 / k))
-                bad = ~(np.abs(wrong) <= RTOL * scale * rate[..., None] ** k)
+                bad = ~(np.abs(wrong) <= RTOL * unit * rate[..., None] ** k)
             if bad.any():
                 index = tuple(int(i) for i in np.argwhere(bad)[0])[:-1]
                 what = "DF(m) X(m)" if k == 1 else f"the coefficient of t^{k} of F along the flow"
@@ -172,7 +178,7 @@ class FirstIntegral:
         return str(self._source[0]) if self.scalar else str([str(x) for x in self._source])
 
 
-def conditioning(value: Any, gradient: Any, m: Any) -> Any:
+def conditioning(value: Values, gradient: Values, m: Values) -> Values:
     """|F| + sum_i |dF/dm_i| |m_i|, shape (..., k): F is rounded, by m and by itself, by this much times eps.
 
     Examples
@@ -182,13 +188,16 @@ def conditioning(value: Any, gradient: Any, m: Any) -> Any:
     >>> conditioning(*FirstIntegral("m0**2 - m1**2", 2).gradient(m), m).tolist()
     [57.0]
     """
-    return np.abs(value) + (np.abs(gradient) @ np.abs(m)[..., None])[..., 0]
+    found: Values = np.abs(value) + (np.abs(gradient) @ np.abs(m)[..., None])[..., 0]
+    return found
 
 
-def _real(made: Any, m: Any) -> Any:
+def _real(made: Values, m: Values) -> Values:
     """Integers, or exact numbers next to exact points."""
     if made.dtype.kind in "iu":
-        return made.astype(float) if not is_exact(m) else made.astype(object) + zeros(m, ())
+        found: Values = made.astype(float) if not is_exact(m) else made.astype(object) + zeros(m, ())
+        return found
     if made.dtype.kind == "O" and is_exact(m):
-        return as_values(made)
+        found = as_values(made)
+        return found
     raise InputError(f"F returned values of the type {made.dtype}, expected real numbers")

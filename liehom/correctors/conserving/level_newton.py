@@ -15,6 +15,7 @@ import numpy as np
 
 from liehom.correctors.conserving.conservation import RANK_RTOL
 from liehom.tracing import Traced, while_loop
+from liehom.typing import Array, BooleanArray, Values
 
 MAX_ITERATIONS = 20
 MAX_STALLED_ITERATIONS = 2
@@ -39,14 +40,14 @@ class LevelSolution:
         In how many directions F resolves the change by isotropy.
     """
 
-    x: Any
-    residual: Any
-    iterations: Any
-    resolved: Any
+    x: Values | None
+    residual: Values
+    iterations: Values
+    resolved: Values
 
 
 def solve_levels(
-    residual: Callable[[Any], Any], first: Any, directions: Any, jacobian: Any, unit: Any, size: float
+    residual: Callable[[Any], Any], first: Values, directions: Values, jacobian: Values, unit: Values, size: float
 ) -> LevelSolution:
     """x in the span of `directions` with residual(x) = 0 to round-off.
 
@@ -75,14 +76,16 @@ def solve_levels(
     >>> bool(np.isclose(found.x[0], np.pi / 6, rtol=1e-15)), bool(found.iterations < 8)
     (True, True)
     """
-    unit = np.maximum(unit, float(np.finfo(first.dtype).tiny))
+    units: Any = np.maximum(unit, float(np.finfo(first.dtype).tiny))
     if type(first) is Traced:
-        return _on_tape(residual, first, directions[:, 0], jacobian[0, 0], unit, size)
+        return _on_tape(residual, first, directions[:, 0], jacobian[0, 0], units, size)
+    start: Any = first
+    slope: Any = jacobian
     if jacobian.shape == (1, 1):
-        return _of_one(residual, first, directions[:, 0], jacobian.item(), unit.item(), size)
-    project, lift, slopes, kept = _reduced(jacobian / unit[..., None], MIN_RESOLVED_UNITS * size)
+        return _of_one(residual, start, directions[:, 0], slope.item(), units.item(), size)
+    project, lift, slopes, kept = _reduced(slope / units[..., None], MIN_RESOLVED_UNITS * size)
     resolved = kept.sum(axis=-1)
-    r = (project @ (first / unit)[..., None])[..., 0]
+    r = (project @ (first / units)[..., None])[..., 0]
     active = np.abs(r).max(axis=-1, initial=0.0) > 1
     iterations = np.zeros(active.shape, dtype=int)
     if not active.any():
@@ -93,7 +96,7 @@ def solve_levels(
     for _ in range(MAX_ITERATIONS):
         step = _limited(-(inverse @ r[..., None])[..., 0], 1 / size) * active[..., None]
         value = residual((turn @ (c + step)[..., None])[..., 0])
-        made = (project @ (value / unit)[..., None])[..., 0]
+        made = (project @ (value / units)[..., None])[..., 0]
         iterations = iterations + active
         inverse = _updated(inverse, step, made - r)
         better = active & (_square(made) < _square(r))
@@ -107,7 +110,7 @@ def solve_levels(
 
 
 def _of_one(
-    residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float
+    residual: Callable[[Any], Any], first: Array, direction: Array, slope: float, unit: float, size: float
 ) -> LevelSolution:
     """`solve_levels` for one trajectory, one integral and one direction, where the overhead of arrays would show."""
     resolved = abs(slope) > MIN_RESOLVED_UNITS * size * unit
@@ -135,14 +138,16 @@ def _of_one(
 
 
 def _on_tape(
-    residual: Callable[[Any], Any], first: Any, direction: Any, slope: Any, unit: Any, size: float
+    residual: Callable[[Any], Any], first: Traced, direction: Traced, slope: Traced, unit: Traced, size: float
 ) -> LevelSolution:
     """`_of_one` in compiled code, every lane for itself."""
     tape = first.tape
     resolved = np.abs(slope) > MIN_RESOLVED_UNITS * size * unit[0]
     start = first[0]
 
-    def iteration(c: Any, best: Any, over: Any, stalled: Any, count: Any, active: Any) -> Any:
+    def iteration(
+        c: Values, best: Values, over: Values, stalled: Values, count: Values, active: Values
+    ) -> tuple[list[Values], Values]:
         # with 1 / slope, as there is then one division
         step = np.clip(-best * over, -1 / size, 1 / size)
         value = residual((c + step) * direction)[0]
@@ -163,7 +168,7 @@ def _on_tape(
     return LevelSolution(c * direction, best[None], count, np.where(resolved, 1, 0))
 
 
-def _reduced(jacobian: Any, cutoff: float) -> tuple[Any, Any, Any, Any]:
+def _reduced(jacobian: Array, cutoff: float) -> tuple[Array, Array, Array, BooleanArray]:
     """U^T, V, S and which are kept, of a singular value decomposition: the equations and unknowns that matter."""
     if jacobian.shape[-2:] == (1, 1):
         one, slopes = np.ones_like(jacobian), jacobian[..., 0]
@@ -175,14 +180,14 @@ def _reduced(jacobian: Any, cutoff: float) -> tuple[Any, Any, Any, Any]:
     return project.astype(jacobian.dtype), lift.astype(jacobian.dtype), slopes.astype(jacobian.dtype), kept
 
 
-def _limited(step: Any, largest: float) -> Any:
+def _limited(step: Array, largest: float) -> Array:
     """Steps of norm at most `largest`; 0 where it is not finite."""
     norm = np.sqrt(_square(step))[..., None]
     step = np.where(norm > largest, step * (largest / np.where(norm > 0, norm, 1.0)), step)
     return np.where(np.isfinite(norm), step, 0.0)
 
 
-def _updated(inverse: Any, step: Any, change: Any) -> Any:
+def _updated(inverse: Array, step: Array, change: Array) -> Array:
     """Broyden's update of the inverse Jacobian: it then takes the change of the residual to the step."""
     moved = (inverse @ change[..., None])[..., 0]
     row = (step[..., None, :] @ inverse)[..., 0, :]
@@ -191,5 +196,6 @@ def _updated(inverse: Any, step: Any, change: Any) -> Any:
     return inverse + np.where(good, (step - moved)[..., :, None] * row[..., None, :] / np.where(good, along, 1.0), 0.0)
 
 
-def _square(x: Any) -> Any:
-    return (x * x).sum(axis=-1)
+def _square(x: Array) -> Array:
+    found: Array = (x * x).sum(axis=-1)
+    return found

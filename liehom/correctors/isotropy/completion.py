@@ -12,6 +12,7 @@ on and smooth between, and the rest is made by x t^n, rho(x) m = what is missing
 
 from __future__ import annotations
 
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,13 @@ import numpy as np
 from liehom.correctors.expansion import Flow
 from liehom.homogeneous import Action, IsotropyFrame
 from liehom.series.arrays import namespace
+from liehom.typing import Values
 
 NO_ISOTROPY_UP_TO, ONLY_ISOTROPY_FROM = 1 / 4, 1 / 2
 REFINEMENTS = 2
 
 
-def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> Any:
+def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> Values:
     """s(rate t_1), shape (...,): the share of the corrections that isotropy takes.
 
     Parameters
@@ -60,10 +62,11 @@ def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> A
         rate = xp.maximum(rate, generator_norm(action, flow.psi(k)) ** (1 / (k + 1)))
     product = xp.where(rate > 0, rate * xp.minimum(scale, 1 / xp.where(rate > 0, rate, 1.0)), 1.0)
     x = xp.clip((product - NO_ISOTROPY_UP_TO) / (ONLY_ISOTROPY_FROM - NO_ISOTROPY_UP_TO), 0.0, 1.0)
-    return x * x * (3 - 2 * x)
+    found: Values = x * x * (3 - 2 * x)
+    return found
 
 
-def generator_norm(action: Action, x: Any) -> Any:
+def generator_norm(action: Action, x: Values) -> Values:
     """A bound of the norm of rho(x) for x (..., dim g), shape (...,).
 
     Examples
@@ -75,10 +78,11 @@ def generator_norm(action: Action, x: Any) -> Any:
     """
     xp = namespace(x)
     square = xp.einsum("...a,ab,...b->...", x, xp.asarray(action.inner_product.matrix), x)
-    return action.max_norm * xp.sqrt(xp.maximum(square, 0.0))
+    found: Values = action.max_norm * xp.sqrt(xp.maximum(square, 0.0))
+    return found
 
 
-def lifted(action: Action, frame: IsotropyFrame, m: Any, tangent: Any) -> Any:
+def lifted(action: Action, frame: IsotropyFrame, m: Values, tangent: Values) -> Values:
     """The generator x of least norm with rho(x) m = a tangent vector, shape (..., dim g).
 
     Examples
@@ -95,8 +99,10 @@ def lifted(action: Action, frame: IsotropyFrame, m: Any, tangent: Any) -> Any:
     for _ in range(REFINEMENTS if tangent.dtype == np.longdouble else 0):  # the frame is of double precision
         missing = tangent - action.infinitesimal(x, m)
         x = x + (frame.lift @ (down @ missing[..., None]))[..., 0]
-    return x
+    found: Values = x
+    return found
 
 
-def _norm(xp: Any, x: Any) -> Any:
-    return xp.sqrt(xp.sum(x * x, axis=-1))
+def _norm(xp: ModuleType, x: Values) -> Values:
+    found: Values = xp.sqrt(xp.sum(x * x, axis=-1))
+    return found

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.correctors.isotropy.isotropy_corrector import Correction, correct
-from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.correctors.step import Factors, Generator, LocalStep, Step, with_correction
 from liehom.errors import InputError
 from liehom.homogeneous import Action
+from liehom.typing import Values
 
 
 @final
@@ -76,10 +77,10 @@ class Corrected(Step):
     def one_exponential(self) -> bool:
         return self.step.one_exponential
 
-    def factors(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
+    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         return self.at(action, psi, m, t).factors(h)
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> CorrectedStep:
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> CorrectedStep:
         local = self.step.at(action, psi, m, t)
         found = correct(
             action,
@@ -128,13 +129,9 @@ class CorrectedStep(LocalStep):
         self.defects = correction.defects
         self._one_exponential = one_exponential
 
-    def factors(self, h: Any) -> tuple[Any, ...]:
-        made = self.base.factors(h)
-        zeta = self.correction.generator(h)
-        if zeta is None:
-            return made
-        return (made[0] + zeta,) if self._one_exponential else (*made, zeta)
+    def factors(self, h: Values) -> Factors:
+        return with_correction(self.base.factors(h), self.correction.generator(h), self._one_exponential)
 
-    def time(self, h: Any) -> Any:
+    def time(self, h: Values) -> Values:
         """tau(h), for h of shape (...,)."""
         return self.correction.time(h)

@@ -12,16 +12,18 @@ order p to any order.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, final
+from typing import final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from liehom.correctors.isotropy.order_by_order import OrderRecursion, Part, norm
-from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.correctors.step import ExponentialLike, Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.series.arrays import as_values, is_exact, namespace
+from liehom.typing import IntegerArray, Real, Values
 
 
 @final
@@ -57,16 +59,16 @@ class Correction:
     (3, True)
     """
 
-    zeta: tuple[Any, ...]
-    clock: tuple[Any, ...]
-    leading: Any
-    reached: Any
-    residual: Any
-    defects: tuple[tuple[int, Any], ...]
+    zeta: tuple[Values | None, ...]
+    clock: tuple[Values | None, ...]
+    leading: Values
+    reached: Values
+    residual: Values
+    defects: tuple[tuple[int, Values], ...]
     parts: tuple[Part, ...] = field(repr=False)
 
     @property
-    def singular_value(self) -> Any:
+    def singular_value(self) -> Values:
         """The smallest singular value that decides the range condition (6.2) at the point, shape (...,).
 
         Infinite at an equilibrium.
@@ -74,31 +76,32 @@ class Correction:
         return self._of_parts("singular_value", np.inf)
 
     @property
-    def rank(self) -> Any:
+    def rank(self) -> Values:
         """The rank that (6.2) asks to be the dimension of the orbit, shape (...,); 0 at an equilibrium."""
         return self._of_parts("rank", 0)
 
-    def _of_parts(self, name: str, otherwise: float) -> Any:
+    def _of_parts(self, name: str, otherwise: float) -> Values:
         xp = namespace(self.residual)
         found = xp.full(xp.shape(self.residual), otherwise)
         for part in [part for part in self.parts if part.solver is not None]:
             value = getattr(part.solver, name)
             found = value if part.here is None else xp.where(part.here, value, found)
-        return found
+        made: Values = found
+        return made
 
-    def generator(self, h: Any) -> Any:
+    def generator(self, h: Values) -> Values | None:
         """sum_k zeta_k h^k for h of shape (..., 1), array or Jet; None if there is no correction."""
         return _polynomial(self.zeta, h)
 
-    def time(self, h: Any) -> Any:
+    def time(self, h: Values) -> Values:
         """tau(h), for h of shape (...,)."""
         made = _polynomial(self.clock, h)
         return h if made is None else made
 
 
-def _polynomial(coefficients: tuple[Any, ...], h: Any) -> Any:
+def _polynomial(coefficients: tuple[Values | None, ...], h: Values) -> Values | None:
     """Horner's rule over coefficients of which some are None; coefficient 0 is None."""
-    total: Any = None
+    total: Values | None = None
     for x in reversed(coefficients):
         if total is not None:
             total = total * h
@@ -110,11 +113,11 @@ def _polynomial(coefficients: tuple[Any, ...], h: Any) -> Any:
 def correction(
     field: GeneratorField,
     step: Step,
-    m: Any,
+    m: ArrayLike,
     order: int,
     *,
-    t: Any = 0.0,
-    exponential: Any = "exp",
+    t: Real = 0.0,
+    exponential: ExponentialLike = "exp",
     weight: float | None = None,
 ) -> Correction:
     """What raises a step to a given order at a point: the coefficients of the isotropy correction and of the clock.
@@ -182,12 +185,12 @@ def correct(
     action: Action,
     field: GeneratorField,
     local: LocalStep,
-    m: Any,
-    t: Any,
+    m: Values,
+    t: Real,
     *,
     base_order: int,
     order: int,
-    orbit_dimension: Any,
+    orbit_dimension: int | IntegerArray,
     weight: float | None = None,
     one_exponential: bool = True,
     error_terms: int = 0,

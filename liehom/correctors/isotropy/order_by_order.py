@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
 from typing import Any, final
 
 import numpy as np
@@ -15,11 +16,12 @@ import numpy as np
 from liehom.correctors.expansion import ROUND_OFF_UNITS, Clock, Flow, at_rest, flow_series, leading_order, vanishing
 from liehom.correctors.isotropy.completion import generator_norm, isotropy_fraction, lifted
 from liehom.correctors.isotropy.range_solver import RangeSolver, TightFrameSolver
-from liehom.correctors.step import LocalStep, apply_factors, step_variable
+from liehom.correctors.step import Factors, LocalStep, apply_factors, step_variable, with_correction
 from liehom.homogeneous import Action, GeneratorField, IsotropyFrame
 from liehom.series.arrays import is_jax, is_lazy, namespace
 from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
+from liehom.typing import IntegerArray, Real, Values
 
 SOLVED_RTOL = 1e-6
 
@@ -42,9 +44,9 @@ class Part:
     """
 
     leading: int
-    here: Any
+    here: Values | None
     solver: RangeSolver | TightFrameSolver | None
-    fraction: Any
+    fraction: Values | None
 
 
 @final
@@ -77,11 +79,11 @@ class OrderRecursion:
         action: Action,
         field: GeneratorField,
         local: LocalStep,
-        m: Any,
-        t: Any,
+        m: Values,
+        t: Real,
         *,
         total: int,
-        orbit_dimension: Any,
+        orbit_dimension: int | IntegerArray,
         one_exponential: bool = True,
         weight: float | None = None,
     ) -> None:
@@ -91,19 +93,20 @@ class OrderRecursion:
         self.flow: Flow = flow_series(field, m, total, t)
         self.zeta = self._no_correction()
         self._factors = with_correction(local.factors(step_variable(total, m)), self.zeta, one_exponential)
-        self.step: Jet = apply_factors(action, self._factors, m)
+        step: Any = apply_factors(action, self._factors, m)
+        self.step: Jet = step
         self.clock = Clock(self.flow, total, self.shape)
         self._orbit_dimension = orbit_dimension
         # the values of traced arrays are not known: w_1 = 0 is then met by a fraction of 0
         if is_lazy(m):
-            self.leading = np.ones(self.shape, dtype=int)
+            self.leading: Values = np.ones(self.shape, dtype=int)
         elif action.tight_frame is not None and not field.time_dependent:
             self.leading = np.where(at_rest(action, self.flow), 0, 1)
         else:
             self.leading = leading_order(self.flow, total)
         # None is all of them, which spares masks
-        self.active: Any = None
-        self.moving: Any = None
+        self.active: Values | None = None
+        self.moving: Values | None = None
         if is_lazy(m) and not field.time_dependent:
             still = at_rest(action, self.flow) if type(m) is Traced else vanishing(self.flow, 1)
             self.active = self.moving = ~still
@@ -112,7 +115,7 @@ class OrderRecursion:
         self.parts = self._split(0.5 if one_exponential else 1.0, weight)
         self.levels = 0 * self.xp.asarray(self.leading)
         self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
-        self.defects: list[tuple[int, Any]] = []
+        self.defects: list[tuple[int, Values]] = []
 
     @cached_property
     def frame(self) -> IsotropyFrame:
@@ -128,7 +131,7 @@ class OrderRecursion:
 
     def _split(self, factor: float, weight: float | None) -> list[Part]:
         parts = []
-        some = self.leading.flat[:1]
+        some = np.asarray(self.leading).flat[:1]
         alike = bool(np.all(self.leading == some))  # the common case, in which nothing has to be sorted
         for l in [int(x) for x in (some if alike else np.unique(self.leading))]:
             here = None if alike else self.leading == l
@@ -152,7 +155,7 @@ class OrderRecursion:
     def level(self, n: int) -> None:
         """Make the step agree with F_tau at order n."""
         difference = self.difference(n)
-        changed: dict[int, Any] = {}
+        changed: dict[int, Values] = {}
         for part in self.parts:
             here = _both(self.active, part.here)
             if part.solver is None or n <= part.leading:
@@ -172,18 +175,19 @@ class OrderRecursion:
             old = self.zeta.node.known[k]
             self.zeta.replace(k, changed[k] if old is None else old + changed[k], self.step)
 
-    def difference(self, n: int) -> Any:
+    def difference(self, n: int) -> Values:
         """[t^n] (F_tau - step), shape (..., N)."""
-        return self.clock.point(n) - self.step.coefficient(n)
+        found: Values = self.clock.point(n) - self.step.coefficient(n)
+        return found
 
-    def _complete(self, changed: dict[int, Any], n: int, here: Any, difference: Any) -> None:
+    def _complete(self, changed: dict[int, Values], n: int, here: Values | None, difference: Values) -> None:
         made = lifted(self.action, self.frame, self.m, difference)
         _add(changed, n, _masked(self.xp, here, made))
 
-    def _reach(self, n: int, where: Any) -> None:
+    def _reach(self, n: int, where: Values | None) -> None:
         self.levels = 0 * self.levels + n if where is None else self.xp.where(where, n, self.levels)
 
-    def _judge(self, n: int, here: Any, difference: Any, residual: Any) -> None:
+    def _judge(self, n: int, here: Values | None, difference: Values, residual: Values | None) -> None:
         """Record the residual; where the system was not solved, the order stays and no more is corrected."""
         xp = self.xp
         if residual is None:  # it always has a solution
@@ -209,22 +213,7 @@ class OrderRecursion:
         self.residual = xp.maximum(self.residual, relative)
 
 
-def with_correction(factors: tuple[Any, ...], zeta: Jet | None, one_exponential: bool) -> tuple[Any, ...]:
-    """The factors of a corrected step: zeta is added to the generator, or is an outermost factor.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> x, zeta = Jet([[0.0], [1.0]]), Jet([[0.0], [2.0]])
-    >>> len(with_correction((x,), zeta, True)), len(with_correction((x, x), zeta, False))
-    (1, 3)
-    """
-    if zeta is None:
-        return factors
-    return (factors[0] + zeta,) if one_exponential else (*factors, zeta)
-
-
-def round_off(action: Action, m: Any, flow: Flow, factors: tuple[Any, ...], n: int) -> Any:
+def round_off(action: Action, m: Values, flow: Flow, factors: Factors, n: int) -> Values:
     """What may be round-off in [t^n] (F_tau - step), shape (...,): that of the terms of exp(|xi| + |psi| t) |m|.
 
     Examples
@@ -237,29 +226,32 @@ def round_off(action: Action, m: Any, flow: Flow, factors: tuple[Any, ...], n: i
     True
     """
     xp = namespace(m)
+    expanded: Any = factors
     rates = [xp.zeros(m.shape[:-1], dtype=m.dtype)]
     for k in range(1, n + 1):
-        step = sum(generator_norm(action, x.coefficient(k)) for x in factors)
+        step: Any = sum(generator_norm(action, x.coefficient(k)) for x in expanded)
         rates.append(k * step + generator_norm(action, flow.psi(k - 1)))
     terms = [norm(xp, m)]
     for k in range(1, n + 1):
         terms.append(sum(rates[i] * terms[k - i] for i in range(1, k + 1)) / k)
-    return ROUND_OFF_UNITS * np.finfo(m.dtype).eps * terms[n]
+    found: Values = ROUND_OFF_UNITS * np.finfo(m.dtype).eps * terms[n]
+    return found
 
 
-def _add(changed: dict[int, Any], k: int, value: Any) -> None:
+def _add(changed: dict[int, Values], k: int, value: Values) -> None:
     changed[k] = value if k not in changed else changed[k] + value
 
 
-def _both(a: Any, b: Any) -> Any:
+def _both(a: Values | None, b: Values | None) -> Values | None:
     """a and b, where None is everywhere."""
     return b if a is None else a if b is None else a & b
 
 
-def _masked(xp: Any, here: Any, value: Any) -> Any:
+def _masked(xp: ModuleType, here: Values | None, value: Values) -> Values:
     return value if here is None else xp.where(here[..., None], value, 0.0)
 
 
-def norm(xp: Any, x: Any) -> Any:
+def norm(xp: ModuleType, x: Values) -> Values:
     """The Euclidean norms of (..., N)."""
-    return xp.sqrt(xp.sum(x * x, axis=-1))
+    found: Values = xp.sqrt(xp.sum(x * x, axis=-1))
+    return found

@@ -12,7 +12,8 @@ then zeta = M^+ (r + l c u).
 
 from __future__ import annotations
 
-from typing import Any, final
+from types import ModuleType
+from typing import final
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from liehom.homogeneous import Action, IsotropyFrame
 from liehom.homogeneous.frames.branch_free_frames import orthogonal_decomposition
 from liehom.series.arrays import across_lanes, namespace
 from liehom.tracing.array import Traced
+from liehom.typing import IntegerArray, Values
 
 RANK_RTOL = 1e-8
 REACHED_RTOL = 1e-7
@@ -67,7 +69,7 @@ class RangeSolver:
         self,
         action: Action,
         frame: IsotropyFrame,
-        velocity: Any,
+        velocity: Values,
         leading: int,
         factor: float,
         weight: float | None = None,
@@ -89,29 +91,31 @@ class RangeSolver:
         square = xp.sum(rest * rest, axis=-1, keepdims=True)
         self._determined = square > REACHED_RTOL**2
         self._rest = xp.where(self._determined, rest / xp.where(self._determined, square, 1.0), 0.0)
-        self._values: Any = None
+        self._values: Values | None = None
 
     @property
-    def singular_value(self) -> Any:
+    def singular_value(self) -> Values:
         """The d-th singular value of [e rho(g_m) u, u], shape (...,): (6.2) holds where it is not 0."""
         return _entry(self._xp, self._singular_values(), self._frame.orbit_dimension)
 
     @property
-    def rank(self) -> Any:
+    def rank(self) -> IntegerArray:
         """The rank of this matrix, shape (...,); the range condition asks for d."""
-        return (self._singular_values() > self._cutoff).sum(axis=-1)
+        found: IntegerArray = (self._singular_values() > self._cutoff).sum(axis=-1)
+        return found
 
     @property
-    def matrix(self) -> Any:
+    def matrix(self) -> Values:
         """[e rho(g_m) u, u] in orthonormal bases, shape (..., d, s + 1)."""
-        return self._xp.concatenate([self._moves, self._unit[..., None]], axis=-1)
+        found: Values = self._xp.concatenate([self._moves, self._unit[..., None]], axis=-1)
+        return found
 
-    def _singular_values(self) -> Any:
+    def _singular_values(self) -> Values:
         if self._values is None:
             self._values = self._xp.linalg.svd(_single(self.matrix), compute_uv=False)
         return self._values
 
-    def solve(self, right: Any) -> tuple[Any, Any, Any]:
+    def solve(self, right: Values) -> tuple[Values, Values, Values]:
         """zeta (..., dim g), c (...,) and the residual r - (e rho(zeta) w - l c w), tangential, shape (..., N)."""
         target = _apply(self._down, right / self._size)
         c = self._clock(target)
@@ -120,17 +124,19 @@ class RangeSolver:
         residual = moved - _apply(self._moves, zeta)
         return _apply(self._basis, zeta), c, _apply(self._frame.tangent, residual * self._size)
 
-    def _clock(self, target: Any) -> Any:
+    def _clock(self, target: Values) -> Values:
         c = -self._xp.sum(self._rest * target, axis=-1) / self._leading
         if self._weight is None:
-            return c
+            found: Values = c
+            return found
         # zeta = a + l c b with a = M^+ r, b = M^+ u: the least |a + l c b|^2 + weight^2 c^2
         xp, l = self._xp, self._leading
         a, b = self._generator(target) / self._weight, self._reaching / self._weight
         free = -l * xp.sum(a * b, axis=-1) / (1 + l**2 * xp.sum(b * b, axis=-1))
-        return xp.where(self._determined[..., 0], c, free)
+        found = xp.where(self._determined[..., 0], c, free)
+        return found
 
-    def _generator(self, target: Any) -> Any:
+    def _generator(self, target: Values) -> Values:
         """M^+ r, in the basis of the frame."""
         if target.dtype != np.longdouble:
             return _apply(self._inverse, target)
@@ -180,12 +186,12 @@ class TightFrameSolver:
     def __init__(
         self,
         action: Action,
-        m: Any,
-        orbit_dimension: Any,
-        velocity: Any,
+        m: Values,
+        orbit_dimension: int | IntegerArray,
+        velocity: Values,
         leading: int,
         factor: float,
-        moving: Any = None,
+        moving: Values | None = None,
     ) -> None:
         square = inner(velocity, velocity)
         moves = square > 0 if moving is None else moving
@@ -193,7 +199,7 @@ class TightFrameSolver:
         self._action, self._m, self._dimension, self._velocity = action, m, orbit_dimension, velocity
         self._leading, self._factor = leading, factor
 
-    def solve(self, right: Any) -> tuple[Any, Any, None]:
+    def solve(self, right: Values) -> tuple[Values, Values, None]:
         """zeta (..., dim g), c (...,) and None for no residual."""
         action, tight, w = self._action, self._action.tight_frame, self._velocity
         if tight is None:
@@ -208,18 +214,18 @@ class TightFrameSolver:
         return y, -along / self._leading, None
 
     @property
-    def singular_value(self) -> Any:
+    def singular_value(self) -> Values:
         """As of a `RangeSolver`: the least of e mu^(1/2), d - 1 times, and 1."""
         isotropy = self._action.tight_frame.isotropy if self._action.tight_frame is not None else 0.0
         return np.full(np.shape(self._over), min(self._factor * isotropy**0.5, 1.0))
 
     @property
-    def rank(self) -> Any:
+    def rank(self) -> IntegerArray:
         """The dimension of the orbit."""
         return np.broadcast_to(self._dimension, np.shape(self._over))
 
 
-def inner(a: Any, b: Any) -> Any:
+def inner(a: Values, b: Values) -> Values:
     """The inner products of (..., N), arrays of numpy or traced ones.
 
     Examples
@@ -227,20 +233,22 @@ def inner(a: Any, b: Any) -> Any:
     >>> inner(np.ones((2, 3)), np.ones((2, 3))).tolist()
     [3.0, 3.0]
     """
-    return np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
+    found: Values = np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
+    return found
 
 
-def _polished(basis: Any, gram: Any) -> Any:
+def _polished(basis: Values, gram: Values) -> Values:
     """A basis that is orthonormal to double precision, orthonormal to that of extended floats."""
     square = np.swapaxes(basis, -1, -2) @ gram @ basis
     return basis @ (1.5 * np.eye(basis.shape[-1], dtype=basis.dtype) - square / 2)
 
 
-def _apply(matrix: Any, vector: Any) -> Any:
-    return (matrix @ vector[..., None])[..., 0]
+def _apply(matrix: Values, vector: Values) -> Values:
+    found: Values = (matrix @ vector[..., None])[..., 0]
+    return found
 
 
-def _normalized(xp: Any, vector: Any) -> tuple[Any, Any]:
+def _normalized(xp: ModuleType, vector: Values) -> tuple[Values, Values]:
     """|v| (1 where v = 0), shape (..., 1), and v / |v|; without underflow of squares."""
     largest = xp.max(xp.abs(vector), axis=-1, keepdims=True)
     largest = xp.where(largest > 0, largest, 1.0)
@@ -250,33 +258,38 @@ def _normalized(xp: Any, vector: Any) -> tuple[Any, Any]:
     return size * largest, unit / size
 
 
-def _entry(xp: Any, values: Any, d: Any) -> Any:
+def _entry(xp: ModuleType, values: Values, d: int | IntegerArray) -> Values:
     """values[d - 1], 0 where there are fewer."""
     wide = xp.concatenate([0 * values[..., :1], values], axis=-1)
     index = np.where(d <= values.shape[-1], d, 0)
-    return xp.take_along_axis(wide, np.broadcast_to(index, wide.shape[:-1])[..., None], axis=-1)[..., 0]
+    found: Values = xp.take_along_axis(wide, np.broadcast_to(index, wide.shape[:-1])[..., None], axis=-1)[..., 0]
+    return found
 
 
-def _single(x: Any) -> Any:
+def _single(x: Values) -> Values:
     """The precision in which linear algebra is available."""
     return x.astype(np.float64) if x.dtype == np.longdouble else x
 
 
-def _pseudo_inverse(xp: Any, matrix: Any, cutoff: float, rank: int | None = None) -> Any:
+def _pseudo_inverse(xp: ModuleType, matrix: Values, cutoff: float, rank: int | None = None) -> Values:
     """M^+ (..., s, d); for extended floats ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
     turned = xp.swapaxes(matrix, -1, -2)
     extended = matrix.dtype == np.longdouble
     if type(matrix) is Traced:
         found = orthogonal_decomposition(matrix, min(matrix.shape[-2:]) if rank is None else rank, cutoff)
-        return found.lift @ xp.swapaxes(found.image, -1, -2)
+        made: Values = found.lift @ xp.swapaxes(found.image, -1, -2)
+        return made
     if matrix.shape[-1] == 0:
-        return matrix @ turned if extended else turned
+        made = matrix @ turned if extended else turned
+        return made
     if matrix.shape[-1] == 1 and not extended:  # a column, as on every two-dimensional orbit of so(3)
         square = xp.sum(matrix * matrix, axis=-2, keepdims=True)
         kept = square > cutoff * cutoff
-        return xp.where(kept, turned / xp.where(kept, square, 1.0), 0.0)
+        made = xp.where(kept, turned / xp.where(kept, square, 1.0), 0.0)
+        return made
     left, values, right = xp.linalg.svd(_single(matrix), full_matrices=False)
     kept = values > cutoff
     inverse = xp.where(kept, 1 / xp.where(kept, values, 1.0), 0.0)[..., None, :]
     back = xp.swapaxes(left, -1, -2)
-    return (left * inverse**4) @ back if extended else (xp.swapaxes(right, -1, -2) * inverse) @ back
+    made = (left * inverse**4) @ back if extended else (xp.swapaxes(right, -1, -2) * inverse) @ back
+    return made

@@ -15,14 +15,17 @@ from typing import Any, final
 import numpy as np
 
 from liehom.correctors.expansion import Clock, Flow, flow_series, step_series
-from liehom.correctors.step import Generator, Step
+from liehom.correctors.step import ExponentialLike, Generator, Step
+from liehom.correctors.symbolic.exact_range import object_array
 from liehom.correctors.symbolic.symbolic_output import ansatz, compiled_function
-from liehom.correctors.symbolic.symbolic_problem import Symbols, read_symbols
-from liehom.correctors.symbolic.symbolic_range import SymbolicRange, array, simple
+from liehom.correctors.symbolic.symbolic_problem import ExpressionLike, Symbols, read_symbols
+from liehom.correctors.symbolic.symbolic_range import SymbolicRange, simple
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.representations import Representation
+from liehom.scalars.functions.function_field import RationalFunction
 from liehom.series.jet import Jet
+from liehom.typing import Expression, ObjectArray
 
 
 @final
@@ -83,7 +86,7 @@ class ClosedForm:
     symbols: Symbols
     _elements: dict[tuple[str, int], Any] = field(repr=False)
 
-    def equal(self, a: Any, b: Any) -> bool:
+    def equal(self, a: ExpressionLike, b: ExpressionLike) -> bool:
         """Whether two expressions in the symbols are equal wherever the constraints hold: a proof, no sampling.
 
         Raises
@@ -102,7 +105,7 @@ class ClosedForm:
         """
         return bool(self.symbols.element(a) == self.symbols.element(b))
 
-    def in_terms_of(self, invariants: Mapping[Any, Any], k: int | str | None = None, *, degree: int = 3) -> Any:
+    def in_terms_of(self, invariants: Mapping[Any, Any], k: int | str | None = None, *, degree: int = 3) -> Expression:
         """factor[k] (or the clock's c_k, for k = "clock 2" and so on) as a polynomial in named functions.
 
         Parameters
@@ -130,7 +133,7 @@ class ClosedForm:
         """
         return ansatz(self.symbols, invariants, self._chosen(k), degree)
 
-    def _chosen(self, k: int | str | None) -> Any:
+    def _chosen(self, k: int | str | None) -> RationalFunction:
         if isinstance(k, str) and k.startswith("clock "):
             key: tuple[str, int] = ("clock", int(k.removeprefix("clock ")))
         else:
@@ -138,7 +141,8 @@ class ClosedForm:
             key = ("factor", last if k is None else int(k))
         if key not in self._elements:
             raise InputError(f"there is no {key[0]} with index {key[1]}: there are {sorted(self._elements)}")
-        return self._elements[key]
+        found: RationalFunction = self._elements[key]
+        return found
 
     def function(self, k: int | None = None) -> Callable[..., Any]:
         """zeta_k as a compiled function (m, t=0, **parameters) -> array of shape (..., dim g).
@@ -238,7 +242,7 @@ def closed_form(
     step: Step,
     order: int,
     *,
-    exponential: Any = "exp",
+    exponential: ExponentialLike = "exp",
     constraints: Sequence[Any] | None = None,
     isotropy: Sequence[Any] | None = None,
     parameters: Sequence[Any] | None = None,
@@ -298,7 +302,7 @@ def closed_form(
     symbols, components = read_symbols(representation, psi, constraints, parameters, isotropy or ())
     generator = GeneratorField(representation, symbols.generator(components))
     action = Action(representation, exponential)
-    solver = SymbolicRange(action, symbols.field, array(symbols.point))
+    solver = SymbolicRange(action, symbols.field, object_array(symbols.point))
     if isotropy is not None:
         solver.row = _given_isotropy(symbols, solver, isotropy, action.dimension)
     recursion = _SymbolicRecursion(action, generator, step, symbols, solver, order)
@@ -316,12 +320,12 @@ class _SymbolicRecursion:
         if isinstance(order, bool) or not isinstance(order, int | np.integer) or order <= step.order:
             raise InputError(f"the order is an integer above {step.order}, the order of {step!r}; got {order!r}")
         self.action, self.symbols, self.solver, self.order = action, symbols, solver, int(order)
-        point = array(symbols.point)[None]
-        time = array([symbols.time])
+        point = object_array(symbols.point)[None]
+        time = object_array([symbols.time])
         self.flow: Flow = flow_series(generator, point, self.order, time)
         psi = Generator(generator, solver.orbit_dimension)
         local = step.at(action, psi, point, time[:, None])
-        self.zeta = Jet.growing(array([symbols.field.zero] * action.dimension)[None], self.order, zero=True)
+        self.zeta = Jet.growing(object_array([symbols.field.zero] * action.dimension)[None], self.order, zero=True)
         for _ in range(self.order):
             self.zeta.extend(None)
         self.step = step_series(action, local, point, self.order, self.zeta)
@@ -330,12 +334,12 @@ class _SymbolicRecursion:
         self.leading = next((k for k in range(1, self.order + 1) if any(self.flow.point(k)[0])), 0)
         self.reached, self.found_zeta, self.found_clock = 0, {}, {}  # type: ignore[var-annotated]
 
-    def in_algebra(self, solution: Any) -> Any:
+    def in_algebra(self, solution: ObjectArray) -> ObjectArray:
         """What the solver found as dim g coefficients."""
         row = self.solver.row
         return solution if row is None else simple(solution[0] * row)
 
-    def difference(self, n: int) -> Any:
+    def difference(self, n: int) -> ObjectArray:
         """[t^n] (F_tau - corrected step)."""
         return simple((self.clock.point(n) - self.step.coefficient(n))[0])
 
@@ -357,17 +361,17 @@ class _SymbolicRecursion:
             k = n - self.leading
             self.found_zeta[k], self.found_clock[k + 1] = zeta, c
             self.zeta.replace(k, self.in_algebra(zeta)[None], self.step)
-            self.clock.set(k + 1, array([c]))
+            self.clock.set(k + 1, object_array([c]))
             if any(self.difference(n)):
                 return
             self.reached = n
 
 
-def _given_isotropy(symbols: Symbols, solver: SymbolicRange, isotropy: Sequence[Any], dimension: int) -> Any:
+def _given_isotropy(symbols: Symbols, solver: SymbolicRange, isotropy: Sequence[Any], dimension: int) -> ObjectArray:
     left = dimension - solver.orbit_dimension
     if left != 1:
         raise InputError(f"isotropy can be given where g_m has dimension 1; here it has dimension {left}")
-    row = array([symbols.element(x) for x in isotropy])
+    row = object_array([symbols.element(x) for x in isotropy])
     if len(row) != dimension:
         raise ShapeError(f"isotropy has {len(row)} coefficients, the algebra has dimension {dimension}")
     if not any(row) or not solver.fixes(row):

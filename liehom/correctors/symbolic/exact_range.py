@@ -8,12 +8,15 @@ is none.  Nothing passes through a float.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.representations import Representation
+from liehom.scalars.fields.field import Matrix, Scalar
+from liehom.typing import ObjectArray, ScalarLike, VectorLike
 
 
 @final
@@ -35,15 +38,20 @@ class ExactSolution:
     """
 
     solvable: bool
-    zeta: Any
-    c: Any
-    residual: Any
+    zeta: ObjectArray
+    c: Scalar
+    residual: ObjectArray
     rank: int
     dimension: int
 
 
 def solve_exactly(
-    representation: Representation, m: Any, velocity: Any, right: Any, leading: int, factor: Any
+    representation: Representation,
+    m: VectorLike,
+    velocity: VectorLike,
+    right: VectorLike,
+    leading: int,
+    factor: ScalarLike,
 ) -> ExactSolution:
     """Solve the linear system at one point.
 
@@ -90,23 +98,25 @@ def solve_exactly(
     left = right_column - reached
     return ExactSolution(
         solvable,
-        _array([row[0] for row in zeta.to_rows()]),
+        object_array([row[0] for row in zeta.to_rows()]),
         c,
-        _array([row[0] for row in left.to_rows()]),
+        object_array([row[0] for row in left.to_rows()]),
         int(rank),
         representation.algebra.dimension - isotropy.dimension,
     )
 
 
-def _least(moves: Any, target: Any, gram: Any) -> Any:
+def _least(moves: Matrix, target: Matrix, gram: Matrix) -> Matrix:
     """The y with moves y = target of least y^T gram y: y = gram^-1 moves^T u."""
     if moves.ncols == 0:
-        return moves.T @ target
+        found: Matrix = moves.T @ target
+        return found
     turned = gram.solve(moves.T)
-    return turned @ (moves @ turned).solve(target)
+    found = turned @ (moves @ turned).solve(target)
+    return found
 
 
-def gram_matrix(representation: Representation) -> Any:
+def gram_matrix(representation: Representation) -> Matrix:
     """The inner product on g by which zeta is least, exactly: `liehom.homogeneous.inner_product` over the field.
 
     Examples
@@ -121,19 +131,29 @@ def gram_matrix(representation: Representation) -> Any:
     turned = field.stack_rows([a.T.reshape(1, size) for a in representation.matrices], size)
     trace = -(flat @ turned.T)
     if trace.is_positive_definite():
-        return trace
+        found: Matrix = trace
+        return found
     killing = -representation.algebra.killing_form()
     if killing.is_positive_definite():
-        return killing
+        found = killing
+        return found
     product = flat @ flat.T
     if product.is_positive_definite() and field.stack_rows([flat, turned], size).rank() == flat.rank():
-        return product
-    return field.identity(n)
+        found = product
+        return found
+    found = field.identity(n)
+    return found
 
 
-def _array(values: list[Any]) -> Any:
-    """An array of objects: numpy must not look into the numbers."""
-    made = np.empty(len(values), dtype=object)
-    for i, value in enumerate(values):
-        made[i] = value
+def object_array(elements: Sequence[object] | ObjectArray) -> ObjectArray:
+    """One-dimensional array of objects with these elements, into which numpy does not look.
+
+    Examples
+    --------
+    >>> object_array([[1, 2], [3, 4]]).shape
+    (2,)
+    """
+    made: ObjectArray = np.empty(len(elements), dtype=object)
+    for i, element in enumerate(elements):
+        made[i] = element
     return made

@@ -15,20 +15,24 @@ from math import factorial
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
 
 from liehom.correctors.expansion import Clock, Flow, flow_series, leading_order
 from liehom.correctors.isotropy.completion import generator_norm
-from liehom.correctors.isotropy.order_by_order import round_off, with_correction
+from liehom.correctors.isotropy.order_by_order import round_off
 from liehom.correctors.isotropy.range_solver import RangeSolver
 from liehom.correctors.points import read_point
-from liehom.correctors.step import Generator, Step, apply_factors, step_variable
+from liehom.correctors.step import ExponentialLike, Generator, Step, apply_factors, step_variable, with_correction
 from liehom.correctors.symbolic.exact_range import ExactSolution, solve_exactly
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.scalars import RankDecision
+from liehom.scalars.fields.field import Scalar
 from liehom.series.arrays import as_values, is_exact, zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
+from liehom.typing import Real
 
 SOLVED_RTOL = 1e-8
 ISOTROPY_RTOL = 1e-9
@@ -74,11 +78,11 @@ class OrderCondition:
 
     order: int
     leading: int
-    chi: Any
+    chi: npt.NDArray[Any]
     solvable: bool
-    zeta: Any
-    c: Any
-    residual: Any
+    zeta: npt.NDArray[Any]
+    c: Scalar
+    residual: npt.NDArray[Any]
     range_holds: bool
     rank: int
     dimension: int
@@ -105,13 +109,13 @@ class OrderCondition:
 def chi(
     field: GeneratorField,
     step: Step,
-    m: Any,
+    m: ArrayLike,
     n: int,
-    zeta: Any = None,
+    zeta: ArrayLike | None = None,
     *,
-    t: Any = 0,
-    exponential: Any = "exp",
-) -> Any:
+    t: Real = 0,
+    exponential: ExponentialLike = "exp",
+) -> npt.NDArray[Any]:
     """chi_m^(n)(zeta), equation (5.4): the n-th derivative of step - flow, with zeta added to the step.
 
     Parameters
@@ -160,7 +164,7 @@ def chi(
 
 
 def order_condition(
-    field: GeneratorField, step: Step, m: Any, n: int, *, t: Any = 0, exponential: Any = "exp"
+    field: GeneratorField, step: Step, m: ArrayLike, n: int, *, t: Real = 0, exponential: ExponentialLike = "exp"
 ) -> OrderCondition:
     """Whether Theorem 5 gives order n at a point: (5.5) for this step, and the range condition for all steps.
 
@@ -205,7 +209,7 @@ def order_condition(
         raise ShapeError(f"the order condition is decided at one point, got an array of shape {np.shape(m)}")
     expansion = _Expansion(field, step, m, n, None, t, exponential)
     expansion.require_agreement(n)
-    leading = int(leading_order(expansion.flow, n))
+    leading = int(np.asarray(leading_order(expansion.flow, n)))
     right = expansion.difference(n)
     derivative = -factorial(n) * right
     if leading == 0:
@@ -216,7 +220,16 @@ def order_condition(
 class _Expansion:
     """Flow, step and clock at a point, expanded to order n."""
 
-    def __init__(self, field: GeneratorField, step: Step, m: Any, n: int, zeta: Any, t: Any, exponential: Any) -> None:
+    def __init__(
+        self,
+        field: GeneratorField,
+        step: Step,
+        m: ArrayLike,
+        n: int,
+        zeta: ArrayLike | None,
+        t: Real,
+        exponential: ExponentialLike,
+    ) -> None:
         if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
             raise InputError(f"the order is an integer at least 1, got {n!r}")
         self.representation = field.representation
@@ -229,14 +242,15 @@ class _Expansion:
         local = step.at(self.action, psi, self.point, np.asarray(t)[..., None])
         h = step_variable(n, self.point)
         self.factors = with_correction(local.factors(h), self._polynomial(zeta, n), step.one_exponential)
-        self.step: Jet = apply_factors(self.action, self.factors, self.point)
+        made: Any = apply_factors(self.action, self.factors, self.point)
+        self.step: Jet = made
         self.clock = Clock(self.flow, n, tuple(self.point.shape[:-1]))
-        tau = local.time(h[..., 0])
+        tau: Any = local.time(h[..., 0])
         for k in range(2, n + 1):
             if tau.node.coefficient(k) is not None:
                 self.clock.set(k, tau.coefficient(k))
 
-    def _polynomial(self, zeta: Any, n: int) -> Jet | None:
+    def _polynomial(self, zeta: ArrayLike | None, n: int) -> Jet | None:
         if zeta is None:
             return None
         values = as_values(zeta)
@@ -248,7 +262,7 @@ class _Expansion:
         known = [None, *values[:n], *[None] * (n - len(values))]
         return Jet.from_node(Node(n, zeros(values, values.shape[1:]), known))
 
-    def _require_isotropy(self, x: Any, k: int) -> None:
+    def _require_isotropy(self, x: npt.NDArray[Any], k: int) -> None:
         moved = self.action.infinitesimal(x, self.point)
         if self.exact:
             wrong = any(value != 0 for value in moved.flat)
@@ -258,9 +272,10 @@ class _Expansion:
         if wrong:
             raise InputError(f"zeta_{k} = {x} is not in the isotropy subalgebra: rho(zeta_{k}) m = {moved}")
 
-    def difference(self, n: int) -> Any:
+    def difference(self, n: int) -> npt.NDArray[Any]:
         """[t^n] (F_tau - step)."""
-        return self.clock.point(n) - self.step.coefficient(n)
+        found: npt.NDArray[Any] = self.clock.point(n) - self.step.coefficient(n)
+        return found
 
     def require_agreement(self, n: int) -> None:
         for k in range(1, n):
@@ -269,22 +284,23 @@ class _Expansion:
                     f"the step agrees with the flow at m to order {k - 1} only, not to {n - 1}: ask for order {k}"
                 )
 
-    def vanishes(self, difference: Any, k: int) -> bool:
+    def vanishes(self, difference: npt.NDArray[Any], k: int) -> bool:
         if self.exact:
             return all(x == 0 for x in difference.flat)
         return bool(np.linalg.norm(difference) <= round_off(self.action, self.point, self.flow, self.factors, k))
 
 
-def _solve(expansion: _Expansion, leading: int, right: Any) -> ExactSolution:
+def _solve(expansion: _Expansion, leading: int, right: npt.NDArray[Any]) -> ExactSolution:
     """The solution over the field of the point."""
     field = expansion.representation.field
     factor = field.one / 2 if expansion.one_exponential else field.one
-    return solve_exactly(
-        expansion.representation, expansion.point, expansion.flow.point(leading), right, leading, factor
-    )
+    velocity: Any = expansion.flow.point(leading)
+    return solve_exactly(expansion.representation, expansion.point, velocity, right, leading, factor)
 
 
-def _exactly(expansion: _Expansion, leading: int, n: int, right: Any, derivative: Any) -> OrderCondition:
+def _exactly(
+    expansion: _Expansion, leading: int, n: int, right: npt.NDArray[Any], derivative: npt.NDArray[Any]
+) -> OrderCondition:
     found = _solve(expansion, leading, right if n > leading else 0 * right)
     solvable, residual = (found.solvable, found.residual) if n > leading else (expansion.vanishes(right, n), right)
     holds = found.rank == found.dimension
@@ -293,10 +309,15 @@ def _exactly(expansion: _Expansion, leading: int, n: int, right: Any, derivative
     )
 
 
-def _numerically(expansion: _Expansion, leading: int, n: int, right: Any, derivative: Any) -> OrderCondition:
+def _numerically(
+    expansion: _Expansion, leading: int, n: int, right: npt.NDArray[Any], derivative: npt.NDArray[Any]
+) -> OrderCondition:
     frame = expansion.action.isotropy_frame(expansion.point, expansion.orbit_dimension)
     factor = 0.5 if expansion.one_exponential else 1.0
     solver = RangeSolver(expansion.action, frame, expansion.flow.point(leading), leading, factor)
+    zeta: Any
+    c: Any
+    residual: Any
     zeta, c, residual = solver.solve(right if n > leading else 0 * right)
     if n <= leading:
         residual = right
@@ -315,12 +336,14 @@ def _numerically(expansion: _Expansion, leading: int, n: int, right: Any, deriva
         rank == dimension,
         rank,
         dimension,
-        float(solver.singular_value),
+        float(np.asarray(solver.singular_value)),
         RankDecision(rank, float(relative[rank - 1]), float(relative[rank])),
     )
 
 
-def _at_equilibrium(expansion: _Expansion, n: int, right: Any, derivative: Any) -> OrderCondition:
+def _at_equilibrium(
+    expansion: _Expansion, n: int, right: npt.NDArray[Any], derivative: npt.NDArray[Any]
+) -> OrderCondition:
     zeta, c = zeros(expansion.point, (expansion.action.dimension,)), zeros(expansion.point, ())[()]
     dimension = int(expansion.orbit_dimension)
     return OrderCondition(n, 0, derivative, expansion.vanishes(right, n), zeta, c, right, False, 0, dimension)

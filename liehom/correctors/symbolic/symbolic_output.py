@@ -12,18 +12,20 @@ from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from liehom.correctors.symbolic.symbolic_problem import Symbols
+from liehom.correctors.symbolic.symbolic_problem import FieldPolynomial, Symbols
 from liehom.errors import InputError, ShapeError, SingularError
 from liehom.scalars import QQ
 from liehom.scalars.functions.function_field import RationalFunction
 from liehom.series.arrays import as_values, is_jax, namespace
+from liehom.typing import Expression, Real, Values
 
 TERMS_PER_CHUNK = 100
 
 
 # -- matching --------------------------------------------------------------------------------------------
-def ansatz(symbols: Symbols, invariants: Mapping[Any, Any], target: RationalFunction, degree: int) -> Any:
+def ansatz(symbols: Symbols, invariants: Mapping[Any, Any], target: RationalFunction, degree: int) -> Expression:
     """The polynomial in the invariants, with rational coefficients, that equals the target.
 
     Terms whose degree in the parameters cannot occur are left out; of several polynomials one with terms of low degree
@@ -68,7 +70,7 @@ def _degrees(symbols: Symbols, x: RationalFunction) -> int | None:
     """The degree in the parameters if all terms have one."""
     first = symbols.size + 1
 
-    def of(p: Any) -> set[int]:
+    def of(p: FieldPolynomial) -> set[int]:
         return {sum(map(int, m[first:])) for m in p.monoms()}
 
     parts = [(of(x.numerator), 1)] + [(of(symbols.field.atoms[i]), -k) for i, k in x.powers]
@@ -127,13 +129,15 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
         plans.append(((int(content.p), int(content.q)), plan))
     run = sympy.lambdify(order, parts, modules="numpy", cse=True)
 
-    def function(m: Any, t: Any = 0.0, **parameters: Any) -> Any:
-        m = as_values(m)
-        if m.ndim == 0 or m.shape[-1] != symbols.size:
-            raise ShapeError(f"a point has {symbols.size} coordinates (on its last axis), got shape {m.shape}")
+    def function(m: ArrayLike, t: Real = 0.0, **parameters: Real) -> Values:
+        point = as_values(m)
+        if point.ndim == 0 or point.shape[-1] != symbols.size:
+            raise ShapeError(f"a point has {symbols.size} coordinates (on its last axis), got shape {point.shape}")
         if set(parameters) != set(symbols.parameters):
             raise InputError(f"the parameters are {list(symbols.parameters)}, got {sorted(parameters)}")
-        values = [m[..., i] for i in range(symbols.size)] + [t] + [parameters[name] for name in symbols.parameters]
+        values: list[Any] = (
+            [point[..., i] for i in range(symbols.size)] + [t] + [parameters[name] for name in symbols.parameters]
+        )
         values = [v if is_jax(v) else np.asarray(v) for v in values]
         xp = namespace(*values)
         shape = np.broadcast_shapes(*(v.shape for v in values))
@@ -146,6 +150,7 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
                 top, bottom = (top * base**k, bottom) if k > 0 else (top, bottom * base**-k)
             defined = bottom != 0
             made.append(xp.where(defined, top / xp.where(defined, bottom, 1), 0 * top))
-        return xp.stack(made, axis=-1)
+        result: Values = xp.stack(made, axis=-1)
+        return result
 
     return function

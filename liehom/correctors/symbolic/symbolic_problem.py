@@ -8,15 +8,22 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
-from liehom.correctors.symbolic.symbolic_range import array
+from liehom.correctors.symbolic.exact_range import object_array
 from liehom.errors import FieldError, InputError, ParseError, ShapeError
 from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation
 from liehom.scalars import QQ
 from liehom.scalars.fields.grammar import evaluate, parse
 from liehom.scalars.functions.function_field import FunctionField, RationalFunction
+from liehom.typing import Expression, Number, Values
+
+ExpressionLike: TypeAlias = str | Number | Expression
+"""A sympy expression, a string of the grammar, or a rational number."""
+
+FieldPolynomial: TypeAlias = Any
+"""A polynomial of a `FunctionField`, by python-flint."""
 
 MAX_TERMS_TO_FACTOR = 3000
 _COORDINATE = re.compile(r"m[0-9]+", re.ASCII)
@@ -76,7 +83,7 @@ class Symbols:
         """The expressions as a function (m) or (m, t) that runs on arrays of elements and on Jets."""
         from_parameters = dict(zip(self.parameters, self.field.variables[self.size + 1 :], strict=True))
 
-        def psi(m: Any, t: Any) -> list[Any]:
+        def psi(m: Values, t: Values | RationalFunction) -> list[Any]:
             scope: dict[str, Any] = {**from_parameters, "t": t}
             scope.update({f"m{i}": m[..., i] for i in range(self.size)})
             zero = 0 * m[..., 0]
@@ -84,23 +91,24 @@ class Symbols:
 
         return psi if self.depends_on_time(components) else lambda m: psi(m, self.time)
 
-    def element(self, value: Any) -> RationalFunction:
+    def element(self, value: ExpressionLike) -> RationalFunction:
         """An expression in the symbols, a text or a number as an element."""
         expression = read_expression(value, "the expression")
         unknown = sorted({s.name for s in expression.free_symbols} - set(self.names))
         if unknown:
             raise InputError(f"{value} has the symbols {unknown}; known are {', '.join(self.names)}")
         scope = dict(zip(self.names, self.field.variables, strict=True))
-        return evaluated(expression, scope, self.field) + self.field.zero  # type: ignore[no-any-return]
+        made: RationalFunction = evaluated(expression, scope, self.field) + self.field.zero
+        return made
 
-    def chunks(self, p: Any, size: int) -> list[Any]:
+    def chunks(self, p: FieldPolynomial, size: int) -> list[Any]:
         """A polynomial as expressions of at most `size` terms whose sum it is."""
         terms = list(p.terms())
         ring = self.field.ring.context
         return [self._polynomial(ring.from_dict(dict(terms[i : i + size]))) for i in range(0, len(terms), size)]
 
     # -- back to sympy -----------------------------------------------------------------------------------
-    def _polynomial(self, p: Any) -> Any:
+    def _polynomial(self, p: FieldPolynomial) -> Expression:
         import sympy
 
         symbols = [self.symbols[name] for name in self.names]
@@ -118,7 +126,7 @@ class Symbols:
             content, factors = element.factors()
         return QQ.convert(content), [(self.field.ring.shortest(p) if short else p, k) for p, k in factors]
 
-    def expression(self, element: RationalFunction) -> Any:
+    def expression(self, element: RationalFunction) -> Expression:
         """An element as a factorised expression of few terms."""
         import sympy
 
@@ -128,7 +136,7 @@ class Symbols:
         number = sympy.Integer(int(content.p)), sympy.Integer(int(content.q))
         return sympy.Mul(number[0], *above) / sympy.Mul(number[1], *below)
 
-    def nonvanishing(self, elements: Iterable[Any]) -> Any:
+    def nonvanishing(self, elements: Iterable[Any]) -> Expression:
         """The product of the different factors of the denominators of elements and lists of elements."""
         import sympy
 
@@ -142,7 +150,7 @@ class Symbols:
 # -- reading ---------------------------------------------------------------------------------------------
 def read_symbols(
     representation: Representation,
-    psi: Any,
+    psi: Sequence[ExpressionLike],
     constraints: Sequence[Any] | None,
     parameters: Sequence[Any] | None,
     others: Sequence[Any] = (),
@@ -206,7 +214,7 @@ def _filled(symbols: dict[str, Any], names: Sequence[str], parameters: Sequence[
     return {name: symbols.get(name, own.get(name, sympy.Symbol(name))) for name in names}
 
 
-def _declared(parameter: Any, taken: Sequence[str]) -> str:
+def _declared(parameter: Expression | str, taken: Sequence[str]) -> str:
     name = getattr(parameter, "name", parameter)
     if not isinstance(name, str) or not _NAME.fullmatch(name) or name in taken or _COORDINATE.fullmatch(name):
         raise InputError(f"{parameter!r} cannot be a parameter: names are words other than m0, m1, ..., and t")
@@ -239,7 +247,7 @@ def _with_grading(
     scope = dict(zip(names, plain.field.variables, strict=True))
     values = [evaluated(x, scope, plain.field) + plain.field.zero for x in components]
     full = values + [plain.field.zero] * (representation.algebra.dimension - len(values))
-    vector = action_map(representation)(array(full), array(plain.point))
+    vector = action_map(representation)(object_array(full), object_array(plain.point))
     extra = plain.field.ring.graded_weights((x.numerator for x in (*values, *vector)), names[n:]) if n else []
     if not extra:
         return plain
@@ -265,8 +273,8 @@ def _require_invariance(
     field, n, dimension = symbols.field, symbols.size, representation.algebra.dimension
     action = action_map(representation)
     for a in range(dimension):
-        unit = array([field.one if i == a else field.zero for i in range(dimension)])
-        moved = action(unit, array(symbols.point))
+        unit = object_array([field.one if i == a else field.zero for i in range(dimension)])
+        moved = action(unit, object_array(symbols.point))
         for number, terms in enumerate(constraints):
             p = field.ring.polynomial(terms)
             slopes = [RationalFunction(field, field.ring.reduce(p.derivative(i)), ()) for i in range(n)]
@@ -277,7 +285,7 @@ def _require_invariance(
                 )
 
 
-def read_expression(value: Any, what: str) -> Any:
+def read_expression(value: ExpressionLike, what: str) -> Expression:
     """A sympy expression, a text of the grammar or a rational number as a sympy expression.
 
     Parameters
@@ -306,7 +314,8 @@ def read_expression(value: Any, what: str) -> Any:
         except ParseError as error:
             raise ParseError(f"{what}: {error}") from None
     if hasattr(value, "free_symbols"):
-        if value.has(sympy.Float):
+        expression: Expression = value
+        if expression.has(sympy.Float):
             raise FieldError(f"{what} has a float: {value}; write a fraction, or a symbol for it")
         return sympy.sympify(value)
     try:
@@ -318,7 +327,7 @@ def read_expression(value: Any, what: str) -> Any:
     return sympy.Rational(int(number.p), int(number.q))
 
 
-def evaluated(expression: Any, scope: Mapping[str, Any], field: FunctionField) -> Any:
+def evaluated(expression: Expression, scope: Mapping[str, Any], field: FunctionField) -> Any:
     """A rational expression with values for its symbols: elements, arrays of elements, or Jets.
 
     Raises
@@ -350,7 +359,7 @@ def evaluated(expression: Any, scope: Mapping[str, Any], field: FunctionField) -
     )
 
 
-def _power(x: Any, k: int) -> Any:
+def _power(x: Values, k: int) -> Any:
     made = x
     for _ in range(abs(k) - 1):
         made = made * x

@@ -13,14 +13,16 @@ and no charts are needed.
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
-from liehom.correctors.symbolic.exact_range import gram_matrix
+from liehom.correctors.symbolic.exact_range import gram_matrix, object_array
 from liehom.homogeneous import Action
 from liehom.representations import Representation
-from liehom.scalars.functions.function_field import FunctionField
+from liehom.scalars.fields.field import Matrix
+from liehom.scalars.functions.function_field import FunctionField, RationalFunction
+from liehom.typing import ObjectArray
 
 MAX_SIZE = 12
 
@@ -48,12 +50,12 @@ class SymbolicRange:
     --------
     >>> import liehom as lh
     >>> sphere = FunctionField(["x", "y", "z"], [{(2,0,0): 1, (0,2,0): 1, (0,0,2): 1, (0,0,0): -1}], ["x", "y", "z"])
-    >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(3))), sphere, array(sphere.variables))
+    >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(3))), sphere, object_array(sphere.variables))
     >>> found.row, found.orbit_dimension
     (array([z, -y, x], dtype=object), 2)
     """
 
-    def __init__(self, action: Action, field: FunctionField, point: Any) -> None:
+    def __init__(self, action: Action, field: FunctionField, point: ObjectArray) -> None:
         self._action, self._field, self._point = action, field, point
         n = action.dimension
         self._units = np.empty((n, n), dtype=object)
@@ -72,30 +74,30 @@ class SymbolicRange:
         self.projector = simple(self._units - adjoint @ image)
         # without a gcd a row would bring factors that do not cancel
         own = n - inverse.rank == 1 and len(field.ring.basis) < 2
-        self.row: Any = self._simplest_row() if own else None
+        self.row: ObjectArray | None = self._simplest_row() if own else None
 
-    def _moved(self, m: Any) -> Any:
+    def _moved(self, m: ObjectArray) -> ObjectArray:
         """The matrix of x -> rho(x) m, shape (N, dim g)."""
         return np.stack([self._action.infinitesimal(x, m) for x in self._units], axis=-1)
 
-    def _simplest_row(self) -> Any:
-        rows = [array(self._field.primitive(list(row))) for row in (self.projector @ self._dual).T if any(row)]
+    def _simplest_row(self) -> ObjectArray:
+        rows = [object_array(self._field.primitive(list(row))) for row in (self.projector @ self._dual).T if any(row)]
         return min(rows, key=lambda row: sum(len(x.numerator) for x in row))
 
-    def fixes(self, x: Any) -> bool:
+    def fixes(self, x: ObjectArray) -> bool:
         """Whether x is in the isotropy subalgebra.
 
         Examples
         --------
         >>> import liehom as lh
         >>> plane = FunctionField(["x", "y"])
-        >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(2))), plane, array(plane.variables))
-        >>> found.fixes(array([plane.one])), found.fixes(array([plane.zero]))
+        >>> found = SymbolicRange(lh.Action(lh.defining(lh.so(2))), plane, object_array(plane.variables))
+        >>> found.fixes(object_array([plane.one])), found.fixes(object_array([plane.zero]))
         (False, True)
         """
         return not any(self._action.infinitesimal(x, self._point))
 
-    def prepare(self, velocity: Any, leading: int, factor: Any) -> None:
+    def prepare(self, velocity: ObjectArray, leading: int, factor: RationalFunction) -> None:
         """Set w_l, l and e.
 
         Parameters
@@ -119,10 +121,11 @@ class SymbolicRange:
         self._square = square
         self.rank = self._inverse.rank + int(self._determined)
 
-    def _projected(self, vector: Any) -> Any:
-        return self._moves @ (self._adjoint @ self._inverse(vector))
+    def _projected(self, vector: ObjectArray) -> ObjectArray:
+        found: ObjectArray = self._moves @ (self._adjoint @ self._inverse(vector))
+        return found
 
-    def solve(self, right: Any) -> tuple[Any, Any]:
+    def solve(self, right: ObjectArray) -> tuple[ObjectArray, RationalFunction]:
         """zeta (dim g elements, or the factor of `row` where there is one) and c; in least squares if there is none."""
         c = self._field.zero
         if self._determined:
@@ -131,7 +134,7 @@ class SymbolicRange:
         return simple(self._adjoint @ self._inverse(target)), c
 
 
-def invariant_form(representation: Representation) -> Any:
+def invariant_form(representation: Representation) -> Matrix:
     """A positive definite form on V that the group keeps, near the sum of squares; this sum itself if none is found.
 
     With it the normal equations have denominators that are as invariant as the problem is. Where the system has a
@@ -148,7 +151,8 @@ def invariant_form(representation: Representation) -> Any:
     field, n = representation.field, representation.size
     identity = field.identity(n)
     if n > MAX_SIZE or all((a + a.T).is_zero() for a in representation.matrices):
-        return identity
+        made: Matrix = identity
+        return made
     pairs = [(i, j) for i in range(n) for j in range(i, n)]
     units = []
     for i, j in pairs:
@@ -159,11 +163,13 @@ def invariant_form(representation: Representation) -> Any:
     ]
     kept = field.stack_rows(rows, n * n * len(representation.matrices)).left_null_space()
     if kept.nrows == 0:
-        return identity
+        made = identity
+        return made
     flat = kept @ field.stack_rows([b.reshape(1, n * n) for b in units], n * n)
     weights = (flat @ flat.T).solve(flat @ identity.reshape(n * n, 1))
     found = (weights.T @ flat).reshape(n, n)
-    return found if found.is_positive_definite() else identity
+    made = found if found.is_positive_definite() else identity
+    return made
 
 
 @final
@@ -181,18 +187,18 @@ class RangeInverse:
     Examples
     --------
     >>> x, y = FunctionField(["x", "y"]).variables
-    >>> v = array([x, y])
+    >>> v = object_array([x, y])
     >>> found = RangeInverse(np.outer(v, v))  # of rank 1
     >>> found.rank, found(v)[0] == x / (x**2 + y**2)
     (1, True)
     """
 
-    def __init__(self, matrix: Any) -> None:
+    def __init__(self, matrix: ObjectArray) -> None:
         self._matrix = matrix
         zero = 0 * matrix[0, 0]
         one = np.empty(matrix.shape, dtype=object)
         one[...] = [[zero + int(i == j) for j in range(len(matrix))] for i in range(len(matrix))]
-        self._coefficients: list[Any] = [zero + 1]
+        self._coefficients: list[RationalFunction] = [zero + 1]
         power = matrix
         for k in range(1, len(matrix) + 1):  # Faddeev and LeVerrier
             power = power if k == 1 else simple(matrix @ (power + self._coefficients[-1] * one))
@@ -204,39 +210,27 @@ class RangeInverse:
         self.rank = len(self._coefficients) - 1
         self._last = -1 / self._coefficients[-1] if self.rank else zero
 
-    def __call__(self, vector: Any) -> Any:
+    def __call__(self, vector: ObjectArray) -> ObjectArray:
         if self.rank == 0:
-            return self._last * vector
+            found: ObjectArray = self._last * vector
+            return found
         made = vector
         for p in self._coefficients[1:-1]:
             made = simple(self._matrix @ made + p * vector)
         return simple(self._last * made)
 
 
-def simple(values: Any) -> Any:
+def simple(values: ObjectArray) -> ObjectArray:
     """An array of elements, or an element, without common factors of numerators and denominators that are seen.
 
     Examples
     --------
     >>> x, y = FunctionField(["x", "y"]).variables
-    >>> simple(array([x * y / x]))
+    >>> simple(object_array([x * y / x]))
     array([y], dtype=object)
     """
     values = np.asarray(values, dtype=object)
     made = np.empty(values.shape, dtype=object)
     for index, x in np.ndenumerate(values):
         made[index] = x.cancelled()
-    return made
-
-
-def array(elements: Any) -> Any:
-    """A list of elements as an array of objects.
-
-    Examples
-    --------
-    >>> array(FunctionField(["x", "y"]).variables)
-    array([x, y], dtype=object)
-    """
-    made = np.empty(len(elements), dtype=object)
-    made[:] = list(elements)
     return made

@@ -113,6 +113,7 @@ class SphereFrame:
         """
         action = Action(field.representation, exponential)
         local = step.at(action, Generator(field, 2), self.point, np.zeros((*self.point.shape[:-1], 1)))
+        xi: Any
         (xi,) = local.factors(step_variable(ORDER, self.point))
         return self._read([xi.coefficient(j) * factorial(j) for j in range(1, ORDER + 1)])
 

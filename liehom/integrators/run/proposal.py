@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -60,7 +60,8 @@ class StepProposal:
         passed = s if self.nominal else self.local.time(s)
         low, high = np.minimum(self.t, self.after), np.maximum(self.t, self.after)
         t = np.where(s == self.h, self.after, np.clip(self.t + passed, low, high))
-        return t, apply_factors(self.action, self.local.factors(s[..., None]), self.m)
+        point: Any = apply_factors(self.action, self.local.factors(s[..., None]), self.m)
+        return t, point
 
     def point(self, time: Array, here: BooleanArray) -> Array:
         """The points (..., N) at a time within the step, for the trajectories `here`."""

@@ -1,0 +1,235 @@
+"""ConservingStep: a conserving step at one point, as a function of the step size.
+
+For each h the isotropy t^(n-1) sigma is found by Newton's method (`level_newton`), or by one linear solve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.conserving.conservation import Conservation
+from liehom.correctors.conserving.level_newton import solve_levels
+from liehom.correctors.expansion import ROUND_OFF_UNITS
+from liehom.correctors.step import Factors, LocalStep, apply_factors, step_variable, with_correction
+from liehom.errors import InputError
+from liehom.series.arrays import zeros
+from liehom.series.jet import Jet
+from liehom.tracing import Traced
+from liehom.typing import Values
+
+TOLERATED_UNITS = 0.5
+"""Residuals of F within this many units of round-off, eps times `Conservation.scale`, count as 0."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Conserved:
+    """What a conserving step of one size reports, all of shape (...,).
+
+    Attributes
+    ----------
+    iterations : array of int
+        Of Newton's method.
+    defect : array
+        The largest of the |F_i(step) - target_i|.
+    units : array
+        The same in units of what F_i is rounded by.
+    rank, wanted : array of int
+        The rank of chi_m, and how many integrals are independent on the orbit at m.
+    left : array of bool
+        Where isotropy was left alone because F does not resolve its effect: at or next to an equilibrium, or h = 0.
+    """
+
+    iterations: Values
+    defect: Values
+    units: Values
+    rank: Values
+    wanted: Values
+    left: Values
+
+
+class ConservingStep(LocalStep):
+    """A conserving step at one point, as a function of h; the correction is found for each h.
+
+    Made by `Conserving.at`.
+
+    Parameters
+    ----------
+    base : LocalStep
+    found : Conservation
+        chi_m.
+    target : array of shape (..., k), or None
+        What F is to be; None for F(m).
+    n : int or None
+        The first coefficient E_n that does not vanish everywhere.
+    one_exponential, linear : bool
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
+    >>> action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 2)
+    >>> step = lh.correctors.Conserving(lh.Euler(), "m0**2 + m1**2/2 + m2**2/4")
+    >>> local = step.at(action, psi, np.array([0.6, 0.48, 0.64]), np.array([0.0]))
+    >>> made = local.conserved(np.array([0.1]))
+    >>> bool(made.defect < 1e-15), int(made.rank), bool(made.iterations < 4)
+    (True, 1, True)
+    """
+
+    def __init__(
+        self,
+        base: LocalStep,
+        found: Conservation,
+        target: Values | None,
+        n: int | None,
+        *,
+        one_exponential: bool,
+        linear: bool,
+    ) -> None:
+        self.base, self.found, self.n = base, found, n
+        self.defects = base.defects
+        self.estimate = getattr(base, "estimate", None)
+        self.estimate_order = getattr(base, "estimate_order", None)
+        self._target = found.value if target is None else target
+        self._one, self._linear = one_exponential, linear
+        self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
+        self._last: tuple[Values, Factors, Conserved] | None = None
+        self._sigma: Any = None
+
+    def factors(self, h: Values) -> Factors:
+        if isinstance(h, Jet):
+            return with_correction(self.base.factors(h), self._series(h), self._one)
+        return self._made(h)[1]
+
+    def conserved(self, h: Values) -> Conserved:
+        """What became of F in the step of size h (..., 1)."""
+        return self._made(h)[2]
+
+    def isotropy(self, h: Values) -> Values:
+        """t^(n-1) sigma of the step of size h (..., 1), shape (..., dim g)."""
+        made, base = self._made(h)[1], self.base.factors(h)
+        if len(made) > len(base):
+            return made[-1]
+        return made[0] - base[0]
+
+    def sigma(self) -> Values:
+        """The solution of chi_m(sigma) = -E_n in V_m, shape (..., dim g); 0 where E_n is round-off."""
+        if self._sigma is None:
+            m = self.found.m
+            if self.n is None:
+                self._sigma = zeros(m, (*m.shape[:-1], self.found.dimension))
+            else:
+                z: Any = apply_factors(self.found.action, self.base.factors(step_variable(self.n, m)), m)
+                along: Any = self.found.integral(z)
+                self._sigma = self._removing(along, z, self.n)
+        found: Values = self._sigma
+        return found
+
+    # -- private -----------------------------------------------------------------------------------------
+    def _made(self, h: Values) -> tuple[Values, Factors, Conserved]:
+        if isinstance(h, Traced):
+            if self._last is None or self._last[0] is not h:
+                self._last = (h, *self._corrected(h))
+            return self._last
+        last, h = self._last, np.asarray(h)
+        if last is None or h.shape != last[0].shape or h.dtype != last[0].dtype or not (h == last[0]).all():
+            last = self._last = (h.copy(), *self._corrected(h))
+        return last
+
+    def _corrected(self, h: Values) -> tuple[Factors, Conserved]:
+        found, action, m = self.found, self.found.action, self.found.m
+        made = self.base.factors(h)
+        if not self._one and not made:
+            raise InputError("the base step has no exponential")
+        z = apply_factors(action, made, m)
+
+        def residual(x: Values) -> Values:
+            point = action.act(made[0] + x, m) if self._one else action.act(x, z)
+            return found.integral(point) - self._target
+
+        first = found.integral(z) - self._target
+        if self._linear:
+            linear = self.sigma() * h ** ((self.n or 1) - 1)
+            x: Values | None = linear
+            resolved: Values = found.rank
+            iterations: Values = np.zeros(m.shape[:-1], dtype=int)
+            left = residual(linear)
+        else:
+            if type(m) is Traced:
+                found.needs_motion(z - m)
+            elif not found.moving.all():
+                found = found.toward(z - m)
+            directions = found.directions
+            jacobian = found.along(z - m, directions)
+            solution = solve_levels(residual, first, directions, jacobian, self._unit, action.max_norm)
+            x, resolved, iterations, left = solution.x, solution.resolved, solution.iterations, solution.residual
+        defect = np.abs(left)
+        units = (defect / np.maximum(self._unit, float(np.finfo(defect.dtype).tiny))).max(axis=-1)
+        rank, wanted = found.rank, found.wanted
+        alone = (resolved < rank) | ~found.moving | (wanted == 0)
+        record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
+        return with_correction(made, x, self._one), record
+
+    def _removing(self, along: Jet, z: Jet, k: int) -> Values:
+        """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""
+        value, m = along.coefficient(k), self.found.m
+        size = np.maximum(_length(m), np.finfo(float).tiny)
+        rate = 0.0 * size
+        for j in range(1, k + 1):
+            rate = np.maximum(rate, (_length(z.coefficient(j)) / size) ** (1 / j))
+        noise = ROUND_OFF_UNITS * np.finfo(m.dtype).eps * self.found.scale * rate[..., None] ** k
+        return -self.found.preimage(np.where(np.abs(value) > noise, value, 0.0))
+
+    def _series(self, h: Jet) -> Jet | None:
+        """t^(n-1) sigma as a series in h, which conserves F(m) to its order; None if there is nothing to do."""
+        total, found = h.order, self.found
+        if self.n is None or total < self.n:
+            return None
+        if self._linear:
+            return self.sigma() * h ** (self.n - 1) if self.n > 1 else None
+        m = found.m
+        zeta = Jet.growing(zeros(m, (*m.shape[:-1], found.dimension)), total, zero=True)
+        for _ in range(total):
+            zeta.extend(None)
+        factors = with_correction(self.base.factors(step_variable(total, m)), zeta, self._one)
+        z: Any = apply_factors(found.action, factors, m)
+        along: Any = found.integral(z)
+        for k in range(max(self.n, 2), total + 1):
+            zeta.replace(k - 1, self._removing(along, z, k), along, z)
+        made: Any = None
+        for k in range(total, 0, -1):
+            made = made * h if made is not None else None
+            x = zeta.node.known[k]
+            if x is not None:
+                made = x + (made if made is not None else 0.0 * h)
+        return None if made is None else made * h
+
+
+def _length(x: Values) -> Values:
+    found: Values = np.linalg.norm(x if type(x) is Traced else np.asarray(x, dtype=float), axis=-1)
+    return found
+
+
+@final
+class ClockedConservingStep(ConservingStep):
+    """A conserving step whose base has a clock of its own, such as a `Corrected` step.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
+    >>> action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 2)
+    >>> step = lh.correctors.Conserving(lh.Corrected(lh.Euler(), 3), "m0**2 + m1**2/2 + m2**2/4")
+    >>> local = step.at(action, psi, np.array([0.6, 0.48, 0.64]), np.array([0.0]))
+    >>> bool(local.time(0.1) == local.base.time(0.1))
+    True
+    """
+
+    def time(self, h: Values) -> Values:
+        """tau(h) of the base, for h of shape (...,)."""
+        return self.base.time(h)
