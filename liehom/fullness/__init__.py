@@ -1,4 +1,10 @@
-"""Fullness (6.4): the decision with its certificates, and the independent checker."""
+"""Fullness, (6.4) of the paper: the decision, its certificates, and the independent checker of certificates.
+
+`decide` runs the steps of `search` and returns a `verdict`; every exact verdict carries a certificate, and `checker`
+verifies certificates without the code of the search. `failure` describes where the range condition fails for a pair
+that is not full, and `numerical` answers for pairs over float64. Everyone may use the names below; the wings are
+internal. The theory is in docs/theory/fullness.md.
+"""
 
 from liehom.fullness.certificates import Certificate as Certificate
 from liehom.fullness.checker import verify_certificate as verify_certificate

@@ -1,15 +1,17 @@
-"""decide_fullness: is a pair (g, h) full, and why?
+"""The decision whether a pair (g, h) is full, with a certificate.
 
-The steps are those of the theory page: trivial cases, the rank at sample points, invariant forms, nilpotent
-ideals, the commutant, construction of a definite form, spectral search for dominance.  Every step only
-proposes a certificate; the verdict is what the certificate proves.
+The steps are those of docs/theory/fullness.md: trivial cases, the rank at sample points, invariant forms, nilpotent
+ideals, the commutant, construction of a definite form, spectral search for dominance. Every step only proposes a
+certificate; the certificate proves the verdict. The logger "liehom.fullness" records at level DEBUG each step with its
+outcome.
 """
 
 from __future__ import annotations
 
+import logging
 import random
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 from liehom.errors import InputError, InternalError
 from liehom.fullness.certificates import certificate_writer
@@ -28,38 +30,44 @@ from liehom.fullness.verdict import Full, NotFull, Verdict
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import commutant, invariant_forms
 from liehom.representations.invariants.irreducibility import nilpotent_ideal_rows, split_by_commutant, traceless
+from liehom.scalars import ExactField, ExactMatrix
 
-Report = Callable[[str], None]
+Progress: TypeAlias = Callable[[str], object]
+"""Called with a line of text as each step begins."""
+
+LOG = logging.getLogger("liehom.fullness")
 FIRST_TRIES, ROUNDS = 40, 6
+"""Random elements in the first round of the spectral search, and rounds; each round that fails doubles the elements."""
 
 
-def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None) -> Verdict:
-    """Decide whether a pair is full, with a certificate.
+def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = None) -> Verdict:
+    """A proof that a pair is full or not full, or a numerical answer for a pair over float64.
 
     Parameters
     ----------
     pair : Pair
     seed : int, optional
-        Of the random choices; they affect which certificate is found and how fast, never the verdict.
+        Seed of the random choices, which affect the certificate that is found and the time, never the verdict.
     progress : callable, optional
         Called with a line of text as each step begins.
 
     Returns
     -------
     Full or NotFull
-        For exact pairs (QQ or a real number field), always, with a certificate that `verify` checks.
+        For every exact pair (over QQ or a real number field), with a certificate that `verify` checks.
     NumericallyFull or NumericallyNotFull
-        For pairs over float64, with the singular value and gap that they rest on.
+        For a pair over float64, with the singular value and the gap that the answer rests on.
 
     Raises
     ------
     InputError
-        If `pair` is no pair.
+        If `pair` is not a Pair.
 
     Notes
     -----
     (g, h) is full if every eta outside h satisfies h + [h, eta] + R eta = g (Lewis and Olver 2001,
     Definition 6, (6.4)). The paper leaves open which pairs are full; the procedure decides it pair by pair.
+    ``logging.getLogger("liehom.fullness").setLevel(logging.DEBUG)`` shows the steps with their outcomes.
 
     Examples
     --------
@@ -71,50 +79,60 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Report | None = None
     """
     if not isinstance(pair, Pair):
         raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
-    report = progress if progress is not None else _silent
-    if not pair.field.exact:
+    if not isinstance(pair.field, ExactField):
+        LOG.debug("decide %r: numerical, over %s", pair, pair.field.name)
         return decide_numerically(pair, seed=seed)
+    LOG.debug("decide %r: dim g/h = %d", pair, pair.dimension)
     if pair.dimension <= 1:
         reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
         return Full(pair, certificate_writer.trivial(pair.field), reason[pair.dimension])
     action = TracelessIsotropyAction(pair)
     for attempt in range(3):
-        verdict = _decide(action, seed + attempt, report)
+        verdict = _decide(action, seed + attempt, progress)
         if verdict is not None:
+            LOG.debug("verdict: %s", verdict)
             return verdict
+        LOG.debug("attempt %d found no certificate", attempt + 1)
     raise InternalError("no certificate was found, though one exists; please report this pair")
 
 
-def _silent(_: str) -> None:
-    return
+def _begin(step: str, progress: Progress | None) -> None:
+    LOG.debug("step: %s", step)
+    if progress is not None:
+        progress(step)
 
 
-def _decide(action: TracelessIsotropyAction, seed: int, report: Report) -> Verdict | None:
-    report("rank at sample points")
+def _decide(action: TracelessIsotropyAction, seed: int, progress: Progress | None) -> Verdict | None:
+    _begin("rank at sample points", progress)
     rng = random.Random(seed)
     x, certificate = _sample(action, rng)
     if certificate is not None:
+        LOG.debug("the rank is below %d at a sample point: not full", action.size)
         return _not_full(action, certificate, _few_directions(action))
-    report("invariant forms")
+    _begin("invariant forms", progress)
     forms = invariant_forms(action.traceless, action.size, action.field)
+    LOG.debug("%d symmetric and %d skew-symmetric invariant forms", len(forms.symmetric), len(forms.skew))
     if forms.symmetric:
         return _by_forms(action, forms.symmetric, x)
-    report("nilpotent ideals")
+    _begin("nilpotent ideals", progress)
     rows = nilpotent_ideal_rows(action.traceless, action.size, action.field)
     if rows.nrows:
-        reason = "a nilpotent ideal of the isotropy algebra kills an invariant subspace"
+        LOG.debug("a nilpotent ideal annihilates a subspace of dimension %d", action.size - rows.rank())
+        reason = "a nilpotent ideal of the isotropy algebra annihilates an invariant subspace"
         return _not_full(action, kernel_witness(action, rows), reason)
-    report("commutant")
+    _begin("commutant", progress)
     basis = commutant(action.traceless, action.size, action.field)
     imaginary = traceless(basis, action.size, action.field)
     split = split_by_commutant(imaginary, action.size, action.field)
+    LOG.debug("commutant of dimension %d, %s", len(basis), "a division algebra" if split is None else "reducible")
     if split is not None:
         return _reducible(action, certificate_of_reduction(action, split))
-    report("definite form")
+    _begin("definite form", progress)
     certificate = full_by_positive_form(action, imaginary)
+    LOG.debug("definite form: %s", "not found" if certificate is None else "found, so the pair is full")
     if certificate is not None:
         return Full(action.pair, certificate, full_reason(action, len(basis), compact=False))
-    return _by_dominance(action, seed, report)
+    return _by_dominance(action, seed, progress)
 
 
 def _few_directions(action: TracelessIsotropyAction) -> str:
@@ -124,20 +142,19 @@ def _few_directions(action: TracelessIsotropyAction) -> str:
     return "h moves a sample point in too few directions"
 
 
-def _sample(action: TracelessIsotropyAction, rng: random.Random) -> tuple[Any, Certificate | None]:
-    """A point of rank d, or a rational witness: random points first, then the axes."""
-    first = None
-    points = [action.random_point(rng) for _ in range(3)]
+def _sample(action: TracelessIsotropyAction, rng: random.Random) -> tuple[ExactMatrix, Certificate | None]:
+    """A point of rank d and None, or a point of lower rank and its witness; random points first, then the axes."""
+    first: ExactMatrix = action.random_point(rng)
+    points = [first, *(action.random_point(rng) for _ in range(2))]
     points += [action.field.unit(action.size, i).T for i in range(action.size)]
     for x in points:
         if action.rank_at(x) < action.size:
             phi = action.action_rows(x).null_space().select(rows=[0])
             return x, certificate_writer.rational_witness(action, x, phi)
-        first = x if first is None else first
     return first, None
 
 
-def _by_forms(action: TracelessIsotropyAction, symmetric: tuple[Any, ...], x: Any) -> Verdict:
+def _by_forms(action: TracelessIsotropyAction, symmetric: Sequence[ExactMatrix], x: ExactMatrix) -> Verdict:
     certificate = decide_by_forms(action, symmetric, x)
     if certificate.full:
         dimension = len(commutant(action.traceless, action.size, action.field))
@@ -145,7 +162,8 @@ def _by_forms(action: TracelessIsotropyAction, symmetric: tuple[Any, ...], x: An
     kind = f"{len(symmetric)} independent symmetric forms"
     if len(symmetric) == 1:
         kind = "a symmetric form with {} positive, {} negative and {} zero squares".format(*symmetric[0].signature())
-    return _not_full(action, certificate, f"the isotropy keeps {kind} up to scale, and the rank drops on a null vector")
+    reason = f"the isotropy preserves {kind} up to scale, and the rank drops on a null vector"
+    return _not_full(action, certificate, reason)
 
 
 def _reducible(action: TracelessIsotropyAction, certificate: Certificate) -> NotFull:
@@ -156,17 +174,18 @@ def _reducible(action: TracelessIsotropyAction, certificate: Certificate) -> Not
     return _not_full(action, certificate, reason)
 
 
-def _by_dominance(action: TracelessIsotropyAction, seed: int, report: Report) -> NotFull | None:
+def _by_dominance(action: TracelessIsotropyAction, seed: int, progress: Progress | None) -> NotFull | None:
     tries, frame = FIRST_TRIES, plain_frame(action)
     for round_number in range(ROUNDS):
         if frame is not None:
-            report(f"spectral search, {tries} random elements")
+            _begin(f"spectral search, {tries} random elements", progress)
             dominant = find_dominant(action, frame, tries, seed + round_number)
+            LOG.debug("dominant element: %s", "none found" if dominant is None else "found, so the pair is not full")
             if dominant is not None:
                 return _with_exact_eta(action, dominant)
             tries *= 2
         if round_number == 0:
-            report("coordinates in which floats see the spectrum")
+            _begin("coordinates in which floats see the spectrum", progress)
             frame = balanced_frame(action) or frame
     return None
 

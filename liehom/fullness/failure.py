@@ -1,12 +1,12 @@
-"""Where (6.3) fails for a pair that is not full: generically or on a cone, and certified parts of the cone.
+"""Failure report for a pair that is not full: does (6.3) hold generically, and certified parts of the cone where not.
 
-The forms, subspaces and dominant elements that decide fullness are exactly what the cone is made of.
+The forms, invariant subspaces and dominant elements that decide fullness give the parts of the cone.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
@@ -14,17 +14,20 @@ from liehom.homogeneous import FailureSet, RangeCondition, failure_cone, range_c
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import nilpotent_ideal_rows
+from liehom.scalars import ExactMatrix
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class FailureReport:
-    """Whether the range condition holds generically, and certified subsets of where it fails.
+    """Whether the range condition holds for generic psi, and certified subsets of the cone on which it fails.
 
     Attributes
     ----------
     generic : RangeCondition
+        The range condition at a generic psi.
     parts : tuple of FailureSet
+        Certified subsets of the cone; empty if the condition holds for no psi.
     """
 
     generic: RangeCondition
@@ -43,13 +46,14 @@ class FailureReport:
 
 
 def failure_report(pair: Pair, certificate: Certificate | None = None) -> FailureReport:
-    """Where the range condition fails, for an exact pair that is not full.
+    """Failure report of an exact pair that is not full; `NotFull.where_it_fails` calls it.
 
     Parameters
     ----------
     pair : Pair
     certificate : Certificate, optional
-        Of the verdict; a dominance or commutant certificate (or the second one of a witness) adds its eigenspace.
+        Certificate of the verdict. A dominance or commutant certificate, also as the second certificate of a witness,
+        adds its eigenspace to the report.
 
     Examples
     --------
@@ -61,8 +65,8 @@ def failure_report(pair: Pair, certificate: Certificate | None = None) -> Failur
     if generic.holds is False:
         return FailureReport(generic, ())
     action = TracelessIsotropyAction(pair)
-    forms: list[Any] = []
-    subspaces: list[Any] = []
+    forms: list[ExactMatrix] = []
+    subspaces: list[ExactMatrix] = []
     for form in invariant_forms(action.traceless, action.size, action.field).symmetric:
         positive, negative, zero = form.signature()
         if zero:
@@ -75,6 +79,6 @@ def failure_report(pair: Pair, certificate: Certificate | None = None) -> Failur
     second = certificate.fields.get("also", certificate) if certificate is not None else None
     parts = failure_cone(pair, forms=forms, subspaces=subspaces, certificate=second)
     if any(part.kind == "hypersurface" for part in parts):
-        # the null cones lie in the hypersurface, which says more
+        # the hypersurface contains the null cones
         parts = [part for part in parts if part.kind != "null cone"]
     return FailureReport(generic, tuple(parts))

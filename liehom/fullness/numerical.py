@@ -1,37 +1,35 @@
-"""The numerical answer for pairs over float64: minimise the least singular value over the sphere.
+"""Numerical answer for pairs over float64: the smallest singular value, minimized over the sphere.
 
-With the span of rho(h) and 1 orthonormalised, sigma_d(x)^2 is the minimum over unit u of sum_a (u . A_a x)^2,
-quadratic in u and in x; alternating eigenvector steps go down monotonically from many starts.
+Let A_a be an orthonormal basis of the span of rho(h) and 1. Then sigma_d(x)^2 is the minimum over unit vectors u of
+sum_a (u . A_a x)^2, which is quadratic in u and in x. Alternating eigenvector steps decrease it monotonically; they
+begin at many random points.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 from liehom.fullness.verdict import NumericallyFull, NumericallyNotFull
 from liehom.representations import Pair
-
-Array = npt.NDArray[np.float64]
+from liehom.typing import Array
 
 
 def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> NumericallyFull | NumericallyNotFull:
-    """A numerical verdict with the singular value that it rests on.
+    """Numerical verdict, with the singular value that it rests on.
 
     Parameters
     ----------
     pair : Pair
         Exact or over float64; exact numbers are rounded.
     starts : int
-        Random starting points, besides the axes.
+        Number of random initial points, in addition to the axes.
     seed : int
+        Seed of the initial points.
 
     Notes
     -----
-    The tolerance is the square root of the field's rtol (of 1e-9 for exact pairs). Non-fullness is not an open
-    condition: a numerical 'not full' can be an artefact of rounding, and says so.
+    The tolerance is the square root of the `rtol` of the pair's field (1e-9 for exact pairs). Non-fullness is not an
+    open condition, so rounding alone can cause a numerical 'not full'; the reason of such a verdict says so.
 
     Examples
     --------
@@ -56,7 +54,7 @@ def decide_numerically(pair: Pair, *, starts: int = 60, seed: int = 0) -> Numeri
 
 
 def orthonormal_action(matrices: list[Array], d: int) -> Array:
-    """Frobenius-orthonormal matrices (m, d, d) spanning the given ones and the identity."""
+    """Orthonormal basis (m, d, d), in the Frobenius product, of the span of the matrices and the identity."""
     scaled = [a / (np.linalg.norm(a) or 1.0) for a in matrices]
     flat = np.array([np.eye(d) / np.sqrt(d), *scaled]).reshape(-1, d * d)
     _, values, right = np.linalg.svd(flat, full_matrices=False)
@@ -64,7 +62,7 @@ def orthonormal_action(matrices: list[Array], d: int) -> Array:
 
 
 def relative_singular_value(basis: Array, x: Array) -> float:
-    """sigma_d / sigma_1 of the matrix with columns A_a x."""
+    """Ratio sigma_d / sigma_1 of the matrix with columns A_a x."""
     columns = (basis @ x).T
     if columns.shape[1] < columns.shape[0]:
         return 0.0
@@ -73,7 +71,7 @@ def relative_singular_value(basis: Array, x: Array) -> float:
 
 
 def least_singular_value(basis: Array, *, starts: int, seed: int, steps: int = 200) -> tuple[float, Array]:
-    """The least sigma_d / sigma_1 found, and where.
+    """Smallest ratio sigma_d / sigma_1 that was found, and the unit vector x at which it was found.
 
     Examples
     --------
@@ -95,7 +93,7 @@ def least_singular_value(basis: Array, *, starts: int, seed: int, steps: int = 2
 
 
 def _descend(basis: Array, x: Array, steps: int) -> Array:
-    before: Any = np.inf
+    before: float | np.float64 = np.inf
     for _ in range(steps):
         u = np.linalg.eigh((basis @ x).T @ (basis @ x))[1][:, 0]
         rows = u @ basis  # (m, d): u^T A_a

@@ -1,6 +1,6 @@
-"""The reason for a verdict in one sentence.
+"""Reasons for verdicts, in one sentence, with the name of the transitive linear Lie algebra.
 
-Names of transitive linear groups are read off (d, dim L0, commutant); the certificates do not rest on them.
+The name follows from d, dim L0 and the dimension of the commutant; no certificate depends on it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 
 
 def compact_name(d: int, size: int, commutant: int) -> str:
-    """The transitive compact linear Lie algebra on R^d with this dimension and commutant dimension.
+    """Name of the transitive compact linear Lie algebra on R^d of dimension `size` with this commutant dimension.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def compact_name(d: int, size: int, commutant: int) -> str:
 
 
 def noncompact_name(d: int, size: int, commutant: int) -> str:
-    """The transitive non-compact linear Lie algebra on R^d with this dimension and commutant dimension.
+    """Name of the transitive non-compact linear Lie algebra on R^d of dimension `size` with this commutant dimension.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def noncompact_name(d: int, size: int, commutant: int) -> str:
 
 
 def full_reason(action: TracelessIsotropyAction, commutant: int, compact: bool) -> str:
-    """The sentence for a full pair of codimension at least 2."""
+    """Sentence that says why a pair of codimension at least 2 is full."""
     d, size = action.size, action.dimension
     scalars = " (up to scalars)" if any(a.trace() != 0 for a in action.matrices) else ""
     if compact:
@@ -61,6 +61,6 @@ def full_reason(action: TracelessIsotropyAction, commutant: int, compact: bool) 
         return f"h acts on g/h = R^{d} as {name}{scalars}, compact and transitive on the sphere; checked at one point"
     name = noncompact_name(d, size, commutant)
     return (
-        f"h acts on g/h = R^{d} as {name}{scalars}, transitive on the rays already through the elements that keep "
+        f"h acts on g/h = R^{d} as {name}{scalars}, transitive on the rays already through the elements that preserve "
         "a definite form; checked at one point"
     )

@@ -1,16 +1,16 @@
-"""Verdicts: what a decision returns, with its proof or with the gap that a numerical answer rests on."""
+"""Verdicts of the decision: with a certificate, or numerical with a singular value and a gap."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal, final
+from typing import Any, Literal, TypeAlias, final
 
 from liehom.errors import UndecidedError
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.checker.verify import verify_certificate
 from liehom.fullness.failure import FailureReport, failure_report
 from liehom.representations import Pair
-from liehom.scalars import Field
+from liehom.scalars import Field, Scalar
 
 
 @final
@@ -24,7 +24,7 @@ class Full:
     certificate : Certificate
         Of kind 'trivial' or 'full'.
     reason : str
-        One sentence. Names of groups in it are read off dimensions; the certificate does not rest on them.
+        One sentence. Names of groups in it follow from dimensions; the certificate does not depend on them.
 
     Examples
     --------
@@ -40,15 +40,15 @@ class Full:
 
     @property
     def full(self) -> Literal[True]:
-        """True."""
+        """Whether the pair is full: True."""
         return True
 
     def verify(self) -> bool:
-        """Run the independent checker on the certificate; True, or `CertificateError`."""
+        """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
         return verify_certificate(self.pair, self.certificate)
 
     def to_json(self) -> dict[str, Any]:
-        """The verdict as a JSON object."""
+        """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
         return {"full": True, "proved": True, "reason": self.reason, "certificate": self.certificate.to_json()}
 
     def __bool__(self) -> bool:
@@ -80,7 +80,7 @@ class NotFull:
     rank : int or None
         The exact rank of [rho(h) eta, eta] in g/h.
     eta_numerical : list of float or None
-        Where no exact eta was found: one rounded to floats. The proof is the certificate, not this vector.
+        An eta rounded to floats, if no exact eta was found. The proof is the certificate, not this vector.
 
     Examples
     --------
@@ -93,23 +93,23 @@ class NotFull:
     pair: Pair
     certificate: Certificate
     reason: str
-    eta: list[Any] | None = None
+    eta: list[Scalar] | None = None
     eta_field: Field | None = None
     rank: int | None = None
     eta_numerical: list[float] | None = None
 
     @property
     def full(self) -> Literal[False]:
-        """False."""
+        """Whether the pair is full: False."""
         return False
 
     @property
     def rank_defect(self) -> int | None:
-        """dim g/h minus the rank at eta; None where eta is numerical only."""
+        """dim g/h minus the rank at eta, an int; None if eta is numerical only."""
         return None if self.rank is None else self.pair.dimension - self.rank
 
     def where_it_fails(self) -> FailureReport:
-        """Whether (6.3) holds for generic psi, and certified subsets of the cone on which it fails.
+        """Failure report: whether (6.3) holds for generic psi, and certified subsets of the cone on which it fails.
 
         Examples
         --------
@@ -120,11 +120,11 @@ class NotFull:
         return failure_report(self.pair, self.certificate)
 
     def verify(self) -> bool:
-        """Run the independent checker on the certificate; True, or `CertificateError`."""
+        """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
         return verify_certificate(self.pair, self.certificate)
 
     def to_json(self) -> dict[str, Any]:
-        """The verdict as a JSON object."""
+        """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
         out: dict[str, Any] = {"full": False, "proved": True, "reason": self.reason}
         if self.eta is not None and self.eta_field is not None:
             out["eta"] = [self.eta_field.format(v) for v in self.eta]
@@ -147,7 +147,7 @@ class NotFull:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class _Numerical:
-    """What both numerical verdicts carry."""
+    """Fields and methods of both numerical verdicts; each states its `full`."""
 
     pair: Pair
     reason: str
@@ -156,25 +156,30 @@ class _Numerical:
     eta: list[float] = field(default_factory=list)
 
     @property
+    def full(self) -> bool:
+        """Whether the pair is numerically full."""
+        raise NotImplementedError
+
+    @property
     def certificate(self) -> None:
-        """None: a numerical verdict is not proved."""
+        """None, since a numerical verdict is not proved."""
         return
 
     def verify(self) -> bool:
-        """Always raises `UndecidedError`: there is nothing to verify."""
+        """Raises `UndecidedError`, since there is no certificate to verify."""
         raise UndecidedError("a numerical verdict has no certificate; give exact numbers to have a proof")
 
     def __str__(self) -> str:
-        answer = "full" if self.full else "not full"  # type: ignore[attr-defined]
+        answer = "full" if self.full else "not full"
         return f"{answer} (numerical, not proved): {self.reason}"
 
     def __bool__(self) -> bool:
         raise UndecidedError("a numerical verdict is not a proof and has no truth value; read its attribute `full`")
 
     def to_json(self) -> dict[str, Any]:
-        """The verdict as a JSON object."""
+        """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
         return {
-            "full": self.full,  # type: ignore[attr-defined]
+            "full": self.full,
             "proved": False,
             "reason": self.reason,
             "smallest_singular_value": self.smallest,
@@ -186,16 +191,16 @@ class _Numerical:
 
 @final
 class NumericallyFull(_Numerical):
-    """Numerically full: the least singular value of [rho(h) x, x] over many starts on the sphere stays away from 0.
+    """Numerically full: the smallest singular value of [rho(h) x, x] found on the sphere is above the tolerance.
 
     Attributes
     ----------
     smallest : float
-        The least value found of sigma_d / sigma_1.
+        Smallest ratio sigma_d / sigma_1 that was found, over many initial points.
     gap : float
-        smallest divided by the tolerance of the field.
+        `smallest` divided by the tolerance of the field.
     eta : list of float
-        Where it was found, in the basis of g.
+        Element of g, in its basis, at which `smallest` was found.
 
     Examples
     --------
@@ -209,7 +214,7 @@ class NumericallyFull(_Numerical):
 
     @property
     def full(self) -> Literal[True]:
-        """True, numerically."""
+        """Whether the pair is numerically full: True."""
         return True
 
     def __repr__(self) -> str:
@@ -218,12 +223,12 @@ class NumericallyFull(_Numerical):
 
 @final
 class NumericallyNotFull(_Numerical):
-    """Numerically not full: an eta was found where the least singular value is below the tolerance.
+    """Numerically not full: the smallest singular value at some eta is below the tolerance.
 
     Attributes
     ----------
     smallest, gap, eta
-        As in `NumericallyFull`; here gap is the tolerance divided by `smallest`.
+        As in `NumericallyFull`, except that `gap` is the tolerance divided by `smallest`.
 
     Examples
     --------
@@ -239,14 +244,15 @@ class NumericallyNotFull(_Numerical):
 
     @property
     def full(self) -> Literal[False]:
-        """False, numerically."""
+        """Whether the pair is numerically full: False."""
         return False
 
     def __repr__(self) -> str:
         return f"<numerically not full: {_title(self.pair)}, least singular value {self.smallest:.3g}>"
 
 
-Verdict = Full | NotFull | NumericallyFull | NumericallyNotFull
+Verdict: TypeAlias = Full | NotFull | NumericallyFull | NumericallyNotFull
+"""A result of `decide_fullness`."""
 
 
 def _title(pair: Pair) -> str:

@@ -17,7 +17,7 @@ from liehom.scalars import QQ
 
 
 def gl(n: int, over: str = "R") -> LieAlgebra:
-    """The real Lie algebra gl(n) over 'R', 'C' or 'H', of dimension n**2, 2 n**2 or 4 n**2.
+    """gl(n) over 'R', 'C' or 'H', as a real Lie algebra of dimension n**2, 2 n**2 or 4 n**2.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def gl(n: int, over: str = "R") -> LieAlgebra:
     Raises
     ------
     InputError
-        If n is not a positive integer, or `over` is not one of the three letters.
+        If n is not a positive integer or the letter is another one.
 
     Examples
     --------
@@ -40,12 +40,12 @@ def gl(n: int, over: str = "R") -> LieAlgebra:
 
 
 def sl(n: int, over: str = "R") -> LieAlgebra:
-    """The real Lie algebra sl(n) over 'R', 'C' or 'H'; over H, the real trace vanishes.
+    """sl(n) over 'R', 'C' or 'H'; over H it is the real trace that vanishes.
 
     Raises
     ------
     InputError
-        If n is not a positive integer, or `over` is not one of the three letters.
+        If n is not a positive integer or the letter is another one.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def sl(n: int, over: str = "R") -> LieAlgebra:
 
 
 def so(p: int, q: int | str = 0) -> LieAlgebra:
-    """The real Lie algebra so(p, q), of dimension n (n - 1) / 2 with n = p + q, or so(n, 'C').
+    """so(p, q), of dimension n (n - 1) / 2 with n = p + q, or so(n, 'C').
 
     Raises
     ------
@@ -74,7 +74,7 @@ def so(p: int, q: int | str = 0) -> LieAlgebra:
 
 
 def su(p: int, q: int = 0) -> LieAlgebra:
-    """The real Lie algebra su(p, q), of dimension n**2 - 1 with n = p + q.
+    """su(p, q), of dimension n**2 - 1 with n = p + q.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def su(p: int, q: int = 0) -> LieAlgebra:
 
 
 def u(p: int, q: int = 0) -> LieAlgebra:
-    """The real Lie algebra u(p, q), of dimension n**2 with n = p + q.
+    """u(p, q), of dimension n**2 with n = p + q.
 
     Raises
     ------
@@ -108,19 +108,18 @@ def u(p: int, q: int = 0) -> LieAlgebra:
 
 
 def sp(p: int, q: int | str = 0) -> LieAlgebra:
-    """The compact sp(n), sp(p, q) on H^(p+q), or with a letter the split sp(2n, 'R') and sp(2n, 'C').
+    """The compact sp(n) and sp(p, q) on H^n, n = p + q; with a letter the split sp(2n, 'R') and sp(2n, 'C').
 
     Parameters
     ----------
     p : int
-        If q is a number, sp(p, q) has dimension n (2n + 1) with n = p + q; sp(1) = su(2). If q is a letter, p is the
-        even size 2n.
+        With q a number: sp(p, q) of dimension n (2n + 1), sp(1) = su(2). With a letter: the even size 2n.
     q : int, 'R' or 'C'
 
     Raises
     ------
     InputError
-        If p or q is negative, p + q is 0, or the size is odd and q is a letter.
+        If p or q is negative, p + q is 0, or the size before a letter is odd.
 
     Examples
     --------
@@ -132,12 +131,12 @@ def sp(p: int, q: int | str = 0) -> LieAlgebra:
 
 
 def so_star(n: int) -> LieAlgebra:
-    """The real Lie algebra so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
+    """so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
 
     Parameters
     ----------
     n : int
-        Size over the quaternions, at least 1; half the number in the name.
+        Size over the quaternions, at least 1: half of the number in the name.
 
     Raises
     ------
@@ -155,13 +154,12 @@ def so_star(n: int) -> LieAlgebra:
 
 
 def parabolic_subalgebra(*sizes: int) -> Subalgebra:
-    """The parabolic subalgebra of block upper triangular matrices in sl(n).
+    """The block upper triangular matrices in sl(n): the parabolic subalgebra of a flag.
 
     Parameters
     ----------
     *sizes : int
-        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. Sizes 1, ..., 1 give the Borel
-        subalgebra.
+        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. All 1: the Borel subalgebra.
 
     Returns
     -------

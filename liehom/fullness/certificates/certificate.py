@@ -92,7 +92,7 @@ class Certificate:
         object.__setattr__(self, "fields", MappingProxyType(frozen))
 
     @classmethod
-    def over(cls, field: ExactField, kind: str, **values: Any) -> Certificate:
+    def over(cls, field: ExactField, kind: str, **values: object) -> Certificate:
         """The certificate with these numbers, lists of numbers and matrices over an exact field.
 
         Examples
@@ -104,7 +104,7 @@ class Certificate:
         return cls(kind, fields, field)
 
     @classmethod
-    def from_json(cls, data: Any) -> Certificate:
+    def from_json(cls, data: object) -> Certificate:
         """The certificate that a parsed JSON object holds.
 
         Raises
@@ -208,7 +208,7 @@ class Certificate:
         return f"<certificate of kind {self.kind!r} over {self.field.name}>"
 
 
-def _read_also(value: Any) -> Certificate:
+def _read_also(value: object) -> Certificate:
     inner = value if isinstance(value, Certificate) else Certificate.from_json(value)
     if inner.kind not in ("commutant", "dominance"):
         raise malformed(f"also is of kind {inner.kind!r}, expected commutant or dominance")

@@ -49,36 +49,37 @@ def _read_number(field: ExactField, name: str, value: Any) -> Scalar:
         kind = "a float" if isinstance(value, float) else f"of type {type(value).__name__}"
         raise malformed(f"{name} holds {value!r}, {kind}; write numbers as strings such as '3' or '-1/2'")
     try:
-        return field.convert(value)
+        number: Scalar = field.convert(value)
     except (ParseError, FieldError) as error:
         raise malformed(f"{name}: {error}") from None
+    return number
 
 
-def _read_list(name: str, value: Any) -> Sequence[Any]:
+def _read_list(name: str, value: object) -> Sequence[Any]:
     if not isinstance(value, (list, tuple)):
         raise malformed(f"{name} must be a list, not {type(value).__name__}")
     return value
 
 
-def _read_vector(field: ExactField, name: str, value: Any) -> Vector:
+def _read_vector(field: ExactField, name: str, value: object) -> Vector:
     return tuple(_read_number(field, name, x) for x in _read_list(name, value))
 
 
-def _read_interval(field: ExactField, name: str, value: Any) -> Vector:
+def _read_interval(field: ExactField, name: str, value: object) -> Vector:
     ends = _read_vector(field, name, value)
     if len(ends) != 2:
         raise malformed(f"{name} must have two ends, it has {len(ends)}")
     return ends
 
 
-def _read_minpoly(field: ExactField, name: str, value: Any) -> Vector:
+def _read_minpoly(field: ExactField, name: str, value: object) -> Vector:
     coefficients = _read_vector(field, name, value)
     if len(coefficients) < 2 or coefficients[-1] == 0:
         raise malformed(f"{name} must have degree at least 1 and a leading (last) coefficient that is not 0")
     return coefficients
 
 
-def _read_polynomials(field: ExactField, name: str, value: Any) -> Polynomials:
+def _read_polynomials(field: ExactField, name: str, value: object) -> Polynomials:
     out: list[Scalar | Vector] = []
     for x in _read_list(name, value):
         if not isinstance(x, (list, tuple)):
@@ -95,7 +96,7 @@ def is_sparse(field: ExactField, rows: Sequence[Any]) -> bool:
     return bool(rows) and len(rows[0]) > 0 and not _is_number(field, rows[0][0])
 
 
-def _read_matrix(field: ExactField, name: str, value: Any) -> Rows:
+def _read_matrix(field: ExactField, name: str, value: object) -> Rows:
     rows = [_read_list(f"a row of {name}", row) for row in _read_list(name, value)]
     if is_sparse(field, rows):
         return _read_sparse(field, name, rows)
@@ -117,7 +118,7 @@ def _read_sparse(field: ExactField, name: str, rows: Sequence[Any]) -> Rows:
     return tuple((i, j, _read_number(field, name, x)) for i, j, x in rows)
 
 
-def _read_rows(field: ExactField, name: str, value: Any) -> Rows:
+def _read_rows(field: ExactField, name: str, value: object) -> Rows:
     rows = _read_matrix(field, name, value)
     if is_sparse(field, rows):
         numbers = {i for i, _, _ in rows}
@@ -126,14 +127,14 @@ def _read_rows(field: ExactField, name: str, value: Any) -> Rows:
     return rows
 
 
-def _read_square(field: ExactField, name: str, value: Any) -> Rows:
+def _read_square(field: ExactField, name: str, value: object) -> Rows:
     rows = _read_matrix(field, name, value)
     if rows and not is_sparse(field, rows) and len(rows) != len(rows[0]):
         raise malformed(f"{name} must be square, it is {len(rows)} x {len(rows[0])}")
     return rows
 
 
-def read_number_field(data: Any) -> NumberField:
+def read_number_field(data: object) -> NumberField:
     """The number field of a JSON object {"name", "minpoly", "interval"}.
 
     Examples
@@ -155,7 +156,7 @@ def read_number_field(data: Any) -> NumberField:
         raise CertificateFormatError("field", str(error)) from None
 
 
-READERS: dict[str, dict[str, Callable[[ExactField, str, Any], Any]]] = {
+READERS: dict[str, dict[str, Callable[[ExactField, str, object], object]]] = {
     "trivial": {},
     "full": {"form": _read_square, "elements": _read_rows, "eta": _read_vector},
     "witness": {

@@ -1,24 +1,24 @@
-"""How the decision writes certificates: from vectors and matrices on V to numbers in g."""
+"""Certificates from vectors and matrices on V = g/h, which the steps of the decision find."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
+from liehom.scalars import ExactField, ExactMatrix, Scalar
 
 RATIONAL_MINPOLY, RATIONAL_INTERVAL = (0, 1), (-1, 1)
 """t and an interval around its root 0: for a witness over the field itself."""
 
 
-def trivial(action_field: Any) -> Certificate:
-    """FULL because dim g/h <= 1."""
-    return Certificate("trivial", {}, action_field)
+def trivial(field: ExactField) -> Certificate:
+    """Certificate of FULL for dim g/h <= 1."""
+    return Certificate("trivial", {}, field)
 
 
-def rational_witness(action: TracelessIsotropyAction, x: Any, phi: Any) -> Certificate:
-    """NOT FULL: a column x of V over the input field and a row phi with phi(L x) = 0; both made primitive."""
+def rational_witness(action: TracelessIsotropyAction, x: ExactMatrix, phi: ExactMatrix) -> Certificate:
+    """Certificate of NOT FULL: a column x of V over the input field and a row phi with phi(L x) = 0, made primitive."""
     x, phi = x.primitive(), phi.primitive()
     return Certificate.over(
         action.field,
@@ -32,12 +32,12 @@ def rational_witness(action: TracelessIsotropyAction, x: Any, phi: Any) -> Certi
 
 def algebraic_witness(
     action: TracelessIsotropyAction,
-    minpoly: Sequence[Any],
-    interval: tuple[Any, Any],
-    xs: Sequence[Any],
-    phis: Sequence[Any],
+    minpoly: Sequence[Scalar],
+    interval: tuple[Scalar, Scalar],
+    xs: Sequence[ExactMatrix],
+    phis: Sequence[ExactMatrix],
 ) -> Certificate:
-    """NOT FULL: x = sum theta^j xs[j] (columns) and phi = sum theta^j phis[j] (rows), theta a root of minpoly."""
+    """Certificate of NOT FULL: x = sum theta^j xs[j], phi = sum theta^j phis[j], theta a root of minpoly."""
 
     return Certificate.over(
         action.field,
@@ -49,8 +49,8 @@ def algebraic_witness(
     )
 
 
-def _polynomials(rows: Sequence[Any]) -> list[list[Any]]:
-    """For each coordinate of sum theta^j rows[j] its coefficients, without leading (last) zeros but at least one."""
+def _polynomials(rows: Sequence[ExactMatrix]) -> list[list[Scalar]]:
+    """Coefficients of each coordinate of sum theta^j rows[j]: at least one, and no further leading (last) zeros."""
     out = []
     for coefficients in zip(*(row.row(0) for row in rows), strict=True):
         degree = max((j for j, c in enumerate(coefficients) if c != 0), default=0)
@@ -58,8 +58,8 @@ def _polynomials(rows: Sequence[Any]) -> list[list[Any]]:
     return out
 
 
-def full(action: TracelessIsotropyAction, form: Any, elements: Any, x: Any) -> Certificate:
-    """FULL: a definite form on V, rows of h acting conformally skew, and a point where they span."""
+def full(action: TracelessIsotropyAction, form: ExactMatrix, elements: ExactMatrix, x: ExactMatrix) -> Certificate:
+    """Certificate of FULL: a definite form on V, elements of h that preserve it up to scale, and a point."""
     projection = action.quotient.projection
     lifted = projection @ form @ projection.T
     rows = lifted.to_rows()
@@ -73,11 +73,11 @@ def full(action: TracelessIsotropyAction, form: Any, elements: Any, x: Any) -> C
     return Certificate("full", fields, action.field)
 
 
-def commutant_cut(action: TracelessIsotropyAction, matrix: Any, cut: Any) -> Certificate:
-    """NOT FULL: a matrix that commutes with rho(h) and has eigenvalues on both sides of the cut."""
+def commutant_cut(action: TracelessIsotropyAction, matrix: ExactMatrix, cut: Scalar) -> Certificate:
+    """Certificate of NOT FULL: a matrix that commutes with rho(h), with eigenvalues on both sides of the cut."""
     return Certificate.over(action.field, "commutant", matrix=matrix, complement=action.quotient.lift, cut=cut)
 
 
-def dominance(action: TracelessIsotropyAction, element: Any, cut: Any, eps: Any) -> Certificate:
-    """NOT FULL: an element of h whose top eigenspace moves in too few directions."""
+def dominance(action: TracelessIsotropyAction, element: ExactMatrix, cut: Scalar, eps: Scalar) -> Certificate:
+    """Certificate of NOT FULL: an element of h whose top eigenspace moves in too few directions."""
     return Certificate.over(action.field, "dominance", element=element.row(0), cut=cut, eps=eps)

@@ -1,23 +1,22 @@
-"""The eta that a certificate of NOT FULL shows: exact with its rank, or rounded to floats."""
+"""The eta of a certificate of NOT FULL: exact with its rank, or rounded to floats."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
-from liehom.scalars import QQ, Field, NumberField
+from liehom.scalars import QQ, Field, NumberField, Scalar
+from liehom.typing import Array
 
 
 def eta_of_witness(
     action: TracelessIsotropyAction, certificate: Certificate
-) -> tuple[list[Any] | None, Field | None, int | None]:
-    """eta, its field and the exact rank of [rho(h) eta, eta] there; Nones where the field would be a tower.
+) -> tuple[list[Scalar] | None, Field | None, int | None]:
+    """The triple (eta, its field, exact rank of [rho(h) eta, eta]); all None if eta is not in QQ(theta) or the field.
 
-    Over a number field k, an eta in k(theta) with theta outside k is left as the certificate states it.
+    An eta in k(theta), k a number field and theta outside k, would need an extension of k; it stands in the
+    certificate.
     """
     coordinates = certificate.fields["eta"]
     if all(not isinstance(c, tuple) or len(c) == 1 for c in coordinates):
@@ -40,14 +39,14 @@ def eta_of_witness(
     return values, extension, extension.stack_rows(moved, action.size).rank()
 
 
-def numerical_eta(action: TracelessIsotropyAction, x: npt.NDArray[np.float64] | None) -> list[float] | None:
-    """A vector of V, rounded, as an element of g; None where numbers are too large for floats."""
+def numerical_eta(action: TracelessIsotropyAction, x: Array | None) -> list[float] | None:
+    """Element of g, as floats, that represents a vector of V; None if its numbers exceed the range of floats."""
     lift = action.quotient.lift.to_numpy()
     return [float(v) for v in x @ lift] if x is not None and np.isfinite(lift).all() else None
 
 
 def numerical_eta_of_commutant(action: TracelessIsotropyAction, certificate: Certificate) -> list[float] | None:
-    """A vector of the invariant subspace where the commuting matrix has its larger real parts, rounded, or None."""
+    """Element of g, as floats, in the invariant subspace for the largest real parts of the matrix, or None."""
     matrix = certificate.matrix("matrix", action.size, action.size).to_numpy()
     if not np.isfinite(matrix).all():
         return None

@@ -1,7 +1,8 @@
-"""The independent checker of certificates: arithmetic from scratch, shared with nothing of the search.
+"""The independent checker of certificates, with its own arithmetic: it shares no code with the search.
 
-It may import only `liehom.scalars`, `liehom.errors` and the certificate. What it repeats from other wings is repeated
-on purpose. See docs/theory/fullness.md.
+It imports only `liehom.scalars`, `liehom.errors` and the certificate, and it repeats on purpose what other wings have
+too. Everyone may call `verify_certificate`; nobody may use its other functions. docs/theory/fullness.md says what each
+kind of certificate proves.
 """
 
 from liehom.fullness.checker.verify import verify_certificate as verify_certificate

@@ -1,10 +1,9 @@
-"""The independent checker of certificates: it trusts nothing but arithmetic.
+"""Verification of certificates from exact arithmetic alone.
 
-Its input is the structure constants of g and the basis of h; it shares no code with the procedure that finds
-certificates, and no theorem beyond those proved, in a few lines, in the docstrings here.  Throughout V = g/h,
-d = dim V, n = dim g, rho: h -> gl(V), and the pair is full if rho(h)x + Rx = V for every x != 0 in V.
-Coordinates are those of `verify_pair`, where rho is also checked to be a representation; roots are counted in
-`verify_roots`.
+The input is the structure constants of g and the basis of h. The checker shares no code with the procedure that finds
+certificates, and it uses no theorem except those that the docstrings here prove in a few lines. Throughout, V = g/h,
+d = dim V, n = dim g, rho: h -> gl(V), and the pair is full if rho(h)x + Rx = V for every x != 0 in V. `verify_pair`
+defines the coordinates and checks that rho is a representation; `verify_roots` counts roots.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ from liehom.fullness.checker.verify_roots import (
     trimmed,
     value,
 )
-from liehom.scalars import ExactField, ExactMatrix
+from liehom.scalars import ExactField, ExactMatrix, Scalar
 
 
 def verify_certificate(pair: PairData, certificate: Certificate | Mapping[str, Any]) -> bool:
-    """Check that a certificate proves its verdict for a pair.
+    """True if a certificate proves its verdict for a pair; otherwise raises an error that names the check.
 
     Parameters
     ----------
@@ -38,7 +37,7 @@ def verify_certificate(pair: PairData, certificate: Certificate | Mapping[str, A
     Returns
     -------
     bool
-        True; there is no other value.
+        Always True: a certificate that does not prove its verdict raises an error.
 
     Raises
     ------
@@ -93,7 +92,7 @@ def _require(holds: bool, check: str, message: str) -> None:
 
 
 def _verify_trivial(pair: CheckedPair) -> None:
-    """Full, because d <= 1: there is no x != 0, or Rx is all of V already."""
+    """Full, because d <= 1: there is no x != 0, or Rx = V."""
     d = pair.codimension
     _require(d <= 1, "codimension", f"dim g/h = {d}; a trivial certificate needs at most 1")
 
@@ -103,15 +102,15 @@ def _verify_full(pair: CheckedPair, certificate: Certificate) -> None:
 
     Checks: d >= 2; the form F is symmetric, vanishes on h and is positive definite on V, where it is called P;
     the elements z_j lie in h, and K_j = rho(z_j) has P(Kx, y) + P(x, Ky) = 2c P(x, y); eta, h and all
-    [z_j, eta] span g.  It is enough to compare F(z x, y) + F(x, z y) with 2c F(x, y) for x and y in a complement
+    [z_j, eta] span g. It is enough to compare F(z x, y) + F(x, z y) with 2c F(x, y) for x and y in a complement
     of h: for x in h all terms vanish, [z, x] being in h.
 
-    Proof of fullness.  Let m be the set of P-skew maps in rho(h) + R, a Lie algebra, since rho(h) is one and a
-    bracket of skew maps is skew.  K_j - c_j lies in m, and V = span{x, K_j x} for x = eta mod h gives
-    V = Rx + m x, so dim m x = d - 1 (m x is orthogonal to x).  The connected group M of m is in O(P); its closure
-    is compact and normalises m (a closed condition), so y -> dim m y is constant on its orbits.  Hence the
+    Proof of fullness. Let m be the set of P-skew maps in rho(h) + R, a Lie algebra, since rho(h) is one and a
+    bracket of skew maps is skew. K_j - c_j lies in m, and V = span{x, K_j x} for x = eta mod h gives
+    V = Rx + m x, so dim m x = d - 1 (m x is orthogonal to x). The connected group M of m is in O(P); its closure
+    is compact and normalizes m (a closed condition), so y -> dim m y is constant on its orbits. Hence the
     orbit of x under it has dimension at least d - 1: it is open in the sphere of P through x, and compact, so it
-    is that sphere, connected as d >= 2.  So dim m y = d - 1 for all y != 0 (scale y), and
+    is that sphere, connected as d >= 2. So dim m y = d - 1 for all y != 0 (scale y), and
     rho(h)y + Ry contains m y + Ry = V.
     """
     field, n, d = pair.field, pair.dimension, pair.codimension
@@ -141,7 +140,7 @@ def _verify_full(pair: CheckedPair, certificate: Certificate) -> None:
 
 
 def _is_positive_definite(form: ExactMatrix) -> bool:
-    """Whether a symmetric matrix is positive definite: Gauss's elimination L D L^T meets positive pivots only."""
+    """Whether a symmetric matrix is positive definite: all pivots of Gaussian elimination L D L^T are positive."""
     field, rows = form.field, form.to_rows()
     for i, row in enumerate(rows):
         if field.sign(row[i]) <= 0:
@@ -159,14 +158,14 @@ def _is_positive_definite(form: ExactMatrix) -> bool:
 def _verify_witness(pair: CheckedPair, certificate: Certificate) -> None:
     """Not full: a real eta outside h and a linear form phi != 0 with phi(h) = phi(eta) = phi([h, eta]) = 0.
 
-    The coordinates of eta and phi are polynomials in theta, of degree below that of f (minpoly).  Checks: f is
+    The coordinates of eta and phi are polynomials in theta, of degree below that of f (minpoly). Checks: f is
     squarefree and f(a) f(b) < 0 for the interval, a < b (for f of degree 1: a <= theta <= b, so that f = t and
     the interval (0, 0) or (-1, 1) say that eta and phi are over the field itself); one coordinate of phi, and
     one of eta mod h, is coprime to f; the three equations hold modulo f.
 
-    Proof.  f has a real root theta in (a, b).  All equations hold there, phi(theta) != 0, and eta(theta) is not
-    in h, as a polynomial coprime to f does not vanish at a root of f.  phi is a nonzero linear form on V that
-    vanishes on x = eta mod h != 0 and on rho(h)x.  (So f may be reducible, and have several roots in (a, b):
+    Proof. f has a real root theta in (a, b). All equations hold there, phi(theta) != 0, and eta(theta) is not
+    in h, as a polynomial coprime to f does not vanish at a root of f. phi is a nonzero linear form on V that
+    vanishes on x = eta mod h != 0 and on rho(h)x. (So f may be reducible, and have several roots in (a, b):
     the equations hold at each.)
     """
     n, d, field = pair.dimension, pair.codimension, pair.field
@@ -194,7 +193,7 @@ def _verify_witness(pair: CheckedPair, certificate: Certificate) -> None:
         _verify(pair, also)
 
 
-def _check_root(field: ExactField, f: list[Any], low: Any, high: Any) -> None:
+def _check_root(field: ExactField, f: list[Scalar], low: Scalar, high: Scalar) -> None:
     """Check that f is squarefree and has a real root in the interval."""
     _require(coprime(f, derivative(f)), "minpoly", "minpoly is not squarefree")
     signs = field.sign(value(f, low)), field.sign(value(f, high))
@@ -205,12 +204,12 @@ def _check_root(field: ExactField, f: list[Any], low: Any, high: Any) -> None:
     _require(holds, "interval", "minpoly does not change its sign on the interval")
 
 
-def _some_coprime(rows: ExactMatrix, f: list[Any]) -> bool:
+def _some_coprime(rows: ExactMatrix, f: list[Scalar]) -> bool:
     polynomials = (trimmed(row) for row in rows.to_rows())
     return any(coprime(f, p) for p in polynomials if p)
 
 
-def _vanishes(field: ExactField, products: list[ExactMatrix], f: list[Any]) -> bool:
+def _vanishes(field: ExactField, products: list[ExactMatrix], f: list[Scalar]) -> bool:
     """Whether the polynomials sum of B[s, t] theta^(s + t) are 0 modulo f, for all matrices B (size, size)."""
     size = len(f) - 1
     rows = field.stack_rows([b.reshape(1, size * size) for b in products], size * size)
@@ -229,11 +228,11 @@ def _vanishes(field: ExactField, products: list[ExactMatrix], f: list[Any]) -> b
 def _verify_commutant(pair: CheckedPair, certificate: Certificate) -> None:
     """Not full: a map T of V commutes with rho(h), and its eigenvalues lie on both sides of a line Re = cut.
 
-    The rows u_j of `complement` and h form a basis of g, and T u_j = sum over i of T[i, j] u_i modulo h.  Checks:
+    The rows u_j of `complement` and h form a basis of g, and T u_j = sum over i of T[i, j] u_i modulo h. Checks:
     complement and h are a basis; T commutes with rho(h); 0 < #{eigenvalues with Re > cut} < d, counted with
     multiplicity, none on the line.
 
-    Proof.  The sum W of the generalised eigenspaces of T for Re > cut is real, proper, not 0, and invariant
+    Proof. The sum W of the generalized eigenspaces of T for Re > cut is real, proper, not 0, and invariant
     under all that commutes with T: rho(h)x + Rx lies in W for x in W.
     """
     d, field = pair.codimension, pair.field
@@ -256,27 +255,27 @@ def _verify_commutant(pair: CheckedPair, certificate: Certificate) -> None:
 
 
 def _side_by_side(rows: ExactMatrix, k: int, d: int) -> ExactMatrix:
-    """From k rows (w, v) to the matrix (w; p, v): the d x d matrices next to each other."""
+    """Matrix (w; p, v) with k d x d matrices side by side, from k rows (w, v)."""
     order = [p * d + w for w in range(d) for p in range(k)]
     return rows.reshape(k * d, d).select(rows=order).reshape(d, k * d)
 
 
 def _stacked(matrix: ExactMatrix, k: int, d: int) -> ExactMatrix:
-    """From (w; p, v) to (p, w; v): the d x d matrices one below the other."""
+    """Matrix (p, w; v) with the d x d matrices below each other, from the matrix (w; p, v)."""
     return matrix.reshape(d * k, d).select(rows=[w * k + p for p in range(k) for w in range(d)])
 
 
 def _verify_dominance(pair: CheckedPair, certificate: Certificate) -> None:
     """Not full: X in h has a top space W that few elements of rho(h) can leave.
 
-    Let A be the traceless part of rho(X).  Checks: eps > 0; X in h; no eigenvalue of A has its real part in
-    [c - eps, c]; W, the sum of the generalised eigenspaces of A for Re > c, is not 0; dim W + m < d, where m is
-    the number of eigenvalues of ad rho(X) on rho(h) with Re <= -eps.  All counts are with multiplicity.
+    Let A be the traceless part of rho(X). Checks: eps > 0; X in h; no eigenvalue of A has its real part in
+    [c - eps, c]; W, the sum of the generalized eigenspaces of A for Re > c, is not 0; dim W + m < d, where m is
+    the number of eigenvalues of ad rho(X) on rho(h) with Re <= -eps. All counts are with multiplicity.
 
-    Proof.  rho(h) is the sum of q (generalised eigenspaces of ad rho(X) for Re > -eps) and a complement of
-    dimension m; both, and W, are real.  An element of q for the eigenvalue mu sends the generalised eigenspace
-    of A for lambda to that for lambda + mu.  For Re lambda > c this has Re > c - eps, hence Re > c: q maps W to
-    W.  So for x != 0 in W, rho(h)x + Rx lies in W + (complement)x, of dimension at most dim W + m < d.
+    Proof. rho(h) is the sum of q (generalized eigenspaces of ad rho(X) for Re > -eps) and a complement of
+    dimension m; both, and W, are real. An element of q for the eigenvalue mu sends the generalized eigenspace
+    of A for lambda to that for lambda + mu. For Re lambda > c this has Re > c - eps, hence Re > c: q maps W to
+    W. So for x != 0 in W, rho(h)x + Rx lies in W + (complement)x, of dimension at most dim W + m < d.
     """
     field, d = pair.field, pair.codimension
     element = field.matrix([certificate.vector("element", pair.dimension)])
@@ -299,8 +298,8 @@ def _verify_dominance(pair: CheckedPair, certificate: Certificate) -> None:
 def _adjoint_on_image(pair: CheckedPair, rho: ExactMatrix) -> ExactMatrix:
     """The matrix of B -> rho(X) B - B rho(X) on rho(h), a subspace of gl(V) (rho may have a kernel).
 
-    In any basis B_i of rho(h) that is the identity at some places: entries of a map there are its coordinates.
-    That the B_i are such a basis, and that brackets are these combinations, is verified.
+    The basis B_i of rho(h) is the identity at certain entries, so the entries of a map there are its coordinates. The
+    function verifies that the B_i are such a basis and that the brackets are these combinations.
     """
     d, isotropy = pair.codimension, pair.isotropy
     basis, places = isotropy.echelon()

@@ -1,59 +1,39 @@
-"""That h is closed and rho a representation, proved modulo enough primes; part of the independent checker.
+"""Proof modulo enough primes that h is closed and rho is a representation; part of the independent checker.
 
-Once denominators are cleared both facts say that certain elements z of Z[b] vanish (b an algebraic integer that
-generates the field; Z[b] = Z over QQ).  A prime p and a root of the minimal polynomial F of b modulo p give a
-ring homomorphism Z[b] -> F_p.  If z is not 0 but is sent to 0, then p divides the norm of z, a nonzero
-integer, as F and z have a common root modulo p.  The norm is at most B^m in absolute value if all m conjugates
-of z are at most B.  So z = 0 if it is sent to 0 modulo different primes whose product is above B^m.
+After denominators are cleared, both facts say that certain elements z of Z[b] vanish (b is an algebraic integer that
+generates the field; Z[b] = Z over QQ). A prime p and a root of the minimal polynomial F of b modulo p give a ring
+homomorphism Z[b] -> F_p. If z is not 0 but maps to 0, then p divides the norm of z, a nonzero integer, since F and z
+have a common root modulo p. The absolute value of the norm is at most B^m if all m conjugates of z are at most B. So
+z = 0 if it maps to 0 modulo different primes whose product exceeds B^m.
 
-The work modulo one prime is done by numpy in float64, here, or for large sparse pairs by scipy in
-`verify_sparse`.
+Modulo one prime, numpy computes in float64; for large sparse pairs, scipy computes with sparse matrices
+(`verify_sparse`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import isqrt
-from typing import Any
+from typing import Any, SupportsInt, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import CertificateError
+from liehom.fullness.checker.integral_pair import Integers, IntegralPair
 from liehom.fullness.checker.verify_sparse import check_sparse
 from liehom.scalars import ExactField, ExactMatrix, NumberField
 
+Floats: TypeAlias = npt.NDArray[np.float64]
+
 _DENSE_SIZE = 300
+"""Largest dimension of g for which dense matrices may be used."""
 _BLOCK_ENTRIES = 1 << 22
-
-
-@dataclass(frozen=True, slots=True)
-class IntegralPair:
-    """A pair with denominators cleared: c' = delta c, Q' = q Q, h'_p = q h_p = q e_p - Q'_p e_free.
-
-    The isotropy R'_p[u, v] = ([h'_p, e_u]' Q')_v, where [x, y]' = delta [x, y] and u counts the free indices,
-    is delta q^2 R_p.  See `liehom.fullness.checker.verify_pair` for the notation.
-    """
-
-    field: ExactField
-    dimension: int
-    free: tuple[int, ...]
-    pivots: tuple[int, ...]
-    places: npt.NDArray[np.int64]
-    """The (i, j, k) of the structure constants, i < j, shape (number, 3)."""
-    constants: ExactMatrix
-    """c' at the places, shape (1, number)."""
-    quotient: ExactMatrix
-    """Q', shape (n, d)."""
-    scale: int
-    """q."""
-    isotropy: ExactMatrix
-    """R', shape (k, d d)."""
+"""Entries of the largest array of one block of elements of h."""
 
 
 class _Numbers:
-    """Elements of Z[b] by their integer coordinates, ready to be sent to F_p."""
+    """Elements of Z[b] as integer coordinates, from which images in F_p are computed."""
 
     __slots__ = ("parts", "shape")
 
@@ -61,22 +41,23 @@ class _Numbers:
         self.shape = matrix.shape
         self.parts = [_integers(part.entries()) for part in matrix.cleared().parts]
 
-    def image(self, prime: int, root: int) -> npt.NDArray[np.int64]:
-        """The entries modulo the prime."""
+    def image(self, prime: int, root: int) -> Integers:
+        """Images of the entries modulo the prime, for b -> root; int64 in [0, prime)."""
         total = np.zeros(self.parts[0].shape, dtype=np.int64)
         for part in reversed(self.parts):
             total = (total * root + (part % prime).astype(np.int64)) % prime
         return total.reshape(self.shape)
 
     def sizes(self, generator: int) -> npt.NDArray[np.object_]:
-        """Bounds of the absolute values of all conjugates, those of b being at most `generator`."""
+        """Bounds of the absolute values of all conjugates, if the conjugates of b are at most `generator`."""
         total = np.zeros(self.parts[0].shape, dtype=object)
         for part in reversed(self.parts):
             total = total * generator + np.abs(part.astype(object))
         return total.reshape(self.shape)
 
 
-def _integers(entries: Sequence[Any]) -> npt.NDArray[Any]:
+def _integers(entries: Sequence[SupportsInt]) -> npt.NDArray[Any]:
+    """Array of int64 if all entries are below 2^62 in absolute value, else of Python integers."""
     values = [int(x) for x in entries]
     small = all(-(1 << 62) < x < 1 << 62 for x in values)
     return np.array(values, dtype=np.int64 if small else object)
@@ -114,10 +95,10 @@ def _is_dense(n: int, number: int) -> bool:
 
 
 def _bound(pair: IntegralPair, constants: _Numbers, quotient: _Numbers, isotropy: _Numbers) -> int:
-    """A bound of all conjugates of the elements that the checks compare with 0.
+    """Bound of all conjugates of the elements that the checks compare with 0.
 
-    With |.| the sum over coordinates of the sizes, |[x, y]'| <= g |x| |y| for g = max |[e_i, e_j]'|; let
-    l = max |h'_p|, and m and r bound the entries of Q' and R'.  Then
+    Let |.| be the sum of the sizes of the coordinates, so that |[x, y]'| <= g |x| |y| for g = max |[e_i, e_j]'|. Let
+    l = max |h'_p|, and let m and r bound the entries of Q' and R'. Then
 
         q [h'_p, e_j]' Q' - Q'_j R'_p             is at most  q g l m + d m r,
         sum_r x_r R'_r - (R'_q R'_p - R'_p R'_q)  is at most  g l^2 r + 2 d r^2,  x = [h'_p, h'_q]'.
@@ -135,7 +116,7 @@ def _bound(pair: IntegralPair, constants: _Numbers, quotient: _Numbers, isotropy
 
 
 def _primes(field: ExactField, n: int) -> Iterator[tuple[int, int]]:
-    """Different primes, each with a root of the minimal polynomial of b; n p^2 < 2^53 for all of them."""
+    """Different primes p with n p^2 < 2^53, each with a root of the minimal polynomial of b modulo p."""
     limit = isqrt((1 << 53) // max(n, 64))
     if not isinstance(field, NumberField):
         yield from ((p, 0) for p in range(limit, 2, -1) if _is_prime(p))
@@ -155,12 +136,12 @@ def _is_prime(candidate: int) -> bool:
     return candidate % 2 == 1 and all(candidate % f for f in range(3, isqrt(candidate) + 1, 2))
 
 
-def _check_dense(prime: int, pair: IntegralPair, constants: Any, quotient: Any, isotropy: Any) -> None:
+def _check_dense(prime: int, pair: IntegralPair, constants: Integers, quotient: Integers, isotropy: Integers) -> None:
     """Check the two identities of `_bound` modulo a prime, in float64.
 
-    The first at all j says [h_p, e_j] Q = Q_j R_p: so [h_p, .] Q factors over V, it vanishes on h.  The second is
-    rho([h_p, h_q]) = rho(h_p) rho(h_q) - rho(h_q) rho(h_p) times delta^2 q^4: the bracket x lies in h, so it is
-    the sum of x_r h_r over the pivots r.  Products have entries below n p^2 < 2^53 and are exact.
+    The first identity, for all j, says [h_p, e_j] Q = Q_j R_p: so [h_p, .] Q factors over V and vanishes on h. The
+    second is rho([h_p, h_q]) = rho(h_p) rho(h_q) - rho(h_q) rho(h_p) times delta^2 q^4: the bracket x lies in h, so it
+    is the sum of x_r h_r over the pivots r. Products have entries below n p^2 < 2^53 and are exact.
     """
     n, k, d = pair.dimension, len(pair.pivots), len(pair.free)
     pivots, free = list(pair.pivots), list(pair.free)
@@ -168,8 +149,8 @@ def _check_dense(prime: int, pair: IntegralPair, constants: Any, quotient: Any, 
     i, j, m = pair.places.T
     table[i, j, m] = constants
     table[j, i, m] = -constants
-    quotient, rho = quotient.astype(np.float64), isotropy.astype(np.float64).reshape(k, d, d)
-    scale, lift = pair.scale % prime, quotient[pivots]
+    projection, rho = quotient.astype(np.float64), isotropy.astype(np.float64).reshape(k, d, d)
+    scale, lift = pair.scale % prime, projection[pivots]
     by_row = rho.transpose(1, 0, 2).reshape(d, k * d)  # (w; q, v)
     from_free = table[free].reshape(d, n * n)
     size = max(1, _BLOCK_ENTRIES // (n * n + k * d * d))
@@ -179,8 +160,8 @@ def _check_dense(prime: int, pair: IntegralPair, constants: Any, quotient: Any, 
         action = _reduced(
             prime, scale * table[pivots[chosen]] - _reduced(prime, lift[chosen] @ from_free).reshape(b, n, n)
         )
-        factored = _reduced(prime, quotient @ rho[chosen])
-        if _reduced(prime, scale * _reduced(prime, action @ quotient) - factored).any():
+        factored = _reduced(prime, projection @ rho[chosen])
+        if _reduced(prime, scale * _reduced(prime, action @ projection) - factored).any():
             raise CertificateError("closed", "a bracket of two elements of h is not in h")
         action = action[:, :, pivots]  # (p, j, r)
         inner = scale * action[:, pivots[:stop]] - _reduced(prime, lift[:stop] @ action[:, free])  # (p, q, r)
@@ -195,6 +176,7 @@ def _check_dense(prime: int, pair: IntegralPair, constants: Any, quotient: Any, 
             )
 
 
-def _reduced(prime: int, array: Any) -> Any:
-    """Integers below 2^53 modulo the prime, in (-0.51 p, 0.51 p): 0 only for multiples of p."""
-    return array - np.rint(array * (1.0 / prime)) * prime
+def _reduced(prime: int, array: Floats) -> Floats:
+    """Integers below 2^53 modulo the prime, in (-0.51 p, 0.51 p); the result is 0 only for multiples of p."""
+    remainders: Floats = array - np.rint(array * (1.0 / prime)) * prime
+    return remainders

@@ -1,41 +1,41 @@
-"""What the independent checker verifies about a pair (g, h) before it looks at a certificate.
+"""Facts about a pair (g, h) that the independent checker verifies before it reads a certificate.
 
-Only the structure constants and the basis of h are used.  With V = g/h, d = dim V:
+It uses only the structure constants and the basis of h. With V = g/h, d = dim V:
 
   * the rows of h are linearly independent ("independent"),
   * [h, h] lies in h ("closed"), so that rho(a)(x + h) = [a, x] + h is well defined on V,
   * rho([a, b]) = rho(a) rho(b) - rho(b) rho(a) for all a, b in h ("homomorphism").
 
-Nothing else about g matters: fullness is a statement about the Lie algebra rho(h) of linear maps of V.  Whether
-the Jacobi identity holds for three elements outside h is therefore not asked.
+Fullness is a statement about the Lie algebra rho(h) of linear maps of V, so it depends on g only through these facts.
+The checker therefore does not check the Jacobi identity for three elements outside h.
 
-Coordinates.  The columns of Q, shape (n, d), are a basis of the linear forms that vanish on h, normalised to
-the identity on d `free` indices: x Q are the coordinates of x mod h in the basis e_free of V.  The rows
-e_p - Q_p e_free, p one of the other indices (`pivots`), are a basis of h, and an element of h has its pivot
-entries as coordinates in it.  Maps of V act on coordinate rows from the right: v -> v R, so that the
-composition A B (first B) has the matrix R_B R_A.
+Coordinates. The columns of Q, shape (n, d), are a basis of the linear forms that vanish on h, normalized to the
+identity on d `free` indices: x Q are the coordinates of x mod h in the basis e_free of V. The rows e_p - Q_p e_free,
+for the other indices p (`pivots`), are a basis of h, and the pivot entries of an element of h are its coordinates in
+this basis. Maps of V act on coordinate rows from the right, v -> v R, so the composition A B (first B) has the matrix
+R_B R_A.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.errors import CertificateError, InputError
-from liehom.fullness.checker.verify_modular import IntegralPair, check_representation
+from liehom.fullness.checker.integral_pair import Integers, IntegralPair
+from liehom.fullness.checker.verify_modular import check_representation
 from liehom.fullness.checker.verify_roots import count_real_roots, trimmed, value
-from liehom.scalars import QQ, ExactField, ExactMatrix, NumberField, Scalar
+from liehom.scalars import QQ, ExactField, ExactMatrix, Field, NumberField, Scalar
 
 
 class AlgebraData(Protocol):
-    """What the checker reads of a Lie algebra."""
+    """Lie algebra, as far as the checker reads it."""
 
     @property
-    def field(self) -> Any:
+    def field(self) -> Field:
         """The field of scalars."""
 
     @property
@@ -43,32 +43,32 @@ class AlgebraData(Protocol):
         """The dimension n."""
 
     def structure_constants(self) -> Iterable[tuple[int, int, int, Scalar]]:
-        """The nonzero (i, j, k, value) with i < j: [e_i, e_j] = sum over k of value e_k."""
+        """All (i, j, k, value) with i < j and value != 0: [e_i, e_j] = sum over k of value e_k."""
 
 
 class SubalgebraData(Protocol):
-    """What the checker reads of a subalgebra."""
+    """Subalgebra, as far as the checker reads it."""
 
     @property
-    def basis(self) -> Any:
+    def basis(self) -> object:
         """The matrix (k, n) whose rows are the basis as given."""
 
 
 class PairData(Protocol):
-    """What the checker reads of a pair."""
+    """Pair, as far as the checker reads it."""
 
     @property
-    def algebra(self) -> Any:
+    def algebra(self) -> AlgebraData:
         """The algebra g, as `AlgebraData`."""
 
     @property
-    def subalgebra(self) -> Any:
+    def subalgebra(self) -> SubalgebraData:
         """The subalgebra h, as `SubalgebraData`."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckedPair:
-    """A pair that passed `check_pair`: the coordinates of V = g/h and the isotropy representation."""
+    """Pair that passed `check_pair`: the coordinates of V = g/h and the isotropy representation."""
 
     field: ExactField
     dimension: int
@@ -81,7 +81,7 @@ class CheckedPair:
 
     @property
     def codimension(self) -> int:
-        """d = dim g/h."""
+        """Dimension d of g/h."""
         return len(self.free)
 
     def in_h(self, rows: ExactMatrix) -> bool:
@@ -96,7 +96,7 @@ class CheckedPair:
 
 
 def check_pair(pair: PairData) -> CheckedPair:
-    """Verify the three facts of the module's docstring, or raise.
+    """Verified pair, after a check of the three facts in the module's docstring.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def check_pair(pair: PairData) -> CheckedPair:
 def check_same_field(field: ExactField, other: ExactField) -> None:
     """Check that a certificate is over the field of the pair, with the same real embedding.
 
-    Two isolating intervals of one polynomial hold the same root iff their intersection holds a root.
+    Two isolating intervals of one polynomial contain the same root if and only if their intersection contains a root.
     """
     if not isinstance(field, NumberField) or not isinstance(other, NumberField):
         if field != other:
@@ -139,10 +139,9 @@ def check_same_field(field: ExactField, other: ExactField) -> None:
 
 
 def _check_field(field: ExactField) -> None:
-    """Check that the interval of a number field holds exactly one root of its polynomial (Sturm).
+    """Check that the interval of a number field contains exactly one root of its polynomial (Sturm).
 
-    That the polynomial is irreducible is part of the arithmetic: the constructor of `NumberField`, which is
-    called again here, factors it.
+    The arithmetic needs an irreducible polynomial: the constructor of `NumberField`, called again here, factors it.
     """
     if not isinstance(field, NumberField):
         return
@@ -157,8 +156,8 @@ def _check_field(field: ExactField) -> None:
 
 def _checked_constants(
     field: ExactField, n: int, entries: Iterable[tuple[int, int, int, Scalar]]
-) -> tuple[npt.NDArray[np.int64], list[Scalar]]:
-    """The places (i, j, k), i < j < n, each once, shape (number, 3), and the constants there."""
+) -> tuple[Integers, list[Scalar]]:
+    """Distinct indices (i, j, k), i < j < n, as an array of shape (number, 3), and the constants at these indices."""
     places, constants = [], []
     for i, j, k, c in entries:
         places.append((i, j, k))
@@ -172,7 +171,7 @@ def _checked_constants(
 
 
 def _quotient(field: ExactField, basis: ExactMatrix) -> tuple[tuple[int, ...], tuple[int, ...], ExactMatrix]:
-    """The free indices, the pivots and Q; H Q = 0 and the rank of H are verified, however Q was found."""
+    """Free indices, pivots and Q. The rank of H and H Q = 0 are verified, independently of the way to find Q."""
     k, n = basis.shape
     if basis.rank() != k:
         raise CertificateError("independent", f"the {k} rows of h are linearly dependent")
@@ -192,15 +191,15 @@ def _quotient(field: ExactField, basis: ExactMatrix) -> tuple[tuple[int, ...], t
 
 def _integral(
     field: ExactField,
-    places: npt.NDArray[np.int64],
+    places: Integers,
     constants: list[Scalar],
     quotient: ExactMatrix,
     free: tuple[int, ...],
     pivots: tuple[int, ...],
 ) -> tuple[IntegralPair, int]:
-    """The pair with denominators cleared, with its isotropy R', and delta q^2, by which R' is too large.
+    """Pair with denominators cleared, with its isotropy R' = delta q^2 R, and the factor delta q^2.
 
-    With D[i; u, v] = ([e_i, e_u]' Q')_v, u counting the free indices, R'_p is q D_p - sum over t of Q'_pt D_t.
+    Let D[i; u, v] = ([e_i, e_u]' Q')_v, where u counts the free indices. Then R'_p = q D_p - sum over t of Q'_pt D_t.
     """
     n, d = quotient.shape
     row = field.from_entries(constants, 1, len(constants))

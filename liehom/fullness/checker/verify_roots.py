@@ -1,8 +1,8 @@
 """Root counts of the independent checker: Sturm, Routh–Hurwitz and characteristic polynomials, from scratch.
 
-A polynomial is the list of its ascending coefficients, field elements, without leading zeros; zero is [].
-Everything here is written out again on purpose: the procedure that finds certificates counts roots with
-`liehom.scalars.fields.polynomial`, and a mistake there must not sit on both sides.
+A polynomial is the list of its ascending coefficients, elements of the field, without leading zeros; zero is []. The
+procedure that finds certificates counts roots with `liehom.scalars.fields.polynomial`; the checker repeats this code,
+so that a mistake there cannot be in both.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Coefficients = list[Scalar]
 
 
 def trimmed(values: Sequence[Scalar]) -> Coefficients:
-    """The polynomial with these ascending coefficients: leading zeros removed."""
+    """Polynomial with these ascending coefficients, leading zeros removed."""
     out = list(values)
     while out and out[-1] == 0:
         out.pop()
@@ -26,7 +26,7 @@ def trimmed(values: Sequence[Scalar]) -> Coefficients:
 
 
 def divided(f: Coefficients, g: Coefficients) -> tuple[Coefficients, Coefficients]:
-    """Quotient and remainder of f by g, where g is not zero."""
+    """Quotient and remainder of f divided by g, for g != 0."""
     rest, gap = list(f), len(g) - 1
     inverse = 1 / g[-1]
     quotient = [g[-1] * 0] * max(0, len(f) - gap)
@@ -41,12 +41,12 @@ def divided(f: Coefficients, g: Coefficients) -> tuple[Coefficients, Coefficient
 
 
 def derivative(f: Coefficients) -> Coefficients:
-    """The derivative."""
+    """Derivative of a polynomial."""
     return trimmed([c * i for i, c in enumerate(f)][1:])
 
 
 def value(f: Coefficients, at: Scalar) -> Scalar:
-    """f(at)."""
+    """Value f(at) of a polynomial."""
     total = at * 0
     for c in reversed(f):
         total = total * at + c
@@ -54,7 +54,7 @@ def value(f: Coefficients, at: Scalar) -> Scalar:
 
 
 def gcd(f: Coefficients, g: Coefficients) -> Coefficients:
-    """The monic greatest common divisor of two polynomials (zero if both are)."""
+    """Monic greatest common divisor of two polynomials; zero if both are zero."""
     while g:
         f, g = g, divided(f, g)[1]
         g = [c / g[-1] for c in g]
@@ -67,7 +67,7 @@ def coprime(f: Coefficients, g: Coefficients) -> bool:
 
 
 def squarefree_parts(f: Coefficients) -> list[tuple[Coefficients, int]]:
-    """Squarefree, pairwise coprime g_m with f = const * product of g_m^m (Yun); as pairs (g_m, m)."""
+    """Pairs (g_m, m), g_m squarefree and pairwise coprime, with f = const * product of g_m^m (Yun)."""
     common = gcd(f, derivative(f))
     rest, slope = divided(f, common)[0], divided(derivative(f), common)[0]
     parts, multiplicity = [], 1
@@ -85,7 +85,7 @@ def squarefree_parts(f: Coefficients) -> list[tuple[Coefficients, int]]:
 
 
 def signed_remainders(field: ExactField, f: Coefficients, g: Coefficients) -> list[Coefficients]:
-    """f, g, and then each time minus the remainder of the last two, up to positive factors, until zero."""
+    """Chain f, g, -(f mod g), ... of signed remainders, up to positive factors, that ends before zero."""
     chain = [f, g] if g else [f]
     while len(chain) > 1:
         rest = divided(chain[-2], chain[-1])[1]
@@ -97,7 +97,7 @@ def signed_remainders(field: ExactField, f: Coefficients, g: Coefficients) -> li
 
 
 def variations(signs: Sequence[int]) -> int:
-    """Number of sign changes, zeros left out."""
+    """Number of sign changes in a sequence, without its zeros."""
     kept = [s for s in signs if s]
     return sum(a != b for a, b in itertools.pairwise(kept))
 
@@ -105,8 +105,8 @@ def variations(signs: Sequence[int]) -> int:
 def count_real_roots(field: ExactField, f: Coefficients, low: Scalar, high: Scalar) -> int:
     """Number of distinct real roots of f in the open interval (low, high), by Sturm's theorem.
 
-    The ends must not be roots of f.  Proof: Sturm's chain f, f', ... changes its number of sign changes only
-    at roots of f, where it drops by one; this needs no squarefreeness as long as the ends are no roots.
+    The ends must not be roots of f. Proof: the number of sign changes of Sturm's chain f, f', ... changes only at roots
+    of f, where it drops by one. If the ends are not roots, f need not be squarefree.
     """
     chain = signed_remainders(field, f, derivative(f))
     left, right = ([field.sign(value(p, at)) for p in chain] for at in (low, high))
@@ -114,7 +114,7 @@ def count_real_roots(field: ExactField, f: Coefficients, low: Scalar, high: Scal
 
 
 def shifted(f: Coefficients, by: Scalar) -> Coefficients:
-    """The polynomial f(t + by)."""
+    """Polynomial f(t + by)."""
     out = list(f)
     for start in range(len(out) - 1):
         for i in range(len(out) - 2, start - 1, -1):
@@ -152,11 +152,11 @@ def count_right_of(field: ExactField, f: Coefficients, cut: Scalar) -> int:
 
 
 def _count_right(field: ExactField, f: Coefficients) -> int | None:
-    """Roots with positive real part, or None if two roots are symmetric about the imaginary axis.
+    """Number of roots with positive real part, or None if two roots are symmetric about the imaginary axis.
 
-    Proof.  Write f(iy) = p(y) + i q(y).  A common root y of p and q, real or not, is f(iy) = 0 = f(-iy)
+    Proof. Write f(iy) = p(y) + i q(y). A common root y of p and q, real or not, is f(iy) = 0 = f(-iy)
     conjugated: roots iy and i conj(y) of f, mirror images in the axis; so without such pairs gcd(p, q) = 1 and
-    f has no root on the axis.  Then arg f(iy) grows by pi (left - right) as y runs over R.  The one of p, q
+    f has no root on the axis. Then arg f(iy) grows by pi (left - right) as y runs over R. The one of p, q
     with the higher degree n is the denominator of tan (n even) or cot (n odd) of the argument, a function that
     vanishes at both ends; so the growth is -pi I(q/p) or +pi I(p/q), I the Cauchy index, which is the loss of
     sign changes of the signed remainders from -infinity to +infinity (Sturm).
@@ -175,10 +175,10 @@ def _count_right(field: ExactField, f: Coefficients) -> int | None:
 
 
 def characteristic_polynomial(matrix: ExactMatrix) -> Coefficients:
-    """The coefficients of det(t - A), ascending and monic, from the traces of the powers of A.
+    """Coefficients of det(t - A), ascending and monic, from the traces of the powers of A.
 
-    Newton's identities k e_k = sum_{i=1..k} (-1)^(i-1) e_(k-i) tr A^i; the traces come as tr(A^(is) A^j)
-    with s about the root of the size, so that some 2s products of matrices are enough.
+    Newton's identities are k e_k = sum_{i=1..k} (-1)^(i-1) e_(k-i) tr A^i. The traces are computed as tr(A^(is) A^j),
+    with s about the square root of the size, so that about 2s products of matrices are enough.
     """
     field, n = matrix.field, matrix.nrows
     if n == 0:

@@ -1,20 +1,26 @@
-"""One prime's worth of `verify_modular` for large sparse pairs, with scipy's sparse matrices of 64-bit integers.
+"""The check of `verify_modular` modulo one prime for large sparse pairs, with scipy's sparse matrices of int64.
 
-Entries are kept in [0, p) and products of matrices have at most n terms, with n p^2 < 2^53.
+Entries stay in [0, p), and products of matrices have at most n terms, with n p^2 < 2^53.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from liehom.errors import CertificateError
+from liehom.fullness.checker.integral_pair import Integers, IntegralPair
+
+Sparse: TypeAlias = Any
+"""A sparse matrix of scipy, which has no types."""
 
 _BLOCK = 64
+"""Elements of h whose brackets with all of h are checked at once."""
 
 
-def check_sparse(prime: int, pair: Any, constants: Any, quotient: Any, isotropy: Any) -> None:
+def check_sparse(prime: int, pair: IntegralPair, constants: Integers, quotient: Integers, isotropy: Integers) -> None:
     """Check that h is closed and rho a representation modulo a prime, as `verify_modular._check_dense` does.
 
     Parameters
@@ -22,7 +28,7 @@ def check_sparse(prime: int, pair: Any, constants: Any, quotient: Any, isotropy:
     prime : int
     pair : IntegralPair
     constants, quotient, isotropy : arrays of int64
-        Its c', Q' and R' modulo the prime, shapes (number of constants,), (n, d) and (k, d d).
+        The c', Q' and R' of the pair modulo the prime; shapes (number of constants,), (n, d) and (k, d d).
     """
     from scipy.sparse import csr_matrix
 
@@ -31,10 +37,10 @@ def check_sparse(prime: int, pair: Any, constants: Any, quotient: Any, isotropy:
     table = _table(n, pair.places, constants)  # (i; j, m)
     lift = csr_matrix(quotient[pivots])
     basis = _chosen(range(k), pivots, (k, n), scale) - lift @ _chosen(range(d), pair.free, (d, n), 1)
-    quotient, rho = csr_matrix(quotient), csr_matrix(isotropy)
+    projection, rho = csr_matrix(quotient), csr_matrix(isotropy)
     by_row = _swapped(rho, k, d, d)  # (w; p, v)
-    action = _product(prime, basis, _product(prime, table.reshape(n * n, n), quotient).reshape(n, n * d))
-    closed = scale * _swapped(action, k, n, d) - _product(prime, quotient, by_row)
+    action = _product(prime, basis, _product(prime, table.reshape(n * n, n), projection).reshape(n, n * d))
+    closed = scale * _swapped(action, k, n, d) - _product(prime, projection, by_row)
     if np.any(closed.data % prime):
         raise CertificateError("closed", "a bracket of two elements of h is not in h")
     stacked = rho.reshape(k * d, d).tocsr()
@@ -55,7 +61,8 @@ def check_sparse(prime: int, pair: Any, constants: Any, quotient: Any, isotropy:
             )
 
 
-def _table(n: int, places: Any, constants: Any) -> Any:
+def _table(n: int, places: Integers, constants: Integers) -> Sparse:
+    """Structure constants (i; j, m), antisymmetric in i and j."""
     from scipy.sparse import csr_matrix
 
     i, j, m = places.T
@@ -63,22 +70,23 @@ def _table(n: int, places: Any, constants: Any) -> Any:
     return csr_matrix((np.concatenate([constants, -constants]), (rows, columns)), shape=(n, n * n))
 
 
-def _chosen(rows: Any, columns: Any, shape: tuple[int, int], entry: int) -> Any:
+def _chosen(rows: Sequence[int], columns: Sequence[int], shape: tuple[int, int], entry: int) -> Sparse:
+    """Matrix with one value at the given positions and 0 elsewhere."""
     from scipy.sparse import csr_matrix
 
     return csr_matrix((np.full(len(rows), entry, dtype=np.int64), (list(rows), list(columns))), shape=shape)
 
 
-def _product(prime: int, left: Any, right: Any) -> Any:
-    """The product modulo the prime; the factors have entries of absolute value below it."""
+def _product(prime: int, left: Sparse, right: Sparse) -> Sparse:
+    """Product modulo the prime of factors whose entries are below the prime in absolute value."""
     product = left.tocsr() @ right.tocsr()
     product.data %= prime
     product.eliminate_zeros()
     return product
 
 
-def _swapped(matrix: Any, a: int, b: int, c: int) -> Any:
-    """Entries (i; j, l) of a matrix of shape (a, b c) to (j; i, l) of shape (b, a c)."""
+def _swapped(matrix: Sparse, a: int, b: int, c: int) -> Sparse:
+    """Matrix (j; i, l) of shape (b, a c) with the entries (i; j, l) of a matrix of shape (a, b c)."""
     from scipy.sparse import coo_matrix
 
     entries = matrix.tocoo()

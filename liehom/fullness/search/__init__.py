@@ -1,4 +1,5 @@
-"""The steps of the decision that find a witness, a form or a cut for the isotropy representation.
+"""Steps of the decision: each module finds a witness, a form or a cut for the isotropy representation.
 
-Each file is one source of certificates; `liehom.fullness.decide` calls them in order. See docs/theory/fullness.md.
+`liehom.fullness.decide` calls them in order, and nobody else should; the independent checker shares no code with them.
+The order and the mathematics are in docs/theory/fullness.md.
 """

@@ -1,33 +1,35 @@
-"""Exact witnesses from eigenvectors: top eigenvectors of elements of L0, over k or over QQ(theta).
+"""Exact witnesses from top eigenvectors of elements of L0, over the input field or over QQ(theta).
 
-Tried after dominance has proved that the pair is not full; nothing rests on success.
+The decision looks for one after dominance has proved that the pair is not full, so the verdict does not need it.
 """
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from typing import Any
 
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import combination
-from liehom.scalars import QQ, NumberField, Polynomial
+from liehom.scalars import QQ, ExactMatrix, NumberField, Polynomial, Scalar
 from liehom.scalars.roots.roots import largest_real_root_interval
 
 MAX_DEGREE = 6
+"""Largest degree of an eigenvalue whose eigenvectors are tried."""
 
 
-def eigenvector_witness(action: TracelessIsotropyAction, extra: list[Any], tries: int = 30) -> Certificate | None:
-    """A witness x in ker(X - theta), theta the largest real eigenvalue of some X in L0 of degree at most 6; or None.
+def eigenvector_witness(
+    action: TracelessIsotropyAction, extra: list[list[Scalar]], tries: int = 30
+) -> Certificate | None:
+    """A witness x in ker(X - theta), theta a largest real eigenvalue, of degree at most 6, of some X in L0; or None.
 
     Parameters
     ----------
     extra : list
         Coefficient lists of elements of L0 to try first.
     """
-    pending: list[tuple[Any, Polynomial]] = []
+    pending: list[tuple[ExactMatrix, Polynomial]] = []
     for x in _elements(action, extra, tries):
         for f, _ in Polynomial(action.field, x.characteristic_coefficients()).factor():
             if f.degree == 1:
@@ -43,7 +45,7 @@ def eigenvector_witness(action: TracelessIsotropyAction, extra: list[Any], tries
     return None
 
 
-def _elements(action: TracelessIsotropyAction, extra: list[Any], tries: int) -> Iterator[Any]:
+def _elements(action: TracelessIsotropyAction, extra: list[list[Scalar]], tries: int) -> Iterator[ExactMatrix]:
     basis = action.traceless
     yield from basis
     for coefficients in extra:
@@ -56,7 +58,7 @@ def _elements(action: TracelessIsotropyAction, extra: list[Any], tries: int) -> 
         yield a + b.scale(rng.choice((-1, 1, 2)))
 
 
-def _rational(action: TracelessIsotropyAction, x: Any, value: Any) -> Certificate | None:
+def _rational(action: TracelessIsotropyAction, x: ExactMatrix, value: Scalar) -> Certificate | None:
     kernel = (x - action.field.identity(action.size).scale(value)).null_space()
     for i in range(min(kernel.nrows, 6)):
         v = kernel.select(rows=[i]).T
@@ -65,7 +67,7 @@ def _rational(action: TracelessIsotropyAction, x: Any, value: Any) -> Certificat
     return None
 
 
-def _algebraic(action: TracelessIsotropyAction, x: Any, f: Polynomial) -> Certificate | None:
+def _algebraic(action: TracelessIsotropyAction, x: ExactMatrix, f: Polynomial) -> Certificate | None:
     interval = largest_real_root_interval(f)
     extension = NumberField("theta", f.coefficients, interval)
     lifted = extension.matrix(x.to_rows())
@@ -81,7 +83,7 @@ def _algebraic(action: TracelessIsotropyAction, x: Any, f: Polynomial) -> Certif
     return None
 
 
-def _powers(action: TracelessIsotropyAction, extension: NumberField, row: Any) -> list[Any]:
-    """A row over QQ(theta) as rational rows, one per power of theta."""
+def _powers(action: TracelessIsotropyAction, extension: NumberField, row: ExactMatrix) -> list[ExactMatrix]:
+    """Rational rows r_j with row = sum theta^j r_j, for a row over QQ(theta)."""
     coordinates = [extension.coordinates(v) for v in row.row(0)]
     return [action.field.matrix([[c[j] * extension.leading**j for c in coordinates]]) for j in range(extension.degree)]

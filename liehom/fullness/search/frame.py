@@ -1,28 +1,30 @@
-"""Frames: coordinates of V and a basis of L0 in which float64 sees the weights of L0.
+"""Frames: coordinates of V and a basis of L0 in which float64 resolves the weights of L0.
 
-Conjugation by a matrix with large entries hides the spectrum of L0 from floats; `balanced_frame` undoes it.
-Frames only propose: what is found in one is counted exactly in the given coordinates.
+Conjugation by a matrix with large entries hides the spectrum of L0 from floats; `balanced_frame` undoes it. A frame
+only proposes elements: the counts that prove dominance are exact, in the given coordinates.
 """
 
 from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import combination
-from liehom.scalars import QQ
+from liehom.scalars import QQ, ExactMatrix, Scalar
 from liehom.scalars.lattices.fixed_point import balancing_rows, fixed_point, lattice_reduction, power_of_two
+from liehom.typing import Array
 
-Array = npt.NDArray[np.float64]
 GENERATORS = 4
+"""Random combinations of the basis of L0 by which a round balances the coordinates."""
 BITS = (256, 1024, 4096, 16384)
+"""Precisions of the fixed-point numbers, tried in this order."""
 ROUNDS = 5
 LARGE, ILL_CONDITIONED, WELL_CONDITIONED = 1e100, 1e5, 30
+"""Largest entry of a plain frame; condition numbers at which a basis is reduced, and at which the rounds stop."""
 
 
 @final
@@ -37,22 +39,22 @@ class Frame:
     members : ExactMatrix
         Row i holds the coefficients of that basis element in ``action.traceless``.
     vectors : Array
-        Shape (d, d): the columns are the basis vectors of the frame in coordinates of V.
+        Basis vectors of the frame as columns, in coordinates of V; shape (d, d).
     """
 
     matrices: Array
-    members: Any
+    members: ExactMatrix
     vectors: Array
 
-    def element(self, action: TracelessIsotropyAction, coefficients: Array) -> tuple[list[Any], Any]:
-        """Integer coefficients in the frame's basis as coefficients in that of L0, and the exact matrix."""
+    def element(self, action: TracelessIsotropyAction, coefficients: Array) -> tuple[list[Scalar], ExactMatrix]:
+        """Coefficients in the basis of L0, and the exact matrix, of integer coefficients in the frame's basis."""
         row = action.field.from_integers([int(c) for c in coefficients], 1, len(coefficients)) @ self.members
         numbers = row.row(0)
         return numbers, combination(action.traceless, numbers)
 
 
 def plain_frame(action: TracelessIsotropyAction) -> Frame | None:
-    """The given coordinates; None where numbers are too large for floats."""
+    """Frame of the given coordinates; None if an entry is 1e100 or more."""
     matrices = np.array([a.to_numpy() for a in action.traceless])
     if not np.abs(matrices).max() < LARGE:
         return None
@@ -60,12 +62,12 @@ def plain_frame(action: TracelessIsotropyAction) -> Frame | None:
 
 
 def balanced_frame(action: TracelessIsotropyAction) -> Frame | None:
-    """Coordinates that do not depend on the given ones up to rotation, and a reduced basis of L0; or None."""
+    """Frame that depends on the given coordinates only up to rotation, with a reduced basis of L0; or None."""
     return next((frame for frame in (_balanced(action, bits) for bits in BITS) if frame is not None), None)
 
 
 def _balanced(action: TracelessIsotropyAction, bits: int) -> Frame | None:
-    """In rounds: the sizes of the generators, taken from the coordinates, are better in better coordinates."""
+    """Frame at one precision, or None. Each round scales the generators by their sizes in the coordinates so far."""
     rng, d, k = random.Random(5), action.size, len(action.traceless)
     basis, flat, members = QQ.identity(d), None, None
     matrices = action.traceless
@@ -88,8 +90,8 @@ def _balanced(action: TracelessIsotropyAction, bits: int) -> Frame | None:
     return Frame(flat.to_numpy().reshape(k, d, d), action.field.matrix(members.to_rows(), (k, k)), vectors)
 
 
-def _in_frame(action: TracelessIsotropyAction, basis: Any, bits: int) -> tuple[Any, Any]:
-    """A well-conditioned basis of L0 as matrices in the basis of the rows, flat, and in terms of the given one."""
+def _in_frame(action: TracelessIsotropyAction, basis: ExactMatrix, bits: int) -> tuple[ExactMatrix, ExactMatrix]:
+    """A well-conditioned basis of L0: as flat rows of matrices in the basis `basis` of V, and in the basis of L0."""
     d, k = action.size, len(action.traceless)
     left, left_scale = fixed_point(basis.T.inverse(), 2 * bits)
     right, right_scale = fixed_point(basis.T, 2 * bits)

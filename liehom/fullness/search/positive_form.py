@@ -1,13 +1,14 @@
-"""A definite form that shows a non-compact L0 transitive: found in L1, the sum of the non-compact ideals.
+"""Definite forms that prove a non-compact L0 transitive, constructed in the sum L1 of the non-compact ideals.
 
 If L0 is one of sl(d,R), sp(d,R), sl(m,C), sp(2m,C), sl(m,H), with compact factors, or spin(9,1), the form is
-built over the input field from the commutant and the skew forms (theory, section on the construction of P).
-The recognition only proposes: what certifies is the rank at one point under the elements that keep the form.
+constructed over the input field from the commutant and the skew-symmetric forms (docs/theory/fullness.md, construction
+of P). The recognition of L0 only proposes a form; the rank at one point under the elements that preserve the form is
+the proof.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 from liehom.algebra import lie_closure
 from liehom.fullness.certificates import certificate_writer
@@ -16,17 +17,18 @@ from liehom.fullness.search.spinor_form import vector_module_form
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.intertwiners import commutant, invariant_forms
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, trace_form, traceless
+from liehom.scalars import ExactMatrix, Scalar
 from liehom.scalars.modular.modular import independent_columns, independent_rows
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
-def full_by_positive_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Certificate | None:
-    """A `full` certificate for a transitive non-compact L0, or None where no form is recognised.
+def full_by_positive_form(action: TracelessIsotropyAction, imaginary: Sequence[ExactMatrix]) -> Certificate | None:
+    """Certificate of kind 'full' for a transitive non-compact L0, or None if no form is recognized.
 
     Parameters
     ----------
-    imaginary : list of ExactMatrix
-        A basis of the traceless commutant of L0 (a division algebra: 0, 1 or 3 of them).
+    imaginary : sequence of ExactMatrix
+        A basis of the traceless commutant of L0: 0, 1 or 3 matrices, as the commutant is a division algebra.
     """
     form = propose_form(action, imaginary)
     if form is None or form.signature()[0] < action.size:
@@ -34,8 +36,8 @@ def full_by_positive_form(action: TracelessIsotropyAction, imaginary: list[Any])
     return certify_form(action, form)
 
 
-def certify_form(action: TracelessIsotropyAction, form: Any) -> Certificate | None:
-    """The certificate if the elements of L0 that keep the form span at one point; None if they do not."""
+def certify_form(action: TracelessIsotropyAction, form: ExactMatrix) -> Certificate | None:
+    """Certificate of kind 'full' if the elements of L0 that preserve the form span at one point, else None."""
     field, d = action.field, action.size
     rows = [(a.T @ form + form @ a).reshape(1, d * d) for a in action.traceless]
     keeping = field.stack_rows(rows, d * d).left_null_space()
@@ -48,8 +50,8 @@ def certify_form(action: TracelessIsotropyAction, form: Any) -> Certificate | No
     return certificate_writer.full(action, form, chosen @ action.quotient.subspace.select(rows=action.members), x)
 
 
-def propose_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Any:
-    """A symmetric form on V by the shape (d, dim L0, commutant) of L0, or None."""
+def propose_form(action: TracelessIsotropyAction, imaginary: Sequence[ExactMatrix]) -> ExactMatrix | None:
+    """Symmetric form on V chosen by d, dim L0 and the dimension of the commutant, or None."""
     d, size, kind = action.size, action.dimension, len(imaginary)
     m = d // 4
     if kind == 3:
@@ -70,7 +72,7 @@ def propose_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Any:
     return None
 
 
-def _complex_case(action: TracelessIsotropyAction, imaginary: list[Any], m: int) -> Any:
+def _complex_case(action: TracelessIsotropyAction, imaginary: Sequence[ExactMatrix], m: int) -> ExactMatrix | None:
     d, size = action.size, action.dimension
     half = d // 2
     if size in (2 * half * half - 2, 2 * half * half - 1):
@@ -89,8 +91,8 @@ def _complex_case(action: TracelessIsotropyAction, imaginary: list[Any], m: int)
     return None
 
 
-def _derived(action: TracelessIsotropyAction) -> list[Any]:
-    """A basis of [L0, L0]."""
+def _derived(action: TracelessIsotropyAction) -> list[ExactMatrix]:
+    """Basis of [L0, L0], as matrices."""
     field, square = action.field, action.size**2
     basis = action.traceless
     rows = [(a @ b - b @ a).reshape(1, square) for i, a in enumerate(basis) for b in basis[:i]]
@@ -98,8 +100,8 @@ def _derived(action: TracelessIsotropyAction) -> list[Any]:
     return table.select(rows=independent_rows(table)).split_rows(action.size, action.size)
 
 
-def quaternionic_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> Any:
-    """1 + sum u^T u / |u|^2 over orthogonal imaginary units u of the commutant; None if some square is not negative."""
+def quaternionic_form(action: TracelessIsotropyAction, imaginary: Sequence[ExactMatrix]) -> ExactMatrix | None:
+    """Form 1 + sum u^T u / |u|^2, u orthogonal imaginary units of the commutant; None if some u^2 is not negative."""
     gram = anticommutator_gram(imaginary, action.size, action.field)
     if gram is None:
         return None
@@ -113,18 +115,18 @@ def quaternionic_form(action: TracelessIsotropyAction, imaginary: list[Any]) -> 
     return form
 
 
-def symplectic_form(skew: Any) -> Any:
-    """The form for which a Darboux basis of a skew form is orthonormal; None if the skew form is degenerate."""
+def symplectic_form(skew: ExactMatrix) -> ExactMatrix | None:
+    """Form for which a Darboux basis of a skew-symmetric form is orthonormal; None if that form is degenerate."""
     field, d = skew.field, skew.nrows
     rest = [field.unit(d, i) for i in range(d)]
-    columns: list[Any] = []
+    columns: list[ExactMatrix] = []
     while rest:
         u = rest.pop(0)
         image = u @ skew
-        place = next((i for i, r in enumerate(rest) if (image @ r.T)[0, 0] != 0), None)
-        if place is None:
+        position = next((i for i, r in enumerate(rest) if (image @ r.T)[0, 0] != 0), None)
+        if position is None:
             return None
-        w = rest.pop(place)
+        w = rest.pop(position)
         w = w.scale(1 / (image @ w.T)[0, 0])
         dual = w @ skew
         rest = [r - w.scale((image @ r.T)[0, 0]) + u.scale((dual @ r.T)[0, 0]) for r in rest]
@@ -133,30 +135,30 @@ def symplectic_form(skew: Any) -> Any:
     return (basis.T @ basis).inverse()
 
 
-def complex_symplectic_form(skew: Any, structure: Any) -> Any:
-    """The hermitian form of a Darboux basis of Omega = w - (1/a) w(J., .) J over k(J), J^2 = -a; None if degenerate."""
+def complex_symplectic_form(skew: ExactMatrix, structure: ExactMatrix) -> ExactMatrix | None:
+    """Hermitian form of a Darboux basis of w - (1/a) w(J., .) J over k(J), where J^2 = -a; None if it is degenerate."""
     field, d = skew.field, skew.nrows
     a = -(structure @ structure)[0, 0]
     turned = structure.T
 
-    def omega(u: Any, w: Any) -> tuple[Any, Any]:
+    def omega(u: ExactMatrix, w: ExactMatrix) -> tuple[Scalar, Scalar]:
         image = skew @ w.T
         return (u @ image)[0, 0], -((u @ turned) @ image)[0, 0] / a
 
-    def times(value: tuple[Any, Any], u: Any) -> Any:
+    def times(value: tuple[Scalar, Scalar], u: ExactMatrix) -> ExactMatrix:
         return u.scale(value[0]) + (u @ turned).scale(value[1])
 
     rest = [field.unit(d, i) for i in range(d)]
-    kept: list[Any] = []
+    kept: list[ExactMatrix] = []
     while rest:
         u = rest.pop(0)
         values = [omega(u, r) for r in rest]
-        place = next((i for i, v in enumerate(values) if v != (0, 0)), None)
-        if place is None:
+        position = next((i for i, v in enumerate(values) if any(x != 0 for x in v)), None)
+        if position is None:
             if (u @ field.identity(d)).is_zero() or len(kept) * 2 == d:
                 break
             return None
-        w, (p, q) = rest.pop(place), values[place]
+        w, (p, q) = rest.pop(position), values[position]
         norm = p * p + a * q * q
         w = times((p / norm, -q / norm), w)
         reduced = []
@@ -174,8 +176,8 @@ def complex_symplectic_form(skew: Any, structure: Any) -> Any:
     return inverse @ weights @ inverse.T
 
 
-def _with_quaternion_factor(action: TracelessIsotropyAction, m: int) -> Any:
-    """sl(m,H) + sp(1): the three-dimensional ideal, where Killing form = (2/m) trace form, gives the units."""
+def _with_quaternion_factor(action: TracelessIsotropyAction, m: int) -> ExactMatrix | None:
+    """Form for sl(m,H) + sp(1); the units are the 3-dimensional ideal on which the Killing form is (2/m) trace form."""
     field = action.field
     algebra = lie_closure(action.traceless).algebra
     if algebra.dimension != action.dimension:

@@ -1,19 +1,17 @@
-"""Certificates of reducibility: from what splits the isotropy representation to a witness or a cut."""
+"""Certificates of reducibility: a witness or a cut from a reduction of the isotropy representation."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import Reduction
-from liehom.scalars import Polynomial
+from liehom.scalars import ExactMatrix, Polynomial
 from liehom.scalars.roots.roots import largest_real_root_interval
 
 
 def certificate_of_reduction(action: TracelessIsotropyAction, reduction: Reduction) -> Certificate:
-    """The certificate that a reduction of L0 gives."""
+    """Certificate from a reduction of L0: a kernel, a cut or an eigenvalue."""
     match reduction.kind:
         case "kernel":
             return kernel_witness(action, reduction.matrix)
@@ -25,15 +23,15 @@ def certificate_of_reduction(action: TracelessIsotropyAction, reduction: Reducti
     return commuting_eigenvector_witness(action, reduction.matrix, polynomial)
 
 
-def kernel_witness(action: TracelessIsotropyAction, matrix: Any) -> Certificate:
-    """The witness x in the kernel of a matrix whose kernel is invariant, phi one of its rows."""
+def kernel_witness(action: TracelessIsotropyAction, matrix: ExactMatrix) -> Certificate:
+    """Witness x in the kernel of a matrix with invariant kernel; phi is a row of the matrix."""
     rows = (matrix.select(rows=[i]) for i in range(matrix.nrows))
     phi = next(row for row in rows if not row.is_zero())
     return certificate_writer.rational_witness(action, matrix.null_space().select(rows=[0]).T, phi)
 
 
-def commuting_eigenvector_witness(action: TracelessIsotropyAction, t: Any, f: Polynomial) -> Certificate:
-    """The witness x in ker(T - theta), phi a row of T - theta, for a real root theta of the irreducible f."""
+def commuting_eigenvector_witness(action: TracelessIsotropyAction, t: ExactMatrix, f: Polynomial) -> Certificate:
+    """Witness x in ker(T - theta), phi a row of T - theta, for a real root theta of the irreducible f."""
     field, size, m = action.field, action.size, f.degree
     powers = [field.identity(size)]
     for _ in range(m - 1):

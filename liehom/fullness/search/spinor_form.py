@@ -1,23 +1,23 @@
 """The definite form of spin(9,1) on R^16, from the vector representation inside Sym^2 of the dual.
 
-Under so(10, C) the symmetric forms on a half-spin module are 10 + 126, told apart by the Casimir operator of
-the trace form.  On the 10 the algebra keeps one form; if its signature is (9,1) a timelike vector is a
-definite form on V.  The half-spin module of so(5,5) has the same dimensions and signature (5,5): no form.
+Under so(10, C) the symmetric forms on a half-spin module are 10 + 126, and the Casimir operator of the trace form
+distinguishes the two parts. On the 10 the algebra preserves one form. If its signature is (9,1), a timelike vector is a
+definite form on V. The half-spin module of so(5,5) has the same dimensions and signature (5,5), so it gives no form.
 """
 
 from __future__ import annotations
 
 import random
-from typing import Any
 
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import combination, trace_form
+from liehom.scalars import ExactMatrix, Scalar
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
-def vector_module_form(action: TracelessIsotropyAction) -> Any:
-    """A definite symmetric form on V = K^16 whose stabiliser in L0 is so(9), or None if L0 is not spin(9,1)."""
+def vector_module_form(action: TracelessIsotropyAction) -> ExactMatrix | None:
+    """Definite symmetric form on V = K^16 whose stabilizer in L0 is so(9), or None if L0 is not spin(9,1)."""
     module = _small_module(action)
     if module is None:
         return None
@@ -37,16 +37,16 @@ def vector_module_form(action: TracelessIsotropyAction) -> Any:
     sign = 1 if positive == 1 else -1
     rows, values = orthogonal_basis(form)
     timelike = next(r for r, v in zip(rows, values, strict=True) if field.sign(v) == sign)
-    candidate = combination(module, timelike.row(0))
+    candidate: ExactMatrix = combination(module, timelike.row(0))
     return candidate if candidate.signature()[0] == d else -candidate
 
 
-def _moved(a: Any, p: Any) -> Any:
+def _moved(a: ExactMatrix, p: ExactMatrix) -> ExactMatrix:
     return a.T @ p + p @ a
 
 
-def _small_module(action: TracelessIsotropyAction) -> list[Any] | None:
-    """A basis of the ten-dimensional invariant space of symmetric forms, or None."""
+def _small_module(action: TracelessIsotropyAction) -> list[ExactMatrix] | None:
+    """Basis of the ten-dimensional invariant space of symmetric forms, or None."""
     field, d = action.field, action.size
     basis = action.traceless
     gram = trace_form(basis)
@@ -55,13 +55,13 @@ def _small_module(action: TracelessIsotropyAction) -> list[Any] | None:
     flat = field.stack_rows([a.reshape(1, d * d) for a in basis], d * d)
     duals = (gram.inverse() @ flat).split_rows(d, d)
 
-    def casimir(p: Any) -> Any:
+    def casimir(p: ExactMatrix) -> ExactMatrix:
         total = field.zeros(d, d)
         for a, b in zip(basis, duals, strict=True):
             total = total + _moved(a, _moved(b, p))
         return total
 
-    # A random start has a part in both; a special one (the identity, say) may lie in one of them.
+    # A random form has a component in both parts; a special one, such as the identity, may lie in one of them.
     rng = random.Random(10)
     half = field.from_integers([rng.randint(-3, 3) for _ in range(d * d)], d, d)
     start = half + half.T
@@ -78,8 +78,8 @@ def _small_module(action: TracelessIsotropyAction) -> list[Any] | None:
     return _spanned(action, seed)
 
 
-def _two_eigenvalues(start: Any, once: Any, twice: Any) -> tuple[Any, Any] | None:
-    """low < high with twice = (low + high) once - low high start, if they exist in the field."""
+def _two_eigenvalues(start: ExactMatrix, once: ExactMatrix, twice: ExactMatrix) -> tuple[Scalar, Scalar] | None:
+    """Pair low < high with twice = (low + high) once - low high start, or None if the field does not contain it."""
     field, d = start.field, start.nrows
     table = field.stack_rows([m.reshape(1, d * d) for m in (once, start, twice)], d * d)
     relation = table.left_null_space()
@@ -93,7 +93,8 @@ def _two_eigenvalues(start: Any, once: Any, twice: Any) -> tuple[Any, Any] | Non
     return (total - root) / 2, (total + root) / 2
 
 
-def _spanned(action: TracelessIsotropyAction, seed: Any) -> list[Any] | None:
+def _spanned(action: TracelessIsotropyAction, seed: ExactMatrix) -> list[ExactMatrix] | None:
+    """Basis of the submodule that a form generates, or None if its dimension is not 10."""
     field, d = action.field, action.size
     span, before = seed.reshape(1, d * d), 0
     while before < span.nrows:

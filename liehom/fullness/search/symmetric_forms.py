@@ -1,28 +1,33 @@
-"""Invariant symmetric forms of L0 settle compact and indefinite isotropy.
+"""Certificates from invariant symmetric forms of L0, which decide compact and indefinite isotropy.
 
-A definite form: full iff the rank is d at one point.  Any other form P != 0: P(Lx, x) = 0 on its null cone,
-and if P x = 0 then L x lies in ker P, so a null vector is a witness.
+If L0 preserves a definite form, the pair is full if and only if the rank is d at one point. If L0 preserves any other
+form P != 0, then P(Lx, x) = 0 on the null cone of P, and P x = 0 implies that L x lies in ker P: a null vector is a
+witness.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
-from typing import Any
 
 from liehom.errors import FieldError
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
+from liehom.scalars import ExactField, ExactMatrix, Scalar
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
-def decide_by_forms(action: TracelessIsotropyAction, symmetric: tuple[Any, ...], x: Any) -> Certificate:
-    """The verdict where L0 keeps a symmetric form; x is a point where the rank is d.
+def decide_by_forms(action: TracelessIsotropyAction, symmetric: Sequence[ExactMatrix], x: ExactMatrix) -> Certificate:
+    """Certificate for an L0 that preserves a symmetric form.
 
     Parameters
     ----------
-    symmetric : tuple of ExactMatrix
+    action : TracelessIsotropyAction
+    symmetric : sequence of ExactMatrix
         A basis, not empty, of the invariant symmetric forms.
+    x : ExactMatrix
+        A column of V at which the rank is d.
     """
     for form in symmetric:
         positive, negative, _ = form.signature()
@@ -39,8 +44,8 @@ def decide_by_forms(action: TracelessIsotropyAction, symmetric: tuple[Any, ...],
     return certificate_writer.full(action, definite, action.quotient.subspace.select(rows=members), x)
 
 
-def null_witness(action: TracelessIsotropyAction, form: Any) -> Certificate:
-    """A witness on the null cone of an invariant form that is not definite; rational where one is found."""
+def null_witness(action: TracelessIsotropyAction, form: ExactMatrix) -> Certificate:
+    """A witness on the null cone of an invariant form that is not definite; over the input field if one is found."""
     field = action.field
     rows, values = orthogonal_basis(form)
     for u, v in zip(rows, values, strict=True):
@@ -63,19 +68,21 @@ def null_witness(action: TracelessIsotropyAction, form: Any) -> Certificate:
     while field.sign(square - above * above) >= 0:
         above *= 2
     return certificate_writer.algebraic_witness(
-        action, [-square, field.zero, field.one], (0, above), [u.T, w.T], [u @ form, w @ form]
+        action, [-square, field.zero, field.one], (field.zero, field.convert(above)), [u.T, w.T], [u @ form, w @ form]
     )
 
 
-def _square_root(field: Any, value: Any) -> Any:
+def _square_root(field: ExactField, value: Scalar) -> Scalar | None:
     try:
         return field.sqrt(value)
     except FieldError:
         return None
 
 
-def _small_null_vector(rows: list[Any], values: list[Any], size: int = 6, bound: int = 4) -> Any:
-    """A null vector with small coefficients on up to three of the orthogonal directions, or None."""
+def _small_null_vector(
+    rows: Sequence[ExactMatrix], values: Sequence[Scalar], size: int = 6, bound: int = 4
+) -> ExactMatrix | None:
+    """A null vector with coefficients from 1 to `bound` on three of the orthogonal directions, or None."""
     field = rows[0].field
     picked = list(range(min(size, len(rows))))
     picked += [i for i, v in enumerate(values) if field.sign(v) != field.sign(values[0])][:2]

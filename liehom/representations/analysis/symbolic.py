@@ -6,15 +6,14 @@ DomainMatrix.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, InputError, ShapeError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import Field, Matrix, NumberField, Scalar
-from liehom.typing import Expression, VectorLike
+from liehom.scalars import NumberField
+from liehom.typing import VectorLike
 
 
 @final
@@ -42,18 +41,18 @@ class SymbolicIsotropy:
     """
 
     algebra: LieAlgebra
-    point: tuple[Expression, ...]
-    symbols: tuple[Expression, ...]
+    point: tuple[Any, ...]
+    symbols: tuple[Any, ...]
     dimension: int
     orbit_dimension: int
-    basis: Expression
-    nonvanishing: Expression
-    matrix: Expression
+    basis: Any
+    nonvanishing: Any
+    matrix: Any
 
     def __repr__(self) -> str:
         return f"<isotropy of dimension {self.dimension} at {self.point}, where {self.nonvanishing} != 0>"
 
-    def rank_conditions(self, limit: int = 2000) -> list[Expression]:
+    def rank_conditions(self, limit: int = 2000) -> list[Any]:
         """The minors of size `orbit_dimension`, whose common zeros are exactly where the isotropy is larger.
 
         Parameters
@@ -86,7 +85,7 @@ class SymbolicIsotropy:
                 found[_squarefree(sympy.fraction(minor)[0], self.symbols)] = None
         return list(found)
 
-    def at(self, values: Mapping[Expression, Expression]) -> Expression:
+    def at(self, values: Any) -> Any:
         """The matrix `basis` with values for the symbols (a mapping), a basis where `nonvanishing` is not zero."""
         return self.basis.subs(values)
 
@@ -122,7 +121,7 @@ def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotrop
     )
 
 
-def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
+def _coordinates(rho: Representation, point: VectorLike) -> list[Any]:
     import sympy
 
     if not rho.field.exact:
@@ -149,7 +148,7 @@ def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
     return values
 
 
-def _number(value: Scalar, field: Field) -> Expression:
+def _number(value: Any, field: Any) -> Any:
     """A field element as a sympy number."""
     import sympy
 
@@ -165,7 +164,7 @@ def _number(value: Scalar, field: Field) -> Expression:
     return sympy.Add(*terms)
 
 
-def _times(rho: Representation, matrix: Matrix, values: list[Expression]) -> list[Expression]:
+def _times(rho: Representation, matrix: Any, values: list[Any]) -> list[Any]:
     import sympy
 
     zero = rho.field.zero
@@ -175,14 +174,14 @@ def _times(rho: Representation, matrix: Matrix, values: list[Expression]) -> lis
     ]
 
 
-def _over_fractions(matrix: Expression, symbols: tuple[Expression, ...]) -> Any:
+def _over_fractions(matrix: Any, symbols: tuple[Any, ...]) -> Any:
     from sympy.polys.matrices import DomainMatrix
 
     made = DomainMatrix.from_Matrix(matrix, extension=True)
     return made.to_field().to_sparse() if symbols else made.to_field()
 
 
-def _cleared(row: Expression, symbols: tuple[Expression, ...]) -> list[Expression]:
+def _cleared(row: Any, symbols: tuple[Any, ...]) -> list[Any]:
     """A row of rational functions as polynomials without common divisor."""
     import sympy
 
@@ -197,7 +196,7 @@ def _cleared(row: Expression, symbols: tuple[Expression, ...]) -> list[Expressio
     return [sympy.expand(sympy.cancel(v / common)) for v in scaled]
 
 
-def _squarefree(polynomial: Expression, symbols: tuple[Expression, ...]) -> Expression:
+def _squarefree(polynomial: Any, symbols: tuple[Any, ...]) -> Any:
     """The product of the distinct factors that contain symbols."""
     import sympy
 

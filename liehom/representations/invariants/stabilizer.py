@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import Matrix
-from liehom.typing import VectorLike
 
 
-def moved_point(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> Matrix:
+def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Any:
     """The matrix (dim g, N) with rows rho(e_i) point.
 
     Raises
@@ -30,16 +29,15 @@ def moved_point(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, poin
         raise InputError(f"the point has the free symbols {', '.join(symbols)}; use Representation.symbolic_isotropy")
     column = algebra.field.matrix([values], (1, size)).T
     rows = [(a @ column).T for a in matrices]
-    moved: Matrix = algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)
-    return moved
+    return algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)
 
 
-def stabilizer(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> Subalgebra:
+def stabilizer(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Subalgebra:
     """The subalgebra {x : rho(x) point = 0}."""
     rows = moved_point(algebra, matrices, size, point).left_null_space()
     return Subalgebra(algebra, rows, check=False)  # closed: rho([x, y]) p = rho(x) rho(y) p - rho(y) rho(x) p = 0
 
 
-def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> int:
+def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> int:
     """The rank of x -> rho(x) point."""
     return int(moved_point(algebra, matrices, size, point).rank())
