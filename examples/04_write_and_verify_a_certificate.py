@@ -26,7 +26,7 @@ assert lh.verify_certificate(pair, data)
 data["phi"][0] = "17"
 try:
     lh.verify_certificate(pair, data)
-except lh.errors.CertificateError as error:
+except lh.CertificateError as error:
     print("refused:", error)
 else:
     raise SystemExit("a wrong certificate was accepted")
@@ -34,7 +34,7 @@ else:
 # Nor does it prove anything about another pair.
 try:
     lh.verify_certificate(lh.load(HERE / "so4_so3.json"), verdict.certificate)
-except lh.errors.CertificateError as error:
+except lh.CertificateError as error:
     print("refused:", error)
 else:
     raise SystemExit("a certificate of another pair was accepted")

@@ -26,6 +26,7 @@ The layers, in reading order; each imports only those above it in this list:
 from __future__ import annotations
 
 import importlib
+import logging
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -86,6 +87,22 @@ if TYPE_CHECKING:
     from liehom.correctors import flow_series as flow_series
     from liehom.correctors import order_condition as order_condition
     from liehom.correctors import step_series as step_series
+    from liehom.errors import CatalogError as CatalogError
+    from liehom.errors import CertificateError as CertificateError
+    from liehom.errors import ConvergenceError as ConvergenceError
+    from liehom.errors import FieldError as FieldError
+    from liehom.errors import FormatError as FormatError
+    from liehom.errors import InputError as InputError
+    from liehom.errors import JacobiError as JacobiError
+    from liehom.errors import LiehomError as LiehomError
+    from liehom.errors import NotASubalgebraError as NotASubalgebraError
+    from liehom.errors import ParseError as ParseError
+    from liehom.errors import RepresentationError as RepresentationError
+    from liehom.errors import ShapeError as ShapeError
+    from liehom.errors import SingularError as SingularError
+    from liehom.errors import StructureError as StructureError
+    from liehom.errors import TraceError as TraceError
+    from liehom.errors import UndecidedError as UndecidedError
     from liehom.fullness import Certificate as Certificate
     from liehom.fullness import Full as Full
     from liehom.fullness import NotFull as NotFull
@@ -170,6 +187,9 @@ if TYPE_CHECKING:
     from liehom.scalars import number_field as number_field
     from liehom.series import Jet as Jet
 
+# the library logs under its name, at level DEBUG, and prints nothing by itself
+logging.getLogger("liehom").addHandler(logging.NullHandler())
+
 __version__ = "0.1.0"
 
 # Names are loaded on first use, so that `import liehom` costs no more than what is used of it; the lines above
@@ -203,6 +223,11 @@ _NAMES = {
     "liehom.catalog": "pair",
     "liehom.correctors": (
         "Conserving Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
+    ),
+    "liehom.errors": (
+        "CatalogError CertificateError ConvergenceError FieldError FormatError InputError JacobiError LiehomError "
+        "NotASubalgebraError ParseError RepresentationError ShapeError SingularError StructureError TraceError "
+        "UndecidedError"
     ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "

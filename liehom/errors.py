@@ -1,7 +1,7 @@
-"""The exceptions of liehom: everything the library refuses is a `LiehomError`.
+"""The exceptions of liehom; all are subclasses of `LiehomError`.
 
-Each error says what was found, what would be right and, where there is a position (an index, a pair of
-basis elements, a key of a file), carries it as an attribute.
+The message of each says what was found and what would be right. Where there is a position (an index, a pair of basis
+elements, a key of a file), the exception carries it as an attribute.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ class LiehomError(Exception):
     Examples
     --------
     >>> import liehom as lh
-    >>> issubclass(lh.errors.JacobiError, lh.errors.LiehomError)
+    >>> issubclass(lh.JacobiError, lh.LiehomError)
     True
     """
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # constructors take what messages are made of: pickle must not call them with the message
-        return _again, (type(self), self.args, self.__dict__)
+        # constructors take the parts of a message, so pickle must not call them with the message
+        return _restored, (type(self), self.args, self.__dict__)
 
 
-def _again(kind: type[LiehomError], args: tuple[Any, ...], attributes: dict[str, Any]) -> LiehomError:
+def _restored(kind: type[LiehomError], args: tuple[Any, ...], attributes: dict[str, Any]) -> LiehomError:
     error = kind.__new__(kind, *args)
     error.__dict__.update(attributes)
     return error
 
 
 def shown(value: str) -> str:
-    """A value in a message: the beginning and the end of a number that fills pages.
+    """A value as a message shows it: only the beginning and the end of a string of more than 200 characters.
 
     Examples
     --------
@@ -54,15 +54,15 @@ class FieldError(InputError):
 
 
 class ParseError(InputError):
-    """A text is not a value of the whitelist grammar (integers, ``+ - * / **``, parentheses, ``sqrt``, names)."""
+    """A string is not in the grammar of values (integers, ``+ - * / **``, parentheses, ``sqrt``, names)."""
 
 
 class FormatError(InputError):
-    """A file or JSON object does not have the documented form; nothing of it has been used."""
+    """A file or JSON object does not have the documented form; no part of it has been used."""
 
 
 class TangencyError(InputError):
-    """A vector field is not tangent to the orbits; `normal` is its normal component."""
+    """A vector field is not tangent to the orbits: `normal` is its normal component."""
 
     def __init__(self, normal: object, message: str) -> None:
         self.normal = normal
@@ -74,7 +74,7 @@ class SeriesError(InputError):
 
 
 class TraceError(InputError):
-    """A step cannot be compiled: it branches on values, or uses a function that compiled code does not have."""
+    """A step cannot be compiled: it branches on values, or calls a function that compiled code does not have."""
 
 
 class SingularError(LiehomError, ArithmeticError):
@@ -86,7 +86,7 @@ class StructureError(InputError):
 
 
 class JacobiError(StructureError):
-    """The Jacobi identity fails; `indices` is the triple (i, j, k), `value` the coefficients of the cyclic sum."""
+    """The Jacobi identity fails: `indices` is the triple (i, j, k), `value` the coefficients of the cyclic sum."""
 
     def __init__(self, indices: tuple[int, int, int], value: dict[int, str], names: tuple[str, str, str]) -> None:
         self.indices = indices
@@ -99,19 +99,19 @@ class JacobiError(StructureError):
 
 
 class CocycleError(StructureError):
-    """A bilinear form is no cocycle; `indices` is a triple (i, j, k) that shows it, `value` the cyclic sum."""
+    """A bilinear form is not a cocycle: `indices` is a triple (i, j, k) that shows it, `value` the cyclic sum."""
 
     def __init__(self, indices: tuple[int, int, int], value: str, names: tuple[str, str, str]) -> None:
         self.indices = indices
         self.value = value
         super().__init__(
-            f"the form is no cocycle for (i, j, k) = {indices}, that is for {', '.join(names)}: "
+            f"the form is not a cocycle for (i, j, k) = {indices}, that is for {', '.join(names)}: "
             f"w([i,j],k) + w([j,k],i) + w([k,i],j) = {shown(value)}, expected 0"
         )
 
 
 class NotASubalgebraError(InputError):
-    """The span of the given rows is not closed; `pair` names the two rows whose bracket leaves it."""
+    """The span of the given rows is not closed under brackets: `pair` names two rows whose bracket leaves it."""
 
     def __init__(self, pair: tuple[int, int], bracket: str) -> None:
         self.pair = pair
@@ -134,11 +134,11 @@ class DependentRowsError(InputError):
 
 
 class NotAnIdealError(InputError):
-    """A subspace that should be an ideal is not."""
+    """A subspace that should be an ideal is not an ideal."""
 
 
 class HomomorphismError(InputError):
-    """A linear map does not respect the bracket; `pair` names two basis elements that show it."""
+    """A linear map does not respect the bracket: `pair` names two basis elements that show it."""
 
     def __init__(self, pair: tuple[int, int], what: str) -> None:
         self.pair = pair
@@ -146,11 +146,11 @@ class HomomorphismError(InputError):
 
 
 class RepresentationError(HomomorphismError):
-    """Matrices do not satisfy rho([x, y]) = rho(x) rho(y) - rho(y) rho(x); `pair` names i, j."""
+    """Matrices do not satisfy rho([x, y]) = rho(x) rho(y) - rho(y) rho(x) for the basis elements of `pair`."""
 
 
 class NotInvariantError(InputError):
-    """A subspace is not invariant: `vector` is the number of a row, `element` that of a basis element moving it out."""
+    """A subspace is not invariant: basis element number `element` moves row number `vector` out of it."""
 
     def __init__(self, vector: int, element: int, what: str) -> None:
         self.vector = vector
@@ -163,7 +163,7 @@ class NotCompletelyReducibleError(InputError):
 
 
 class NotClosedError(InputError):
-    """Matrices do not span a Lie algebra; `pair` names two whose commutator leaves the span."""
+    """Matrices do not span a Lie algebra: `pair` names two whose commutator leaves the span."""
 
     def __init__(self, pair: tuple[int, int], what: str) -> None:
         self.pair = pair
@@ -171,11 +171,11 @@ class NotClosedError(InputError):
 
 
 class CatalogError(InputError):
-    """A name is not in the catalogue; the message lists the nearest ones."""
+    """A name is not in the catalogue; the message lists similar names."""
 
 
 class CertificateError(LiehomError):
-    """A certificate does not prove its verdict; `check` names the check that failed."""
+    """A certificate does not prove its verdict: `check` names the check that failed."""
 
     def __init__(self, check: str, message: str) -> None:
         self.check = check
@@ -187,7 +187,7 @@ class CertificateFormatError(CertificateError, FormatError):
 
 
 class ConvergenceError(LiehomError, ArithmeticError):
-    """An iteration did not converge: an implicit step, a clock, a point of an orbit."""
+    """An iteration did not converge: an implicit step, a time reparametrization, a point of an orbit."""
 
 
 class WorkerLostError(LiehomError, RuntimeError):
@@ -200,13 +200,14 @@ class WorkerLostError(LiehomError, RuntimeError):
 
 
 class UndecidedError(LiehomError, TypeError):
-    """A verdict that is not proved was used as a truth value, or the invariants at hand do not decide."""
+    """A verdict without a proof was used as a boolean, or the computed invariants do not decide the question."""
 
 
 class NoRationalInvolutionError(UndecidedError):
-    """It is proved that no Cartan involution has entries in the field of the algebra; `reason` says why.
+    """No Cartan involution has entries in the number field of the algebra, by a proof that `reason` names.
 
-    Over the reals there is one. It is caught with `UndecidedError`, which is raised where none was found.
+    Over the reals there is one. As a subclass of `UndecidedError`, which is raised if the search found none, it is
+    caught together with it.
     """
 
     def __init__(self, reason: str, message: str) -> None:
@@ -215,11 +216,11 @@ class NoRationalInvolutionError(UndecidedError):
 
 
 class InternalError(LiehomError, RuntimeError):
-    """The library reached a state that a theorem excludes: a bug, please report it."""
+    """The library reached a state that a theorem excludes: please report this bug."""
 
 
 class ConformanceError(LiehomError):
-    """An object fails a check of the conformance suite `liehom.testing`; `check` names it."""
+    """An object fails the check named by `check` in the conformance suite `liehom.testing`."""
 
     def __init__(self, check: str, message: str) -> None:
         self.check = check

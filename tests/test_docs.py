@@ -22,7 +22,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 MAPPED = ("paper-map.md", "notation.md")
-BUILTIN = {"ValueError"}
+BUILTIN = {"ArithmeticError", "TypeError", "ValueError"}
 NO_API_PAGE = {"__init__", "__main__", "cli", "errors", "compatibility"}
 """Besides them: docs/command-line.md on cli, docs/errors.md on errors, docs/formats.md on compatibility."""
 
