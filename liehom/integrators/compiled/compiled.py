@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
-from liehom.correctors.conserving.conserving import Conserving
+from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
 from liehom.integrators.compiled.traced_size import SizeLimits

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from liehom.correctors.conserving.conserving import Conserving, ConservingStep
+from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
 from liehom.correctors.isotropy.range_solver import TightFrameSolver
 from liehom.correctors.step import Generator, Step, apply_factors

@@ -7,8 +7,8 @@ from typing import Any, final
 
 import numpy as np
 
+from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.conserving.conservation import combination
-from liehom.correctors.conserving.conserving import Conserving, ConservingStep
 
 CONSERVED_ROUNDOFFS = 32.0
 """F counts as conserved up to this many units of its round-off."""

@@ -10,7 +10,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.conserving.conserving import Conserving, ConservingStep
+from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
 from liehom.correctors.isotropy.isotropy_corrector import Correction
 from liehom.correctors.step import LocalStep, Step

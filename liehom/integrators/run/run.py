@@ -16,7 +16,7 @@ from typing import final
 
 import numpy as np
 
-from liehom.correctors.conserving.conserving import ConservingStep
+from liehom.correctors.conserving import ConservingStep
 from liehom.correctors.expansion import flow_series
 from liehom.correctors.isotropy.corrected import CorrectedStep
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
