@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from hypothesis import settings
 
 from tests import sampling
+from tests.costs import Costs
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run the tests marked slow, and every table whole")
+    parser.addoption("--costs", metavar="FILE", type=Path, help="write what each test module costs")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -20,6 +24,8 @@ def pytest_configure(config: pytest.Config) -> None:
         "liehom", deadline=None, derandomize=True, print_blob=True, max_examples=sampling.examples(100)
     )
     settings.load_profile("liehom")
+    if config.getoption("--costs") is not None:
+        config.pluginmanager.register(Costs(config.getoption("--costs")))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

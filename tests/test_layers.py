@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = ROOT / "liehom"
+import liehom
+
+PACKAGE = Path(liehom.__file__).resolve().parent  # of the tree, or of an installed wheel
+ROOT = PACKAGE.parent
 
 # layer -> the layers directly below it; a layer may import whatever can be reached downward
 BELOW: dict[str, tuple[str, ...]] = {
@@ -152,16 +154,26 @@ def is_type_checking(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
 
 
+@cache
+def recorded(module: str) -> tuple[tuple[str, int, bool, bool], ...]:
+    """All (imported name, line, for type checkers only, inside a function) of a module."""
+    found = []
+    stack: list[tuple[ast.AST, bool, bool]] = [(tree(module), False, False)]
+    while stack:
+        node, typing, local = stack.pop()
+        found += [(name, node.lineno, typing, local) for name in targets(module, node) if hasattr(node, "lineno")]
+        for child in ast.iter_child_nodes(node):
+            if not isinstance(child, ast.expr):  # no import is inside an expression
+                function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
+                stack.append((child, typing or is_type_checking(child), local or function))
+    return tuple(found)
+
+
 def imports(module: str, *, typing: bool = True, local: bool = True) -> Iterator[tuple[str, int]]:
     """All (imported name, line); `typing`: those under TYPE_CHECKING too, `local`: those in functions too."""
-    stack: list[ast.AST] = [tree(module)]
-    while stack:
-        node = stack.pop()
-        yield from ((name, node.lineno) for name in targets(module, node) if hasattr(node, "lineno"))
-        for child in ast.iter_child_nodes(node):
-            is_function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-            if (typing or not is_type_checking(child)) and (local or not is_function):
-                stack.append(child)
+    for name, line, is_typing, is_local in recorded(module):
+        if (typing or not is_typing) and (local or not is_local):
+            yield name, line
 
 
 def internal(module: str, **options: bool) -> set[str]:

@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 
 from liehom.algebra import matrices as families
-from liehom.algebra.matrices.matrix_basis import stack, unit
+from liehom.algebra.matrices.matrix_basis import stack
 from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS, classical_matrices, exceptional_matrices
 from liehom.catalog.names import Expression, Item, Sum, Term, terms
 from liehom.errors import CatalogError
@@ -179,11 +179,6 @@ def _spiral(term: Term) -> IntegerArray:
     return matrix[None]
 
 
-def _triangular(term: Term, above: int) -> IntegerArray:
-    n = _size(term)
-    return stack((unit(n, i, j) for i in range(n) for j in range(i + above, n)), n)
-
-
 def _tensor(term: Term) -> IntegerArray:
     if len(term.items) != 2:
         raise CatalogError(f"tensor takes two linear Lie algebras, got {term}")
@@ -224,8 +219,8 @@ _HEADS: dict[str, Callable[[Term], IntegerArray]] = {
     "field": lambda term: families.companion_powers(term.integers()),
     "diag": lambda term: np.diag(np.array(term.integers(), dtype=np.int64))[None],
     "spiral": _spiral,
-    "upper": lambda term: _triangular(term, 0),
-    "strict": lambda term: _triangular(term, 1),
+    "upper": lambda term: families.triangular(_size(term)),
+    "strict": lambda term: families.triangular(_size(term), 1),
     "dual": lambda term: -linear_matrices(_one(term)).transpose(0, 2, 1),
     "tensor": _tensor,
     "blocks": _blocks,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
-from typing import final
+from typing import cast, final
 
 from liehom.representations import Pair
 from liehom.scalars import ExactField, ExactMatrix, Scalar
@@ -41,7 +41,7 @@ class TracelessIsotropyAction:
         self.field = pair.field
         self.size = pair.dimension
         self.quotient = pair.subalgebra.quotient()
-        self.matrices = pair.isotropy_matrices()
+        self.matrices = cast("list[ExactMatrix]", pair.isotropy_matrices())  # the field is exact
         reduced = [self._traceless(a) for a in self.matrices]
         square = self.size * self.size
         flat = self.field.stack_rows([a.reshape(1, square) for a in reduced], square)

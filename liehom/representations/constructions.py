@@ -19,7 +19,9 @@ from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.highest_weight import highest_weight_module
 from liehom.representations.highest_weight.real_form_module import real_module
 from liehom.representations.invariants.induced import congruence_map, hermitian_map, monomials
-from liehom.scalars import QQ, ExactField, Field
+from liehom.scalars import QQ, ExactField, Field, Matrix
+from liehom.scalars.fields.field import MatrixLike
+from liehom.typing import IntegerArray, VectorLike
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
 _SO_STAR = re.compile(r"so\*\(([0-9]*[02468])\)")
@@ -112,7 +114,7 @@ _LEAST_MODULES: dict[str, Callable[[], Representation]] = {
 }
 
 
-def standard_matrices(name: str | None) -> Any:
+def standard_matrices(name: str | None) -> IntegerArray:
     """The integer matrices, shape (dim, N, N), that a name stands for.
 
     Raises
@@ -162,7 +164,7 @@ def _require_algebra(algebra: LieAlgebra) -> None:
         raise InputError(f"expected a LieAlgebra, such as lh.so(3) or lh.catalog.algebra('so(3)'); got {algebra!r}")
 
 
-def _adjoint_matrices(algebra: LieAlgebra) -> list[Any]:
+def _adjoint_matrices(algebra: LieAlgebra) -> list[Matrix]:
     n, over = algebra.dimension, algebra.field
     if over != QQ:
         return [algebra.ad(over.unit(n, i)) for i in range(n)]
@@ -172,7 +174,7 @@ def _adjoint_matrices(algebra: LieAlgebra) -> list[Any]:
         (numerators,) = made[i].parts  # of a matrix that nobody else has seen: written to, entry by entry
         for k, value in terms:
             numerators[k, j] = value
-    return made if table.den == 1 else [a.scale(QQ.one / table.den) for a in made]
+    return [*made] if table.den == 1 else [a.scale(QQ.one / table.den) for a in made]
 
 
 def coadjoint(algebra: LieAlgebra) -> Representation:
@@ -275,7 +277,7 @@ def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Represen
     return Representation(rho.algebra, made, size=induced.target, name=title, check=False)
 
 
-def symmetric_to_vector(matrix: Any) -> list[Any]:
+def symmetric_to_vector(matrix: MatrixLike) -> list[Any]:
     """The entries S[i, j], i <= j, of a symmetric matrix in lexicographic order of (i, j).
 
     Raises
@@ -298,7 +300,7 @@ def symmetric_to_vector(matrix: Any) -> list[Any]:
     return [rows[i][j] for i, j in monomials(k, 2)]
 
 
-def vector_to_symmetric(vector: Sequence[Any], field: Field = QQ) -> Any:
+def vector_to_symmetric(vector: VectorLike, field: Field = QQ) -> Matrix:
     """The symmetric matrix with these entries S[i, j], i <= j, in lexicographic order of (i, j).
 
     Raises
@@ -317,4 +319,5 @@ def vector_to_symmetric(vector: Sequence[Any], field: Field = QQ) -> Any:
     if k * (k + 1) // 2 != len(values):
         raise ShapeError(f"a vector of length {len(values)} is not one of k (k + 1) / 2 entries")
     position = {place: x for x, place in enumerate(monomials(k, 2))}
-    return field.matrix([[values[position[min(i, j), max(i, j)]] for j in range(k)] for i in range(k)], (k, k))
+    made: Matrix = field.matrix([[values[position[min(i, j), max(i, j)]] for j in range(k)] for i in range(k)], (k, k))
+    return made

@@ -19,6 +19,7 @@ from liehom.scalars.fields import Polynomial as Polynomial
 from liehom.scalars.fields import RankDecision as RankDecision
 from liehom.scalars.fields import RationalField as RationalField
 from liehom.scalars.fields import Scalar as Scalar
+from liehom.scalars.fields import as_exact as as_exact
 from liehom.scalars.fields import common_field as common_field
 from liehom.scalars.fields import exact_value as exact_value
 from liehom.scalars.fields import number_field as number_field

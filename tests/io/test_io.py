@@ -527,6 +527,7 @@ def parse_cost(data: dict[str, Any]) -> float:
     return best_seconds(parse) / best_seconds(lambda: json.loads(text))
 
 
+@pytest.mark.slow
 def test_parsing_is_quick() -> None:
     """Relative to json.loads, since the suite shares the machine; on an idle core 0.11 s and 0.14 s, ratios 4 to 7."""
     rng = random.Random(1)

@@ -1,7 +1,7 @@
 """Chevalley-Eilenberg cohomology and derivations.
 
-The complex with values in a module, its cohomology with cocycles, and Der(g) by the images of generators. Reached
-through `LieAlgebra.cohomology` and `LieAlgebra.derivations`; see docs/theory/structure.md.
+The cochain complex with values in a module, cohomology classes with representing cocycles, and Der(g) from the images
+of generators. Users call `LieAlgebra.cohomology` and `LieAlgebra.derivations`; see docs/theory/structure.md.
 """
 
 from liehom.algebra.cohomology.cohomology import Cohomology as Cohomology

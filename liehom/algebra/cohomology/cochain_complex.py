@@ -1,7 +1,7 @@
 """The Chevalley-Eilenberg complex of a Lie algebra g with values in a module V, as matrices.
 
-A k-cochain is a row of length C(n, k) m, m = dim V: its values w(e_i1, ..., e_ik) for i1 < ... < ik, in the order of
-``itertools.combinations``, coordinates of V innermost.  The differential is
+A k-cochain is a row of length C(n, k) m, m = dim V. It lists the values w(e_i1, ..., e_ik) for i1 < ... < ik in the
+order of ``itertools.combinations``, with the coordinates of V innermost. The differential is
 
     (dw)(x_0, ..., x_k) = sum_a (-1)^a rho(x_a) w(..., no x_a, ...)
                         + sum_{a < b} (-1)^(a+b) w([x_a, x_b], ..., no x_a, no x_b, ...).
@@ -26,7 +26,7 @@ MAX_ENTRIES = 30_000_000
 
 @final
 class CochainComplex:
-    """The cochains of g with values in V, and their differentials (each is made once).
+    """The cochains of g with values in V, and their differentials (each computed once).
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class CochainComplex:
     ShapeError
         If the number of matrices or their size does not fit.
     RepresentationError
-        If they do not satisfy rho([x, y]) = rho(x) rho(y) - rho(y) rho(x); names i and j.
+        If they do not satisfy rho([x, y]) = rho(x) rho(y) - rho(y) rho(x) for x = e_i, y = e_j; names i and j.
 
     Examples
     --------
@@ -73,16 +73,16 @@ class CochainComplex:
             _prove_representation(algebra, self.matrices)
 
     def length(self, degree: int) -> int:
-        """The dimension of the space of k-cochains, 0 for k < 0."""
+        """The dimension of the space of cochains of a degree, an int; 0 for negative degrees."""
         return comb(self.algebra.dimension, degree) * self.size if degree >= 0 else 0
 
     def differential(self, degree: int) -> Matrix:
-        """d from k-cochains to (k+1)-cochains: the matrix that rows are multiplied with from the right.
+        """The matrix of d from k-cochains to (k+1)-cochains; rows are multiplied with it from the right.
 
         Raises
         ------
         InputError
-            If it has more entries than are held in memory here.
+            If it has more than 30 million entries.
         """
         if degree not in self._differentials:
             shape = (self.length(degree), self.length(degree + 1))
@@ -91,15 +91,15 @@ class CochainComplex:
                     f"the differential of cochains of degree {degree} has {shape[0]} x {shape[1]} entries, more than "
                     f"{MAX_ENTRIES}; a smaller degree is cheaper"
                 )
-            self._differentials[degree] = self._made(degree, shape)
+            self._differentials[degree] = self._assembled(degree, shape)
         return self._differentials[degree]
 
     def index_tuples(self, degree: int) -> list[tuple[int, ...]]:
-        """The increasing tuples of indices, in the order of the cochains."""
+        """The increasing tuples of indices of a degree, in the order of the coordinates of cochains."""
         return list(itertools.combinations(range(self.algebra.dimension), degree)) if degree >= 0 else []
 
     # -- the matrix --------------------------------------------------------------------------------------
-    def _made(self, degree: int, shape: tuple[int, int]) -> Matrix:
+    def _assembled(self, degree: int, shape: tuple[int, int]) -> Matrix:
         field = self.algebra.field
         whole: Matrix = field.zeros(*shape)
         if 0 in shape:
@@ -110,14 +110,14 @@ class CochainComplex:
         return whole
 
     def _from_brackets(self, degree: int, shape: tuple[int, int]) -> Matrix:
-        """The second sum: for each c[i, j, l] and each set R without i, j, l, from R + l to R + i + j."""
+        """The second sum of d: each c[i, j, l] and each set R without i, j, l map R + l to R + i + j."""
         table, n, m = self.algebra.table, self.algebra.dimension, self.size
-        source = {place: x for x, place in enumerate(self.index_tuples(degree))}
-        target = {place: x for x, place in enumerate(self.index_tuples(degree + 1))}
+        source = {indices: x for x, indices in enumerate(self.index_tuples(degree))}
+        target = {indices: x for x, indices in enumerate(self.index_tuples(degree + 1))}
         parts = [[0] * (shape[0] * shape[1]) for _ in table.parts]
-        places = list(zip(table.i.tolist(), table.j.tolist(), table.k.tolist(), strict=True))
+        constants = list(zip(table.i.tolist(), table.j.tolist(), table.k.tolist(), strict=True))
         for rest in itertools.combinations(range(n), degree - 1) if degree else ():
-            for entry, (i, j, l) in enumerate(places):
+            for entry, (i, j, l) in enumerate(constants):
                 if i in rest or j in rest or l in rest:
                     continue
                 at = bisect_left(rest, i), bisect_left(rest, j), bisect_left(rest, l)
@@ -132,17 +132,17 @@ class CochainComplex:
         return _matrix(self.algebra.field, parts, shape, table.den)
 
     def _from_action(self, degree: int, shape: tuple[int, int]) -> Matrix:
-        """The first sum: from S to S + t, by the matrix of e_t."""
+        """The first sum of d: the matrix of e_t maps S to S + t."""
         m, field = self.size, self.algebra.field
-        source = {place: x for x, place in enumerate(self.index_tuples(degree))}
+        source = {indices: x for x, indices in enumerate(self.index_tuples(degree))}
         den, action = _integral(self.matrices or (), field)
         parts = [[0] * (shape[0] * shape[1]) for _ in range(field.degree)]
         for x, grown in enumerate(self.index_tuples(degree + 1)):
             for a, t in enumerate(grown):
                 start = source[grown[:a] + grown[a + 1 :]] * m
                 for part, values in zip(parts, action[t], strict=True):
-                    for place, value in values:
-                        u, v = divmod(place, m)
+                    for index, value in values:
+                        u, v = divmod(index, m)
                         part[(start + v) * shape[1] + x * m + u] += -value if a % 2 else value
         return _matrix(field, parts, shape, den)
 
@@ -155,7 +155,7 @@ def _matrix(field: Field, parts: list[list[Scalar]], shape: tuple[int, int], den
 
 
 def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[list[tuple[int, Scalar]]]]]:
-    """A common denominator, and for each matrix and coordinate of the field the non-zero numerators by place."""
+    """A common denominator, and for each matrix and field coordinate the non-zero numerators by flat index."""
     if not field.exact:
         return 1, [[[(x, v) for x, v in enumerate(a.entries()) if v != 0]] for a in matrices]
     exact = [a for a in matrices if isinstance(a, ExactMatrix)]
@@ -183,7 +183,7 @@ def _prove_representation(algebra: LieAlgebra, matrices: tuple[Matrix, ...]) -> 
                 names = algebra.basis_names
                 raise RepresentationError(
                     (i, j),
-                    f"the matrices are no representation: rho([{names[i]}, {names[j]}]) differs from the commutator "
+                    f"the matrices are not a representation: rho([{names[i]}, {names[j]}]) differs from the commutator "
                     f"of rho({names[i]}) and rho({names[j]})",
                 )
 

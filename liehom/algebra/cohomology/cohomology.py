@@ -1,7 +1,8 @@
 """Chevalley-Eilenberg cohomology H^k(g, V) of a Lie algebra, with cocycles that represent its classes.
 
-Ranks modulo a prime bound dim H^k from above; where that is 0 it is proved.  Else cocycles are solved for exactly that
-vanish at places where the coboundaries are independent modulo the prime: they are a complement of these.
+Ranks modulo a prime bound dim H^k from above, which proves H^k = 0 if the bound is 0. Otherwise a complement of the
+coboundaries is computed exactly: the cocycles that vanish at indices where the coboundaries are independent modulo the
+prime.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ MAX_PRIMES = 5
 
 @final
 class Cohomology:
-    """The cohomology of a Lie algebra in one degree; made by `LieAlgebra.cohomology`.
+    """The cohomology of a Lie algebra in one degree, the result of `LieAlgebra.cohomology`.
 
-    A cochain is a row, as in `liehom.algebra.cohomology.cochain_complex`; `cochain` and `values` convert it from and
-    to its values on basis elements.
+    A cochain is a row, as in `liehom.algebra.cohomology.cochain_complex`. `cochain` constructs it from its values on
+    basis elements, and `values` returns them.
 
     Attributes
     ----------
@@ -65,24 +66,24 @@ class Cohomology:
 
     @property
     def dimension(self) -> int:
-        """dim H^k(g, V)."""
+        """dim H^k(g, V), an int."""
         return int(self.representatives.nrows)
 
     # -- verbs -------------------------------------------------------------------------------------------
     def coboundaries(self) -> Subspace:
-        """The space of coboundaries d w, w a cochain of degree k - 1."""
+        """The subspace of coboundaries d w, for cochains w of degree k - 1."""
         return Subspace(self.algebra.field, self.cochains.differential(self.degree - 1), self._length())
 
     def cocycles(self) -> Subspace:
-        """The space of cocycles."""
+        """The subspace of cocycles."""
         return self.coboundaries() + Subspace(self.algebra.field, self.representatives, self._length())
 
     def is_cocycle(self, cochain: CochainLike) -> bool:
-        """Whether d w = 0."""
+        """Whether d w = 0 for a cochain w."""
         return bool((self._row(cochain) @ self.cochains.differential(self.degree)).is_zero())
 
     def is_coboundary(self, cochain: CochainLike) -> bool:
-        """Whether w = d v for some v."""
+        """Whether a cochain w is d v for some v."""
         try:
             self.potential(cochain)
         except SingularError:
@@ -90,7 +91,7 @@ class Cohomology:
         return True
 
     def potential(self, cochain: CochainLike) -> Matrix:
-        """Some v with d v = w, as a row matrix; `SingularError` if w is no coboundary."""
+        """A cochain v with d v = w, as a row matrix; raises `SingularError` if w is not a coboundary."""
         row = self._row(cochain)
         before = self.cochains.differential(self.degree - 1)
         found: Matrix = self.algebra.field.zeros(1, before.nrows)
@@ -106,11 +107,11 @@ class Cohomology:
         Raises
         ------
         InputError
-            If the cochain is no cocycle.
+            If the cochain is not a cocycle.
         """
         row, field = self._row(cochain), self.algebra.field
         if not self.is_cocycle(row):
-            raise InputError("the cochain is no cocycle: it has no class")
+            raise InputError("the cochain is not a cocycle: it has no class")
         found: Matrix = field.zeros(1, self.dimension)
         if self.dimension > 0 and not row.is_zero():
             rows = field.stack_rows([self.representatives, self.cochains.differential(self.degree - 1)], self._length())
@@ -118,51 +119,51 @@ class Cohomology:
         return found
 
     def cochain(self, values: Mapping[Any, ScalarLike | VectorLike]) -> Matrix:
-        """The cochain with these values, as a row matrix.
+        """The cochain with given values on basis elements, as a row matrix.
 
         Parameters
         ----------
         values : mapping
-            From k different indices (a tuple; or one index, for k = 1) to a number, or to the coordinates of a vector
-            of V where dim V is not 1. Indices in another order change the sign; what is not given is 0.
+            From k different indices (a tuple, or one index if k = 1) to a number, or to the coordinates of a vector of
+            V if dim V is not 1. The order of the indices determines the sign; other values are 0.
 
         Raises
         ------
         InputError
-            If a key is no tuple of k different indices.
+            If a key is not a tuple of k different indices.
         ShapeError
             If a value does not have dim V coordinates.
         """
         field, m, n = self.algebra.field, self.cochains.size, self.algebra.dimension
-        found = {place: x for x, place in enumerate(self.cochains.index_tuples(self.degree))}
+        position = {indices: x for x, indices in enumerate(self.cochains.index_tuples(self.degree))}
         entries = [field.zero] * self._length()
         for key, value in values.items():
             indices = tuple(key) if isinstance(key, tuple) else (key,)
-            place = tuple(sorted(indices)) if all(isinstance(i, int) for i in indices) else indices
-            if place not in found:
-                raise InputError(f"{key!r} are no {self.degree} different indices from 0 to {n - 1}")
+            ordered = tuple(sorted(indices)) if all(isinstance(i, int) for i in indices) else indices
+            if ordered not in position:
+                raise InputError(f"{key!r} is not a tuple of {self.degree} different indices from 0 to {n - 1}")
             given = [value] if isinstance(value, str) or not isinstance(value, Iterable) else list(value)
             if len(given) != m:
                 raise ShapeError(f"the value at {key!r} has {len(given)} coordinates, expected {m}")
             odd = sum(a > b for x, a in enumerate(indices) for b in indices[x + 1 :]) % 2
             for u, v in enumerate(map(field.convert, given)):
-                entries[found[place] * m + u] += -v if odd else v
+                entries[position[ordered] * m + u] += -v if odd else v
         row: Matrix = field.from_entries(entries, 1, self._length())
         return row
 
     def values(self, cochain: CochainLike) -> dict[tuple[int, ...], Scalar]:
-        """The non-zero values by increasing indices: numbers, or lists of coordinates where dim V is not 1."""
+        """The non-zero values by increasing indices: numbers, or lists of coordinates if dim V is not 1."""
         row, m = self._row(cochain).row(0), self.cochains.size
         blocks = {p: row[x * m : (x + 1) * m] for x, p in enumerate(self.cochains.index_tuples(self.degree))}
         return {p: v[0] if m == 1 else v for p, v in blocks.items() if any(x != 0 for x in v)}
 
     def forms(self) -> list[Matrix]:
-        """The representatives of degree 2 with values in R as antisymmetric matrices, for `central_extension`.
+        """Antisymmetric matrices of the representatives of degree 2 with values in R, for `central_extension`.
 
         Raises
         ------
         InputError
-            In another degree, or for another module.
+            If the degree is not 2, or the module is not R.
 
         Examples
         --------
@@ -209,7 +210,7 @@ def cohomology(
     if length == 0:
         return Cohomology(cochains, degree, field.zeros(0, 0))
     if not field.exact:
-        # cochains that d kills and that are orthogonal to the coboundaries
+        # cochains in the kernel of d that are orthogonal to the coboundaries
         after, before = cochains.differential(degree), cochains.differential(degree - 1)
         return Cohomology(cochains, degree, field.stack_rows([after.T, before], length).null_space())
     if degree in (1, 2) and algebra.killing_form().rank() == algebra.dimension:
@@ -218,7 +219,7 @@ def cohomology(
 
 
 class _Solver:
-    """Complements of the coboundaries in the cocycles, degree by degree."""
+    """Complements of the coboundaries in the cocycles, degree by degree, over an exact field."""
 
     def __init__(self, cochains: CochainComplex) -> None:
         self.cochains = cochains
@@ -227,17 +228,17 @@ class _Solver:
         self._images: dict[tuple[int, int], list[int]] = {}
 
     def rank(self, degree: int) -> int:
-        """The exact rank of d on k-cochains."""
+        """The exact rank of d on k-cochains, an int."""
         if self.cochains.length(degree) == 0:
             return 0
         matrix = self.cochains.differential(degree)
         if 0 in matrix.shape:
             return 0
-        # C^k = coboundaries + complement + what d does not kill
+        # C^k = coboundaries + complement + (a complement of the kernel of d)
         return int(matrix.nrows) - self.rank(degree - 1) - int(self.complement(degree).nrows)
 
     def pivots(self, degree: int, attempt: int) -> list[int]:
-        """Columns of d that are independent modulo a prime, as many as its rank there."""
+        """Indices of columns of d that are a basis of its column space modulo a prime."""
         if (degree, attempt) not in self._images:
             matrix = self.cochains.differential(degree)
             image: list[int] = []
@@ -247,7 +248,7 @@ class _Solver:
         return self._images[degree, attempt]
 
     def complement(self, degree: int) -> Matrix:
-        """Cocycles that are a basis of them modulo the coboundaries; rows."""
+        """Cocycles that are a basis of the cocycles modulo the coboundaries, as rows."""
         if degree not in self._complements:
             self._complements[degree] = self._found(degree)
         return self._complements[degree]
@@ -269,4 +270,4 @@ class _Solver:
             rows = solved @ self.field.identity(length).select(rows=kept)
             if (rows @ after).is_zero():
                 return rows
-        raise InternalError(f"no prime was of use for the cohomology of {self.cochains.algebra!r} in degree {degree}")
+        raise InternalError(f"no prime was usable for the cohomology of {self.cochains.algebra!r} in degree {degree}")

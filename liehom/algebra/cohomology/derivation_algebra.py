@@ -1,9 +1,9 @@
 """Der(g): the derivations of a Lie algebra, D [x, y] = [D x, y] + [x, D y], exactly.
 
-The equations are solved modulo a prime for the images of generators (`derivation_equations`): that bounds dim Der(g)
-from above.  If there are no more solutions than inner derivations, all derivations are inner.  Else outer ones are
-proposed, by small fractions that agree modulo the prime or by the exact solution of as many equations as are
-needed, and proved to be derivations.
+The equations are solved modulo a prime for the images of generators (`derivation_equations`), which bounds dim Der(g)
+from above. If there are no more solutions than inner derivations, all derivations are inner. Otherwise outer
+derivations are proposed and then proved. Proposals come from small fractions that agree modulo the prime, or from the
+exact solution of sufficiently many equations.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from liehom.scalars.fields.field import MatrixLike
 
 @final
 class Derivations:
-    """The Lie algebra of derivations of a Lie algebra; made by `LieAlgebra.derivations`.
+    """The Lie algebra of derivations of a Lie algebra, the result of `LieAlgebra.derivations`.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Derivations:
     matrices : tuple of Matrix
         A basis of Der(g): matrices (n, n) on columns of coefficients. The first ones are inner, ad e_i.
     inner_dimension : int
-        The dimension of ad(g), n minus that of the centre.
+        The dimension of ad(g), which is n minus the dimension of the centre.
 
     Examples
     --------
@@ -63,12 +63,12 @@ class Derivations:
     # -- properties --------------------------------------------------------------------------------------
     @property
     def dimension(self) -> int:
-        """dim Der(g)."""
+        """dim Der(g), an int."""
         return len(self.matrices)
 
     @property
     def outer_dimension(self) -> int:
-        """dim Der(g) / ad(g) = dim H^1(g, g)."""
+        """dim Der(g) / ad(g) = dim H^1(g, g), an int."""
         return self.dimension - self.inner_dimension
 
     # -- verbs -------------------------------------------------------------------------------------------
@@ -87,13 +87,13 @@ class Derivations:
         return self._algebra
 
     def inner(self) -> Subalgebra:
-        """The ideal ad(g) of `algebra`, spanned by its first basis elements."""
+        """The ideal ad(g) of `algebra`, spanned by its first `inner_dimension` basis elements."""
         one = self.source.field.identity(self.dimension)
         rows = one.select(rows=range(self.inner_dimension))
         return Subalgebra(self.algebra(), rows, check=False)  # [D, ad x] = ad Dx
 
     def outer_matrices(self) -> tuple[Matrix, ...]:
-        """Derivations that are a basis of Der(g) modulo ad(g): the last members of `matrices`."""
+        """The last members of `matrices`, a basis of Der(g) modulo ad(g)."""
         return self.matrices[self.inner_dimension :]
 
     def coordinates(self, matrix: MatrixLike) -> Matrix:
@@ -102,14 +102,14 @@ class Derivations:
         Raises
         ------
         InputError
-            If the matrix is no derivation.
+            If the matrix is not a derivation.
         ShapeError
             If its shape is not (n, n).
         """
         n, field = self.source.dimension, self.source.field
         given = field.read(matrix, (n, n))
         if not is_derivation(self.source, given):
-            raise InputError("the matrix is no derivation: D [x, y] differs from [D x, y] + [x, D y] for some x, y")
+            raise InputError("the matrix is not a derivation: D [x, y] differs from [D x, y] + [x, D y] for some x, y")
         row: Matrix = field.zeros(1, 0)
         if self.dimension > 0:
             if self._flat is None:
@@ -152,13 +152,13 @@ def is_derivation(algebra: LieAlgebra, matrix: MatrixLike) -> bool:
 
 
 def _inner(algebra: LieAlgebra, indices: Sequence[int]) -> tuple[Matrix, ...]:
-    """ad e_i for basis elements that are independent modulo the centre."""
+    """ad e_i for the basis elements with given indices."""
     one = algebra.field.identity(algebra.dimension)
     return tuple(block.T for block in algebra.table.contract(one.select(rows=indices), one, one))
 
 
 def _outer(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]:
-    """Derivations that complete the inner ones to a basis, proved."""
+    """Derivations that complete the inner ones to a basis, each proved to be a derivation."""
     n, count = algebra.dimension, len(inner)
     for words in word_bases(algebra):
         found = modular_derivations(words)
@@ -168,11 +168,11 @@ def _outer(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]
         outer = exact_outer(algebra, found, count) if outer is None else outer
         if outer is not None:
             return tuple(outer.split_rows(n, n))
-    raise InternalError(f"no prime was of use for the derivations of {algebra!r}")
+    raise InternalError(f"no prime was usable for the derivations of {algebra!r}")
 
 
 def _numerical(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]:
-    """The null space of D -> D [x, y] - [D x, y] - [x, D y] over floats, orthogonal to the inner derivations."""
+    """Derivations over floats that are orthogonal to the inner ones, by a numerical null space."""
     n, field = algebra.dimension, algebra.field
     c = algebra.table.dense().to_numpy().reshape(n, n, n)
     one = np.eye(n)

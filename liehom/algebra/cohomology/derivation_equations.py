@@ -1,10 +1,11 @@
-"""The equations of derivations, for the images of generators: modulo a prime, and exactly where that is needed.
+"""The equations of derivations for the images of generators, modulo a prime and, if needed, exactly.
 
-With words w_1, ..., w_n in generators x_1, ..., x_s (`word_basis`) the row u of all images D x_i determines
-D w = [D x_i, v] + [x_i, D v] for w = [x_i, v], so D w_k = u A_k with matrices A_k.  D is a derivation if and only if
-D [x_i, w_k] = [D x_i, w_k] + [x_i, D w_k] for all i and k: the x with this property form a subalgebra.
+Let w_1, ..., w_n be words in generators x_1, ..., x_s that are a basis (`word_basis`). The row u of all images D x_i
+determines D w = [D x_i, v] + [x_i, D v] for w = [x_i, v], so D w_k = u A_k with matrices A_k. D is a derivation if and
+only if D [x_i, w_k] = [D x_i, w_k] + [x_i, D w_k] for all i and k, because the x with D [x, y] = [D x, y] + [x, D y]
+for all y form a subalgebra.
 
-Modulo a prime there are at least as many solutions as over the field: a bound for dim Der(g) from above.
+Modulo a prime there are at least as many solutions as over the field, which bounds dim Der(g) from above.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from liehom.scalars.modular.modular_span import ModularSpan, Residues, lifted, p
 @final
 @dataclass(frozen=True, slots=True)
 class ModularDerivations:
-    """The derivations modulo a prime.
+    """A basis of the derivations modulo a prime, with the equations that determine them.
 
     Attributes
     ----------
@@ -32,7 +33,8 @@ class ModularDerivations:
     solutions : array (t, s n)
         Images of the generators in the basis of words, for a basis of all derivations modulo the prime.
     needed : tuple of (i, k, c)
-        Coordinate c of the equation for generator i and word k: equations that imply the others modulo the prime.
+        Stands for coordinate c of the equation for generator i and word k. These equations imply all others modulo the
+        prime.
     """
 
     words: WordBasis
@@ -41,12 +43,12 @@ class ModularDerivations:
 
     @property
     def dimension(self) -> int:
-        """The dimension modulo the prime, at least dim Der(g)."""
+        """The dimension modulo the prime, an int, at least dim Der(g)."""
         return len(self.solutions)
 
 
 def modular_derivations(words: WordBasis) -> ModularDerivations:
-    """All derivations modulo the prime of the words.
+    """A basis of all derivations modulo the prime of a word basis.
 
     Examples
     --------
@@ -67,9 +69,9 @@ def modular_derivations(words: WordBasis) -> ModularDerivations:
         defect += product(current[:, i * n : (i + 1) * n], table, p)  # - [D x_i, w_k] = [w_k, D x_i]
         defect -= product(images.reshape(n * t, n), ad, p).reshape(n, t, n)  # [x_i, D w_k]
         conditions = np.mod(defect, p).transpose(0, 2, 1).reshape(n * n, t)
-        places = np.flatnonzero(conditions.any(axis=1))
+        nonzero = np.flatnonzero(conditions.any(axis=1))
         span = ModularSpan(p, t)
-        needed += [(i, *divmod(int(places[x]), n)) for x in span.extend(conditions[places])]
+        needed += [(i, *divmod(int(nonzero[x]), n)) for x in span.extend(conditions[nonzero])]
         if span.rank:
             free = sorted(set(range(t)) - set(span.pivots))
             back = np.mod(-span.rows[:, free].T, p)
@@ -79,9 +81,9 @@ def modular_derivations(words: WordBasis) -> ModularDerivations:
 
 
 def small_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> Matrix | None:
-    """Derivations that complete the inner ones, if there are such with small fractions as entries; else None.
+    """Derivations with small fractions as entries that complete the inner ones to a basis, or None.
 
-    Modulo the prime there are no more derivations, so those that are independent there are all.
+    The derivations modulo the prime bound the dimension, so derivations that span as much modulo the prime are all.
 
     Parameters
     ----------
@@ -93,7 +95,8 @@ def small_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> M
     Returns
     -------
     Matrix or None
-        Rows (o, n * n): flattened matrices on columns, reduced modulo the inner derivations, in echelon form; proved.
+        Rows (o, n * n): flattened matrices on columns, reduced modulo the inner derivations, in echelon form, and
+        proved to be derivations.
     """
     words = found.words
     p, n, s = words.modulus, algebra.dimension, words.generators.nrows
@@ -114,15 +117,15 @@ def small_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> M
 
 
 def exact_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> Matrix | None:
-    """Derivations that complete the inner ones, from the exact solution of the equations that are needed.
+    """Derivations that complete the inner ones to a basis, by exact solution of the needed equations, or None.
 
-    These equations are some of all: if their solutions are derivations, they are all derivations.  A complement of
-    the inner ones is singled out by coordinates of the images of generators that vanish on it.
+    The needed equations are a subset. If their solutions are derivations, these are all derivations. A complement of
+    the inner derivations is selected by coordinates of the images of generators that vanish on it.
 
     Returns
     -------
     Matrix or None
-        Rows (o, n * n): flattened matrices on columns, proved; None if the prime is of no use.
+        Rows (o, n * n): flattened matrices on columns, proved to be derivations; None if the prime is not usable.
     """
     words, n, field = found.words, algebra.dimension, algebra.field
     s = words.generators.nrows
@@ -152,7 +155,7 @@ def exact_outer(algebra: LieAlgebra, found: ModularDerivations, inner: int) -> M
 
 
 def are_derivations(algebra: LieAlgebra, generators: Matrix, flat: Matrix) -> bool:
-    """Whether flattened matrices (o, n * n) on columns are derivations; tested on generators of the algebra.
+    """Whether all flattened matrices (o, n * n) on columns are derivations, tested on generators.
 
     Examples
     --------
@@ -200,13 +203,14 @@ def _grouped(needed: Iterable[tuple[int, int, int]]) -> list[tuple[tuple[int, in
 
 
 def _joined(columns: list[Matrix], n: int) -> Matrix:
-    """From n matrices (n, o), the k-th with the images of w_k as columns, to o flattened matrices, rows (o, n * n)."""
+    """Rows (o, n * n) of flattened matrices from n matrices (n, o), the k-th with the images of w_k as columns."""
     field, count = columns[0].field, columns[0].ncols
     wide: Matrix = field.stack_columns(columns, n).reshape(n * n, count)  # row r n + k: entry (r, k) of each matrix
     return wide.T
 
 
 def _exact_images(words: WordBasis, ads: list[Matrix]) -> list[Matrix]:
+    """The matrices A_k, (s n, n), over the field."""
     s = words.generators.nrows
     images: list[Matrix] = []
     for k, (i, v) in enumerate(words.words):
@@ -218,7 +222,7 @@ def _exact_images(words: WordBasis, ads: list[Matrix]) -> list[Matrix]:
 
 
 def _exact_equation(i: int, k: int, ads: list[Matrix], images: list[Matrix]) -> Matrix:
-    """The matrix (s n, n) that kills u if D [x_i, w_k] = [D x_i, w_k] + [x_i, D w_k]."""
+    """The matrix (s n, n) that annihilates u if and only if D [x_i, w_k] = [D x_i, w_k] + [x_i, D w_k]."""
     s = images[0].nrows // len(ads)
     defect: Matrix = _placed(ads[k], i, s) - images[k] @ ads[i]
     terms: Iterable[tuple[int, Scalar]] = enumerate(ads[i].row(k))
@@ -229,7 +233,7 @@ def _exact_equation(i: int, k: int, ads: list[Matrix], images: list[Matrix]) -> 
 
 
 def _placed(block: Matrix, i: int, s: int) -> Matrix:
-    """The matrix (s n, n) with an (n, n) block as its i-th."""
+    """The matrix (s n, n) whose i-th (n, n) block is given; the other blocks are zero."""
     n, field = block.nrows, block.field
     placed: Matrix = field.stack_rows([field.zeros(i * n, n), block, field.zeros((s - 1 - i) * n, n)], n)
     return placed

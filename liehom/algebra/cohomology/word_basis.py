@@ -1,6 +1,6 @@
 """Generators of a Lie algebra and a basis of their left-normed brackets, modulo a small prime.
 
-A word is a generator or w = [x_i, v] with v an earlier word.  Words that are a basis modulo a prime are a basis.
+A word is a generator or w = [x_i, v] with an earlier word v. Words that are a basis modulo a prime are a basis.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PRIME_SUPPLY = 1 << 200
 @final
 @dataclass(frozen=True, slots=True)
 class WordBasis:
-    """Generators x_1, ..., x_s and a basis of words, with the brackets modulo a prime.
+    """Generators x_1, ..., x_s, a basis of words in them, and their brackets modulo a prime.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class WordBasis:
     basis, inverse : array (n, n)
         The words as rows modulo p, and the inverse.
     table, word_table : array (n, n, n)
-        The structure constants modulo p in the given basis and in that of the words.
+        The structure constants modulo p in the given basis and in the basis of words.
     """
 
     modulus: int
@@ -53,12 +53,13 @@ class WordBasis:
 
 
 def word_bases(algebra: LieAlgebra) -> Iterator[WordBasis]:
-    """Generators and words for one prime after the other: should one be of no use, the next is.
+    """Word bases for one prime after the other, to be tried until a prime is usable.
 
     Parameters
     ----------
     algebra : LieAlgebra
-        Over an exact field. The generators are a complement of [g, g] and as few small random elements as it takes.
+        Over an exact field. The generators are a complement of [g, g], extended by small random elements until they
+        generate g.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def word_bases(algebra: LieAlgebra) -> Iterator[WordBasis]:
 
 
 def exact_words(algebra: LieAlgebra, found: WordBasis) -> Matrix:
-    """The words as rows (n, n), exactly."""
+    """The words as exact rows, a matrix (n, n)."""
     n, field = algebra.dimension, algebra.field
     s = found.generators.nrows
     actions = [algebra.ad(found.generators.select(rows=[i])).T for i in range(s)]
@@ -92,7 +93,7 @@ def exact_words(algebra: LieAlgebra, found: WordBasis) -> Matrix:
 
 
 def table_modulo(table: StructureConstants, p: int, root: int) -> Residues:
-    """The structure constants (n, n, n) modulo a prime that does not divide their denominator.
+    """The structure constants modulo a prime p as an array (n, n, n); p must not divide their denominator.
 
     Examples
     --------
@@ -122,7 +123,7 @@ def _words_modulo(algebra: LieAlgebra, p: int, root: int) -> WordBasis:
     while len(words) < n:
         generators.append([rng.randint(-1, 1) for _ in range(n)])
         words, basis = _closed(table, generators, p)
-        if sum(v < 0 for _, v in words) < len(generators):  # it depends on the others
+        if sum(v < 0 for _, v in words) < len(generators):  # the new generator depends on the others
             generators.pop()
     inverse = _inverse(basis, p)
     moved = product(product(basis, table.reshape(n, n * n), p).reshape(n, n, n), inverse, p)
@@ -131,7 +132,7 @@ def _words_modulo(algebra: LieAlgebra, p: int, root: int) -> WordBasis:
 
 
 def _closed(table: Residues, generators: list[list[int]], p: int) -> tuple[Words, Residues]:
-    """Words from independent generators, level by level, until brackets with generators give nothing new."""
+    """A basis of words in the generators, and its residues (m, n)."""
     n = len(table)
     first = np.mod(np.array(generators, dtype=np.float64).reshape(-1, n), p)
     actions = product(first, table.reshape(n, n * n), p).reshape(-1, n, n)
@@ -144,7 +145,7 @@ def _closed(table: Residues, generators: list[list[int]], p: int) -> tuple[Words
 
 
 def _inverse(matrix: Residues, p: int) -> Residues:
-    """The inverse of an invertible matrix modulo p."""
+    """The inverse modulo p of a matrix (n, n) that is invertible there."""
     n = len(matrix)
     span = ModularSpan(p, 2 * n)
     span.extend(np.hstack([matrix, np.eye(n)]))

@@ -1,7 +1,8 @@
-"""Lie algebras by name and from other Lie algebras: the constructors of the top level.
+"""Constructors of Lie algebras, by name and from other Lie algebras.
 
-Classical, kinematical, solvable and simple algebras, sums, quotients, extensions and complexifications. Users call
-them as `liehom.so`, `liehom.direct_sum` and so on; the bases are described in docs/catalogue.md.
+Classical, kinematical, solvable, free nilpotent and simple algebras; sums, quotients, central extensions and
+complexifications. Users call the functions of the top level, such as `liehom.so` and `liehom.direct_sum`. The bases are
+described in docs/catalogue.md.
 """
 
 from liehom.algebra.constructions.classical_algebras import gl as gl

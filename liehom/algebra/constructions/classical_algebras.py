@@ -17,7 +17,7 @@ from liehom.scalars import QQ
 
 
 def gl(n: int, over: str = "R") -> LieAlgebra:
-    """gl(n) over 'R', 'C' or 'H', as a real Lie algebra of dimension n**2, 2 n**2 or 4 n**2.
+    """The real Lie algebra gl(n) over 'R', 'C' or 'H', of dimension n**2, 2 n**2 or 4 n**2.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def gl(n: int, over: str = "R") -> LieAlgebra:
     Raises
     ------
     InputError
-        If n is not a positive integer or the letter is another one.
+        If n is not a positive integer, or `over` is not one of the three letters.
 
     Examples
     --------
@@ -40,12 +40,12 @@ def gl(n: int, over: str = "R") -> LieAlgebra:
 
 
 def sl(n: int, over: str = "R") -> LieAlgebra:
-    """sl(n) over 'R', 'C' or 'H'; over H it is the real trace that vanishes.
+    """The real Lie algebra sl(n) over 'R', 'C' or 'H'; over H, the real trace vanishes.
 
     Raises
     ------
     InputError
-        If n is not a positive integer or the letter is another one.
+        If n is not a positive integer, or `over` is not one of the three letters.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def sl(n: int, over: str = "R") -> LieAlgebra:
 
 
 def so(p: int, q: int | str = 0) -> LieAlgebra:
-    """so(p, q), of dimension n (n - 1) / 2 with n = p + q, or so(n, 'C').
+    """The real Lie algebra so(p, q), of dimension n (n - 1) / 2 with n = p + q, or so(n, 'C').
 
     Raises
     ------
@@ -74,7 +74,7 @@ def so(p: int, q: int | str = 0) -> LieAlgebra:
 
 
 def su(p: int, q: int = 0) -> LieAlgebra:
-    """su(p, q), of dimension n**2 - 1 with n = p + q.
+    """The real Lie algebra su(p, q), of dimension n**2 - 1 with n = p + q.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def su(p: int, q: int = 0) -> LieAlgebra:
 
 
 def u(p: int, q: int = 0) -> LieAlgebra:
-    """u(p, q), of dimension n**2 with n = p + q.
+    """The real Lie algebra u(p, q), of dimension n**2 with n = p + q.
 
     Raises
     ------
@@ -108,18 +108,19 @@ def u(p: int, q: int = 0) -> LieAlgebra:
 
 
 def sp(p: int, q: int | str = 0) -> LieAlgebra:
-    """The compact sp(n) and sp(p, q) on H^n, n = p + q; with a letter the split sp(2n, 'R') and sp(2n, 'C').
+    """The compact sp(n), sp(p, q) on H^(p+q), or with a letter the split sp(2n, 'R') and sp(2n, 'C').
 
     Parameters
     ----------
     p : int
-        With q a number: sp(p, q) of dimension n (2n + 1), sp(1) = su(2). With a letter: the even size 2n.
+        If q is a number, sp(p, q) has dimension n (2n + 1) with n = p + q; sp(1) = su(2). If q is a letter, p is the
+        even size 2n.
     q : int, 'R' or 'C'
 
     Raises
     ------
     InputError
-        If p or q is negative, p + q is 0, or the size before a letter is odd.
+        If p or q is negative, p + q is 0, or the size is odd and q is a letter.
 
     Examples
     --------
@@ -131,12 +132,12 @@ def sp(p: int, q: int | str = 0) -> LieAlgebra:
 
 
 def so_star(n: int) -> LieAlgebra:
-    """so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
+    """The real Lie algebra so*(2n) = {X in gl(n, H) : X* j + j X = 0}, of dimension n (2n - 1).
 
     Parameters
     ----------
     n : int
-        Size over the quaternions, at least 1: half of the number in the name.
+        Size over the quaternions, at least 1; half the number in the name.
 
     Raises
     ------
@@ -154,12 +155,13 @@ def so_star(n: int) -> LieAlgebra:
 
 
 def parabolic_subalgebra(*sizes: int) -> Subalgebra:
-    """The block upper triangular matrices in sl(n): the parabolic subalgebra of a flag.
+    """The parabolic subalgebra of block upper triangular matrices in sl(n).
 
     Parameters
     ----------
     *sizes : int
-        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. All 1: the Borel subalgebra.
+        The sizes of the diagonal blocks, at least one, each at least 1; n is their sum. Sizes 1, ..., 1 give the Borel
+        subalgebra.
 
     Returns
     -------

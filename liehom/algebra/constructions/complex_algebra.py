@@ -1,7 +1,7 @@
-"""Complex Lie algebras as real ones.
+"""Complex Lie algebras as real Lie algebras with a complex structure.
 
 A complex Lie algebra of dimension n is a real one of dimension 2n with a complex structure J, J^2 = -1 and
-[Jx, y] = J[x, y].  Bases: e_1, ..., e_n, then J e_1, ..., J e_n.
+[Jx, y] = J[x, y]. Its basis is e_1, ..., e_n, J e_1, ..., J e_n.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from liehom.scalars import Field, Matrix, Scalar
 @final
 @dataclass(frozen=True, slots=True)
 class ComplexLieAlgebra:
-    """A complex Lie algebra as a real one with its complex structure, proved at construction.
+    """A complex Lie algebra as a real Lie algebra with a complex structure, proved at construction.
 
     Parameters
     ----------
     algebra : LieAlgebra
         The real Lie algebra, of even dimension 2n.
     complex_structure : (2n, 2n) array_like
-        J, acting on columns of coefficients.
+        J, acting on columns of coefficients; stored as a `Matrix`.
 
     Raises
     ------
@@ -69,7 +69,7 @@ class ComplexLieAlgebra:
 
     @property
     def complex_dimension(self) -> int:
-        """The dimension over C."""
+        """The dimension over C, an int."""
         return self.algebra.dimension // 2
 
 
@@ -88,17 +88,17 @@ def realification(
     basis: Sequence[str] | None = None,
     name: str | None = None,
 ) -> ComplexLieAlgebra:
-    """The real Lie algebra of dimension 2n that a complex one, given by complex structure constants, is.
+    """The real Lie algebra of dimension 2n from the complex structure constants of a complex Lie algebra.
 
     Parameters
     ----------
     constants : mapping ``{(i, j): {k: value}}``, or array_like of shape (n, n, n) or (n, n, n, 2)
         The brackets over C. A value is a number, a pair (real part, imaginary part), a sympy number, or, for a
-        table over float64, a Python complex number; the last axis of length 2 holds such pairs.
+        table over float64, a Python complex number. A last axis of length 2 holds such pairs.
     field : Field, optional
-        That of real and imaginary parts; by default the field that they call for.
+        The field of real and imaginary parts; by default the smallest field that contains them.
     dimension : int, optional
-        n, needed with a mapping if there are elements that appear in no bracket.
+        n, needed with a mapping if some basis elements appear in no bracket.
     basis : sequence of str, optional
         Names of the n basis elements over C.
     name : str, optional
@@ -128,7 +128,7 @@ def realification(
     imaginary: dict[Any, Any] = {}
     for pair, row in constants.items():
         if not isinstance(row, Mapping):
-            raise StructureError(f"{pair!r}: {row!r} is no bracket; write {{(i, j): {{k: value}}}}")
+            raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{(i, j): {{k: value}}}}")
         parts = {k: _parts(value) for k, value in row.items()}
         real[pair] = {k: re for k, (re, _) in parts.items()}
         imaginary[pair] = {k: im for k, (_, im) in parts.items()}
@@ -145,7 +145,7 @@ def realification(
 def _realified(
     real: StructureConstants, imaginary: StructureConstants, names: Sequence[str], name: str | None, *, check: bool
 ) -> ComplexLieAlgebra:
-    """[e_i, e_j] = sum_k (a + b J)_ijk e_k, and J may be taken out of both arguments."""
+    """The real algebra with [e_i, e_j] = sum_k (a + b J)_ijk e_k, J being linear in both arguments."""
     n, field = real.dimension, real.field
     entries = []
     for i, j, k, a in real:
@@ -160,7 +160,7 @@ def _realified(
 
 
 def _failure_dense(table: StructureConstants, structure: Matrix) -> tuple[int, int] | None:
-    """A pair (i, j) with [J e_i, e_j] different from J [e_i, e_j], or None."""
+    """A pair (i, j) with [J e_i, e_j] != J [e_i, e_j] by dense products, or None."""
     one = table.field.identity(table.dimension)
     pairs = zip(table.contract(structure.T, one, one), table.contract(one, one, structure.T), strict=True)
     for i, (left, right) in enumerate(pairs):
@@ -171,12 +171,12 @@ def _failure_dense(table: StructureConstants, structure: Matrix) -> tuple[int, i
 
 
 def _failure_sparse(table: StructureConstants, structure: Matrix) -> tuple[int, int] | None:
-    """The same for an exact table that is too large for dense blocks."""
+    """A pair (i, j) with [J e_i, e_j] != J [e_i, e_j] by sparse sums, for large exact tables, or None."""
     n, zero = table.dimension, table.field.zero
     images: list[list[tuple[int, Scalar]]] = [[] for _ in range(n)]  # J e_k
-    for place, w in enumerate(structure.entries()):
+    for index, w in enumerate(structure.entries()):
         if w != 0:
-            images[place % n].append((place // n, w))
+            images[index % n].append((index // n, w))
     brackets: list[list[tuple[int, int, Scalar]]] = [[] for _ in range(n)]  # [e_i, .]
     for i, j, k, v in table:
         brackets[i].append((j, k, v))
@@ -205,10 +205,10 @@ def _require_constants(value: object) -> None:
 
 
 def _as_mapping(constants: object) -> tuple[dict[tuple[int, int], dict[int, object]], int]:
-    """A nested list or array of shape (n, n, n) or (n, n, n, 2) as a mapping, and n."""
+    """The mapping of a nested list or array of shape (n, n, n) or (n, n, n, 2), and n."""
     rows = constants.tolist() if hasattr(constants, "tolist") else constants
     if not isinstance(rows, (list, tuple)):
-        raise StructureError(f"{constants!r} are no structure constants; write {{(i, j): {{k: value}}}} or an array")
+        raise StructureError(f"{constants!r} are not structure constants; write {{(i, j): {{k: value}}}} or an array")
     n = len(rows)
     table: dict[tuple[int, int], dict[int, object]] = {}
     for i, block in enumerate(rows):
@@ -223,7 +223,7 @@ def _has_length(values: object, n: int) -> bool:
 
 
 def _parts(value: object) -> tuple[Scalar, Scalar]:
-    """Real and imaginary part."""
+    """Real and imaginary part of a complex number in any accepted form."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:
             raise StructureError(f"a complex number is a pair (real part, imaginary part), got {value!r}")

@@ -29,7 +29,7 @@ def central_extension(
     cocycle : (n, n) array_like, or a sequence of m of them
         Antisymmetric matrices w_a(e_i, e_j), one for each central element z_a.
     basis : sequence of str, optional
-        Names of all basis elements; by default those of g and z, or z1, z2, ...
+        Names of all basis elements; by default the names of g and z, or z1, z2, ...
     name : str, optional
 
     Raises
@@ -37,7 +37,7 @@ def central_extension(
     ShapeError
         If a matrix does not have shape (n, n).
     StructureError
-        If it is not antisymmetric; names i and j.
+        If a matrix is not antisymmetric; names i and j.
     CocycleError
         If w([e_i, e_j], e_k) + w([e_j, e_k], e_i) + w([e_k, e_i], e_j) is not zero; names i, j, k and the value.
     FieldError
@@ -60,8 +60,8 @@ def central_extension(
         if form.shape != (n, n):
             raise ShapeError(f"a cocycle on an algebra of dimension {n} has shape {(n, n)}, got {form.shape}")
         _prove_cocycle(algebra, form)
-        places = itertools.combinations(range(n), 2)
-        entries += [(i, j, n + a, form[i, j]) for i, j in places if form[i, j] != field.zero]
+        pairs = itertools.combinations(range(n), 2)
+        entries += [(i, j, n + a, form[i, j]) for i, j in pairs if form[i, j] != field.zero]
     names = _extended_names(algebra, len(forms)) if basis is None else basis
     table = StructureConstants(field, n + len(forms), entries)
     # The Jacobi identity of the extension is that of g and the cocycle condition.
@@ -69,7 +69,7 @@ def central_extension(
 
 
 def _listed(cocycle: MatrixLike | MatricesLike, n: int) -> list[MatrixLike]:
-    """One matrix or several, as a list of matrices."""
+    """The list of matrices, from one matrix or several."""
     if isinstance(cocycle, Matrix):
         return [cocycle]
     rows: Any = cocycle.tolist() if hasattr(cocycle, "tolist") else cocycle
@@ -89,7 +89,7 @@ def _is_row(value: object) -> bool:
 
 
 def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
-    """That w is antisymmetric and w([x, y], z) + cyclic = 0, on basis elements."""
+    """Prove that w is antisymmetric and w([x, y], z) + cyclic = 0, on basis elements."""
     n, field = algebra.dimension, algebra.field
     bound = _rounding(field, form.entries())
     symmetric = form + form.T
@@ -109,7 +109,7 @@ def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
 
 
 def _rounding(field: Field, values: list[Scalar]) -> float:
-    """What may count as zero: 0 over an exact field, rtol times the largest value over floats."""
+    """The bound below which a value counts as zero: 0 over an exact field, rtol max |value| over floats."""
     return field.rtol * max(map(abs, values), default=0.0) if isinstance(field, FloatField) else 0.0
 
 
@@ -118,7 +118,7 @@ def _exceeds(value: Scalar, bound: float) -> bool:
 
 
 def _extended_names(algebra: LieAlgebra, m: int) -> list[str]:
-    """The names of g and z, or z1, z2, ...; with a prime as often as it takes where they are taken."""
+    """The names of g and z, or z1, z2, ..., with primes added until they are new."""
     names = list(algebra.basis_names)
     for a in range(m):
         name = "z" if m == 1 else f"z{a + 1}"

@@ -1,10 +1,10 @@
 """The orthogonal and symplectic Lie algebras of a bilinear form given by its matrix.
 
-For a form F(v, w) = v^T F w, symmetric (s = -1) or skew (s = 1), and basis vectors a, b put
+For a form F(v, w) = v^T F w, symmetric (s = -1) or skew-symmetric (s = 1), and basis vectors a, b let
 
     M_ab v = F(a, v) b + s F(b, v) a,      [M_ab, M_cd] = F_ac M_bd + s F_bc M_ad + F_ad M_cb + s F_bd M_ca.
 
-These span {X : X^T F + F X = 0} if F is not degenerate, and no number is divided.
+These span {X : X^T F + F X = 0} if F is not degenerate. The formulas need no division.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     Parameters
     ----------
     form : (n, n) array_like
-        The symmetric matrix S: integers, fractions, texts such as 'sqrt(2)', sympy numbers, or floats.
+        The symmetric matrix S: integers, fractions, strings such as 'sqrt(2)', sympy numbers, or floats.
     name : str, optional
 
     Returns
@@ -33,7 +33,7 @@ def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     LieAlgebra
         Over the field of the entries. If S is not degenerate, of dimension n (n - 1) / 2 with the basis M_ij,
         i < j, of the module; ``so_form(identity)`` is so(n) and a diagonal of signs gives so(p, q). If S has
-        rank r < n, of dimension r (r - 1) / 2 + (n - r) n: what maps into the radical of S is arbitrary.
+        rank r < n, of dimension r (r - 1) / 2 + (n - r) n: all maps into the radical of S belong to it.
 
     Raises
     ------
@@ -62,12 +62,12 @@ def so_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
 
 
 def sp_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
-    """The symplectic algebra {X : X^T J + J X = 0} of a skew form J, which may be degenerate.
+    """The symplectic algebra {X : X^T J + J X = 0} of a skew-symmetric form J, which may be degenerate.
 
     Parameters
     ----------
     form : (n, n) array_like
-        The skew matrix J, with entries as for `so_form`.
+        The skew-symmetric matrix J, with entries as for `so_form`.
     name : str, optional
 
     Returns
@@ -81,7 +81,7 @@ def sp_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
     ShapeError
         If the matrix is not square.
     InputError
-        If it is not skew.
+        If it is not skew-symmetric.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def sp_form(form: MatrixLike, *, name: str | None = None) -> LieAlgebra:
 
 
 def index_name(letter: str, *indices: int) -> str:
-    """The name of a basis element with indices, that count from 0 here and from 1 in the name.
+    """The name of a basis element; its indices count from 0, those in the name from 1.
 
     Examples
     --------
@@ -109,17 +109,17 @@ def index_name(letter: str, *indices: int) -> str:
 
 
 def form_brackets(
-    matrix: Matrix, sign: int, places: dict[tuple[int, int], tuple[int, int]]
+    matrix: Matrix, sign: int, positions: dict[tuple[int, int], tuple[int, int]]
 ) -> list[tuple[int, int, int, Scalar]]:
-    """The bracket table of the M_ab of a form, for a basis of them with signs.
+    """Entries of the bracket table of the M_ab of a form, in a basis of signed M_ab.
 
     Parameters
     ----------
     matrix : Matrix
         The form F, (n, n).
     sign : int
-        s: -1 for a symmetric form, 1 for a skew one.
-    places : dict
+        s: -1 for a symmetric form, 1 for a skew-symmetric form.
+    positions : dict
         (a, b) to (k, e): M_ab is e times basis element k, e = 1 or -1; both orders of a, b are given.
 
     Returns
@@ -129,7 +129,7 @@ def form_brackets(
     """
     rows = matrix.to_rows()
     near = [[(b, v) for b, v in enumerate(row) if v != 0] for row in rows]
-    basis = {k: pair for pair, (k, e) in places.items() if e == 1}
+    basis = {k: pair for pair, (k, e) in positions.items() if e == 1}
     entries: list[tuple[int, int, int, Scalar]] = []
     for i, (a, b) in basis.items():
         found: dict[tuple[int, int], Scalar] = {}
@@ -141,35 +141,35 @@ def form_brackets(
             image.setdefault(c, []).append((a, v * sign))
         for c, moved in image.items():
             for d in range(len(rows)):
-                _add_images(found, places, basis, i, (c, d), moved)
+                _add_images(found, positions, basis, i, (c, d), moved)
         entries += [(i, j, k, v) for (j, k), v in found.items() if v != 0]
     return entries
 
 
 def _add_images(
     found: dict[tuple[int, int], Scalar],
-    places: dict[tuple[int, int], tuple[int, int]],
+    positions: dict[tuple[int, int], tuple[int, int]],
     basis: dict[int, tuple[int, int]],
     i: int,
     pair: tuple[int, int],
     moved: list[tuple[int, Scalar]],
 ) -> None:
-    """Add M_{Xc, d} to the bracket with the basis element that M_cd is, up to sign; for c = d twice it."""
-    if pair not in places:
+    """Add M_{Xc, d} to the bracket of basis element i with the basis element +-M_cd; twice if c = d."""
+    if pair not in positions:
         return
-    j, e = places[pair]
+    j, e = positions[pair]
     if j <= i:
         return
     c, d = pair
     for x, v in moved:
-        target = places.get((x, d))
+        target = positions.get((x, d))
         if target is not None:
             k, f = target
             found[j, k] = found.get((j, k), 0) + v * (e * f * (2 if c == d else 1))
 
 
 def _form(form: MatrixLike, sign: int) -> Matrix:
-    """The matrix of a form, of which the transpose is -sign times the form."""
+    """The matrix of a form, checked: its transpose is -sign times the matrix."""
     if isinstance(form, Matrix):
         matrix = form
     else:
@@ -181,7 +181,7 @@ def _form(form: MatrixLike, sign: int) -> Matrix:
         raise ShapeError(f"a form is given by a square matrix of size at least 1, got shape {matrix.shape}")
     defect = matrix - matrix.T if sign < 0 else matrix + matrix.T
     if not defect.is_zero():
-        kind = "symmetric" if sign < 0 else "skew"
+        kind = "symmetric" if sign < 0 else "skew-symmetric"
         i, j = next((i, j) for i in range(matrix.nrows) for j in range(matrix.nrows) if defect[i, j] != 0)
         shown = [matrix.field.format(matrix[x]) for x in ((i, j), (j, i))]
         raise InputError(f"the form is not {kind}: entry ({i}, {j}) is {shown[0]} and ({j}, {i}) is {shown[1]}")
@@ -193,21 +193,21 @@ def _algebra(matrix: Matrix, sign: int, name: str, degenerate: bool) -> LieAlgeb
         return _degenerate(matrix, name)
     n = matrix.nrows
     pairs = [(a, b) for a in range(n) for b in range(a + (sign < 0), n)]
-    places = {pair: (k, 1) for k, pair in enumerate(pairs)}
+    positions = {pair: (k, 1) for k, pair in enumerate(pairs)}
     for k, (a, b) in enumerate(pairs):
         if a != b:
-            places[b, a] = (k, sign)
-    table = StructureConstants(matrix.field, len(pairs), form_brackets(matrix, sign, places))
+            positions[b, a] = (k, sign)
+    table = StructureConstants(matrix.field, len(pairs), form_brackets(matrix, sign, positions))
     # The brackets are those of the matrices M_ab, which are independent because F is not degenerate.
     return LieAlgebra(table, basis=[index_name("m", *pair) for pair in pairs], name=name, check=False)
 
 
 def _degenerate(matrix: Matrix, name: str) -> LieAlgebra:
-    """The null space of X -> X^T F + F X, as matrices."""
+    """The Lie algebra of all X with X^T F + F X = 0, from the null space of this map."""
     n, field = matrix.nrows, matrix.field
     rows = []
     for a, b in itertools.product(range(n), repeat=2):
-        # of E_ab: row a of F as row b, and column a of F as column b
+        # the image of E_ab has row a of F as row b, and column a of F as column b
         image = [field.zero] * (n * n)
         for x in range(n):
             image[b * n + x] = image[b * n + x] + matrix[a, x]

@@ -1,12 +1,12 @@
 """Free nilpotent Lie algebras in the basis of Lyndon words, a Hall basis.
 
-A word is Lyndon if it is smaller than its proper right factors.  Its bracketing is that of the two Lyndon words
-u v with v the longest proper right factor that is Lyndon.  For Lyndon words u < v the bracket [u, v] is the basis
-element u v if u is a letter or its right factor u2 is not smaller than v; else
+A word is Lyndon if it is smaller than its proper right factors. A Lyndon word w of length at least 2 is bracketed as
+[u, v], where w = u v and v is the longest proper right factor that is Lyndon. For Lyndon words u < v the bracket [u, v]
+is the basis element u v if u is a letter, or if u = u1 u2 with u2 not smaller than v. Otherwise
 
     [[u1, u2], v] = [[u1, v], u2] + [u1, [u2, v]],
 
-and this recursion ends.
+and this recursion terminates.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ Word = tuple[int, ...]
 
 
 def free_nilpotent(generators: int, step: int) -> LieAlgebra:
-    """The free nilpotent Lie algebra with a number of generators and a step, over QQ.
+    """The free nilpotent Lie algebra over QQ with given number of generators and step.
 
     Parameters
     ----------
     generators : int
         At least 1.
     step : int
-        The greatest length of a bracket that is not zero, at least 1.
+        The maximal length of a non-zero bracket, at least 1.
 
     Returns
     -------
@@ -46,8 +46,8 @@ def free_nilpotent(generators: int, step: int) -> LieAlgebra:
 
     Notes
     -----
-    Every Lie algebra that so many elements generate and that is nilpotent of this step is a quotient of it. There
-    are (1/k) sum_{d | k} mu(d) g^(k/d) basis elements of length k for g generators.
+    Every nilpotent Lie algebra of this step with this number of generators is a quotient of it. For g generators
+    there are (1/k) sum_{d | k} mu(d) g^(k/d) basis elements of length k (Witt).
 
     Examples
     --------
@@ -78,7 +78,7 @@ def free_nilpotent(generators: int, step: int) -> LieAlgebra:
 
 @final
 class _FreeLie:
-    """Brackets of Lyndon words up to a length."""
+    """Brackets of Lyndon words up to length `step`."""
 
     def __init__(self, generators: int, step: int) -> None:
         self.generators = generators
@@ -87,7 +87,7 @@ class _FreeLie:
 
     @cached_property
     def words(self) -> list[Word]:
-        """The Lyndon words up to the length, by length and then alphabetically (Duval's generation)."""
+        """The Lyndon words of length at most `step`, by length and then alphabetically (Duval's algorithm)."""
         found: list[Word] = []
         word = [-1]
         while word:
@@ -105,12 +105,12 @@ class _FreeLie:
         return frozenset(self.words)
 
     def factors(self, word: Word) -> tuple[Word, Word]:
-        """The two Lyndon words whose bracket a Lyndon word of length at least 2 is."""
+        """The Lyndon words u, v of the bracketing [u, v] of a Lyndon word of length at least 2."""
         cut = next(i for i in range(1, len(word)) if word[i:] in self._lyndon)
         return word[:cut], word[cut:]
 
     def name(self, word: Word) -> str:
-        """The bracketing with letters x1, x2, ..."""
+        """The bracketing of a Lyndon word as a string in x1, x2, ..."""
         if len(word) == 1:
             return f"x{word[0] + 1}"
         left, right = self.factors(word)

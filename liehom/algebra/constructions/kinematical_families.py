@@ -20,7 +20,7 @@ from liehom.scalars.fields.field import MatricesLike
 
 
 def euclidean(n: int) -> LieAlgebra:
-    """e(n) = so(n) + R^n, the rotations first and then the translations.
+    """The Euclidean algebra e(n) = so(n) + R^n: first the rotations, then the translations.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def euclidean(n: int) -> LieAlgebra:
 
 
 def poincare(p: int, q: int = 1) -> LieAlgebra:
-    """iso(p, q) = so(p, q) + R^(p+q): rotations m_ij, i < j, as in so(p, q), then translations p_i.
+    """The Poincaré algebra iso(p, q) = so(p, q) + R^(p+q): rotations m_ij (i < j), then translations p_i.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def poincare(p: int, q: int = 1) -> LieAlgebra:
 
     Notes
     -----
-    [m_ij, p_i] = e_i p_j and [m_ij, p_j] = -e_j p_i, with e_i = 1 for i <= p and -1 behind (for p = 0 all are 1).
+    [m_ij, p_i] = e_i p_j and [m_ij, p_j] = -e_j p_i, where e_i is 1 for i <= p, else -1 (for p = 0 all are 1).
 
     Examples
     --------
@@ -70,7 +70,9 @@ def poincare(p: int, q: int = 1) -> LieAlgebra:
 
 
 def galilei(n: int) -> LieAlgebra:
-    """The Galilei algebra of R^n and time: rotations m_ij, boosts k_i, translations p_i, time h; [k_i, h] = p_i.
+    """The Galilei algebra of R^n: rotations m_ij, boosts k_i, translations p_i, time translation h.
+
+    The boosts satisfy [k_i, h] = p_i.
 
     Parameters
     ----------
@@ -93,7 +95,7 @@ def galilei(n: int) -> LieAlgebra:
 
 
 def bargmann(n: int) -> LieAlgebra:
-    """The Galilei algebra with central mass: as `galilei`, and [k_i, p_j] = mass for i = j.
+    """The Bargmann algebra, the central extension of `galilei` by the mass: [k_i, p_i] = mass.
 
     Parameters
     ----------
@@ -116,7 +118,9 @@ def bargmann(n: int) -> LieAlgebra:
 
 
 def conformal(p: int, q: int = 0) -> LieAlgebra:
-    """The conformal algebra of R^(p,q), so(p+1, q+1): translations p_i, rotations m_ij, dilation d, special k_i.
+    """The conformal algebra of R^(p,q), isomorphic to so(p+1, q+1).
+
+    Its basis is: translations p_i, rotations m_ij, the dilation d, special conformal transformations k_i.
 
     Parameters
     ----------
@@ -131,7 +135,7 @@ def conformal(p: int, q: int = 0) -> LieAlgebra:
     Notes
     -----
     [d, p_i] = p_i, [d, k_i] = -k_i, [k_i, p_j] = m_ij + e_ij d, [m_ij, p_i] = e_ii p_j, [m_ij, p_j] = -e_jj p_i, and
-    the same for k. The p_i, m_ij, d are the similarities of R^(p,q).
+    likewise with k for p. The p_i, m_ij, d span the similarities of R^(p,q).
 
     Examples
     --------
@@ -148,16 +152,16 @@ def conformal(p: int, q: int = 0) -> LieAlgebra:
     form = QQ.matrix([*rows, [0] * (n + 1) + [1], [0] * n + [1, 0]])
     pairs = [(i, n) for i in range(n)] + list(itertools.combinations(range(n), 2)) + [(n + 1, n)]
     pairs += [(i, n + 1) for i in range(n)]
-    places = {pair: (k, 1) for k, pair in enumerate(pairs)}
-    places |= {(b, a): (k, -1) for k, (a, b) in enumerate(pairs)}
+    positions = {pair: (k, 1) for k, pair in enumerate(pairs)}
+    positions |= {(b, a): (k, -1) for k, (a, b) in enumerate(pairs)}
     names = [*(index_name("p", i) for i in range(n)), *_rotations(n), "d", *(index_name("k", i) for i in range(n))]
-    table = StructureConstants(QQ, len(pairs), form_brackets(form, -1, places))
+    table = StructureConstants(QQ, len(pairs), form_brackets(form, -1, positions))
     # The brackets are those of the orthogonal matrices of a form that is not degenerate.
     return LieAlgebra(table, basis=names, name=f"conformal({p},{q})" if q else f"conformal({p})", check=False)
 
 
 def affine(n: int) -> LieAlgebra:
-    """aff(n) = gl(n) + R^n: the elementary matrices e_ij row by row, then the translations t_i.
+    """The affine algebra aff(n) = gl(n) + R^n: elementary matrices e_ij row by row, then translations t_i.
 
     Parameters
     ----------
@@ -184,7 +188,7 @@ def affine(n: int) -> LieAlgebra:
 
 
 def affine_of(matrices: MatricesLike, *, name: str | None = None) -> LieAlgebra:
-    """The affine algebra h + V of a linear Lie algebra h: the matrices first, then the translations of V.
+    """The affine algebra h + V of a linear Lie algebra h: first the matrices, then the translations of V.
 
     Parameters
     ----------
@@ -195,12 +199,11 @@ def affine_of(matrices: MatricesLike, *, name: str | None = None) -> LieAlgebra:
     Raises
     ------
     DependentRowsError, NotClosedError, ShapeError, InputError
-        If the matrices are dependent, their span is not closed, they are not square of one size, or there is none.
+        If there is no matrix, the matrices are dependent or not square of one size, or their span is not closed.
 
     Notes
     -----
-    [x, v] = x v. For a representation that is not faithful, and for an ideal that is not abelian, there is
-    `semidirect_sum`.
+    [x, v] = x v. Use `semidirect_sum` for a representation that is not faithful or an ideal that is not abelian.
 
     Examples
     --------
@@ -218,7 +221,7 @@ def _rotations(n: int) -> list[str]:
 
 
 def _galilean(n: int, massive: bool) -> LieAlgebra:
-    """so(n) by rotations on the nilpotent ideal of boosts, translations, time and perhaps mass."""
+    """so(n) acting by rotations on the nilpotent ideal of boosts, translations, time and, if massive, mass."""
     require_size("n", n)
     brackets = {(i, 2 * n): {n + i: 1} for i in range(n)}
     if massive:

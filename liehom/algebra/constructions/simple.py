@@ -1,7 +1,7 @@
-"""Simple Lie algebras by type and real form: every real form of every type, and the complex ones as real algebras.
+"""Simple real Lie algebras by type and real form: all real forms of all types, and complex algebras as real ones.
 
-Classical algebras, g2, f4 and two forms of e6 are spanned by integer matrices; e7(7) and e8(8) have the Chevalley
-basis; the others have a basis of eigenvectors of a Cartan involution, with integer structure constants.
+All have integer structure constants. Classical algebras, g2, f4 and two forms of e6 have bases of integer matrices,
+e7(7) and e8(8) have Chevalley bases, and the others have bases of eigenvectors of a Cartan involution.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
         'A3', 'B2', ..., 'E8', 'F4', 'G2'; or the name of a real form alone, such as 'f4(-20)'.
     real_form : str, optional
         Its name, such as 'so(4,1)', 'sl(2,H)', 'so*(6)', 'f4(-20)', 'e7(-25)', 'sl(3,C)', or 'split', 'compact',
-        'complex'; other names of the same algebra, such as 'e8(-248)', are understood. By default the split form.
+        'complex'. Other names of the same algebra, such as 'e8(-248)', are accepted. By default the split form.
 
     Returns
     -------
     LieAlgebra
-        Over QQ, with integer structure constants, and with the name of its construction.
+        Over QQ, with integer structure constants, named by its construction.
 
     Raises
     ------
     CatalogError
-        If there is no such type or form; lists the forms that there are.
+        If there is no such type or form; the message lists the existing forms.
 
     Notes
     -----
     `liehom.real_forms` describes the forms of a type. Classical algebras have the bases of the constructors `so`,
-    `su`, ...; for other bases see `chevalley` and `liehom.algebra.real_form_of`.
+    `su`, ... See `chevalley` and `liehom.algebra.real_form_of` for other bases.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
 
 
 def real_form_builders(type_name: str) -> dict[str, Builder]:
-    """The real forms of a complex type by the names of their constructions, the split one first, with builders.
+    """Functions that construct the real forms of a complex type, by name, the split form first.
 
     Raises
     ------

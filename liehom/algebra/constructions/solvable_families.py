@@ -1,6 +1,6 @@
-"""Solvable Lie algebras by name: abelian, Heisenberg, triangular, filiform, oscillator, almost abelian, Bianchi's.
+"""Solvable Lie algebras by name: abelian, Heisenberg, triangular, filiform, oscillator, almost abelian, Bianchi.
 
-Of Bianchi's algebras of dimension three, types VIII and IX are simple.
+Bianchi's list of all algebras of dimension three includes two simple ones, types VIII and IX.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from liehom.algebra.constructions.form_algebras import index_name
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import field_of_values
-from liehom.algebra.matrices.matrix_basis import require_size, stack, unit
+from liehom.algebra.matrices.general_linear import triangular
+from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.errors import InputError, ShapeError
 from liehom.scalars import QQ, Matrix, Scalar
@@ -40,7 +41,7 @@ def abelian(n: int) -> LieAlgebra:
 
 
 def heisenberg(n: int) -> LieAlgebra:
-    """The Heisenberg algebra of dimension 2n + 1: [x_i, y_i] = z, basis x_1, ..., x_n, y_1, ..., y_n, z.
+    """The Heisenberg algebra of dimension 2n + 1, with [x_i, y_i] = z and basis x_1, ..., x_n, y_1, ..., y_n, z.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def heisenberg(n: int) -> LieAlgebra:
 
 
 def upper_triangular(n: int) -> LieAlgebra:
-    """b(n), the upper triangular matrices: e_ij with i <= j, row by row; of dimension n (n + 1) / 2.
+    """The Lie algebra of upper triangular matrices, with basis e_ij (i <= j) row by row.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def upper_triangular(n: int) -> LieAlgebra:
 
 
 def strictly_upper_triangular(n: int) -> LieAlgebra:
-    """n(n), the strictly upper triangular matrices: e_ij with i < j, row by row; of dimension n (n - 1) / 2.
+    """The Lie algebra of strictly upper triangular matrices, with basis e_ij (i < j) row by row.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def strictly_upper_triangular(n: int) -> LieAlgebra:
 
 
 def filiform(n: int) -> LieAlgebra:
-    """The standard filiform algebra: [x_1, x_i] = x_{i+1} for 1 < i < n; nilpotent of the greatest step n - 1.
+    """The standard filiform algebra, nilpotent of maximal step n - 1: [x_1, x_i] = x_{i+1} for 1 < i < n.
 
     Parameters
     ----------
@@ -141,7 +142,7 @@ def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> L
     n : int
         Number of oscillators, at least 1; the dimension is 2n + 2, the basis t, x_1, ..., x_n, y_1, ..., y_n, z.
     frequencies : sequence of n numbers, optional
-        The w_i, not zero; by default all 1. ``oscillator()`` is the diamond algebra.
+        The non-zero w_i; by default all 1. ``oscillator()`` is the diamond algebra.
 
     Raises
     ------
@@ -152,8 +153,8 @@ def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> L
 
     Notes
     -----
-    Its invariant quadratic form x_i**2 / w_i + y_i**2 / w_i + 2 t z makes it, for positive w_i, the Lie algebra of
-    a Lorentzian symmetric space that is not semisimple.
+    The quadratic form sum_i (x_i**2 + y_i**2) / w_i + 2 t z is invariant. For positive w_i it is Lorentzian, so the
+    group is a Lorentzian symmetric space that is not semisimple.
 
     Examples
     --------
@@ -181,12 +182,12 @@ def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> L
 
 
 def almost_abelian(matrix: MatrixLike, *, name: str | None = None) -> LieAlgebra:
-    """R + R^n with [t, x_j] = sum_i A_ij x_i: an abelian ideal of codimension one.
+    """The Lie algebra R + R^n with [t, x_j] = sum_i A_ij x_i, in which R^n is an abelian ideal.
 
     Parameters
     ----------
     matrix : (n, n) array_like
-        A, not empty; its entries decide the field.
+        A, not empty; its entries determine the field.
     name : str, optional
 
     Raises
@@ -197,7 +198,8 @@ def almost_abelian(matrix: MatrixLike, *, name: str | None = None) -> LieAlgebra
     Notes
     -----
     Two such algebras are isomorphic if and only if one matrix is conjugate to a non-zero multiple of the other.
-    Abelian for A = 0, nilpotent if and only if A is, unimodular if and only if tr A = 0.
+    The algebra is abelian if and only if A = 0, nilpotent if and only if A is nilpotent, and unimodular if and only if
+    tr A = 0.
 
     Examples
     --------
@@ -219,20 +221,20 @@ def almost_abelian(matrix: MatrixLike, *, name: str | None = None) -> LieAlgebra
 
 
 def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
-    """The real Lie algebra of dimension 3 with a type of Bianchi, 'I' to 'IX'.
+    """The real Lie algebra of dimension 3 of a Bianchi type, 'I' to 'IX'.
 
     Parameters
     ----------
     kind : str
-        A Roman number from 'I' to 'IX'; case does not matter.
+        A Roman numeral from 'I' to 'IX', in upper or lower case.
     a : number, optional
-        The parameter of 'VI' and 'VII', not negative, by default 0: these are VI_h with h = -a**2 and VII_h with
+        The non-negative parameter of 'VI' and 'VII', by default 0. These are VI_h with h = -a**2 and VII_h with
         h = a**2. ``bianchi('VI', 1)`` is type III.
 
     Raises
     ------
     InputError
-        If there is no such type, it has no parameter, or the parameter is negative.
+        If there is no such type, the type has no parameter, or the parameter is negative.
 
     Notes
     -----
@@ -243,7 +245,7 @@ def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
     II     (1, 0, 0)     0    heisenberg(1)
     III    (0, 1, -1)    1    R + aff(1)
     IV     (0, 0, 1)     1
-    V      (0, 0, 0)     1    of the hyperbolic space
+    V      (0, 0, 0)     1    acts on hyperbolic space
     VI     (0, 1, -1)    a    a = 0: iso(1, 1)
     VII    (0, 1, 1)     a    a = 0: e(2)
     VIII   (1, 1, -1)    0    sl(2)
@@ -291,8 +293,7 @@ _BIANCHI: dict[str, tuple[tuple[int, int, int], int | None]] = {
 
 
 def _triangular(n: int, above: int, name: str) -> LieAlgebra:
-    require_size("n", n)
-    places = [(i, j) for i in range(n) for j in range(i + above, n)]
-    table = linear_lie_algebra(stack((unit(n, i, j) for i, j in places), n)).table
+    table = linear_lie_algebra(triangular(n, above)).table
+    names = [index_name("e", i, j) for i in range(n) for j in range(i + above, n)]
     # Products of triangular matrices are triangular, and commutators satisfy the Jacobi identity.
-    return LieAlgebra(table, basis=[index_name("e", i, j) for i, j in places], name=name, check=False)
+    return LieAlgebra(table, basis=names, name=name, check=False)

@@ -27,7 +27,7 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
     Raises
     ------
     InputError
-        If there is no summand, one is no Lie algebra, or they are over different fields.
+        If there is no summand, a summand is not a Lie algebra, or the fields differ.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def semidirect_sum(
     name: str | None = None,
     check: bool = True,
 ) -> LieAlgebra:
-    """The semidirect sum of h with an ideal V on which it acts: [x, v] = rho(x) v.
+    """The semidirect sum of h with an ideal V, on which h acts: [x, v] = rho(x) v.
 
     Parameters
     ----------
@@ -78,19 +78,19 @@ def semidirect_sum(
     ideal : LieAlgebra, optional
         V with its own bracket, of dimension N; by default abelian.
     size : int, optional
-        N, needed only where h has dimension 0 and no ideal is given.
+        N, needed only if h has dimension 0 and no ideal is given.
     basis : sequence of str, optional
-        Names of the basis elements, those of h first.
+        Names of the basis elements, first of h, then of V.
     name : str, optional
     check : bool
-        Prove the Jacobi identity, that is that the matrices are a representation by derivations (default).
+        Whether to prove the Jacobi identity, which says that the matrices are a representation by derivations.
 
     Raises
     ------
     ShapeError
         If the number of matrices or their size does not fit.
     JacobiError
-        If the matrices do not represent h, or are no derivations of the ideal.
+        If the matrices do not represent h, or are not derivations of the ideal.
     InputError
         If the ideal is over another field.
 
@@ -109,9 +109,9 @@ def semidirect_sum(
     h = algebra.dimension
     entries: list[Entry] = list(algebra.structure_constants())
     for a, matrix in enumerate(made):
-        for place, value in enumerate(matrix.entries()):
+        for index, value in enumerate(matrix.entries()):
             if value != 0:
-                entries.append((a, h + place % d, h + place // d, value))
+                entries.append((a, h + index % d, h + index // d, value))
     if ideal is not None:
         if ideal.dimension != d:
             raise ShapeError(f"matrices of size {d} on an ideal of dimension {ideal.dimension}")

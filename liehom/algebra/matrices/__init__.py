@@ -1,7 +1,7 @@
 """Bases of linear Lie algebras: each is one int64 array of shape (dim, N, N), closed under commutators.
 
 matrix_basis         join, combine, stabilizer_rows: operations on every basis
-general_linear       gl, sl over R, C, H (and forms over Q), with commuting scalars
+general_linear       gl, sl over R, C, H (and forms over Q), with commuting scalars; triangular matrices
 form_preserving      so, u, su, sp(2n, R), sp(p, q), so*(2n), so(n, C), sp(2n, C)
 tensor_products      sums on tensor products, Sym^k, Lambda^k, symmetric matrices, Q[t]/(f)
 spinors              spin(p, q) from Clifford generators
@@ -42,6 +42,7 @@ from liehom.algebra.matrices.general_linear import quaternion_scalars as quatern
 from liehom.algebra.matrices.general_linear import quaternionic_gl as quaternionic_gl
 from liehom.algebra.matrices.general_linear import quaternionic_sl as quaternionic_sl
 from liehom.algebra.matrices.general_linear import sl as sl
+from liehom.algebra.matrices.general_linear import triangular as triangular
 from liehom.algebra.matrices.matrix_basis import combine as combine
 from liehom.algebra.matrices.matrix_basis import join as join
 from liehom.algebra.matrices.matrix_basis import stabilizer_rows as stabilizer_rows

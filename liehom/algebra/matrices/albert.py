@@ -1,8 +1,8 @@
-"""The Lie algebras of the Albert algebra: f4 and e6 on the 27 hermitian 3 x 3 matrices over the octonions.
+"""Matrix bases of f4 and e6 on the Albert algebra, the hermitian 3 x 3 matrices over the octonions.
 
 For signs (g1, g2, g3) the matrices with X_ij = g_i g_j conj(X_ji) form a Jordan algebra with the product
-X o Y = (XY + YX) / 2.  With L_X Y = X o Y, its derivations, f4, are spanned by the [L_X, L_Y], and with the
-L_X of trace zero they span e6, which preserves the cubic norm.  Coordinates are
+X o Y = (XY + YX) / 2. Let L_X Y = X o Y. The commutators [L_X, L_Y] span the derivations, f4. Together with the L_X of
+trace zero they span e6, which preserves the cubic norm. Coordinates are
 
     (X_11, X_22, X_33; X_23; X_31; X_12) in R^{3 + 8 + 8 + 8},
 
@@ -22,13 +22,13 @@ from liehom.errors import InputError
 from liehom.typing import IntegerArray
 
 _DIMENSION = 27
-_PLACES = ((1, 2), (2, 0), (0, 1))
+_OFF_DIAGONAL = ((1, 2), (2, 0), (0, 1))
 
 
 def albert_product(
     signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, int] = OCTONIONS
 ) -> IntegerArray:
-    """Twice the Jordan product of the basis vectors: ``2 e_i o e_j = sum_k table[i, j, k] e_k``.
+    """Structure constants of twice the Jordan product: ``2 e_i o e_j = sum_k table[i, j, k] e_k``.
 
     Parameters
     ----------
@@ -59,11 +59,11 @@ def albert_product(
     products = np.einsum("xijbc,yjkb->xyikc", half, basis, optimize=True)
     doubled = products + products.transpose(1, 0, 2, 3, 4)
     diagonal = doubled[:, :, range(3), range(3), 0]
-    return np.concatenate([diagonal, *(doubled[:, :, i, j] for i, j in _PLACES)], axis=2)
+    return np.concatenate([diagonal, *(doubled[:, :, i, j] for i, j in _OFF_DIAGONAL)], axis=2)
 
 
 def f4(signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
-    """f4 on R^27: the derivations of the Albert algebra; they fix the identity E_1 + E_2 + E_3.
+    """Basis of f4 on R^27, the derivations of the Albert algebra, which annihilate E_1 + E_2 + E_3.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def f4(signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, i
     Returns
     -------
     (52, 27, 27) int64
-        The first 36 are a basis of the stabiliser of E_1: spin(9) for both choices of signs above.
+        The first 36 matrices are a basis of the stabilizer of E_1, which is spin(9) for both choices of signs above.
 
     Raises
     ------
@@ -84,11 +84,11 @@ def f4(signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, i
 
     See Also
     --------
-    liehom.algebra.matrices.matrix_basis.stabilizer_rows : the stabiliser of any other element.
+    liehom.algebra.matrices.matrix_basis.stabilizer_rows : the stabilizer of any element.
 
     Notes
     -----
-    With x_k(e) the element whose entry at the k-th place is e, the basis is [L_{x_1(e_i)}, L_{x_1(e_j)}]
+    Let x_k(e) be the element whose k-th off-diagonal entry is e. The basis is [L_{x_1(e_i)}, L_{x_1(e_j)}]
     (i < j), an so(8), followed by [L_{E_{k+1}}, L_{x_k(e_i)}] for k = 1, 2, 3.
 
     Examples
@@ -104,7 +104,7 @@ def f4(signs: tuple[int, int, int] = (1, 1, 1), *, parameters: tuple[int, int, i
 
 
 def e6(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
-    """e6 on R^27: the linear maps that preserve the cubic norm of the Albert algebra.
+    """Basis of e6 on R^27, the linear maps that preserve the cubic norm of the Albert algebra.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def e6(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
 
     Examples
     --------
-    The parabolic subalgebra that keeps the line through the idempotent E_1 has dimension 78 - 16:
+    The parabolic subalgebra that stabilizes the line through the idempotent E_1 has dimension 78 - 16:
 
     >>> from liehom.algebra.matrices.matrix_basis import stabilizer_rows
     >>> stabilizer_rows(e6(), albert_idempotent(1), up_to_scale=True).shape
@@ -161,17 +161,17 @@ def albert_idempotent(k: int) -> IntegerArray:
 
 
 def _multiplications(product: IntegerArray) -> IntegerArray:
-    """Matrices of 2 L_x for the basis vectors x."""
+    """Matrices of 2 L_x for the basis vectors x, shape (27, 27, 27)."""
     return product.transpose(0, 2, 1)
 
 
 def _hermitian_basis(signs: tuple[int, int, int], conjugate: IntegerArray) -> IntegerArray:
-    """The 27 basis matrices, an array (27, 3, 3, 8) of octonion entries."""
+    """The 27 basis matrices as octonion entries, shape (27, 3, 3, 8)."""
     if len(signs) != 3 or any(sign not in (1, -1) for sign in signs):
         raise InputError(f"three signs 1 or -1 are needed; got {list(signs)!r}")
     basis = np.zeros((_DIMENSION, 3, 3, 8), dtype=np.int64)
     basis[range(3), range(3), range(3), 0] = 1
-    for k, (i, j) in enumerate(_PLACES):
+    for k, (i, j) in enumerate(_OFF_DIAGONAL):
         for e in range(8):
             basis[3 + 8 * k + e, i, j, e] = 1
             basis[3 + 8 * k + e, j, i, e] = signs[i] * signs[j] * conjugate[e]

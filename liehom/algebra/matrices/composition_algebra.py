@@ -1,13 +1,12 @@
-"""A composition algebra over Q: quadratic, quaternion or octonion algebra, by Cayley-Dickson doubling.
+"""Multiplication tables of the quadratic, quaternion and octonion algebras over Q, by Cayley-Dickson doubling.
 
 Starting from Q, each parameter c doubles the algebra:
 
     (a, b)(a', b') = (a a' + c conj(b') b,  b' a + b conj(a')),   conj(a, b) = (conj(a), -b).
 
-So (-1,) is C, (-1, -1) the quaternions, (a, b) the quaternion algebra with i^2 = a, j^2 = b, (-1, -1, -1)
-the octonions and (-1, -1, 1) the split octonions.  A table t of shape (m, m, m) holds
-e_i e_j = sum_k t[i, j, k] e_k; e_0 is the identity, and e_i e_j is always a multiple of one basis
-element.
+So (-1,) gives C, (-1, -1) the quaternions, (a, b) the quaternion algebra with i^2 = a and j^2 = b, (-1, -1, -1) the
+octonions and (-1, -1, 1) the split octonions. A table t of shape (m, m, m) holds e_i e_j = sum_k t[i, j, k] e_k. The
+identity is e_0, and every e_i e_j is a multiple of one basis element.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ SPLIT_OCTONIONS = (-1, -1, 1)
 
 
 def cayley_dickson(parameters: Sequence[int]) -> IntegerArray:
-    """Multiplication table of the composition algebra with the given doubling parameters.
+    """Multiplication table (m, m, m) of the composition algebra with given doubling parameters.
 
     Parameters
     ----------
@@ -41,7 +40,7 @@ def cayley_dickson(parameters: Sequence[int]) -> IntegerArray:
     Raises
     ------
     InputError
-        If there are more than three parameters (the norm would no longer be multiplicative) or one is zero.
+        If a parameter is zero, or there are more than three (then the norm is not multiplicative).
 
     Examples
     --------
@@ -60,7 +59,7 @@ def cayley_dickson(parameters: Sequence[int]) -> IntegerArray:
 
 
 def conjugation(table: ArrayLike) -> IntegerArray:
-    """Diagonal of the conjugation: 1 for the identity, -1 for the imaginary units.
+    """Diagonal of the conjugation, shape (m,): 1 for the identity, -1 for the imaginary units.
 
     Examples
     --------
@@ -73,7 +72,7 @@ def conjugation(table: ArrayLike) -> IntegerArray:
 
 
 def norm_diagonal(table: ArrayLike) -> IntegerArray:
-    """Diagonal of the norm form, ``n(e_i) = e_i conj(e_i)``; the basis is orthogonal for it.
+    """Diagonal of the norm form ``n(e_i) = e_i conj(e_i)``, shape (m,); the basis is orthogonal for it.
 
     Examples
     --------
@@ -109,7 +108,7 @@ def right_multiplications(table: ArrayLike) -> IntegerArray:
 
 
 def _double(table: IntegerArray, parameter: int) -> IntegerArray:
-    """The table of the Cayley-Dickson double."""
+    """The table (2m, 2m, 2m) of the Cayley-Dickson double."""
     m = len(table)
     signs = conjugation(table)
     double = np.zeros((2 * m, 2 * m, 2 * m), dtype=np.int64)

@@ -1,10 +1,10 @@
-"""The Lie algebras that preserve a form: orthogonal, unitary and symplectic ones over R, C and H.
+"""Matrix bases of the Lie algebras that preserve a form: orthogonal, unitary and symplectic over R, C and H.
 
 For a diagonal form D over R, C or H the condition X* D + D X = 0 reads conj(x_ji) d_j + d_i x_ij = 0, so that
 
     d_i q E_ji - d_j conj(q) E_ij  (i < j, q a unit)   and   q E_ii  (q an imaginary unit)
 
-are a basis: so(p,q), u(p,q) and sp(p,q) at once.  Blocks of a complex or quaternionic entry are as in
+are a basis. This covers so(p,q), u(p,q) and sp(p,q). A complex or quaternionic entry is a real block as in
 `general_linear`.
 """
 
@@ -21,7 +21,7 @@ from liehom.typing import IntegerArray
 
 
 def so(p: int, q: int = 0) -> IntegerArray:
-    """so(p, q), which preserves diag(1, ..., 1, -1, ..., -1) with p ones and q minus ones.
+    """Basis of so(p, q), which preserves diag(1, ..., 1, -1, ..., -1) with p ones and q minus ones.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def so(p: int, q: int = 0) -> IntegerArray:
 
 
 def orthogonal(diagonal: Sequence[int]) -> IntegerArray:
-    """so of the diagonal quadratic form ``sum_i diagonal[i] x_i**2``.
+    """Basis of the orthogonal algebra of the quadratic form ``sum_i diagonal[i] x_i**2``.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def orthogonal(diagonal: Sequence[int]) -> IntegerArray:
 
 
 def u(p: int, q: int = 0) -> IntegerArray:
-    """u(p, q) on C^{p+q} = R^{2(p+q)}.
+    """Basis of u(p, q) on C^{p+q} = R^{2(p+q)}.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def u(p: int, q: int = 0) -> IntegerArray:
 
 
 def su(p: int, q: int = 0) -> IntegerArray:
-    """su(p, q) on C^{p+q} = R^{2(p+q)}: the matrices of u(p, q) with complex trace zero.
+    """Basis of su(p, q) on C^{p+q} = R^{2(p+q)}, the elements of u(p, q) of complex trace zero.
 
     Parameters
     ----------
@@ -125,14 +125,16 @@ def su(p: int, q: int = 0) -> IntegerArray:
 
 
 def quaternionic_u(p: int, q: int = 0, *, scalars: int = 0) -> IntegerArray:
-    """sp(p, q) = u(p, q; H) on H^{p+q} = R^{4(p+q)}, with commuting scalars; sp(n) is ``quaternionic_u(n)``.
+    """Basis of sp(p, q), the unitary algebra of H^{p+q} = R^{4(p+q)}, with commuting scalars.
+
+    The compact sp(n) is ``quaternionic_u(n)``.
 
     Parameters
     ----------
     p, q : int
         Not negative, with n = p + q at least 1.
     scalars : 0, 1 or 3
-        Adjoins nothing, u(1) or sp(1), acting from the right.
+        The number of right multiplications by imaginary units to adjoin: none, a u(1), or an sp(1).
 
     Returns
     -------
@@ -155,7 +157,7 @@ def quaternionic_u(p: int, q: int = 0, *, scalars: int = 0) -> IntegerArray:
 
 
 def so_star(n: int) -> IntegerArray:
-    """so*(2n) on H^n = R^{4n}: the matrices with X* j + j X = 0.
+    """Basis of so*(2n) on H^n = R^{4n}, the matrices with X* j + j X = 0.
 
     Parameters
     ----------
@@ -190,7 +192,7 @@ def so_star(n: int) -> IntegerArray:
 
 
 def sp(n: int) -> IntegerArray:
-    """sp(2n, R) on R^{2n}, which preserves the skew form [[0, 1], [-1, 0]].
+    """Basis of sp(2n, R) on R^{2n}, which preserves the skew-symmetric form [[0, 1], [-1, 0]].
 
     Parameters
     ----------
@@ -221,7 +223,7 @@ def sp(n: int) -> IntegerArray:
 
 
 def complex_so(n: int) -> IntegerArray:
-    """so(n, C) on C^n = R^{2n}.
+    """Basis of so(n, C) on C^n = R^{2n}, over R.
 
     Parameters
     ----------
@@ -247,14 +249,14 @@ def complex_so(n: int) -> IntegerArray:
 
 
 def complex_sp(n: int, *, scalars: int = 0) -> IntegerArray:
-    """sp(2n, C) on C^{2n} = R^{4n}, with ``scalars=1`` together with the complex structure.
+    """Basis of sp(2n, C) on C^{2n} = R^{4n}, over R; with ``scalars=1`` the complex structure comes last.
 
     Parameters
     ----------
     n : int
         Half of the size over C, at least 1.
     scalars : 0 or 1
-        Adjoins nothing or u(1).
+        1 to adjoin the complex structure, which spans a u(1).
 
     Returns
     -------
@@ -274,7 +276,7 @@ def complex_sp(n: int, *, scalars: int = 0) -> IntegerArray:
 
 
 def _signs(p: int, q: int) -> list[int]:
-    """p ones and q minus ones."""
+    """The list of p ones and q minus ones, p and q checked."""
     require_size("p", p, 0)
     require_size("q", q, 0)
     require_size("p + q", p + q)
@@ -282,7 +284,7 @@ def _signs(p: int, q: int) -> list[int]:
 
 
 def _skew_hermitian(diagonal: Sequence[int], table: IntegerArray) -> IntegerArray:
-    """Basis of X* D + D X = 0 over the algebra: imaginary diagonal entries, then the pairs i < j."""
+    """Basis of {X : X* D + D X = 0} over the algebra: imaginary diagonal entries, then the pairs i < j."""
     require_size("the number of diagonal entries", len(diagonal))
     require_nonzero("diagonal", diagonal)
     n = len(diagonal)

@@ -1,12 +1,12 @@
 """The linear Lie algebras gl and sl over R, C and H, as real integer matrices.
 
 C^n is R^{2n} and H^n is R^{4n}, coordinate by coordinate: the entry q at (i, j) is the block E_ij (x) L_q,
-with L_q the left multiplication by q.  What commutes with all of these is the right multiplication by
-scalars: the complex structure, a u(1), over C; the unit quaternions, an sp(1), over H.  With `scalars` the
-imaginary scalars are adjoined to the family, so that sl(n,H) + sp(1) is ``quaternionic_sl(n, scalars=3)``.
+with L_q the left multiplication by q. The right multiplications by scalars commute with all of these: over C the
+complex structure, which spans a u(1), over H the imaginary quaternions, which span an sp(1). The parameter `scalars`
+adjoins imaginary scalars to the family, so ``quaternionic_sl(n, scalars=3)`` is sl(n,H) + sp(1).
 
-With other parameters than -1 the same formulas give the algebras over Q(sqrt(c)) and over the quaternion
-algebra (a, b) over Q, for example (-1, 3), which is a division algebra over Q and splits over R.
+With parameters other than -1 the same formulas give the algebras over Q(sqrt(c)) and over the quaternion algebra
+(a, b) over Q. For example, (-1, 3) is a division algebra over Q and splits over R.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from liehom.typing import IntegerArray
 
 
 def gl(n: int) -> IntegerArray:
-    """gl(n, R): all elementary matrices, row by row.
+    """Basis of gl(n, R): all elementary matrices, row by row.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def gl(n: int) -> IntegerArray:
 
 
 def sl(n: int) -> IntegerArray:
-    """sl(n, R): matrices of trace zero, the E_ij with i != j and the E_ii - E_{i+1,i+1}.
+    """Basis of sl(n, R): the E_ij with i != j, then the E_ii - E_{i+1,i+1}.
 
     Parameters
     ----------
@@ -72,8 +72,36 @@ def sl(n: int) -> IntegerArray:
     return _sl_over(n, cayley_dickson(()))
 
 
+def triangular(n: int, above: int = 0) -> IntegerArray:
+    """Basis of the upper triangular matrices in gl(n, R): the E_ij with j - i >= `above`, row by row.
+
+    Parameters
+    ----------
+    n : int
+        Size, at least 1.
+    above : int
+        0 for upper triangular, 1 for strictly upper triangular matrices.
+
+    Returns
+    -------
+    (dim, n, n) int64
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Examples
+    --------
+    >>> triangular(3).shape, triangular(3, 1).shape
+    ((6, 3, 3), (3, 3, 3))
+    """
+    require_size("n", n)
+    return stack((unit(n, i, j) for i in range(n) for j in range(i + above, n)), n)
+
+
 def complex_gl(n: int, *, parameter: int = -1) -> IntegerArray:
-    """gl(n, C), or gl(n) over Q(sqrt(parameter)), on R^{2n}.
+    """Basis of gl(n, C), or of gl(n) over Q(sqrt(parameter)), on R^{2n}.
 
     Parameters
     ----------
@@ -100,7 +128,7 @@ def complex_gl(n: int, *, parameter: int = -1) -> IntegerArray:
 
 
 def complex_sl(n: int, *, scalars: int = 0, parameter: int = -1) -> IntegerArray:
-    """sl(n, C) on R^{2n}, with ``scalars=1`` together with the complex structure: sl(n, C) + u(1).
+    """Basis of sl(n, C) on R^{2n}; with ``scalars=1`` of sl(n, C) + u(1), the complex structure last.
 
     Parameters
     ----------
@@ -129,7 +157,7 @@ def complex_sl(n: int, *, scalars: int = 0, parameter: int = -1) -> IntegerArray
 
 
 def quaternionic_gl(n: int, *, parameters: tuple[int, int] = (-1, -1)) -> IntegerArray:
-    """gl(n, H), or gl(n) over the quaternion algebra with the given parameters, on R^{4n}.
+    """Basis of gl(n, H), or of gl(n) over another quaternion algebra over Q, on R^{4n}.
 
     Parameters
     ----------
@@ -157,9 +185,9 @@ def quaternionic_gl(n: int, *, parameters: tuple[int, int] = (-1, -1)) -> Intege
 
 
 def quaternionic_sl(n: int, *, scalars: int = 0, parameters: tuple[int, int] = (-1, -1)) -> IntegerArray:
-    """sl(n, H) on R^{4n}, with commuting scalars: sl(n, H) + u(1) or sl(n, H) + sp(1).
+    """Basis of sl(n, H) on R^{4n}; with commuting scalars of sl(n, H) + u(1) or sl(n, H) + sp(1).
 
-    The trace that vanishes is the real (reduced) one.  With ``scalars=3, parameters=(-1, 3)`` and n = 2
+    The real (reduced) trace vanishes. With ``scalars=3, parameters=(-1, 3)`` and n = 2
     this is a form over Q of sl(4, R) + sl(2, R) on R^8.
 
     Parameters
@@ -191,7 +219,7 @@ def quaternionic_sl(n: int, *, scalars: int = 0, parameters: tuple[int, int] = (
 
 
 def complexify(matrices: ArrayLike, *, parameter: int = -1) -> IntegerArray:
-    """The complex span of a family, as real matrices: A and i A for each A.
+    """Real matrices of the complex span of a family: A and i A for each A, shape (2 dim, 2n, 2n).
 
     Parameters
     ----------
@@ -220,7 +248,7 @@ def complexify(matrices: ArrayLike, *, parameter: int = -1) -> IntegerArray:
 
 
 def complex_structure(n: int, *, parameter: int = -1) -> IntegerArray:
-    """The matrix of the multiplication by i on C^n = R^{2n}; it spans the u(1) that commutes with gl(n, C).
+    """Matrix of the multiplication by i on C^n = R^{2n}, shape (2n, 2n); it commutes with gl(n, C).
 
     Examples
     --------
@@ -233,7 +261,7 @@ def complex_structure(n: int, *, parameter: int = -1) -> IntegerArray:
 
 
 def quaternion_scalars(n: int, *, parameters: tuple[int, int] = (-1, -1)) -> IntegerArray:
-    """Right multiplications by i, j, k on H^n = R^{4n}; they span the sp(1) that commutes with gl(n, H).
+    """Right multiplications by i, j, k on H^n = R^{4n}, a basis of the sp(1) that commutes with gl(n, H).
 
     Returns
     -------
@@ -250,7 +278,7 @@ def quaternion_scalars(n: int, *, parameters: tuple[int, int] = (-1, -1)) -> Int
 
 
 def with_complex_scalars(family: IntegerArray, scalars: int, *, parameter: int = -1) -> IntegerArray:
-    """The family on R^{2n}, with ``scalars=1`` followed by the complex structure.
+    """The family on R^{2n}, followed by the complex structure if ``scalars`` is 1.
 
     Raises
     ------
@@ -271,7 +299,7 @@ def with_complex_scalars(family: IntegerArray, scalars: int, *, parameter: int =
 def with_quaternion_scalars(
     family: IntegerArray, scalars: int, *, parameters: tuple[int, int] = (-1, -1)
 ) -> IntegerArray:
-    """The family on R^{4n}, followed by no, one (u(1)) or three (sp(1)) right multiplications.
+    """The family on R^{4n}, followed by 0, 1 (for u(1)) or 3 (for sp(1)) right multiplications.
 
     Raises
     ------
@@ -289,12 +317,12 @@ def with_quaternion_scalars(
 
 
 def quaternion_table(parameters: tuple[int, int]) -> IntegerArray:
-    """Multiplication table (4, 4, 4) of the quaternion algebra with i^2, j^2 as given.
+    """Multiplication table (4, 4, 4) of the quaternion algebra over Q with given i^2 and j^2.
 
     Raises
     ------
     InputError
-        If these are not two non-zero integers.
+        If the parameters are not two non-zero integers.
 
     Examples
     --------
@@ -307,14 +335,17 @@ def quaternion_table(parameters: tuple[int, int]) -> IntegerArray:
 
 
 def _gl_over(n: int, table: IntegerArray) -> IntegerArray:
-    """All E_ij (x) L_q."""
+    """Basis of gl(n) over the algebra: all E_ij (x) L_q."""
     units = left_multiplications(table)
     entries = ((i, j) for i in range(n) for j in range(n))
     return stack((np.kron(unit(n, i, j), u) for i, j in entries for u in units), n * len(units))
 
 
 def _sl_over(n: int, table: IntegerArray) -> IntegerArray:
-    """E_ij (x) L_q for i != j, then E_ii (x) L_q for imaginary q, then the differences of the E_ii (x) 1."""
+    """Basis of sl(n) over the algebra.
+
+    E_ij (x) L_q for i != j, then E_ii (x) L_q for imaginary units q, then the differences of the E_ii (x) 1.
+    """
     units = left_multiplications(table)
     off = [np.kron(unit(n, i, j), u) for i in range(n) for j in range(n) if i != j for u in units]
     imaginary = [np.kron(unit(n, i, i), u) for i in range(n) for u in units[1:]]

@@ -1,12 +1,11 @@
-"""A matrix basis: a list of integer matrices that is the basis of a linear Lie algebra.
+"""Operations on matrix bases of linear Lie algebras, and the checks of parameters that all families share.
 
-Everywhere in this package such a list is one int64 array of shape (dim, N, N).  This file has what all the
-families share: checked parameters, stacking, sums of commuting families, and the stabiliser of a vector or of
-the line through it,
+A matrix basis A_1, ..., A_dim is one int64 array of shape (dim, N, N). The stabilizers of a vector v and of the line
+through it,
 
     {c : sum_i c_i A_i v = 0}     and     {c : sum_i c_i A_i v in R v},
 
-as rows of coefficients.
+are computed exactly, as rows of integer coefficients c.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from liehom.typing import IntegerArray
 
 
 def combine(rows: ArrayLike, matrices: ArrayLike) -> IntegerArray:
-    """Matrices of the combinations that the rows of coefficients name.
+    """Linear combinations of the matrices of a basis, one for each row of coefficients; shape (m, N, N).
 
     Parameters
     ----------
@@ -56,7 +55,7 @@ def combine(rows: ArrayLike, matrices: ArrayLike) -> IntegerArray:
 
 
 def join(*families: ArrayLike) -> IntegerArray:
-    """One matrix basis after the other, on the same space.
+    """Concatenation of matrix bases on the same space, shape (sum of dim_a, N, N).
 
     Parameters
     ----------
@@ -85,7 +84,7 @@ def join(*families: ArrayLike) -> IntegerArray:
 
 
 def stabilizer_rows(matrices: ArrayLike, point: ArrayLike, *, up_to_scale: bool = False) -> IntegerArray:
-    """Basis of the combinations of the matrices that kill a vector, or keep the line through it.
+    """Basis of the combinations that annihilate a vector or map its line to itself, rows (m, dim).
 
     Parameters
     ----------
@@ -94,23 +93,23 @@ def stabilizer_rows(matrices: ArrayLike, point: ArrayLike, *, up_to_scale: bool 
     point : (N,) integers
         The vector v.
     up_to_scale : bool
-        Ask for ``A v`` in the line R v instead of ``A v = 0``; v must then not be zero.
+        Require ``A v`` in the line R v instead of ``A v = 0``; v must then be non-zero.
 
     Returns
     -------
     (m, dim) int64
-        Primitive rows of coefficients, a basis of the stabiliser; exact.
+        Primitive rows of coefficients, an exact basis of the stabilizer.
 
     Raises
     ------
     ShapeError
         If the vector does not have length N.
     InputError
-        If the line of the zero vector is asked for.
+        If v is zero and `up_to_scale` is True.
 
     Examples
     --------
-    The stabiliser of e_0 in so(3) is the rotation of the other two coordinates:
+    The stabilizer of e_0 in so(3) is the rotation of the other two coordinates:
 
     >>> from liehom.algebra.matrices.form_preserving import so
     >>> stabilizer_rows(so(3), [1, 0, 0]).tolist()
@@ -130,7 +129,7 @@ def stabilizer_rows(matrices: ArrayLike, point: ArrayLike, *, up_to_scale: bool 
 
 
 def null_space(matrix: ArrayLike) -> IntegerArray:
-    """Basis of {x : M x = 0} by exact elimination, as primitive integer rows.
+    """Exact basis of {x : M x = 0} as primitive integer rows, shape (n - rank, n).
 
     Parameters
     ----------
@@ -149,7 +148,7 @@ def null_space(matrix: ArrayLike) -> IntegerArray:
     """
     system = np.asarray(matrix, dtype=np.int64)
     n = system.shape[1]
-    system = np.unique(system, axis=0)  # equations for all pairs of indices repeat each other
+    system = np.unique(system, axis=0)  # conditions on all pairs of indices repeat many equations
     solved = QQ.from_integers(system.ravel().tolist(), len(system), n).null_space()
     rows = [primitive([int(x) for x in row]) for row in solved.parts[0].tolist()]
     return np.array(rows, dtype=np.int64).reshape(-1, n)
@@ -169,12 +168,14 @@ def primitive(values: ArrayLike) -> IntegerArray:
 
 
 def as_matrices(matrices: ArrayLike) -> IntegerArray:
-    """The matrices as one int64 array of shape (dim, N, N).
+    """The matrices as one int64 array of shape (dim, N, N), checked.
 
     Raises
     ------
     ShapeError
         If this is not a list of square matrices of one size.
+    InputError
+        If an entry is not an integer.
 
     Examples
     --------
@@ -190,7 +191,7 @@ def as_matrices(matrices: ArrayLike) -> IntegerArray:
 
 
 def stack(matrices: Iterable[IntegerArray], size: int) -> IntegerArray:
-    """The matrices, all (size, size), as one array; right also when there are none.
+    """One array of shape (dim, size, size) from matrices; dim may be 0.
 
     Examples
     --------
@@ -201,7 +202,7 @@ def stack(matrices: Iterable[IntegerArray], size: int) -> IntegerArray:
 
 
 def unit(size: int, i: int, j: int) -> IntegerArray:
-    """The elementary matrix with a one in row i and column j.
+    """The elementary matrix E_ij, (size, size), with a one in row i and column j.
 
     Examples
     --------
@@ -214,7 +215,7 @@ def unit(size: int, i: int, j: int) -> IntegerArray:
 
 
 def require_size(name: str, value: int, least: int = 1) -> None:
-    """Refuse a parameter that is not an integer at least `least`.
+    """Raise `InputError` unless the parameter is an integer >= `least`.
 
     Raises
     ------
@@ -233,7 +234,7 @@ def require_size(name: str, value: int, least: int = 1) -> None:
 
 
 def require_nonzero(name: str, values: Sequence[int]) -> None:
-    """Refuse a list in which not every entry is an integer different from zero.
+    """Raise `InputError` unless all entries are non-zero integers.
 
     Raises
     ------

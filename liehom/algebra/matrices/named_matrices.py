@@ -12,7 +12,7 @@ sp          (2n, 'R'), (2n, 'C') split             on R^2n, R^4n
 spin        (p), (p, q)                            on the spin representation
 ==========  =====================================  ==========================
 
-So 'sp(3)' is the compact quaternionic algebra of dimension 21, and 'sp(4,R)' has the *size* 4 and rank 2.
+So 'sp(3)' is the compact quaternionic algebra of dimension 21, and 'sp(4,R)' has *size* 4 and rank 2.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Parameter = int | str
 
 
 def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerArray:
-    """The matrix basis of a classical linear Lie algebra.
+    """The matrix basis of a classical linear Lie algebra, shape (dim, N, N).
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerA
         One of gl, sl, so, su, u, sp, spin.
     first : int
     second : int or str
-        As in the table above; 'R' and 0 stand for the default of gl, sl and so.
+        As in the table of the module; 'R' and 0 both mean the default of gl, sl and so.
 
     Returns
     -------
@@ -66,12 +66,12 @@ def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerA
 
 
 def exceptional_matrices(form: str) -> IntegerArray:
-    """The matrix basis of an exceptional real form by its name.
+    """The matrix basis of an exceptional real form by its name, shape (dim, N, N).
 
     Raises
     ------
     CatalogError
-        If there are no matrices of this form here.
+        If the table has no matrices of this form.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def exceptional_matrices(form: str) -> IntegerArray:
 
 
 def classical_name(kind: str, first: int, second: Parameter = 0) -> str:
-    """The printed name: parameters that say nothing are left out.
+    """The printed name of a classical algebra, without parameters that are the default.
 
     Examples
     --------
@@ -97,7 +97,13 @@ def classical_name(kind: str, first: int, second: Parameter = 0) -> str:
 
 
 def linear_lie_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebra:
-    """The Lie algebra with an integer matrix basis that is closed under commutators; there may be no matrix.
+    """The Lie algebra over QQ with a matrix basis that is closed under commutators.
+
+    Parameters
+    ----------
+    matrices : (dim, N, N) int64
+        May be empty.
+    name : str, optional
 
     Raises
     ------
@@ -114,7 +120,7 @@ def linear_lie_algebra(matrices: IntegerArray, name: str | None = None) -> LieAl
 
 
 def _half(build: Callable[[int], IntegerArray]) -> Callable[[int], IntegerArray]:
-    """The builder of sp by its rank n, called with the size 2n."""
+    """From a builder that takes the rank n, the builder that takes the size 2n."""
 
     def by_size(size: int) -> IntegerArray:
         if size % 2:
@@ -146,7 +152,7 @@ _BY_LETTER: dict[tuple[str, str], Callable[[int], IntegerArray]] = {
 }
 
 CLASSICAL_KINDS = frozenset({kind for kind, _ in _BY_LETTER} | _FORMS.keys())
-"""The kinds that `classical_matrices` knows."""
+"""All kinds that `classical_matrices` accepts."""
 
 EXCEPTIONAL_MATRICES: dict[str, Callable[[], IntegerArray]] = {
     "g2(2)": lambda: octonionic.g2(SPLIT_OCTONIONS),
@@ -157,4 +163,4 @@ EXCEPTIONAL_MATRICES: dict[str, Callable[[], IntegerArray]] = {
     "e6(6)": lambda: albert.e6(SPLIT_OCTONIONS),
     "e6(-26)": albert.e6,
 }
-"""Builders of the exceptional real forms that have a matrix basis here, by name."""
+"""Builders of the matrix bases of exceptional real forms, by name."""

@@ -1,9 +1,10 @@
-"""The Lie algebras of the octonions: g2 on the imaginary octonions and spin(7) on all of them.
+"""Matrix bases of the Lie algebras of the octonions: g2 on the imaginary octonions, spin(7) on all octonions.
 
-With w_ab(x) = e_a <e_b, x> - e_b <e_a, x>, so(Im O) is Lambda^2 Im O, and the derivations are the kernel of
-the equivariant map e_a ^ e_b -> Im(e_a e_b): for each imaginary unit e_l the combinations of the three w_ab
-with e_a e_b = s_ab e_l whose coefficients c_ab satisfy sum c_ab s_ab = 0.  spin(7) is spanned by the products
-L_a L_b (a < b) of left multiplications, and g2 is the stabiliser of 1 in it.
+Let w_ab(x) = e_a <e_b, x> - e_b <e_a, x>. Then so(Im O) is Lambda^2 Im O, and the derivations are the kernel of the
+equivariant map e_a ^ e_b -> Im(e_a e_b). Its part over the imaginary unit e_l consists of the combinations of the
+three w_ab with e_a e_b = s_ab e_l whose coefficients c_ab satisfy sum c_ab s_ab = 0.
+
+The products L_a L_b (a < b) of left multiplications span spin(7), and g2 is the stabilizer of 1 in spin(7).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from liehom.typing import IntegerArray
 
 
 def g2(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
-    """g2 on R^7: the derivations of the octonions, on their imaginary part.
+    """Basis of g2 on R^7, the derivations of the octonions on their imaginary part.
 
     Parameters
     ----------
@@ -36,7 +37,7 @@ def g2(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
 
     See Also
     --------
-    liehom.algebra.matrices.matrix_basis.stabilizer_rows : su(3) as the stabiliser of a unit imaginary octonion.
+    liehom.algebra.matrices.matrix_basis.stabilizer_rows : su(3) as the stabilizer of a unit imaginary octonion.
 
     Examples
     --------
@@ -58,7 +59,7 @@ def g2(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
 
 
 def octonion_spin(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
-    """spin(7), or spin(4, 3), on R^8 = O: the products of two left multiplications by imaginary units.
+    """Basis of spin(7) or spin(4, 3) on R^8 = O: products of two left multiplications by imaginary units.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def octonion_spin(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray:
 
     Examples
     --------
-    The stabiliser of 1 is g2:
+    The stabilizer of 1 is g2:
 
     >>> from liehom.algebra.matrices.matrix_basis import stabilizer_rows
     >>> stabilizer_rows(octonion_spin(), [1, 0, 0, 0, 0, 0, 0, 0]).shape
@@ -93,7 +94,7 @@ def octonion_table(parameters: tuple[int, int, int] = OCTONIONS) -> IntegerArray
     Raises
     ------
     InputError
-        If these are not three non-zero integers.
+        If the parameters are not three non-zero integers.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""New linear Lie algebras from given ones: tensor sums, powers, the action on symmetric matrices.
+"""Matrix bases on tensor products, symmetric and exterior powers, and symmetric matrices.
 
-The derived action of A on the tensor product is A (x) 1 + 1 (x) A, and on Sym^k and Lambda^k it is what this
-induces, in the basis of monomials and of wedge products.
+A acts on V (x) V by A (x) 1 + 1 (x) A. This induces the actions on Sym^k and Lambda^k, which are written in the bases
+of monomials and of wedge products.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from liehom.typing import IntegerArray
 
 
 def tensor_sum(first: ArrayLike, second: ArrayLike) -> IntegerArray:
-    """The sum of two linear Lie algebras on the tensor product: A (x) 1, then 1 (x) B.
+    """Basis of the sum of two linear Lie algebras on the tensor product: all A (x) 1, then all 1 (x) B.
 
     Parameters
     ----------
     first : (a, p, p) integers
         A matrix basis.
     second : (b, q, q) integers
-        Another one.  If both contain the identity, the result is linearly dependent.
+        A matrix basis. If both contain the identity, the result is linearly dependent.
 
     Returns
     -------
@@ -46,7 +46,7 @@ def tensor_sum(first: ArrayLike, second: ArrayLike) -> IntegerArray:
 
 
 def symmetric_power(matrices: ArrayLike, k: int) -> IntegerArray:
-    """Action on Sym^k, polynomials of degree k in the basis vectors, in lexicographic monomials.
+    """Action on Sym^k, the polynomials of degree k in the basis vectors, in lexicographic monomials.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def exterior_power(matrices: ArrayLike, k: int) -> IntegerArray:
 def congruence(matrices: ArrayLike) -> IntegerArray:
     """Action ``S -> A S + S A^T`` on the symmetric matrices.
 
-    For skew A this is the conjugation ``S -> A S - S A``.
+    For skew-symmetric A this is the conjugation ``S -> A S - S A``.
 
     Parameters
     ----------
@@ -148,12 +148,12 @@ def congruence(matrices: ArrayLike) -> IntegerArray:
 
 
 def companion_powers(coefficients: Sequence[int]) -> IntegerArray:
-    """The regular representation of Q[t]/(f): the powers 1, C, ..., C^{n-1} of the companion matrix of f.
+    """Regular representation of Q[t]/(f): the powers 1, C, ..., C^{n-1} of the companion matrix C of f.
 
     Parameters
     ----------
     coefficients : integers
-        ``f = t**n + sum_i coefficients[i] t**i``; the leading one is not given.
+        ``f = t**n + sum_i coefficients[i] t**i``; the leading coefficient 1 is omitted.
 
     Returns
     -------
@@ -180,25 +180,25 @@ def companion_powers(coefficients: Sequence[int]) -> IntegerArray:
 
 
 def _induced(basis: IntegerArray, words: list[tuple[int, ...]], *, alternating: bool) -> IntegerArray:
-    """Action on the words: one letter after the other is replaced, e_i by sum_j A[j, i] e_j."""
+    """The derived action on words in the basis vectors, a sum over the letters: e_i becomes sum_j A[j, i] e_j."""
     n = basis.shape[1]
-    position = {word: index for index, word in enumerate(words)}
+    position = {word: row for row, word in enumerate(words)}
     result = np.zeros((len(basis), len(words), len(words)), dtype=np.int64)
     for column, word in enumerate(words):
-        for place, letter in enumerate(word):
+        for index, letter in enumerate(word):
             for new in range(n):
-                image = [*word[:place], new, *word[place + 1 :]]
+                image = [*word[:index], new, *word[index + 1 :]]
                 row = position.get(tuple(sorted(image)))
                 if row is None:
                     continue
-                sign = _sorting_sign(image, place) if alternating else 1
+                sign = _sorting_sign(image, index) if alternating else 1
                 result[:, row, column] += sign * basis[:, new, letter]
     return result
 
 
-def _sorting_sign(word: list[int], place: int) -> int:
-    """Sign of the permutation that sorts a word in which only the letter at `place` is out of order."""
-    letter = word[place]
-    greater_before = sum(other > letter for other in word[:place])
-    smaller_after = sum(other < letter for other in word[place + 1 :])
+def _sorting_sign(word: list[int], index: int) -> int:
+    """Sign of the permutation that sorts a word in which only the letter at `index` is out of order."""
+    letter = word[index]
+    greater_before = sum(other > letter for other in word[:index])
+    smaller_after = sum(other < letter for other in word[index + 1 :])
     return -1 if (greater_before + smaller_after) % 2 else 1

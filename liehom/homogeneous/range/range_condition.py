@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, cast, final
 
 from liehom.errors import InputError, ShapeError, UndecidedError
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import traceless
-from liehom.scalars import FloatMatrix, RankDecision
+from liehom.scalars import ExactMatrix, FloatMatrix, RankDecision
 from liehom.scalars.spaces.linear_forms import LinearForms
 
 SAMPLES = 6
@@ -221,7 +221,7 @@ def _best_sample(pair: Pair) -> RangeCondition:
 def _keeps_a_definite_form(pair: Pair) -> bool:
     """Whether a basis element of the symmetric forms on g/h that h preserves up to scale is definite."""
     d = pair.dimension
-    reduced = traceless(pair.isotropy_matrices(), d, pair.field)
+    reduced = traceless(cast(list[ExactMatrix], pair.isotropy_matrices()), d, pair.field)
     found = invariant_forms(reduced, d, pair.field).symmetric
     return any(d in form.signature()[:2] for form in found)
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, cast, final
 
 from liehom.errors import FieldError, InputError
 from liehom.homogeneous.range.range_condition import pencil, range_condition
 from liehom.representations import Pair
-from liehom.scalars import QQ, ExactField, Scalar
+from liehom.scalars import QQ, ExactField, ExactMatrix, Scalar
 
 MAX_DIMENSION = 8
 
@@ -114,7 +114,7 @@ def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> Relati
     forms = pencil(pair)
     rng = random.Random(d)
     first, second = (_generic_minor(forms, rng) for _ in range(2))
-    factors = forms.invariant_factors(first, second, pair.isotropy_matrices())
+    factors = forms.invariant_factors(first, second, cast(list[ExactMatrix], pair.isotropy_matrices()))
     return RelativeInvariant(pair, tuple(sorted((_signed(p) for p in factors), key=str)))
 
 

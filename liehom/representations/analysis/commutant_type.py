@@ -7,23 +7,22 @@ its dimension over the field.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from liehom.errors import InputError
 from liehom.representations.analysis.isotypic import CommutantType
 from liehom.representations.invariants.intertwiners import commutant
-from liehom.representations.invariants.irreducibility import reduction, traceless
-from liehom.scalars import Field
+from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, reduction, traceless
+from liehom.scalars import ExactMatrix, Field, Scalar
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 KINDS: dict[int, CommutantType] = {1: "R", 2: "C", 4: "H"}
 
 
 def commutant_type(
-    matrices: Sequence[Any],
+    matrices: Sequence[ExactMatrix],
     size: int,
     over: Field,
-    generating: Sequence[Any] | None = None,
+    generating: Sequence[ExactMatrix] | None = None,
     *,
     semisimple: bool = False,
 ) -> CommutantType:
@@ -55,7 +54,7 @@ def commutant_type(
     return KINDS[len(commutant(matrices if generating is None else generating, size, over))]
 
 
-def complex_structure(matrices: Sequence[Any], size: int, over: Field) -> tuple[Any, Any]:
+def complex_structure(matrices: Sequence[ExactMatrix], size: int, over: Field) -> tuple[ExactMatrix, Scalar]:
     """A commuting matrix J of an irreducible action of type C or H with J^2 = -d, and d > 0.
 
     Over the reals J / sqrt(d) is a complex structure.
@@ -79,7 +78,7 @@ def complex_structure(matrices: Sequence[Any], size: int, over: Field) -> tuple[
     return units[0]
 
 
-def imaginary_units(matrices: Sequence[Any], size: int, over: Field) -> list[tuple[Any, Any]]:
+def imaginary_units(matrices: Sequence[ExactMatrix], size: int, over: Field) -> list[tuple[ExactMatrix, Scalar]]:
     """Anticommuting matrices J_i with J_i^2 = -d_i, a basis of the traceless part of the commutant: 0, 1 or 3 of them.
 
     Raises
@@ -93,8 +92,6 @@ def imaginary_units(matrices: Sequence[Any], size: int, over: Field) -> list[tup
     >>> [str(d) for _, d in imaginary_units(lh.defining(lh.su(2)).matrices, 4, lh.QQ)]
     ['1', '1', '1']
     """
-    from liehom.representations.invariants.irreducibility import anticommutator_gram, combination
-
     commutant_type(matrices, size, over)
     imaginary = traceless(commutant(matrices, size, over), size, over)
     if not imaginary:

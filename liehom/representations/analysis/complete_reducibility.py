@@ -8,12 +8,11 @@ on it semisimply: f(z) v = 0, f the squarefree part of the characteristic polyno
 
 from __future__ import annotations
 
-from typing import Any
-
 from liehom.representations.analysis.submodules import restricted
+from liehom.representations.core.generating_matrices import exact_matrices
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.irreducibility import combination, evaluated, trace_form
-from liehom.scalars import Polynomial, Subspace
+from liehom.scalars import ExactMatrix, Polynomial, Scalar, Subspace
 
 
 def socle(rho: Representation) -> Subspace:
@@ -23,11 +22,11 @@ def socle(rho: Representation) -> Subspace:
     if not rho.matrices or size == 0 or is_visibly_semisimple(rho):
         return Subspace(field, whole, size)
     inside = nilpotent_rows(rho).null_space()
-    matrices = restricted(rho.matrices, inside)
+    matrices = restricted(exact_matrices(rho), inside)
     kept = field.identity(inside.nrows)
     for x in _central(rho, matrices):
         z = combination(matrices, x)
-        f = Polynomial(field, z.characteristic_coefficients())  # type: ignore[arg-type]
+        f = Polynomial(z.field, z.characteristic_coefficients())
         value = evaluated(f // f.gcd(f.derivative()), z)
         if not value.is_zero():
             kept = (
@@ -55,25 +54,27 @@ def is_visibly_semisimple(rho: Representation) -> bool:
     return int(rho.algebra.killing_form().modulo().rank()) == rho.algebra.dimension
 
 
-def nilpotent_rows(rho: Representation) -> Any:
+def nilpotent_rows(rho: Representation) -> ExactMatrix:
     """Rows spanning the row spaces of [L, rad L], L the matrices of a representation."""
     field, size = rho.field, rho.size
+    none: ExactMatrix = field.zeros(0, size)
     flat = field.stack_rows([a.reshape(1, size * size) for a in rho.matrices], size * size)
     series = rho.algebra.derived_series()
     derived = series[1].basis if len(series) > 1 else field.identity(rho.algebra.dimension)
     if series[0].dimension == 0 or derived.nrows == 0:
-        return field.zeros(0, size)
+        return none
     images = (derived @ flat).row_space().split_rows(size, size)
     if not images:
-        return field.zeros(0, size)
+        return none
     gram = trace_form(images)
     if int(gram.modulo().rank()) == len(images):
-        return field.zeros(0, size)
+        return none
     radical = gram.null_space()
-    return field.stack_rows([combination(images, radical.row(i)) for i in range(radical.nrows)], size).row_space()
+    rows: ExactMatrix = field.stack_rows([combination(images, radical.row(i)) for i in range(radical.nrows)], size)
+    return rows.row_space()
 
 
-def _central(rho: Representation, matrices: list[Any]) -> list[Any]:
+def _central(rho: Representation, matrices: list[ExactMatrix]) -> list[list[Scalar]]:
     """Coefficients of elements of g whose images span the centre of the span of the (restricted) matrices."""
     field, n = rho.field, rho.algebra.dimension
     k = matrices[0].nrows

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, final
+from typing import cast, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
@@ -25,9 +24,11 @@ from liehom.representations.core.generating_matrices import exact_matrices, gene
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import commutant, intertwiners
 from liehom.representations.invariants.irreducibility import is_irreducible
-from liehom.scalars import Field, Subspace
+from liehom.scalars import ExactField, ExactMatrix, Field, Subspace
+from liehom.scalars.fields.field import MatrixLike
 from liehom.scalars.roots.extension import Extension, trivial_extension
 from liehom.scalars.spaces.real_rows import is_basis_of_reals
+from liehom.typing import Array
 
 
 @final
@@ -163,12 +164,12 @@ class Decomposition:
         """The dimensions of the irreducible components, in order."""
         return [c.dimension for c in self.components]
 
-    def basis(self) -> npt.NDArray[np.float64]:
+    def basis(self) -> Array:
         """The rows of all components as one matrix of floats (N, N): a basis that shows the block form."""
         blocks = [c.subspace.basis.to_numpy() for c in self.components]
         return np.concatenate(blocks) if blocks else np.zeros((0, 0))
 
-    def signatures(self, form: Any) -> list[tuple[int, int, int]]:
+    def signatures(self, form: MatrixLike) -> list[tuple[int, int, int]]:
         """The signatures (positive, negative, zero) of a symmetric form on the isotypic components.
 
         Parameters
@@ -211,7 +212,7 @@ class Decomposition:
 
     def _verify_component(self, number: int, component: Component) -> None:
         field, dimension = component.field, component.dimension
-        matrices = component.representation.matrices
+        matrices = exact_matrices(component.representation)
         over = [component.extension.matrix(a) for a in exact_matrices(self.representation)]
         if restricted(over, component.subspace.basis) != list(matrices):
             raise CertificateError("restriction", f"component {number} is not the restriction to its subspace")
@@ -223,7 +224,7 @@ class Decomposition:
         first = self.components[self.isotypic[component.isotypic].components[0]]
         if matrices and first.field == field:
             shape = (dimension, first.dimension)
-            if not intertwiners(first.representation.matrices, matrices, shape, field):
+            if not intertwiners(exact_matrices(first.representation), matrices, shape, field):
                 raise CertificateError("isotypic", f"component {number} is not equivalent to the first of its group")
 
     def __repr__(self) -> str:
@@ -265,17 +266,17 @@ class _Group:
     """An isotypic component, split: rows over fields, in the coordinates of the whole space."""
 
     type: CommutantType
-    whole: Any
+    whole: ExactMatrix
     extension: Extension
-    rows: tuple[Any, ...]
+    rows: tuple[ExactMatrix, ...]
     extensions: tuple[Extension, ...]
 
 
 def _groups(rho: Representation) -> Iterator[_Group]:
     """V^g, which needs no splitting, and the isotypic components of gV."""
-    field, size = rho.field, rho.size
+    field, size = cast(ExactField, rho.field), rho.size
     fixed = rho.invariant_vectors().basis if rho.matrices else field.identity(size)
-    base = trivial_extension(field)  # type: ignore[arg-type]
+    base = trivial_extension(field)
     if fixed.nrows:
         single = tuple(fixed.select(rows=[i]) for i in range(fixed.nrows))
         yield _Group("R", fixed, base, single, (base,) * len(single))
@@ -297,7 +298,7 @@ class _Restrictions:
 
     def __init__(self, rho: Representation) -> None:
         self.rho = rho
-        self._seen: list[tuple[Extension, LieAlgebra, list[Any]]] = []
+        self._seen: list[tuple[Extension, LieAlgebra, list[ExactMatrix]]] = []
 
     def to(self, subspace: Subspace, extension: Extension) -> Representation:
         if subspace.dimension == self.rho.size and extension.is_trivial:
@@ -308,9 +309,9 @@ class _Restrictions:
         # The restriction of a homomorphism to an invariant subspace.
         return Representation(algebra, made, size=subspace.dimension, check=False)
 
-    def _over(self, extension: Extension) -> tuple[LieAlgebra, list[Any]]:
+    def _over(self, extension: Extension) -> tuple[LieAlgebra, list[ExactMatrix]]:
         if extension.is_trivial:
-            return self.rho.algebra, list(self.rho.matrices)
+            return self.rho.algebra, list(exact_matrices(self.rho))
         for seen, algebra, matrices in self._seen:
             if seen == extension:
                 return algebra, matrices

@@ -9,18 +9,18 @@ Hom(V, W) is a module over End V; if T generates it and is not invertible, no T 
 from __future__ import annotations
 
 import random
-from typing import Any
 
 from liehom.errors import FieldError, InputError, UndecidedError
 from liehom.representations.analysis.complete_reducibility import is_completely_reducible
 from liehom.representations.core.generating_matrices import generating_matrices
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import commutant, intertwiners
+from liehom.scalars import ExactMatrix
 
 ATTEMPTS = 30
 
 
-def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
+def intertwining_maps(rho: Representation, sigma: Representation) -> list[ExactMatrix]:
     """Implements `Representation.intertwiners`."""
     for given in (rho, sigma):
         if not hasattr(given, "algebra") or not hasattr(given, "matrices"):
@@ -42,20 +42,21 @@ def intertwining_maps(rho: Representation, sigma: Representation) -> list[Any]:
     return intertwiners(left, right, (sigma.size, rho.size), rho.field)
 
 
-def equivalence(rho: Representation, sigma: Representation) -> Any:
+def equivalence(rho: Representation, sigma: Representation) -> ExactMatrix | None:
     """Implements `Representation.equivalence`."""
     maps = intertwining_maps(rho, sigma)
     if rho.size != sigma.size:
         return None
     if rho.size == 0:
-        return rho.field.identity(0)
+        empty: ExactMatrix = rho.field.identity(0)
+        return empty
     own = len(_endomorphisms(rho))
     if len(maps) != own or len(maps) != len(_endomorphisms(sigma)):
         return None
     rng = random.Random(own)
     for attempt in range(ATTEMPTS):
         bound = attempt // 4 + 1
-        total = rho.field.zeros(rho.size, rho.size)
+        total: ExactMatrix = rho.field.zeros(rho.size, rho.size)
         for t in maps:
             total = total + t.scale(rng.randint(-bound, bound))
         # invertible modulo a prime proves it; the rank decides otherwise
@@ -71,11 +72,11 @@ def equivalence(rho: Representation, sigma: Representation) -> Any:
     )
 
 
-def _endomorphisms(rho: Representation) -> list[Any]:
+def _endomorphisms(rho: Representation) -> list[ExactMatrix]:
     return commutant(generating_matrices(rho), rho.size, rho.field)
 
 
-def _generates(rho: Representation, t: Any, dimension: int) -> bool:
+def _generates(rho: Representation, t: ExactMatrix, dimension: int) -> bool:
     """Whether u -> t u is injective on End(rho): then t generates Hom(rho, sigma), of the same dimension."""
     n = rho.size
     rows = [(t @ u).reshape(1, n * n) for u in _endomorphisms(rho)]

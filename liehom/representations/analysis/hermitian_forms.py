@@ -10,13 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, final
+from typing import Literal, final
 
 from liehom.errors import InputError
 from liehom.representations.analysis.commutant_type import complex_structure, imaginary_units
+from liehom.representations.core.generating_matrices import exact_matrices
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.irreducibility import combination
-from liehom.scalars import Polynomial
+from liehom.scalars import ExactMatrix, Polynomial, Scalar
+from liehom.scalars.fields.field import MatrixLike
 from liehom.scalars.roots.extension import adjoin_root
 
 
@@ -44,17 +46,17 @@ class HermitianForms:
     """
 
     kind: Literal["complex", "quaternionic"]
-    units: tuple[tuple[Any, Any], ...]
-    hermitian: tuple[Any, ...]
-    skew_hermitian: tuple[Any, ...]
+    units: tuple[tuple[ExactMatrix, Scalar], ...]
+    hermitian: tuple[ExactMatrix, ...]
+    skew_hermitian: tuple[ExactMatrix, ...]
 
-    def signature(self, form: Any) -> tuple[int, int, int]:
+    def signature(self, form: ExactMatrix) -> tuple[int, int, int]:
         """The signature (positive, negative, zero) over C or H of a Hermitian form, given by its real part."""
         per = 2 if self.kind == "complex" else 4
         positive, negative, zero = form.signature()
         return positive // per, negative // per, zero // per
 
-    def imaginary_part(self, form: Any, unit: int = 0) -> Any:
+    def imaginary_part(self, form: ExactMatrix, unit: int = 0) -> ExactMatrix:
         """The matrix of the part s(u, J v) / sqrt(d) at the unit i (0), j (1) or k (2).
 
         It is over the field of the representation, or over the one that has sqrt(d).
@@ -75,9 +77,9 @@ class HermitianForms:
         return up.matrix(value).scale(1 / root)
 
 
-def hermitian_forms(rho: Representation, structure: Any = None) -> HermitianForms:
+def hermitian_forms(rho: Representation, structure: MatrixLike | None = None) -> HermitianForms:
     """Implements `Representation.hermitian_forms`."""
-    matrices, size, field = rho.matrices, rho.size, rho.field
+    matrices, size, field = exact_matrices(rho), rho.size, rho.field
     if structure is not None:
         units = [_checked(rho, structure)]
     else:
@@ -90,7 +92,7 @@ def hermitian_forms(rho: Representation, structure: Any = None) -> HermitianForm
     return HermitianForms("complex" if len(units) == 1 else "quaternionic", tuple(units), hermitian, skew)
 
 
-def _checked(rho: Representation, structure: Any) -> tuple[Any, Any]:
+def _checked(rho: Representation, structure: MatrixLike) -> tuple[ExactMatrix, Scalar]:
     size, field = rho.size, rho.field
     j = field.read(structure, (size, size))
     for i, a in enumerate(rho.matrices):
@@ -103,7 +105,7 @@ def _checked(rho: Representation, structure: Any) -> tuple[Any, Any]:
     return j, -value
 
 
-def _adapted(forms: Sequence[Any], units: Sequence[tuple[Any, Any]]) -> tuple[Any, ...]:
+def _adapted(forms: Sequence[ExactMatrix], units: Sequence[tuple[ExactMatrix, Scalar]]) -> tuple[ExactMatrix, ...]:
     """The combinations s of the forms with s(J u, v) = -s(u, J v) for all units."""
     if not forms:
         return ()

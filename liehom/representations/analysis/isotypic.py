@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, final
+from typing import Literal, final
 
 from liehom.errors import InternalError
 from liehom.representations.analysis.submodules import restricted
 from liehom.representations.invariants.irreducibility import evaluated
 from liehom.representations.invariants.matrix_algebra import MatrixAlgebra
+from liehom.scalars import ExactField, ExactMatrix
 from liehom.scalars.roots.extension import Extension, RealFactor, real_factors, trivial_extension
 
 CommutantType = Literal["R", "C", "H"]
@@ -38,11 +39,11 @@ class Piece:
     """
 
     extension: Extension
-    rows: Any
+    rows: ExactMatrix
     commuting: MatrixAlgebra
 
     @property
-    def field(self) -> Any:
+    def field(self) -> ExactField:
         """The field F."""
         return self.extension.field
 
@@ -59,12 +60,12 @@ class Piece:
         algebra = MatrixAlgebra(extension.field, self.dimension, maps)
         return Piece(self.extension.then(extension), extension.matrix(self.rows), algebra)
 
-    def part(self, rows: Any) -> Piece:
+    def part(self, rows: ExactMatrix) -> Piece:
         """The part spanned by rows (s, r) in the coordinates of the piece, where all that commutes preserves it."""
         maps = restricted(self.commuting.basis, rows)
         return Piece(self.extension, rows @ self.rows, MatrixAlgebra(self.field, rows.nrows, maps))
 
-    def parts(self, blocks: Sequence[Any]) -> list[Piece]:
+    def parts(self, blocks: Sequence[ExactMatrix]) -> list[Piece]:
         """The summands spanned by blocks of rows (s, r), together a basis; each with its corner of what commutes."""
         whole = self.field.stack_rows(blocks, self.dimension)
         inverse = whole.inverse()
@@ -89,7 +90,7 @@ class IsotypicPiece:
     multiplicity: int
 
 
-def isotypic_pieces(field: Any, size: int, commuting: Sequence[Any]) -> list[IsotypicPiece]:
+def isotypic_pieces(field: ExactField, size: int, commuting: Sequence[ExactMatrix]) -> list[IsotypicPiece]:
     """The isotypic components over the reals of a completely reducible space, from what commutes with the action.
 
     Parameters
@@ -118,7 +119,7 @@ def isotypic_pieces(field: Any, size: int, commuting: Sequence[Any]) -> list[Iso
     return found
 
 
-def _over_the_reals(part: Piece, central: Any, factor: RealFactor, degree: int) -> IsotypicPiece:
+def _over_the_reals(part: Piece, central: ExactMatrix, factor: RealFactor, degree: int) -> IsotypicPiece:
     """The component of one real factor of the minimal polynomial of a central element."""
     g = factor.polynomial
     piece = part.over(factor.extension)

@@ -8,14 +8,15 @@ of complex ones.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, final
+from typing import final
 
 from liehom.errors import InternalError
 from liehom.representations.analysis.isotypic import CommutantType, IsotypicPiece, Piece
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, evaluated, traceless
-from liehom.scalars import Polynomial
+from liehom.scalars import ExactMatrix, Polynomial
 from liehom.scalars.lattices.conic import rational_zero
 from liehom.scalars.roots.extension import real_factors
 from liehom.scalars.spaces.forms import orthogonal_basis
@@ -29,7 +30,7 @@ class _Root:
     """A matrix whose minimal polynomial is irreducible over the field, and the degree of the extension to adjoin."""
 
     cost: int
-    matrix: Any
+    matrix: ExactMatrix
     polynomial: Polynomial
 
 
@@ -73,7 +74,7 @@ def _split(piece: Piece, kind: CommutantType) -> list[Piece]:
     return _split_above(piece, min(roots, key=lambda root: root.cost))
 
 
-def _tried(piece: Piece, kind: CommutantType) -> Any:
+def _tried(piece: Piece, kind: CommutantType) -> Iterator[ExactMatrix]:
     """Commuting matrices, small ones first; with a complex structure also their products with it."""
     structure = None
     if kind == "C":
@@ -85,7 +86,7 @@ def _tried(piece: Piece, kind: CommutantType) -> Any:
             yield t @ structure
 
 
-def _split_by(piece: Piece, t: Any, roots: list[_Root]) -> list[Piece]:
+def _split_by(piece: Piece, t: ExactMatrix, roots: list[_Root]) -> list[Piece]:
     """The summands that t shows over the field; none, and perhaps a further entry of `roots`, if it shows none."""
     factors = piece.commuting.minimal_polynomial_power(t).factor()
     if len(factors) > 1:
@@ -104,7 +105,7 @@ def _split_by(piece: Piece, t: Any, roots: list[_Root]) -> list[Piece]:
     return []
 
 
-def _power(matrix: Any, size: int) -> Any:
+def _power(matrix: ExactMatrix, size: int) -> ExactMatrix:
     """A power high enough that its kernel does not grow any more."""
     exponent = 1
     while exponent < size:
@@ -112,7 +113,7 @@ def _power(matrix: Any, size: int) -> Any:
     return matrix
 
 
-def _with_complement(piece: Piece, rows: Any) -> list[Any]:
+def _with_complement(piece: Piece, rows: ExactMatrix) -> list[ExactMatrix]:
     """The rows and a complement of their span, both invariant: the kernel of a commuting projection onto the span."""
     field, size = piece.field, piece.dimension
     away = rows.null_space().T  # kills exactly the span
@@ -127,7 +128,7 @@ def _with_complement(piece: Piece, rows: Any) -> list[Any]:
     return [rows, projection.null_space().row_space()]
 
 
-def _nilpotent(piece: Piece, kind: CommutantType) -> Any:
+def _nilpotent(piece: Piece, kind: CommutantType) -> ExactMatrix | None:
     """An element of square 0 in a quaternion algebra over QQ that has one (M_2(QQ)), or None."""
     if kind != "R" or piece.commuting.dimension != 4 or piece.field.degree > 1:
         return None
@@ -139,7 +140,7 @@ def _nilpotent(piece: Piece, kind: CommutantType) -> Any:
     return None if row is None else combination(imaginary, row.row(0))
 
 
-def _indefinite(piece: Piece) -> list[Any]:
+def _indefinite(piece: Piece) -> list[ExactMatrix]:
     """Elements of positive square, where all small elements generate copies of C."""
     imaginary = traceless(piece.commuting.basis, piece.dimension, piece.field)
     gram = anticommutator_gram(imaginary, piece.dimension, piece.field)

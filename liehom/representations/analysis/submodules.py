@@ -6,18 +6,18 @@ Subspaces are given by rows b, on which a matrix A acts as b A^T.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from liehom.errors import DependentRowsError, NotCompletelyReducibleError, NotInvariantError, ShapeError, SingularError
-from liehom.representations.core.generating_matrices import generating_matrices
+from liehom.representations.core.generating_matrices import exact_matrices, generating_matrices
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import intertwiners
-from liehom.scalars import Subspace
+from liehom.scalars import ExactMatrix, Subspace
+from liehom.scalars.fields.field import MatrixLike
 from liehom.scalars.modular.modular import independent_rows
 from liehom.scalars.spaces.quotient import quotient
 
 
-def generated_submodule(rho: Representation, rows: Any) -> Subspace:
+def generated_submodule(rho: Representation, rows: Subspace | MatrixLike) -> Subspace:
     """Implements `Representation.submodule`."""
     span, before = _rows(rho, rows).row_space(), -1
     turned = [a.T for a in generating_matrices(rho)]
@@ -27,28 +27,28 @@ def generated_submodule(rho: Representation, rows: Any) -> Subspace:
     return Subspace(rho.field, span, rho.size)
 
 
-def subrepresentation(rho: Representation, rows: Any) -> Representation:
+def subrepresentation(rho: Representation, rows: Subspace | MatrixLike) -> Representation:
     """Implements `Representation.subrepresentation`."""
     basis = _independent(rho, rows)
-    made = restricted(rho.matrices, basis)
+    made = restricted(exact_matrices(rho), basis)
     # A homomorphism followed by restriction to an invariant subspace.
     return Representation(rho.algebra, made, size=basis.nrows, check=False)
 
 
-def quotient_representation(rho: Representation, rows: Any) -> Representation:
+def quotient_representation(rho: Representation, rows: Subspace | MatrixLike) -> Representation:
     """Implements `Representation.quotient`."""
     data = quotient(_independent(rho, rows))
-    for i, a in enumerate(rho.matrices):
+    for i, a in enumerate(exact_matrices(rho)):
         moved = data.subspace @ a.T @ data.projection
         if not moved.is_zero():
-            restricted(rho.matrices, _independent(rho, rows))  # names the row as given
+            restricted(exact_matrices(rho), _independent(rho, rows))  # names the row as given
             raise _not_invariant(data.subspace, i, moved)
-    made = [(data.lift @ a.T @ data.projection).T for a in rho.matrices]
+    made = [(data.lift @ a.T @ data.projection).T for a in exact_matrices(rho)]
     # The action descends to the quotient by an invariant subspace.
     return Representation(rho.algebra, made, size=data.lift.nrows, check=False)
 
 
-def invariant_complement(rho: Representation, rows: Any) -> Subspace:
+def invariant_complement(rho: Representation, rows: Subspace | MatrixLike) -> Subspace:
     """Implements `Representation.invariant_complement`."""
     field, size = rho.field, rho.size
     basis = _independent(rho, rows)
@@ -69,7 +69,7 @@ def invariant_complement(rho: Representation, rows: Any) -> Subspace:
     return Subspace(field, total.null_space(), size)
 
 
-def restricted(matrices: Sequence[Any], basis: Any, *, check: bool = True) -> list[Any]:
+def restricted(matrices: Sequence[ExactMatrix], basis: ExactMatrix, *, check: bool = True) -> list[ExactMatrix]:
     """The matrices (k, k) by which maps act on the invariant span of independent rows (k, N), on columns.
 
     With ``check=False`` the invariance is the caller's knowledge.
@@ -96,7 +96,7 @@ def restricted(matrices: Sequence[Any], basis: Any, *, check: bool = True) -> li
     return found
 
 
-def _not_invariant(basis: Any, element: int, defect: Any) -> NotInvariantError:
+def _not_invariant(basis: ExactMatrix, element: int, defect: ExactMatrix) -> NotInvariantError:
     row = next(j for j in range(defect.nrows) if not defect.select(rows=[j]).is_zero())
     shown = ", ".join(basis.select(rows=[row]).to_strings()[0])
     return NotInvariantError(
@@ -104,18 +104,18 @@ def _not_invariant(basis: Any, element: int, defect: Any) -> NotInvariantError:
     )
 
 
-def _rows(rho: Representation, rows: Any) -> Any:
+def _rows(rho: Representation, rows: Subspace | MatrixLike) -> ExactMatrix:
     matrix = rows.basis if isinstance(rows, Subspace) else rows
     if not hasattr(matrix, "nrows"):
         table = [list(row) for row in matrix]
         matrix = rho.field.matrix(table, (len(table), rho.size if not table else len(table[0])))
-    matrix = rho.field.read(matrix)
-    if matrix.ncols != rho.size:
-        raise ShapeError(f"rows of length {matrix.ncols}, the representation acts on {rho.size} coordinates")
-    return matrix
+    made: ExactMatrix = rho.field.read(matrix)
+    if made.ncols != rho.size:
+        raise ShapeError(f"rows of length {made.ncols}, the representation acts on {rho.size} coordinates")
+    return made
 
 
-def _independent(rho: Representation, rows: Any) -> Any:
+def _independent(rho: Representation, rows: Subspace | MatrixLike) -> ExactMatrix:
     matrix = _rows(rho, rows)
     kept = independent_rows(matrix)
     if len(kept) < matrix.nrows:

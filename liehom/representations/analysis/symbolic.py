@@ -6,14 +6,15 @@ DomainMatrix.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, InputError, ShapeError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import NumberField
-from liehom.typing import VectorLike
+from liehom.scalars import Field, Matrix, NumberField, Scalar
+from liehom.typing import Expression, VectorLike
 
 
 @final
@@ -41,18 +42,18 @@ class SymbolicIsotropy:
     """
 
     algebra: LieAlgebra
-    point: tuple[Any, ...]
-    symbols: tuple[Any, ...]
+    point: tuple[Expression, ...]
+    symbols: tuple[Expression, ...]
     dimension: int
     orbit_dimension: int
-    basis: Any
-    nonvanishing: Any
-    matrix: Any
+    basis: Expression
+    nonvanishing: Expression
+    matrix: Expression
 
     def __repr__(self) -> str:
         return f"<isotropy of dimension {self.dimension} at {self.point}, where {self.nonvanishing} != 0>"
 
-    def rank_conditions(self, limit: int = 2000) -> list[Any]:
+    def rank_conditions(self, limit: int = 2000) -> list[Expression]:
         """The minors of size `orbit_dimension`, whose common zeros are exactly where the isotropy is larger.
 
         Parameters
@@ -85,7 +86,7 @@ class SymbolicIsotropy:
                 found[_squarefree(sympy.fraction(minor)[0], self.symbols)] = None
         return list(found)
 
-    def at(self, values: Any) -> Any:
+    def at(self, values: Mapping[Expression, Expression]) -> Expression:
         """The matrix `basis` with values for the symbols (a mapping), a basis where `nonvanishing` is not zero."""
         return self.basis.subs(values)
 
@@ -121,7 +122,7 @@ def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotrop
     )
 
 
-def _coordinates(rho: Representation, point: VectorLike) -> list[Any]:
+def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
     import sympy
 
     if not rho.field.exact:
@@ -148,7 +149,7 @@ def _coordinates(rho: Representation, point: VectorLike) -> list[Any]:
     return values
 
 
-def _number(value: Any, field: Any) -> Any:
+def _number(value: Scalar, field: Field) -> Expression:
     """A field element as a sympy number."""
     import sympy
 
@@ -164,7 +165,7 @@ def _number(value: Any, field: Any) -> Any:
     return sympy.Add(*terms)
 
 
-def _times(rho: Representation, matrix: Any, values: list[Any]) -> list[Any]:
+def _times(rho: Representation, matrix: Matrix, values: list[Expression]) -> list[Expression]:
     import sympy
 
     zero = rho.field.zero
@@ -174,14 +175,14 @@ def _times(rho: Representation, matrix: Any, values: list[Any]) -> list[Any]:
     ]
 
 
-def _over_fractions(matrix: Any, symbols: tuple[Any, ...]) -> Any:
+def _over_fractions(matrix: Expression, symbols: tuple[Expression, ...]) -> Any:
     from sympy.polys.matrices import DomainMatrix
 
     made = DomainMatrix.from_Matrix(matrix, extension=True)
     return made.to_field().to_sparse() if symbols else made.to_field()
 
 
-def _cleared(row: Any, symbols: tuple[Any, ...]) -> list[Any]:
+def _cleared(row: Expression, symbols: tuple[Expression, ...]) -> list[Expression]:
     """A row of rational functions as polynomials without common divisor."""
     import sympy
 
@@ -196,7 +197,7 @@ def _cleared(row: Any, symbols: tuple[Any, ...]) -> list[Any]:
     return [sympy.expand(sympy.cancel(v / common)) for v in scaled]
 
 
-def _squarefree(polynomial: Any, symbols: tuple[Any, ...]) -> Any:
+def _squarefree(polynomial: Expression, symbols: tuple[Expression, ...]) -> Expression:
     """The product of the distinct factors that contain symbols."""
     import sympy
 

@@ -10,14 +10,14 @@ import random
 from typing import cast
 
 from liehom.representations.core.representation import Representation
-from liehom.scalars import ExactMatrix, Matrix
+from liehom.scalars import ExactMatrix
 from liehom.scalars.modular.modular import invariant_hull_rank
 
 SMALL = 20_000
 MOST = 4
 
 
-def generating_matrices(rho: Representation, size: int | None = None) -> tuple[Matrix, ...]:
+def generating_matrices(rho: Representation, size: int | None = None) -> tuple[ExactMatrix, ...]:
     """Matrices with the same commutant, invariant forms, vectors and subspaces as all rho(x).
 
     Parameters
@@ -42,7 +42,7 @@ def generating_matrices(rho: Representation, size: int | None = None) -> tuple[M
     """
     n = rho.algebra.dimension
     if n <= MOST or n * (rho.size if size is None else size) ** 2 <= SMALL:
-        return rho.matrices
+        return exact_matrices(rho)
     rng = random.Random(n)
     rows: list[ExactMatrix] = []
     adjoints: list[ExactMatrix] = []
@@ -51,8 +51,8 @@ def generating_matrices(rho: Representation, size: int | None = None) -> tuple[M
         rows.append(x)
         adjoints.append(rho.algebra.ad(x.row(0)).T)
         if len(rows) > 1 and invariant_hull_rank(rho.field.stack_rows(rows, n), adjoints) == n:
-            return tuple(rho(x.row(0)) for x in rows)
-    return rho.matrices
+            return tuple(cast(ExactMatrix, rho(x.row(0))) for x in rows)
+    return exact_matrices(rho)
 
 
 def exact_matrices(rho: Representation) -> tuple[ExactMatrix, ...]:

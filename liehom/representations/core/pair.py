@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import Field
+from liehom.scalars import Field, Matrix
+from liehom.scalars.fields.field import MatrixLike
+from liehom.typing import VectorLike
 
 if TYPE_CHECKING:
     from liehom.representations.core.representation import Representation
@@ -44,7 +46,7 @@ class Pair:
 
     __slots__ = ("_isotropy", "algebra", "name", "subalgebra")
 
-    def __init__(self, algebra: LieAlgebra, subalgebra: Any, *, name: str | None = None) -> None:
+    def __init__(self, algebra: LieAlgebra, subalgebra: Subalgebra | MatrixLike, *, name: str | None = None) -> None:
         if not isinstance(algebra, LieAlgebra):
             raise InputError(f"expected a LieAlgebra and a subalgebra of it, got {algebra!r}; names go to liehom.pair")
         self.algebra = algebra
@@ -52,7 +54,7 @@ class Pair:
         if self.subalgebra.algebra is not algebra and self.subalgebra.algebra != algebra:
             raise InputError("the subalgebra belongs to another Lie algebra")
         self.name = name
-        self._isotropy: list[Any] | None = None
+        self._isotropy: list[Matrix] | None = None
 
     @property
     def field(self) -> Field:
@@ -64,7 +66,7 @@ class Pair:
         """The dimension of G/H: dim g - dim h."""
         return self.subalgebra.codimension
 
-    def isotropy_matrices(self) -> list[Any]:
+    def isotropy_matrices(self) -> list[Matrix]:
         """The matrices (d, d) of rho on g/h, acting on columns, one per row of ``subalgebra.quotient().subspace``.
 
         Coordinates on g/h are those of ``subalgebra.quotient()``.
@@ -94,11 +96,12 @@ class Pair:
         matrices = [block.T for block in blocks]
         return Representation(self.subalgebra.as_algebra(), matrices, size=self.dimension, check=False)
 
-    def coordinates(self, x: Any) -> Any:
+    def coordinates(self, x: VectorLike) -> Matrix:
         """The coordinates of x mod h in the complement of ``subalgebra.quotient()``, a row matrix (1, d)."""
-        return self.algebra.row(x) @ self.subalgebra.quotient().projection
+        made: Matrix = self.algebra.row(x) @ self.subalgebra.quotient().projection
+        return made
 
-    def change_of_basis(self, rows: Any) -> Pair:
+    def change_of_basis(self, rows: MatrixLike) -> Pair:
         """The same pair in the basis of g given by rows (n, n)."""
         n = self.algebra.dimension
         matrix = self.field.read(rows, (n, n))
@@ -110,8 +113,6 @@ class Pair:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Pair) and self.algebra == other.algebra and self.subalgebra == other.subalgebra
-
-    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         if self.name:

@@ -7,7 +7,7 @@ this folder: a method is short or delegates to the module that does the work.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, final
+from typing import TYPE_CHECKING, cast, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure.closure import Completion, lie_closure, square_matrices
@@ -26,7 +26,7 @@ from liehom.representations.invariants.induced import (
 from liehom.representations.invariants.intertwiners import InvariantForms, commutant, invariant_forms, invariant_vectors
 from liehom.representations.invariants.irreducibility import is_irreducible
 from liehom.representations.invariants.stabilizer import orbit_dimension, stabilizer
-from liehom.scalars import Field, FloatField, Matrix, Subspace
+from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Subspace
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
@@ -341,7 +341,7 @@ class Representation:
         return self._proved(self.algebra.over(field), made, self.size, name=self.name)  # the same identities
 
     # -- commuting matrices, invariant forms and vectors -----------------------------------------------------
-    def commutant(self) -> list[Matrix]:
+    def commutant(self) -> list[ExactMatrix]:
         """A basis of the matrices that commute with all rho(x), proved exactly.
 
         Raises
@@ -380,7 +380,7 @@ class Representation:
         from liehom.representations.analysis.commutant_type import commutant_type
 
         known = self._is_visibly_semisimple()
-        return commutant_type(self.matrices, self.size, self.field, self._generating(), semisimple=known)
+        return commutant_type(self._exact_matrices(), self.size, self.field, self._generating(), semisimple=known)
 
     def invariant_forms(self) -> InvariantForms:
         """Bases of the symmetric and of the skew-symmetric forms P with rho(x)^T P + P rho(x) = 0 for all x.
@@ -469,7 +469,7 @@ class Representation:
         False
         """
         known = self._is_visibly_semisimple()
-        return is_irreducible(self.matrices, self.size, self.field, self._generating(), semisimple=known)
+        return is_irreducible(self._exact_matrices(), self.size, self.field, self._generating(), semisimple=known)
 
     def is_completely_reducible(self) -> bool:
         """Whether every invariant subspace has an invariant complement.
@@ -605,7 +605,7 @@ class Representation:
         return highest_weights(self._exact())
 
     # -- maps to other representations -------------------------------------------------------------------
-    def intertwiners(self, other: Representation) -> list[Matrix]:
+    def intertwiners(self, other: Representation) -> list[ExactMatrix]:
         """A basis of the maps T, shape (M, N), with T rho(x) = sigma(x) T for all x.
 
         Parameters
@@ -631,7 +631,7 @@ class Representation:
 
         return intertwining_maps(self, other)
 
-    def equivalence(self, other: Representation) -> Matrix | None:
+    def equivalence(self, other: Representation) -> ExactMatrix | None:
         """An invertible T with T rho(x) = sigma(x) T for all x, or None: the representations are not equivalent.
 
         Both answers are proved.
@@ -656,8 +656,7 @@ class Representation:
         """
         from liehom.representations.analysis.equivalence import equivalence
 
-        found: Matrix | None = equivalence(self, other)
-        return found
+        return equivalence(self, other)
 
     def is_equivalent(self, other: Representation) -> bool:
         """Whether two representations are equivalent, over their field or over the reals: both are the same.
@@ -774,11 +773,15 @@ class Representation:
             raise FieldError("this is computed exactly: build the representation over QQ or a number field")
         return self
 
-    def _generating(self) -> tuple[Matrix, ...]:
+    def _generating(self) -> tuple[ExactMatrix, ...]:
         """A few matrices with the same commutant and invariant subspaces as all rho(x); `FieldError` over float64."""
         from liehom.representations.core.generating_matrices import generating_matrices
 
         return generating_matrices(self._exact())
+
+    def _exact_matrices(self) -> tuple[ExactMatrix, ...]:
+        """The matrices rho(e_i); `FieldError` over float64."""
+        return cast("tuple[ExactMatrix, ...]", self._exact().matrices)
 
     def _is_visibly_semisimple(self) -> bool:
         """Whether the algebra is semisimple, where its Killing form costs less than the trace form of the matrices."""

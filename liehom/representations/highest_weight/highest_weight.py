@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import log10
-from typing import Any, final
+from typing import final
 
 from liehom.algebra import LieAlgebra, StructureConstants
 from liehom.algebra.roots.chevalley import chevalley, chevalley_constants
@@ -21,7 +21,7 @@ from liehom.representations.highest_weight.admissible_lattice import AdmissibleL
 from liehom.representations.highest_weight.characters import weyl_dimension
 from liehom.representations.highest_weight.weights import Weight, checked_weight, root_system_of, weight_space
 from liehom.representations.invariants.generator_proof import SparseStack, failing_generator_pair
-from liehom.scalars import QQ
+from liehom.scalars import QQ, ExactMatrix
 
 Columns = Sequence[Vector]
 MAX_ENTRIES = 1 << 28
@@ -214,9 +214,9 @@ def _commutator(left: Columns, right: Columns, divisor: int) -> list[Vector]:
     return made
 
 
-def sparse_matrix(columns: Columns, size: int) -> Any:
+def sparse_matrix(columns: Columns, size: int) -> ExactMatrix:
     """The square matrix over QQ with these columns."""
-    matrix = QQ.zeros(size, size)
+    matrix: ExactMatrix = QQ.zeros(size, size)
     (numerators,) = matrix.parts  # of a matrix that nobody else has seen: written to, entry by entry
     for c, column in enumerate(columns):
         for b, v in column.items():

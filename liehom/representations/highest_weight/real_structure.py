@@ -14,13 +14,13 @@ dim V; for T^2 = -1, as where there is no T, the real space V of twice the dimen
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, final
+from typing import final
 
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, divided_power
 from liehom.representations.highest_weight.highest_weight import Columns
 from liehom.representations.highest_weight.weights import Weight, weight_space
-from liehom.scalars import QQ
+from liehom.scalars import QQ, Scalar
 from liehom.scalars.spaces.integral_basis import integral_basis
 
 Operator = tuple[bool, Columns]
@@ -151,5 +151,5 @@ class RealBasis:
         return made
 
 
-def _number(value: Any) -> int | Fraction:
+def _number(value: Scalar) -> int | Fraction:
     return int(value.p) if value.q == 1 else Fraction(int(value.p), int(value.q))

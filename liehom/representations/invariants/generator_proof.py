@@ -11,12 +11,11 @@ from collections.abc import Iterable, Sequence
 from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra import StructureConstants
 from liehom.scalars.spaces.sparse import SparseInteger
+from liehom.typing import IntegerArray, ObjectArray
 
-IntArray = npt.NDArray[np.int64]
 SUM_LIMIT = 1 << 60
 
 
@@ -108,13 +107,13 @@ def _first_row_of_sum(terms: list[tuple[SparseInteger, int]]) -> int | None:
     values: Any = np.concatenate([_times(a.values, factor) for a, factor in terms])
     order = np.argsort(places, kind="stable")
     places, values = places[order], values[order]
-    starts: IntArray = np.flatnonzero(np.concatenate([[True], places[1:] != places[:-1]]))
+    starts: IntegerArray = np.flatnonzero(np.concatenate([[True], places[1:] != places[:-1]]))
     sums = np.add.reduceat(values, starts)
     wrong = places[starts][sums != 0]
     return int(wrong[0] // width) if len(wrong) else None
 
 
-def _times(values: Any, factor: int) -> Any:
+def _times(values: IntegerArray | ObjectArray, factor: int) -> IntegerArray | ObjectArray:
     """Multiples of integers, as Python integers where a sum of three of them might overflow."""
     if values.dtype != object and len(values) and int(np.abs(values).max()) * abs(factor) > SUM_LIMIT:
         values = values.astype(object)

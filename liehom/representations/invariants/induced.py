@@ -7,14 +7,14 @@ functions.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import combinations, combinations_with_replacement
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.errors import InputError
-from liehom.scalars import FloatField, FloatMatrix
+from liehom.scalars import ExactMatrix, FloatMatrix, Matrix
 from liehom.scalars.spaces.matrix_from_entries import matrix_from_entries
 
 Term = tuple[tuple[int, int], tuple[int, int], int]
@@ -41,20 +41,22 @@ class EntryMap:
 
     __slots__ = ("_by_source", "source", "target")
 
-    def __init__(self, source: int, target: int, terms: Any) -> None:
+    def __init__(self, source: int, target: int, terms: Iterable[Term]) -> None:
         self.source, self.target = source, target
         self._by_source: dict[int, list[tuple[int, int]]] = {}
         for (r, c), (i, j), factor in terms:
             self._by_source.setdefault(i * source + j, []).append((r * target + c, factor))
 
-    def __call__(self, matrix: Any) -> Any:
-        field, m = matrix.field, self.target
-        if isinstance(field, FloatField):
+    def __call__(self, matrix: Matrix) -> Matrix:
+        m = self.target
+        if isinstance(matrix, FloatMatrix):
             array = np.zeros(m * m)
             for place, value in enumerate(matrix.array.ravel().tolist()):
                 for at, factor in self._by_source.get(place, ()) if value else ():
                     array[at] += factor * value
-            return FloatMatrix(field, array.reshape(m, m))
+            return FloatMatrix(matrix.field, array.reshape(m, m))
+        if not isinstance(matrix, ExactMatrix):
+            raise InputError(f"expected a matrix over a field, got {matrix!r}")
         tables: list[dict[int, int]] = []
         for part in matrix.parts:
             table: dict[int, int] = {}
@@ -62,7 +64,7 @@ class EntryMap:
                 for at, factor in self._by_source.get(place, ()) if value else ():
                     table[at] = table.get(at, 0) + factor * value
             tables.append(table)
-        return matrix_from_entries(field, tables, m, m, matrix.den)
+        return matrix_from_entries(matrix.field, tables, m, m, matrix.den)
 
 
 def dual_map(n: int) -> EntryMap:
@@ -191,6 +193,6 @@ def _sorting_sign(word: list[int], place: int) -> int:
     return -1 if moves % 2 else 1
 
 
-def _require_degree(k: Any) -> None:
+def _require_degree(k: object) -> None:
     if isinstance(k, bool) or not isinstance(k, (int, np.integer)) or k < 0:
         raise InputError(f"the degree of a power is an integer at least 0, got {k!r}")

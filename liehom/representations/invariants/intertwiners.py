@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, final
 
 from liehom.errors import InternalError, ShapeError
-from liehom.scalars import Field, Subspace
+from liehom.scalars import ExactMatrix, Field, Subspace
 from liehom.scalars.modular.modular import extending_rows, pivot_columns, primitive_residues
 from liehom.scalars.modular.modular_maps import intertwining_residues
 from liehom.scalars.modular.modular_span import rational_lifts
@@ -27,7 +27,9 @@ ROW_ENTRIES = 8
 ROUNDS = 4
 
 
-def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> list[Any]:
+def intertwiners(
+    source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], shape: tuple[int, int], over: Field
+) -> list[ExactMatrix]:
     """A basis of the maps T, shape (e, d), with T A_i = B_i T for all i.
 
     Parameters
@@ -61,7 +63,7 @@ def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int,
         if lifted is not None:
             return lifted
     words = _word_basis(source, target, shape, over)
-    conditions: list[Any] = []
+    conditions: list[ExactMatrix] = []
     rng = random.Random(7)
     for _ in range(3):
         conditions.append(words.condition(*_mixed(source, target, rng), rng))
@@ -77,7 +79,9 @@ def intertwiners(source: Sequence[Any], target: Sequence[Any], shape: tuple[int,
     raise InternalError("intertwiners: the conditions did not settle")
 
 
-def _lifted(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> list[Any] | None:
+def _lifted(
+    source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], shape: tuple[int, int], over: Field
+) -> list[ExactMatrix] | None:
     """The intertwiners from their residues; None where there is no small kernel, or the numbers are too large.
 
     Their dimension modulo a prime is an upper bound, also where only some combinations of the A_i are used.
@@ -112,7 +116,9 @@ def _residues_again(left: Sequence[Any], right: Sequence[Any], first: Any, attem
     return intertwining_residues(left, right, attempt) if attempt else first
 
 
-def _first_failing(candidates: Sequence[Any], source: Sequence[Any], target: Sequence[Any]) -> int | None:
+def _first_failing(
+    candidates: Sequence[ExactMatrix], source: Sequence[ExactMatrix], target: Sequence[ExactMatrix]
+) -> int | None:
     for i, (a, b) in enumerate(zip(source, target, strict=True)):
         for t in candidates:
             if not (t @ a - b @ t).is_zero():
@@ -120,13 +126,15 @@ def _first_failing(candidates: Sequence[Any], source: Sequence[Any], target: Seq
     return None
 
 
-def _enough(matrices: Sequence[Any], d: int) -> int:
+def _enough(matrices: Sequence[ExactMatrix], d: int) -> int:
     """How many matrices of such few entries a combination needs for several entries in each of d rows."""
     entries = max(1, *(sum(map(bool, a.entries())) for a in (matrices[0], matrices[-1])))
     return max(BATCH, -(-ROW_ENTRIES * d // entries))
 
 
-def _mixed(source: Sequence[Any], target: Sequence[Any], rng: random.Random, batch: int = BATCH) -> tuple[Any, Any]:
+def _mixed(
+    source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], rng: random.Random, batch: int = BATCH
+) -> tuple[ExactMatrix, ExactMatrix]:
     """A random small combination of a few A_i and the same one of the B_i."""
     if not source:
         raise InternalError("no matrices to combine")
@@ -146,41 +154,44 @@ class _WordBasis:
     over: Field
     shape: tuple[int, int]
     seeds: int
-    vectors: list[Any]
-    images: list[Any]
-    inverse: Any = field(default=None)
+    vectors: list[ExactMatrix]
+    images: list[ExactMatrix]
+    inverse: ExactMatrix
 
-    def value(self, w: Any) -> Any:
+    def value(self, w: ExactMatrix) -> ExactMatrix:
         """The matrix (e, e * seeds) with T w = value t."""
         coordinates = (self.inverse @ w).T.row(0)
-        total = self.over.zeros(self.shape[0], self.shape[0] * self.seeds)
+        total: ExactMatrix = self.over.zeros(self.shape[0], self.shape[0] * self.seeds)
         for c, image in zip(coordinates, self.images, strict=True):
             if c != 0:
                 total = total + image.scale(c)
         return total
 
-    def condition(self, a: Any, b: Any, rng: random.Random) -> Any:
+    def condition(self, a: ExactMatrix, b: ExactMatrix, rng: random.Random) -> ExactMatrix:
         """The rows on t that T a y = b T y imposes for a random y."""
         d = self.shape[1]
         weights = [rng.randint(-2, 2) for _ in range(d)]
-        y = self.over.zeros(d, 1)
-        image = self.over.zeros(self.shape[0], self.shape[0] * self.seeds)
+        y: ExactMatrix = self.over.zeros(d, 1)
+        image: ExactMatrix = self.over.zeros(self.shape[0], self.shape[0] * self.seeds)
         for c, v, m in zip(weights, self.vectors, self.images, strict=True):
             if c:
                 y, image = y + v.scale(c), image + m.scale(c)
         return self.value(a @ y) - b @ image
 
-    def map(self, t: Any) -> Any:
+    def map(self, t: ExactMatrix) -> ExactMatrix:
         """The map T with the values t (1, e * seeds)."""
         e = self.shape[0]
         columns = [(m @ t.T).T for m in self.images]
-        return self.over.stack_rows(columns, e).T @ self.inverse
+        values: ExactMatrix = self.over.stack_rows(columns, e).T
+        return values @ self.inverse
 
 
-def _word_basis(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, int], over: Field) -> _WordBasis:
+def _word_basis(
+    source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], shape: tuple[int, int], over: Field
+) -> _WordBasis:
     e, d = shape
     rng = random.Random(d)
-    vectors: list[Any] = []
+    vectors: list[ExactMatrix] = []
     words: list[tuple[int, int]] = []  # (generator, parent), or (-1, seed number)
     seeds = 0
     while len(vectors) < d:
@@ -201,26 +212,34 @@ def _word_basis(source: Sequence[Any], target: Sequence[Any], shape: tuple[int, 
     return _WordBasis(over, shape, seeds, vectors, _images(over, target, words, seeds, e), _inverse(over, vectors, d))
 
 
-def _inverse(over: Field, vectors: list[Any], d: int) -> Any:
-    return over.stack_rows([v.T for v in vectors], d).T.inverse()
+def _inverse(over: Field, vectors: list[ExactMatrix], d: int) -> ExactMatrix:
+    columns: ExactMatrix = over.stack_rows([v.T for v in vectors], d).T
+    return columns.inverse()
 
 
-def _residues(vectors: Sequence[Any], d: int) -> Any:
+def _residues(vectors: Sequence[ExactMatrix], d: int) -> Any:
     """The columns as rows modulo a prime; a common factor or denominator of one of them does no harm."""
     return primitive_residues([v.T for v in vectors], d)
 
 
-def _extends(vectors: list[Any], candidate: Any, d: int) -> bool:
+def _extends(vectors: list[ExactMatrix], candidate: ExactMatrix, d: int) -> bool:
     return int(_residues([*vectors, candidate], d).rank()) == len(vectors) + 1
 
 
-def _any_outside(over: Field, vectors: list[Any], d: int) -> Any:
+def _any_outside(over: Field, vectors: list[ExactMatrix], d: int) -> ExactMatrix:
     pivots = set(pivot_columns(_residues(vectors, d)))
-    return over.unit(d, next(j for j in range(d) if j not in pivots)).T
+    found: ExactMatrix = over.unit(d, next(j for j in range(d) if j not in pivots)).T
+    return found
 
 
 def _grow(
-    over: Field, source: Any, vectors: list[Any], words: Any, frontier: list[int], d: int, rng: random.Random
+    over: Field,
+    source: Sequence[ExactMatrix],
+    vectors: list[ExactMatrix],
+    words: list[tuple[int, int]],
+    frontier: list[int],
+    d: int,
+    rng: random.Random,
 ) -> list[int]:
     """Append images of the frontier that extend the span; return their places."""
     pairs = [(g, p) for p in frontier for g in range(len(source))]
@@ -238,8 +257,10 @@ def _grow(
     return added
 
 
-def _images(over: Field, target: Any, words: list[tuple[int, int]], seeds: int, e: int) -> list[Any]:
-    images: list[Any] = []
+def _images(
+    over: Field, target: Sequence[ExactMatrix], words: list[tuple[int, int]], seeds: int, e: int
+) -> list[ExactMatrix]:
+    images: list[ExactMatrix] = []
     for generator, parent in words:
         if generator < 0:
             blocks = [over.identity(e) if s == parent else over.zeros(e, e) for s in range(seeds)]
@@ -249,7 +270,7 @@ def _images(over: Field, target: Any, words: list[tuple[int, int]], seeds: int, 
     return images
 
 
-def commutant(matrices: Sequence[Any], size: int, over: Field) -> list[Any]:
+def commutant(matrices: Sequence[ExactMatrix], size: int, over: Field) -> list[ExactMatrix]:
     """A basis of the maps that commute with all matrices (the identity among their combinations).
 
     Examples
@@ -261,8 +282,9 @@ def commutant(matrices: Sequence[Any], size: int, over: Field) -> list[Any]:
     return intertwiners(matrices, matrices, (size, size), over)
 
 
-def _elementary(over: Field, shape: tuple[int, int], i: int, j: int) -> Any:
-    return over.unit(shape[0], i).T @ over.unit(shape[1], j)
+def _elementary(over: Field, shape: tuple[int, int], i: int, j: int) -> ExactMatrix:
+    made: ExactMatrix = over.unit(shape[0], i).T @ over.unit(shape[1], j)
+    return made
 
 
 @final
@@ -276,11 +298,11 @@ class InvariantForms:
         Bases of the symmetric and of the skew ones.
     """
 
-    symmetric: tuple[Any, ...]
-    skew: tuple[Any, ...]
+    symmetric: tuple[ExactMatrix, ...]
+    skew: tuple[ExactMatrix, ...]
 
 
-def invariant_forms(matrices: Sequence[Any], size: int, over: Field) -> InvariantForms:
+def invariant_forms(matrices: Sequence[ExactMatrix], size: int, over: Field) -> InvariantForms:
     """The invariant symmetric and skew forms of matrices A (A^T P + P A = 0 for all A).
 
     Examples
@@ -296,7 +318,7 @@ def invariant_forms(matrices: Sequence[Any], size: int, over: Field) -> Invarian
     )
 
 
-def _independent(over: Field, matrices: list[Any], size: int) -> tuple[Any, ...]:
+def _independent(over: Field, matrices: list[ExactMatrix], size: int) -> tuple[ExactMatrix, ...]:
     if not matrices:
         return ()
     flat = over.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
@@ -304,7 +326,7 @@ def _independent(over: Field, matrices: list[Any], size: int) -> tuple[Any, ...]
     return tuple(space.select(rows=[i]).reshape(size, size) for i in range(space.nrows))
 
 
-def invariant_vectors(matrices: Sequence[Any], size: int, over: Field) -> Subspace:
+def invariant_vectors(matrices: Sequence[ExactMatrix], size: int, over: Field) -> Subspace:
     """The vectors that all matrices kill.
 
     Examples

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, final
+from typing import Literal, final
 
 from liehom.errors import InternalError
 from liehom.representations.invariants.intertwiners import commutant
-from liehom.scalars import Field, Polynomial
+from liehom.scalars import ExactMatrix, Field, Polynomial, Scalar
 from liehom.scalars.roots.roots import real_part_cut
 from liehom.scalars.spaces.forms import orthogonal_basis
 
@@ -38,16 +38,16 @@ class Reduction:
     """
 
     kind: Literal["kernel", "eigenvalue", "cut"]
-    matrix: Any
+    matrix: ExactMatrix
     polynomial: Polynomial | None = None
-    cut: Any = None
+    cut: Scalar | None = None
 
 
 def reduction(
-    matrices: Sequence[Any],
+    matrices: Sequence[ExactMatrix],
     size: int,
     over: Field,
-    generating: Sequence[Any] | None = None,
+    generating: Sequence[ExactMatrix] | None = None,
     *,
     semisimple: bool = False,
 ) -> Reduction | None:
@@ -81,10 +81,10 @@ def reduction(
 
 
 def is_irreducible(
-    matrices: Sequence[Any],
+    matrices: Sequence[ExactMatrix],
     size: int,
     over: Field,
-    generating: Sequence[Any] | None = None,
+    generating: Sequence[ExactMatrix] | None = None,
     *,
     semisimple: bool = False,
 ) -> bool:
@@ -101,17 +101,17 @@ def is_irreducible(
     return size > 0 and reduction(matrices, size, over, generating, semisimple=semisimple) is None
 
 
-def trace_form(matrices: Sequence[Any]) -> Any:
+def trace_form(matrices: Sequence[ExactMatrix]) -> ExactMatrix:
     """The Gram matrix tr(A_i A_j) of at least one matrix."""
     field, size = matrices[0].field, matrices[0].nrows ** 2
-    flat = field.stack_rows([a.reshape(1, size) for a in matrices], size)
+    flat: ExactMatrix = field.stack_rows([a.reshape(1, size) for a in matrices], size)
     turned = field.stack_rows([a.T.reshape(1, size) for a in matrices], size)
     return flat @ turned.T
 
 
-def nilpotent_ideal_rows(matrices: Sequence[Any], size: int, over: Field) -> Any:
+def nilpotent_ideal_rows(matrices: Sequence[ExactMatrix], size: int, over: Field) -> ExactMatrix:
     """Rows spanning the row spaces of [R, L]; their common kernel is invariant, and not zero by Engel's theorem."""
-    none = over.zeros(0, size)
+    none: ExactMatrix = over.zeros(0, size)
     if not matrices:
         return none
     gram = trace_form(matrices)
@@ -129,7 +129,7 @@ def nilpotent_ideal_rows(matrices: Sequence[Any], size: int, over: Field) -> Any
     return rows
 
 
-def combination(matrices: Sequence[Any], coefficients: Sequence[Any]) -> Any:
+def combination(matrices: Sequence[ExactMatrix], coefficients: Sequence[Scalar]) -> ExactMatrix:
     """The sum of c_i A_i over at least one matrix."""
     total = matrices[0].scale(coefficients[0])
     for a, c in zip(matrices[1:], coefficients[1:], strict=True):
@@ -138,7 +138,7 @@ def combination(matrices: Sequence[Any], coefficients: Sequence[Any]) -> Any:
     return total
 
 
-def traceless(basis: Sequence[Any], size: int, over: Field) -> list[Any]:
+def traceless(basis: Sequence[ExactMatrix], size: int, over: Field) -> list[ExactMatrix]:
     """A basis of the traceless parts of matrices."""
     if not basis:
         return []
@@ -147,7 +147,7 @@ def traceless(basis: Sequence[Any], size: int, over: Field) -> list[Any]:
     return [row.reshape(size, size) for row in (flat.select(rows=[i]) for i in range(flat.nrows))]
 
 
-def split_by_commutant(imaginary: Sequence[Any], size: int, over: Field) -> Reduction | None:
+def split_by_commutant(imaginary: Sequence[ExactMatrix], size: int, over: Field) -> Reduction | None:
     """What splits the action, given a basis of its traceless commutant; None if that is R, C or H over the reals."""
     candidates = [*imaginary, *(s + t for i, s in enumerate(imaginary) for t in imaginary[:i])]
     for t in candidates:
@@ -163,11 +163,11 @@ def split_by_commutant(imaginary: Sequence[Any], size: int, over: Field) -> Redu
     return None
 
 
-def anticommutator_gram(imaginary: Sequence[Any], size: int, over: Field) -> Any:
+def anticommutator_gram(imaginary: Sequence[ExactMatrix], size: int, over: Field) -> ExactMatrix | None:
     """The matrix g with (T_i T_j + T_j T_i)/2 = g_ij, or None if some anticommutator is not scalar."""
-    rows = []
+    rows: list[list[Scalar]] = []
     for s in imaginary:
-        row = []
+        row: list[Scalar] = []
         for t in imaginary:
             both = s @ t + t @ s
             value = both.trace() / size
@@ -175,10 +175,11 @@ def anticommutator_gram(imaginary: Sequence[Any], size: int, over: Field) -> Any
                 return None
             row.append(value / 2)
         rows.append(row)
-    return over.matrix(rows, (len(imaginary), len(imaginary)))
+    gram: ExactMatrix = over.matrix(rows, (len(imaginary), len(imaginary)))
+    return gram
 
 
-def split_by(t: Any) -> Reduction | None:
+def split_by(t: ExactMatrix) -> Reduction | None:
     """What one matrix of the commutant splits, or None if it is scalar or generates a copy of C."""
     f = Polynomial(t.field, t.characteristic_coefficients()).factor()[0][0]
     value = evaluated(f, t)
@@ -198,7 +199,7 @@ def split_by(t: Any) -> Reduction | None:
     return split_by(centred @ centred)
 
 
-def evaluated(f: Polynomial, t: Any) -> Any:
+def evaluated(f: Polynomial, t: ExactMatrix) -> ExactMatrix:
     """The matrix f(T)."""
     field, size = t.field, t.nrows
     total = field.zeros(size, size)

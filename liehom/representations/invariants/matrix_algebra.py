@@ -9,10 +9,10 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import Any, final
+from typing import final
 
 from liehom.errors import InternalError
-from liehom.scalars import Field, Polynomial
+from liehom.scalars import ExactField, ExactMatrix, Polynomial, Scalar
 from liehom.scalars.spaces.integral_basis import integral_basis
 
 PAIRS = 60
@@ -43,7 +43,7 @@ class MatrixAlgebra:
 
     __slots__ = ("_flat", "_inverse", "_places", "basis", "field", "size")
 
-    def __init__(self, field: Field, size: int, matrices: Sequence[Any]) -> None:
+    def __init__(self, field: ExactField, size: int, matrices: Sequence[ExactMatrix]) -> None:
         self.field, self.size = field, size
         flat = field.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
         reducible = field.degree == 1 and len(matrices) <= REDUCED
@@ -57,18 +57,18 @@ class MatrixAlgebra:
         """The dimension."""
         return len(self.basis)
 
-    def coordinates(self, matrices: Sequence[Any]) -> Any:
+    def coordinates(self, matrices: Sequence[ExactMatrix]) -> ExactMatrix:
         """The coefficients (k, dimension) of k elements in the basis."""
         n = self.size
         flat = self.field.stack_rows([m.reshape(1, n * n) for m in matrices], n * n)
         return flat.select(columns=self._places) @ self._inverse
 
-    def element(self, coefficients: Sequence[Any]) -> Any:
+    def element(self, coefficients: Sequence[Scalar]) -> ExactMatrix:
         """The combination of the basis with these coefficients."""
         row = self.field.matrix([coefficients], (1, self.dimension))
         return (row @ self._flat).reshape(self.size, self.size)
 
-    def multiplication(self, element: Any) -> Any:
+    def multiplication(self, element: ExactMatrix) -> ExactMatrix:
         """The matrix (k, k) of x -> element x in the basis, acting on columns."""
         return self.coordinates([element @ t for t in self.basis]).T
 
@@ -87,7 +87,7 @@ class MatrixAlgebra:
             tests.append(failing)
         raise InternalError("the centre of a matrix algebra was not found")
 
-    def elements(self) -> Iterator[Any]:
+    def elements(self) -> Iterator[ExactMatrix]:
         """Elements to try: the basis, sums and differences of two, then random combinations (without end)."""
         yield from self.basis
         for s, t in list(combinations(self.basis, 2))[:PAIRS]:
@@ -98,15 +98,15 @@ class MatrixAlgebra:
             yield self.element([rng.randint(-bound, bound) for _ in self.basis])
             bound += 1
 
-    def minimal_polynomial_power(self, element: Any) -> Polynomial:
+    def minimal_polynomial_power(self, element: ExactMatrix) -> Polynomial:
         """A polynomial with the irreducible factors of the minimal polynomial of an element (a characteristic one)."""
         matrix = self.multiplication(element) if self.dimension < self.size else element
-        return Polynomial(self.field, matrix.characteristic_coefficients())  # type: ignore[arg-type]
+        return Polynomial(self.field, matrix.characteristic_coefficients())
 
-    def generator(self) -> tuple[Any, Polynomial]:
+    def generator(self) -> tuple[ExactMatrix, Polynomial]:
         """A generator of a commutative algebra without nilpotent elements, and its (squarefree) minimal polynomial."""
         for tried, element in enumerate(self.elements()):
-            polynomial = Polynomial(self.field, self.multiplication(element).characteristic_coefficients())  # type: ignore[arg-type]
+            polynomial = Polynomial(self.field, self.multiplication(element).characteristic_coefficients())
             if polynomial.gcd(polynomial.derivative()).degree == 0:
                 return element, polynomial
             if tried > 2 * PAIRS + self.dimension + 40:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
+from liehom.scalars import Matrix
+from liehom.typing import VectorLike
 
 
-def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Any:
+def moved_point(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> Matrix:
     """The matrix (dim g, N) with rows rho(e_i) point.
 
     Raises
@@ -29,15 +30,16 @@ def moved_point(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: 
         raise InputError(f"the point has the free symbols {', '.join(symbols)}; use Representation.symbolic_isotropy")
     column = algebra.field.matrix([values], (1, size)).T
     rows = [(a @ column).T for a in matrices]
-    return algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)
+    moved: Matrix = algebra.field.stack_rows(rows, size) if rows else algebra.field.zeros(0, size)
+    return moved
 
 
-def stabilizer(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> Subalgebra:
+def stabilizer(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> Subalgebra:
     """The subalgebra {x : rho(x) point = 0}."""
     rows = moved_point(algebra, matrices, size, point).left_null_space()
     return Subalgebra(algebra, rows, check=False)  # closed: rho([x, y]) p = rho(x) rho(y) p - rho(y) rho(x) p = 0
 
 
-def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Any], size: int, point: Any) -> int:
+def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> int:
     """The rank of x -> rho(x) point."""
     return int(moved_point(algebra, matrices, size, point).rank())

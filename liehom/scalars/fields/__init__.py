@@ -7,6 +7,7 @@ holds the linear algebra on python-flint. `grammar` and `number_fields` read wha
 
 from liehom.scalars.fields.exact_field import ExactField as ExactField
 from liehom.scalars.fields.exact_field import ExactMatrix as ExactMatrix
+from liehom.scalars.fields.exact_field import as_exact as as_exact
 from liehom.scalars.fields.field import Field as Field
 from liehom.scalars.fields.field import Matrix as Matrix
 from liehom.scalars.fields.field import Scalar as Scalar

@@ -9,7 +9,7 @@ multiplication by it), where flint finds pivots modulo primes and verifies the l
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import gcd, lcm
 from typing import Any, final
 
@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import FieldError, ShapeError, SingularError
-from liehom.scalars.fields.field import Field, Matrix, Scalar, rows_of
+from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.scalars.fields.integer_matrices import (
     cancelled,
     echelon_pivots,
@@ -30,12 +30,13 @@ from liehom.scalars.fields.integer_matrices import (
     sign_changes,
     stacked_rows,
 )
+from liehom.typing import ScalarLike
 
 TALL = 2
 GUESSED_INVERSE = 40
 
 
-class ExactField(Field):
+class ExactField(Field["ExactMatrix"]):
     """What QQ and the real number fields have in common: coordinates over QQ in powers of an integral generator."""
 
     __slots__ = ()
@@ -73,7 +74,7 @@ class ExactField(Field):
     def residue(self, attempt: int = 0) -> tuple[int, int]:
         """A prime p and the image of the integral generator in F_p; other `attempt`, other prime."""
 
-    def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> ExactMatrix:
+    def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> ExactMatrix:
         table = [[self.convert(x) for x in row] for row in rows_of(rows)]
         nrows, ncols = shape if shape is not None else (len(table), len(table[0]) if table else 0)
         if len(table) != nrows or any(len(row) != ncols for row in table):
@@ -283,11 +284,11 @@ class ExactMatrix(Matrix):
                     parts[s] = parts[s] + powers[r] * c
         return tuple(parts)
 
-    def scale(self, factor: Any) -> ExactMatrix:
-        factor = self._field.convert(factor)
+    def scale(self, factor: ScalarLike) -> ExactMatrix:
+        coordinates = self._field.coordinates(self._field.convert(factor))
         if self._field.degree == 1:
-            return ExactMatrix(self._field, (self.parts[0] * factor.p,), self.den * int(factor.q)).normalized()
-        coordinates = self._field.coordinates(factor)
+            by = coordinates[0]
+            return ExactMatrix(self._field, (self.parts[0] * by.p,), self.den * int(by.q)).normalized()
         den = lcm(*(int(c.q) for c in coordinates))
         integers = [int(c.p) * (den // int(c.q)) for c in coordinates]
         m = self._field.degree
@@ -442,3 +443,10 @@ class ExactMatrix(Matrix):
         zero = next(i for i, s in enumerate(signs) if s)
         positive = sign_changes(signs)
         return positive, self.nrows - zero - positive, zero
+
+
+def as_exact(matrix: Matrix) -> ExactMatrix:
+    """The matrix itself, for code that only exact fields have; `FieldError` if it is over float64."""
+    if not isinstance(matrix, ExactMatrix):
+        raise FieldError(f"this is computed over an exact field only, not over {matrix.field.name}")
+    return matrix

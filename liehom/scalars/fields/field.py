@@ -8,8 +8,8 @@ knows its field.  The algebra of liehom is written once over these two.  Exact f
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
-from typing import Any, Protocol, Self, TypeAlias
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -128,29 +128,29 @@ class Matrix(ABC):
         """The entries rounded to float64."""
 
     @abstractmethod
-    def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> Matrix:
+    def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> Self:
         """The submatrix of the given rows and columns (all where None)."""
 
     # -- arithmetic --------------------------------------------------------------------------------------
     @property
     @abstractmethod
-    def T(self) -> Matrix:
+    def T(self) -> Self:
         """The transpose."""
 
     @abstractmethod
-    def __add__(self, other: Any) -> Any: ...
+    def __add__(self, other: Self) -> Self: ...
 
     @abstractmethod
-    def __sub__(self, other: Any) -> Any: ...
+    def __sub__(self, other: Self) -> Self: ...
 
     @abstractmethod
-    def __neg__(self) -> Any: ...
+    def __neg__(self) -> Self: ...
 
     @abstractmethod
-    def __matmul__(self, other: Any) -> Any: ...
+    def __matmul__(self, other: Self) -> Self: ...
 
     @abstractmethod
-    def scale(self, factor: Any) -> Any:
+    def scale(self, factor: ScalarLike) -> Self:
         """The matrix times a number of the field."""
 
     @abstractmethod
@@ -162,11 +162,11 @@ class Matrix(ABC):
         """The sum of the diagonal."""
 
     @abstractmethod
-    def reshape(self, nrows: int, ncols: int) -> Any:
+    def reshape(self, nrows: int, ncols: int) -> Self:
         """The same entries row after row in another shape."""
 
     @abstractmethod
-    def split_rows(self, nrows: int, ncols: int) -> list[Any]:
+    def split_rows(self, nrows: int, ncols: int) -> list[Self]:
         """Each row as a matrix of shape (nrows, ncols)."""
 
     @abstractmethod
@@ -179,23 +179,23 @@ class Matrix(ABC):
         """The rank."""
 
     @abstractmethod
-    def row_space(self) -> Any:
+    def row_space(self) -> Self:
         """A canonical basis of the span of the rows (reduced echelon form; orthonormal over floats)."""
 
     @abstractmethod
-    def null_space(self) -> Any:
+    def null_space(self) -> Self:
         """A matrix whose rows are a basis of {x : A x = 0}."""
 
-    def left_null_space(self) -> Any:
+    def left_null_space(self) -> Self:
         """A matrix whose rows are a basis of {y : y A = 0}."""
         return self.T.null_space()
 
     @abstractmethod
-    def solve(self, right: Any) -> Any:
+    def solve(self, right: Self) -> Self:
         """X with A X = right; `SingularError` if there is none (some X if there are several)."""
 
     @abstractmethod
-    def inverse(self) -> Any:
+    def inverse(self) -> Self:
         """The inverse; `SingularError` if there is none."""
 
     @abstractmethod
@@ -207,7 +207,17 @@ class Matrix(ABC):
         return self.signature()[0] == self.nrows
 
 
-class Field(ABC):
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    M = TypeVar("M", bound=Matrix, covariant=True, default=Any)
+else:
+    from typing import TypeVar  # defaults, so that `Field` alone is a type, come with Python 3.13
+
+    M = TypeVar("M")
+
+
+class Field(ABC, Generic[M]):
     """A field of real numbers together with its matrices.
 
     Examples
@@ -261,39 +271,40 @@ class Field(ABC):
         """The nearest float (to a few units in the last place)."""
 
     @abstractmethod
-    def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> Any:
+    def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> M:
         """The matrix with these rows; give `shape` where it may have no rows or no columns."""
 
-    def read(self, rows: Any, shape: tuple[int, int] | None = None) -> Any:
+    def read(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> M:
         """Rows of numbers, or a matrix, as a matrix over this field.
 
         A matrix over another field is read again entry by entry; `FieldError` if an entry is not in this field.
         """
+        given: Any = rows
         if not isinstance(rows, Matrix):
             return self.matrix(rows, shape)
-        return rows if rows.field == self else self.matrix(rows.to_rows(), rows.shape)
+        return given if rows.field == self else self.matrix(rows.to_rows(), rows.shape)
 
     @abstractmethod
-    def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> Any:
+    def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> M:
         """The matrix with these field elements, row after row."""
 
     @abstractmethod
-    def zeros(self, nrows: int, ncols: int) -> Any:
+    def zeros(self, nrows: int, ncols: int) -> M:
         """The zero matrix."""
 
     @abstractmethod
-    def identity(self, n: int) -> Any:
+    def identity(self, n: int) -> M:
         """The identity matrix."""
 
     @abstractmethod
-    def stack_rows(self, blocks: Sequence[Any], ncols: int) -> Any:
+    def stack_rows(self, blocks: Sequence[Any], ncols: int) -> M:
         """The blocks one below the other; all have `ncols` columns."""
 
-    def stack_columns(self, blocks: Sequence[Any], nrows: int) -> Any:
+    def stack_columns(self, blocks: Sequence[Any], nrows: int) -> M:
         """The blocks side by side; all have `nrows` rows."""
         return self.stack_rows([b.T for b in blocks], nrows).T
 
-    def unit(self, n: int, i: int) -> Any:
+    def unit(self, n: int, i: int) -> M:
         """The row matrix (1, n) with a one in column i."""
         return self.identity(n).select(rows=[i])
 

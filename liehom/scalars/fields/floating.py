@@ -7,14 +7,14 @@ gap that decided it.  Nothing here guesses exact values.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
 
 from liehom.errors import FieldError, ShapeError, SingularError
-from liehom.scalars.fields.field import Field, Matrix, Scalar, rows_of
+from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.typing import Array, ScalarLike
 
 
@@ -42,7 +42,7 @@ class RankDecision:
 
 
 @final
-class FloatField(Field):
+class FloatField(Field["FloatMatrix"]):
     """float64 with a relative tolerance for ranks.
 
     Parameters
@@ -105,7 +105,7 @@ class FloatField(Field):
     def to_float(self, value: Scalar) -> float:
         return float(value)
 
-    def matrix(self, rows: Iterable[Iterable[Any]], shape: tuple[int, int] | None = None) -> FloatMatrix:
+    def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> FloatMatrix:
         table = [[self.convert(x) for x in row] for row in rows_of(rows)]
         nrows, ncols = shape if shape is not None else (len(table), len(table[0]) if table else 0)
         if len(table) != nrows or any(len(row) != ncols for row in table):
@@ -211,7 +211,7 @@ class FloatMatrix(Matrix):
             raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not multiply")
         return self._made(self.array @ other.array)
 
-    def scale(self, factor: Any) -> FloatMatrix:
+    def scale(self, factor: ScalarLike) -> FloatMatrix:
         return self._made(self.array * self._field.convert(factor))
 
     def is_zero(self) -> bool:

@@ -237,7 +237,7 @@ def test_a_cochain_that_is_no_cocycle() -> None:
     made = cohomology(lh.heisenberg(2), 2)
     row = made.cochain({(0, 4): 1})
     assert not made.is_cocycle(row)
-    with pytest.raises(InputError, match="no cocycle"):
+    with pytest.raises(InputError, match="not a cocycle"):
         made.coordinates(row)
 
 
@@ -281,7 +281,7 @@ def test_what_is_refused() -> None:
     for degree in (-1, 1.5, True, "2"):
         with pytest.raises(InputError, match="degree"):
             cohomology(lh.so(3), degree)  # type: ignore[arg-type]
-    with pytest.raises(RepresentationError, match="no representation") as caught:
+    with pytest.raises(RepresentationError, match="not a representation") as caught:
         cohomology(lh.so(3), 1, [[[1]], [[0]], [[0]]])
     assert caught.value.pair == (1, 2)
     with pytest.raises(ShapeError, match="2 matrices"):

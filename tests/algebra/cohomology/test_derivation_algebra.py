@@ -172,7 +172,7 @@ def test_coordinates(name: str) -> None:
 
 def test_what_is_no_derivation() -> None:
     made = derivations(lh.so(3))
-    with pytest.raises(InputError, match="no derivation"):
+    with pytest.raises(InputError, match="not a derivation"):
         made.coordinates(lh.QQ.identity(3))
     with pytest.raises(ShapeError):
         made.coordinates([[1]])

@@ -251,7 +251,7 @@ def test_what_is_no_complex_algebra() -> None:
         realification({(0, 1): {0: (0, 1)}, (1, 0): {0: (0, 1)}})
     with pytest.raises(StructureError, match="pair"):
         realification({(0, 1): {0: (0, 1, 2)}})
-    with pytest.raises(StructureError, match="no bracket"):
+    with pytest.raises(StructureError, match="not a bracket"):
         realification({(0, 1): 3})
     with pytest.raises(StructureError):
         realification(3)
