@@ -15,11 +15,11 @@ def certificate_of_reduction(action: TracelessIsotropyAction, reduction: Reducti
     match reduction.kind:
         case "kernel":
             return kernel_witness(action, reduction.matrix)
-        case "cut":
+        case "cut" if reduction.cut is not None:
             return certificate_writer.commutant_cut(action, reduction.matrix, reduction.cut)
     polynomial = reduction.polynomial
     if polynomial is None:
-        raise TypeError("a reduction by an eigenvalue carries its polynomial")
+        raise TypeError(f"a reduction of kind {reduction.kind!r} carries its cut or its polynomial")
     return commuting_eigenvector_witness(action, reduction.matrix, polynomial)
 
 

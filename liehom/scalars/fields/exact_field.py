@@ -55,10 +55,6 @@ class ExactField(Field["ExactMatrix"]):
         """The coordinates (``flint.fmpq``) of an element in powers of the integral generator."""
 
     @abstractmethod
-    def sqrt(self, value: Any) -> Scalar:
-        """The non-negative square root of an element; `FieldError` if it is not in the field."""
-
-    @abstractmethod
     def from_coordinates(self, coordinates: Sequence[flint.fmpq]) -> Scalar:
         """The element with these coordinates."""
 

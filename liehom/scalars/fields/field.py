@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import ShapeError
+from liehom.errors import FieldError, ShapeError
 from liehom.typing import ScalarLike, VectorLike
 
 
@@ -269,6 +269,10 @@ class Field(ABC, Generic[M]):
     @abstractmethod
     def to_float(self, value: Scalar) -> float:
         """The nearest float (to a few units in the last place)."""
+
+    def sqrt(self, value: Any) -> Scalar:
+        """The non-negative square root of an element; `FieldError` if it is not in the field, or the field is RR."""
+        raise FieldError(f"square roots of {self.name} are not exact; use numpy.sqrt for {value}")
 
     @abstractmethod
     def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> M:
