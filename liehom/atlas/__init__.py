@@ -1,6 +1,6 @@
-"""Sweeps over families of pairs: every entry is decided, with a certificate, none declared.
+"""Sweeps: tables of pairs that are decided one by one, each with a certificate.
 
-In reading order: `entry` (one pair of a table, and the table), `sweep` (many pairs on any executor, kept on disk).
+In reading order: `entry` (one pair of a table, and the table), `sweep` (decisions on any executor, stored on disk).
 """
 
 from liehom.atlas.entry import Atlas as Atlas

@@ -1,4 +1,4 @@
-"""Entry: what was decided of one pair, with its proof as JSON; Atlas: a table of entries."""
+"""Entries of a sweep, each a pair with its verdict and certificate as JSON, and the table of entries."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from liehom.representations import Pair
 @final
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One pair of a sweep, and its verdict.
+    """One pair of a sweep with its verdict.
 
     Attributes
     ----------
     name : str
-        The catalogue name in canonical form, or the name of the pair that was given.
+        The catalogue name in canonical form, or the name of the given pair.
     dimension, subalgebra_dimension : int or None
-        Of g and h; None where there is no verdict.
+        dim g and dim h; None if there is no verdict.
     verdict : mapping
-        What ``verdict.to_json()`` gave; empty where there is no verdict.
+        The JSON object ``verdict.to_json()``; empty if there is no verdict.
     verified : bool
         Whether the independent checker has accepted the certificate.
     failure : str
-        Why there is no verdict; empty where there is one.
+        The reason if there is no verdict; otherwise empty.
 
     Examples
     --------
@@ -47,32 +47,32 @@ class Entry:
 
     @property
     def full(self) -> bool | None:
-        """Whether the pair is full; None where there is no verdict."""
+        """Whether the pair is full; None if there is no verdict."""
         return self.verdict.get("full")
 
     @property
     def proved(self) -> bool:
-        """Whether the verdict is proved, rather than numerical."""
+        """Whether the verdict is proved; False for a numerical verdict or none."""
         return bool(self.verdict.get("proved"))
 
     @property
     def reason(self) -> str:
-        """One sentence."""
+        """The reason for the verdict, or for its absence, in one sentence."""
         return str(self.verdict.get("reason", self.failure))
 
     @property
     def certificate(self) -> Certificate | None:
-        """The certificate; None for a numerical verdict or none."""
+        """The certificate; None if the verdict is numerical or absent."""
         data = self.verdict.get("certificate")
         return None if data is None else Certificate.from_json(data)
 
     def verify(self, pair: Pair | None = None) -> bool:
-        """Run the independent checker again.
+        """True if the independent checker accepts the certificate; raises `CertificateError` otherwise.
 
         Parameters
         ----------
         pair : Pair, optional
-            By default the one with this name in the catalogue.
+            By default the pair with this name in the catalogue.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class Entry:
 @final
 @dataclass(frozen=True, slots=True, repr=False)
 class Atlas:
-    """The entries of a sweep, in the order in which the pairs were given; what `sweep` returns.
+    """The entries of a sweep in the order of the given pairs, the result of `sweep`.
 
     Attributes
     ----------
@@ -131,17 +131,17 @@ class Atlas:
 
     @property
     def full(self) -> tuple[Entry, ...]:
-        """The pairs that are full, numerical verdicts included."""
+        """The entries of pairs that are full, numerical verdicts included."""
         return tuple(entry for entry in self.entries if entry.full is True)
 
     @property
     def not_full(self) -> tuple[Entry, ...]:
-        """The pairs that are not full, numerical verdicts included."""
+        """The entries of pairs that are not full, numerical verdicts included."""
         return tuple(entry for entry in self.entries if entry.full is False)
 
     @property
     def failures(self) -> tuple[Entry, ...]:
-        """The pairs without a verdict."""
+        """The entries without a verdict."""
         return tuple(entry for entry in self.entries if entry.full is None)
 
     def to_json(self) -> dict[str, Any]:
@@ -161,7 +161,7 @@ class Atlas:
         }
 
     def to_markdown(self) -> str:
-        """The table in Markdown.
+        """The table as a Markdown string.
 
         Examples
         --------

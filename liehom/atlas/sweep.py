@@ -1,4 +1,4 @@
-"""sweep: decide a list of pairs on any executor, every certificate checked, every entry kept as it is done."""
+"""Fullness decisions of many pairs on any executor, with checked certificates and stored results."""
 
 from __future__ import annotations
 
@@ -27,41 +27,41 @@ def sweep(
     verify: bool = True,
     progress: Callable[[Entry], object] | None = None,
 ) -> Atlas:
-    """Decide the fullness of many pairs.
+    """An `Atlas` of the fullness decisions of many pairs.
 
     Parameters
     ----------
     pairs : iterable of str or Pair
-        Catalogue names, which are built by the workers, or pairs.
+        Catalogue names, from which the workers construct the pairs, or pairs.
     executor : Executor or callable, optional
-        Any `concurrent.futures.Executor`, or a function that makes one: see `liehom.integrate_ensemble`. Without it
-        pairs are decided one after the other.
+        Any `concurrent.futures.Executor`, or a function that makes one; see `liehom.integrate_ensemble`. By default
+        the calling process decides the pairs one after the other.
     store : path, optional
-        A folder where each entry is written as JSON when it is done, under a name that depends on the pair alone: the
-        same call continues where it was interrupted, and a longer list begins with what is there. A name that ends
-        in .zarr is a zarr group.
+        A folder to which each finished entry is written as JSON. The file name depends only on the pair, so the same
+        call continues after an interruption, and a longer list reuses stored entries. A path that ends in .zarr is a
+        zarr group.
     retries : int
-        How often a pair is tried again whose worker was lost, and how many times in succession executors may break
-        with nothing finished in between.
+        How often a pair is submitted again after its worker was lost, and how many times in succession executors may
+        break without a finished pair in between.
     seed : int
-        As for `decide_fullness`.
+        The seed of `decide_fullness`.
     verify : bool
-        Whether each certificate is checked by the independent checker, by the worker.
+        Whether the worker runs the independent checker on each certificate.
     progress : callable, optional
-        Called with each entry when it is done.
+        Called with each entry when the pair is decided, in order of completion.
 
     Returns
     -------
     Atlas
-        The entries in the order of `pairs`, whatever the order in which they were done. A pair that the library
-        refuses has an entry without a verdict, which says why, and which is not stored.
+        The entries in the order of `pairs`. A pair that raises a `LiehomError` has an entry without a verdict, which
+        gives the reason and is not stored.
 
     Raises
     ------
     InputError
         If an entry of `pairs` is neither a name nor a pair.
     ParseError, CatalogError
-        If a name is not of the grammar of names.
+        If a name does not follow the grammar of names.
     WorkerLostError
         If workers are lost more often than `retries` allows.
 
@@ -76,16 +76,16 @@ def sweep(
     if isinstance(pairs, str | Pair):
         raise InputError(f"expected a list of pairs, got one: {pairs!r}")
     tasks = [_task(pair, seed, verify) for pair in pairs]
-    kept = None if store is None else open_store(store, f"fullness, seed {seed}, {'' if verify else 'not '}verified")
-    done = frozenset() if kept is None else kept.names()
+    results = None if store is None else open_store(store, f"fullness, seed {seed}, {'' if verify else 'not '}verified")
+    stored = frozenset() if results is None else results.names()
     found: dict[str, Entry] = {}
     for task in tasks:
-        if kept is not None and task.key in done and task.key not in found:
-            found[task.key] = Entry(**kept.load(task.key)[1])
+        if results is not None and task.key in stored and task.key not in found:
+            found[task.key] = Entry(**results.load(task.key)[1])
     todo = list({task.key: task for task in tasks if task.key not in found}.values())
     for number, entry in completed(_decided, todo, executor, retries=retries):
-        if kept is not None and not entry.failure:
-            kept.save(todo[number].key, {}, dataclasses.asdict(entry))
+        if results is not None and not entry.failure:
+            results.save(todo[number].key, {}, dataclasses.asdict(entry))
         found[todo[number].key] = entry
         if progress is not None:
             progress(entry)
@@ -93,6 +93,8 @@ def sweep(
 
 
 class _Task(NamedTuple):
+    """A pair to decide, and the name of its entry in the store."""
+
     key: str
     pair: str | Pair
     seed: int
@@ -100,6 +102,7 @@ class _Task(NamedTuple):
 
 
 def _task(pair: str | Pair, seed: int, verify: bool) -> _Task:
+    """The task of a catalogue name or of a pair, with a key that depends on the pair alone."""
     if isinstance(pair, str):
         name = str(parse(pair))
         return _Task(_key(name), name, seed, verify)
@@ -119,13 +122,13 @@ def _task(pair: str | Pair, seed: int, verify: bool) -> _Task:
 
 
 def _key(text: str) -> str:
-    """A name for a file: the first letters of a text that are letters, and a digest of all of it."""
+    """A file name from a string: its first 40 characters, letters and digits only, and a digest of the string."""
     short = "".join(c if c.isalnum() else "-" for c in text[:40]).strip("-")
     return f"{short}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
 
 
 def _decided(task: _Task) -> Entry:
-    """What workers do."""
+    """The entry of one task, computed by a worker."""
     name = task.pair if isinstance(task.pair, str) else task.pair.name or "pair without a name"
     try:
         pair = named_pair(task.pair) if isinstance(task.pair, str) else task.pair

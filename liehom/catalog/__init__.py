@@ -1,7 +1,8 @@
-"""Named algebras, representations and pairs: names that parse, print and build what they say.
+"""Algebras, representations and pairs by name.
 
-In reading order: `names` (the grammar), `linear` (names to matrices), `algebras` (algebras and
-representations), `subalgebras` and `special` (what stands under the bar), `pairs`, `claims` (what tests expect).
+In reading order: `names` (the grammar), `linear` (names to matrices), `algebras` (algebras and representations),
+`subalgebras` and `special` (the denominator of a name ``G/H``), `pairs`, `claims` (the expectations of tests).
+The names are listed in docs/catalogue.md.
 """
 
 from liehom.catalog.algebras import algebra as algebra

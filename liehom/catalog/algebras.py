@@ -53,10 +53,11 @@ EXAMPLES = (
     "bianchi(VII)",
     "so(3)+sl(2)",
 )
+"""One name of each kind, for hints in messages."""
 
 
 def algebra(name: str) -> LieAlgebra:
-    """The Lie algebra with a catalogue name; a sum is the direct sum.
+    """The Lie algebra with a catalogue name; '+' means the direct sum.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ def algebra(name: str) -> LieAlgebra:
     Raises
     ------
     CatalogError
-        If the name is not in the catalogue; lists the nearest ones.
+        If the name is not in the catalogue; the message lists the nearest names.
 
     Examples
     --------
@@ -78,18 +79,18 @@ def algebra(name: str) -> LieAlgebra:
 
 
 def representation(name: str) -> Representation:
-    """The representation with a catalogue name: a linear Lie algebra on the space of its matrices.
+    """The representation with a catalogue name: the defining representation of a linear Lie algebra.
 
     Parameters
     ----------
     name : str
-        Such as 'so(4)', 'g2', 'spin(9,1)', 'sl(2,H)+sp(1)', 'tensor(sl(4),sl(2))', 'S2(gl(2))', or 'sym(4)',
-        which is so(4) by conjugation on Sym(4); see `liehom.catalog.linear` for all heads.
+        Such as 'so(4)', 'g2', 'spin(9,1)', 'sl(2,H)+sp(1)', 'tensor(sl(4),sl(2))', 'S2(gl(2))', or 'sym(4)', the
+        conjugation action of so(4) on Sym(4). See `liehom.catalog.linear` for all heads.
 
     Raises
     ------
     CatalogError
-        If the name is not in the catalogue; lists the nearest ones.
+        If the name is not in the catalogue; the message lists the nearest names.
 
     Examples
     --------
@@ -125,28 +126,30 @@ def algebra_of(tree: Expression) -> LieAlgebra:
 
 
 def affine_algebra(matrices: IntegerArray, name: str | None = None) -> LieAlgebra:
-    """The affine algebra h + R^N of a linear Lie algebra h, the translations last."""
-    # The matrices are the basis of h itself: a representation.
+    """The affine algebra h + R^N of a linear Lie algebra h: first h, then the translations."""
+    # no check: the matrices are the basis of h, so they are a representation
     return semidirect_sum(linear_lie_algebra(matrices), matrices, size=matrices.shape[1], name=name, check=False)
 
 
 def representation_of(matrices: IntegerArray, name: str) -> Representation:
-    """The defining representation of a closed integer matrix basis."""
+    """The defining representation of a matrix basis that is closed under commutators."""
     size = int(matrices.shape[1])
     if len(matrices) == 0:
         return Representation(linear_lie_algebra(matrices, name), [], size=size, name=name)
     made = lie_closure(matrices, close=False, name=name)
-    # The structure constants are those of the matrices.
+    # no check: the structure constants come from the matrices
     return Representation(made.algebra, made.matrices, size=size, name=name, check=False)
 
 
 def _power(term: Term) -> int:
+    """The n of R^n."""
     if term.items or term.after:
         raise CatalogError(f"R^n is written with a circumflex, as in R^2; got {term}")
     return 0 if term.head == "0" else int(term.head[2:] or 1)
 
 
 def _single(term: Term) -> int:
+    """The only parameter of a term, an integer."""
     values = term.integers()
     if len(values) != 1 or term.after:
         raise CatalogError(f"{term.head} takes one integer, got {term}")

@@ -1,7 +1,6 @@
-"""What the listed pairs are expected to be: dimensions, and whether they are full.
+"""Expected dimensions and fullness of the listed pairs, from the classification of full pairs.
 
-Read by tests only, which build each pair, count its dimensions and decide it; no decision looks here.
-The expectations are those of the classification of full pairs.
+Only tests read the expectations: they build each pair, count its dimensions and decide it. No decision uses them.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from typing import NamedTuple, final
 @final
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What is expected of a pair.
+    """The expected dimensions and fullness of a pair.
 
     Attributes
     ----------
@@ -22,7 +21,7 @@ class Claim:
         dim g and dim h.
     full : bool
     reason : str
-        Half a line in words.
+        A phrase that names the pair or the reason.
     """
 
     name: str

@@ -1,7 +1,7 @@
-"""Names of families of Lie algebras that come from no matrices: kinematical, conformal, solvable, free nilpotent.
+"""Names of families of Lie algebras without matrices: kinematical, conformal, solvable, free nilpotent.
 
 iso(p,q)                poincare(p, q)
-galilei(n), bargmann(n) with and without mass
+galilei(n), bargmann(n) without and with mass
 conformal(p), conformal(p,q), aff(n), filiform(n), oscillator(n), free_nilpotent(g,k)
 bianchi(I), ..., bianchi(VI;a), bianchi(VII;a)
 """
@@ -30,17 +30,17 @@ MAX_FREE_LENGTH = 3000
 
 
 def is_family(term: Term) -> bool:
-    """Whether the head of a name is that of a family."""
+    """Whether the head of a term names a family."""
     return term.head in _FAMILIES
 
 
 def family_algebra(term: Term) -> LieAlgebra:
-    """The Lie algebra with the name of a family.
+    """The Lie algebra that a term with the name of a family denotes.
 
     Raises
     ------
     CatalogError
-        If the parameters are none of the family, or too large for a name.
+        If the parameters are not valid for the family, or exceed the limits of names.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def family_algebra(term: Term) -> LieAlgebra:
         raise CatalogError(f"{term.head} takes {wanted} integer(s), got {term}")
     too_many = term.head == "free_nilpotent" and max(values[0], 2) ** values[1] > MAX_FREE_LENGTH
     if max(values) > MAX_PARAMETER or too_many:
-        raise CatalogError(f"{term} is larger than what the catalogue builds; call liehom's function of that family")
+        raise CatalogError(f"{term} is larger than the catalogue builds; call the function of liehom for this family")
     try:
         return build(*values)
     except CatalogError:
@@ -68,7 +68,7 @@ def family_algebra(term: Term) -> LieAlgebra:
 def _bianchi(term: Term) -> LieAlgebra:
     kind = term.items[0] if len(term.items) == 1 else None
     if not isinstance(kind, Term) or kind.items or len(term.after) > 1:
-        raise CatalogError(f"bianchi takes a Roman number, and perhaps a parameter as in bianchi(VII;2); got {term}")
+        raise CatalogError(f"bianchi takes a Roman numeral, and perhaps a parameter as in bianchi(VII;2); got {term}")
     try:
         return bianchi(kind.head, *term.after)
     except InputError as error:

@@ -1,4 +1,4 @@
-"""From a name to matrices: linear Lie algebras as integer matrix bases.
+"""Integer matrix bases of linear Lie algebras from their names.
 
 classical       gl, sl, so, su, u, sp, spin with the parameters of `liehom.algebra.matrices.named_matrices`; so*(2n)
 other scalars   sl(n,Q(sqrt(c))), sl(n,Q(a,b)): over a quadratic field, or over the quaternion algebra (a, b)
@@ -30,12 +30,12 @@ MAX_SPIN = 16
 
 
 def linear_matrices(tree: Expression) -> IntegerArray:
-    """The matrix basis that a name stands for, shape (dim, N, N).
+    """The matrix basis that a parsed name denotes, shape (dim, N, N).
 
     Raises
     ------
     CatalogError
-        If the name stands for no linear Lie algebra.
+        If the name does not denote a linear Lie algebra.
 
     Examples
     --------
@@ -51,14 +51,14 @@ def linear_matrices(tree: Expression) -> IntegerArray:
 
 
 def is_linear(tree: Expression) -> bool:
-    """Whether the heads of a name are those of linear Lie algebras."""
+    """Whether all heads of a parsed name denote linear Lie algebras."""
     return all(
         t.head in (*CLASSICAL_KINDS, *EXCEPTIONAL, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree)
     )
 
 
 def scalar_parameters(term: Term) -> tuple[int, ...]:
-    """Squares of the units of the scalars over which a classical algebra lives: () for R, (-1,) for C, ...
+    """Doubling parameters of the scalars of a classical algebra: () for R, (-1,) for C, (-1, -1) for H.
 
     Examples
     --------
@@ -72,7 +72,7 @@ def scalar_parameters(term: Term) -> tuple[int, ...]:
 
 
 def _ground(letter: Term) -> tuple[int, ...]:
-    """The parameters of R, C, H, Q(sqrt(c)), Q(a,b)."""
+    """The doubling parameters of R, C, H, Q(sqrt(c)) or Q(a,b)."""
     if letter.head in "RCH" and not letter.items:
         return {"R": (), "C": (-1,), "H": (-1, -1)}[letter.head]
     if letter.head == "Q":
@@ -80,12 +80,12 @@ def _ground(letter: Term) -> tuple[int, ...]:
             return letter.items[0].integers()
         if len(letter.items) == 2:
             return letter.integers()
-    raise CatalogError(f"{letter} are no scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
+    raise CatalogError(f"{letter} does not denote scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
 
 
 def _term_matrices(term: Term) -> IntegerArray:
     if term.after:
-        raise CatalogError(f"{term} is no linear Lie algebra: unexpected ';'")
+        raise CatalogError(f"{term} is not a linear Lie algebra: unexpected ';'")
     if term.head in CLASSICAL_KINDS:
         return _classical(term)
     if term.head in EXCEPTIONAL:
@@ -95,7 +95,7 @@ def _term_matrices(term: Term) -> IntegerArray:
         build = families.symmetric_power if power[1] == "S" else families.exterior_power
         return build(linear_matrices(_one(term)), int(power[2]))
     if term.head not in _HEADS:
-        raise CatalogError(f"{term} is no linear Lie algebra of the catalogue; see liehom.catalog.linear for the heads")
+        raise CatalogError(f"{term} is not a linear Lie algebra of the catalogue; heads: see liehom.catalog.linear")
     return _HEADS[term.head](term)
 
 
@@ -107,7 +107,7 @@ def _classical(term: Term) -> IntegerArray:
     if isinstance(second, int):
         return classical_matrices(term.head, n, second)
     if isinstance(second, Sum):
-        raise CatalogError(f"{second} are no scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
+        raise CatalogError(f"{second} does not denote scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
     ground = _ground(second)
     if second.head != "Q":
         return classical_matrices(term.head, n, second.head)
@@ -121,11 +121,11 @@ def _classical(term: Term) -> IntegerArray:
 def _refuse_large(term: Term, first: int, second: int = 0) -> None:
     total, limit = first + second, MAX_SPIN if term.head == "spin" else MAX_SIZE
     if total * 2 ** len(scalar_parameters(term)) > limit:
-        raise CatalogError(f"{term} is larger than what the catalogue builds, {limit} real dimensions")
+        raise CatalogError(f"{term} is larger than the catalogue builds, {limit} real dimensions")
 
 
 def _scalars(first: Term, extra: Term, size: int) -> IntegerArray:
-    """Scalars on R^size that commute with a classical algebra over C, H or another ground."""
+    """Matrices on R^size of scalars that commute with a classical algebra over C, H, Q(sqrt(c)) or Q(a,b)."""
     if extra == Term("R"):
         return np.eye(size, dtype=np.int64)[None]
     ground = scalar_parameters(first)
@@ -186,7 +186,7 @@ def _tensor(term: Term) -> IntegerArray:
 
 
 def _blocks(term: Term) -> IntegerArray:
-    """The direct sum of algebras on the direct sum of their spaces."""
+    """The matrix basis of the direct sum of algebras on the direct sum of their spaces."""
     parts = [linear_matrices(_expression(x)) for x in term.items]
     total = sum(part.shape[1] for part in parts)
     placed, offset = [], 0
@@ -197,7 +197,7 @@ def _blocks(term: Term) -> IntegerArray:
 
 
 def at_offset(matrices: IntegerArray, offset: int, size: int) -> IntegerArray:
-    """The matrices as a block that begins at the offset in matrices of the given size, zero elsewhere."""
+    """Matrices (dim, size, size) with the given matrices as the diagonal block that begins at `offset`."""
     n = matrices.shape[1]
     out = np.zeros((len(matrices), size, size), dtype=np.int64)
     out[:, offset : offset + n, offset : offset + n] = matrices

@@ -1,4 +1,4 @@
-"""The grammar of catalogue names: text to tree and back.
+"""The grammar of catalogue names: from strings to trees and back.
 
     pair    =  sum '/' sum  |  term                 so(4)/so(3), sp(3)/sp(2)+sp(1), affine(g2), sym(4;3,1)
     sum     =  term { '+' term }
@@ -6,8 +6,8 @@
     items   =  item { ',' item },   item = integer | sum
     head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
 
-Blanks are ignored.  Printing a tree and parsing it again gives the same tree; `parse` drops parameters that
-say nothing, so that 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.
+Blanks are ignored. Printing a tree and parsing the string gives the same tree. `parse` drops parameters that are the
+default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Term:
     head : str
     items : tuple of int, Term or Sum
     after : tuple of int
-        What stands behind the semicolon.
+        The integers after the semicolon.
     """
 
     head: str
@@ -48,7 +48,7 @@ class Term:
         return f"{self.head}({inside};{','.join(map(str, self.after))})" if self.after else f"{self.head}({inside})"
 
     def integers(self) -> tuple[int, ...]:
-        """The parameters, if all are integers; `CatalogError` otherwise."""
+        """The parameters as integers; raises `CatalogError` if one is not an integer."""
         found = tuple(x for x in self.items if isinstance(x, int))
         if len(found) != len(self.items):
             raise CatalogError(f"the parameters of {self} must be integers")
@@ -83,13 +83,13 @@ Item: TypeAlias = int | Term | Sum
 Name: TypeAlias = Term | Sum | Quotient
 
 
-def parse(text: str) -> Name:
-    """The tree of a name.
+def parse(name: str) -> Name:
+    """The tree of a catalogue name: a `Term`, `Sum` or `Quotient`.
 
     Raises
     ------
     CatalogError
-        If the text does not follow the grammar; says where.
+        If the string does not follow the grammar; the message gives the position.
 
     Examples
     --------
@@ -100,32 +100,32 @@ def parse(text: str) -> Name:
     ...
     liehom.errors.CatalogError: 'g2/su(3' is not a name of the catalogue: expected ')' at position 7
     """
-    if not isinstance(text, str):
-        raise CatalogError(f"a name is a text such as 'so(4)/so(3)', got {text!r}")
-    return _Parser(text).name()
+    if not isinstance(name, str):
+        raise CatalogError(f"a name is a string such as 'so(4)/so(3)', got {name!r}")
+    return _Parser(name).name()
 
 
-def parse_expression(text: str) -> Expression:
-    """The tree of a name without '/'.
+def parse_expression(name: str) -> Expression:
+    """The tree of a catalogue name without '/': a `Term` or `Sum`.
 
     Raises
     ------
     CatalogError
-        If the text does not follow the grammar, or names a pair.
+        If the string does not follow the grammar, or names a pair.
     """
-    tree = parse(text)
+    tree = parse(name)
     if isinstance(tree, Quotient):
-        raise CatalogError(f"{text!r} is the name of a pair, not of an algebra")
+        raise CatalogError(f"{name!r} is the name of a pair, not of an algebra")
     return tree
 
 
 def terms(tree: Expression) -> tuple[Term, ...]:
-    """The summands; of a term itself."""
+    """The summands of an expression; for a term, the term alone."""
     return tree.terms if isinstance(tree, Sum) else (tree,)
 
 
-def unknown(text: str, known: Iterable[str], what: str) -> CatalogError:
-    """The error for a name that follows the grammar but stands for nothing, with the nearest known names.
+def unknown(name: str, known: Iterable[str], kind: str) -> CatalogError:
+    """The error for a name that follows the grammar but denotes nothing, with the nearest known names.
 
     Examples
     --------
@@ -134,18 +134,19 @@ def unknown(text: str, known: Iterable[str], what: str) -> CatalogError:
     >>> unknown("G2/SU3", ["so(4)/so(3)", "g2/su(3)"], "pair")
     CatalogError("'G2/SU3' is not the name of a pair in the catalogue; the nearest are g2/su(3)")
     """
-    by_folded = {name.casefold(): name for name in known}
-    near = [by_folded[name] for name in get_close_matches(text.casefold(), by_folded, n=3, cutoff=0.5)]
+    by_folded = {other.casefold(): other for other in known}
+    near = [by_folded[other] for other in get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.5)]
     hint = f"; the nearest are {', '.join(near)}" if near else ""
-    return CatalogError(f"{text!r} is not the name of {_article(what)} in the catalogue{hint}")
+    return CatalogError(f"{name!r} is not the name of {_article(kind)} in the catalogue{hint}")
 
 
-def _article(what: str) -> str:
-    return f"an {what}" if what[0] in "aeiou" else f"a {what}"
+def _article(noun: str) -> str:
+    """The noun with its indefinite article."""
+    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
 
 
 def canonical(term: Term) -> Term:
-    """The term without parameters that say nothing."""
+    """The term without a second parameter that is the default."""
     if len(term.items) == 2 and not term.after:
         silent: Item = Term("R") if term.head in ("gl", "sl") else 0
         if term.items[1] == silent and term.head in CLASSICAL_KINDS:
@@ -154,7 +155,7 @@ def canonical(term: Term) -> Term:
 
 
 class _Parser:
-    """Recursive descent over the tokens of one text."""
+    """Recursive descent over the tokens of one string."""
 
     def __init__(self, text: str) -> None:
         self.text = text

@@ -1,11 +1,11 @@
-"""Pairs by name: an algebra of matrices, and the subalgebra that a name under the bar stands for.
+"""Pairs by name: the linear Lie algebra G and the subalgebra H of a name ``G/H``.
 
 affine(H)       H + R^N over H                       sym(n;m1,m2,...)   so(n), a symmetric matrix with multiplicities
 G/0, G/G        trivial ones                         e(n)/so(n), aff(1)/R, R^n/R^m, heisenberg(n)/R
-G/Pk, G/P       the stabiliser of a k-dimensional subspace of the scalars, isotropic where G preserves a form;
-                P = P1; in e6, of the line of an idempotent; in g2(2), of a null line
-G/B             sl(n) and gl(n): of a complete flag
-G/H             what the table of `special` names; otherwise H as blocks of the matrices of G, wherever they fit
+G/Pk, G/P       the stabilizer of a k-dimensional subspace over the scalars, isotropic if G preserves a form; P = P1;
+                in e6 the stabilizer of the line of an idempotent, in g2(2) of a null line
+G/B             in sl(n) and gl(n) the stabilizer of a complete flag
+G/H             the subalgebra in the table of `special`; otherwise H as diagonal blocks of the matrices of G
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ def pair(name: str) -> Pair:
     ----------
     name : str
         Such as 'so(4)/so(3)', 'su(3)/u(2)', 'sl(3)/P1', 'affine(spin(9,1)+R)', 'sym(4;3,1)'; `pair_names` lists
-        one of each kind, and sizes are free.
+        one of each kind; other sizes are valid too.
 
     Returns
     -------
     Pair
-        Its name is the given one in canonical form; it prints as the call that makes it.
+        Named by the canonical form of the given name; its repr is the call that constructs it.
 
     Raises
     ------
     CatalogError
-        If the name is not in the catalogue; lists the nearest ones.
+        If the name is not in the catalogue; the message lists the nearest names.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def pair(name: str) -> Pair:
 
 
 def pair_names() -> tuple[str, ...]:
-    """Names of pairs of every kind, full ones first.
+    """Names of pairs of every kind, full pairs first.
 
     Examples
     --------
@@ -88,19 +88,19 @@ def _affine(tree: Term) -> Pair:
         raise unknown(str(tree), CLAIMS, "pair")
     matrices = linear_matrices(tree.items[0])
     algebra = affine_algebra(matrices, str(tree))
-    # The linear part of an affine algebra is a subalgebra.
+    # no check: the linear part of an affine algebra is a subalgebra
     return _made(algebra, _first(len(matrices), algebra.dimension), tree)
 
 
 def _symmetric(tree: Term) -> Pair:
-    """so(n) with the stabiliser of diag(1, ..., 1, 2, ..., 2, ...) in the symmetric matrices."""
+    """so(n) with the stabilizer of diag(1, ..., 1, 2, ..., 2, ...) in the symmetric matrices."""
     (n,) = tree.integers() if len(tree.items) == 1 else (0,)
     if n < 1 or any(m < 1 for m in tree.after) or sum(tree.after) != n:
         raise CatalogError(f"sym(n;m1,m2,...) needs positive multiplicities with sum n; got {tree}")
     matrices = linear_matrices(Term("so", (n,)))
     point = np.diag(np.repeat(np.arange(1, len(tree.after) + 1), tree.after))
     rows = preserving(matrices, commuting=[point])
-    return _made(linear_lie_algebra(matrices, f"so({n})"), rows, tree)  # a stabiliser
+    return _made(linear_lie_algebra(matrices, f"so({n})"), rows, tree)  # a stabilizer
 
 
 def _quotient(tree: Quotient) -> Pair:
@@ -114,7 +114,7 @@ def _quotient(tree: Quotient) -> Pair:
     algebra = linear_lie_algebra(matrices, str(top))
     rows = _rows(top, bottom, matrices)
     if rows is not None:
-        return _made(algebra, rows, tree)  # it preserves something: see `preserving`
+        return _made(algebra, rows, tree)  # no check: the stabilizer of something, see `preserving`
     rows = _included(matrices, bottom)
     if rows is not None:
         return _made(algebra, rows, tree, check=True)
@@ -122,7 +122,7 @@ def _quotient(tree: Quotient) -> Pair:
 
 
 def _rows(top: Expression, bottom: Expression, matrices: IntegerArray) -> IntegerArray | None:
-    """The rows of a subalgebra that preserves something, or None."""
+    """The rows of a subalgebra that is the stabilizer of something, or None."""
     if bottom == Term("0"):
         return np.zeros((0, len(matrices)), dtype=np.int64)
     if not isinstance(top, Term):
@@ -133,13 +133,13 @@ def _rows(top: Expression, bottom: Expression, matrices: IntegerArray) -> Intege
 
 
 def _included(matrices: IntegerArray, bottom: Expression) -> IntegerArray | None:
-    """The subalgebra whose matrices are blocks, in some order and place, of elements of the algebra."""
+    """The rows of the subalgebra whose matrices are diagonal blocks of the algebra, in some order, or None."""
     if not is_linear(bottom):
         return None
     size = matrices.shape[1]
     try:
         whole = linear_matrices(bottom)
-    except CatalogError:  # a sum of blocks is no algebra with scalars
+    except CatalogError:  # the sum means blocks, not an algebra with scalars
         whole = None
     if whole is not None and whole.shape[1] == size:
         rows = coordinates(matrices, whole)
@@ -153,7 +153,7 @@ def _included(matrices: IntegerArray, bottom: Expression) -> IntegerArray | None
 
 
 def _not_linear(top: Expression, bottom: Expression) -> tuple[LieAlgebra, IntegerArray] | None:
-    """Abelian, Euclidean and Heisenberg algebras with the subalgebras that have a name."""
+    """Abelian, Euclidean, affine and Heisenberg algebras with the rows of a named subalgebra, or None."""
     if not isinstance(top, Term) or not isinstance(bottom, Term):
         return None
     known = top.head in ("0", "R", "e", "heisenberg", "aff", "affine") or top.head.startswith("R^")
@@ -175,5 +175,5 @@ def _not_linear(top: Expression, bottom: Expression) -> tuple[LieAlgebra, Intege
 
 
 def _first(k: int, n: int) -> IntegerArray:
-    """The rows of the first k basis elements."""
+    """The rows (k, n) of the first k basis elements."""
     return np.eye(n, dtype=np.int64)[:k]

@@ -1,7 +1,6 @@
-"""Subalgebras that have a name under the bar: parabolics, symmetric subalgebras, stabilisers of octonions.
+"""Named subalgebras H of names ``G/H``: parabolics, symmetric subalgebras, stabilizers of octonions.
 
-Everything here is the stabiliser of a subspace, a point, a linear map or a form, in the coordinates of
-`liehom.algebra.matrices`.
+Each is the stabilizer of a subspace, a point, a linear map or a form, in the coordinates of `liehom.algebra.matrices`.
 """
 
 from __future__ import annotations
@@ -21,12 +20,12 @@ Rows = IntegerArray | None
 
 
 def parabolic_rows(top: Term, head: str, matrices: IntegerArray) -> IntegerArray:
-    """The parabolic subalgebra P, Pk or B of an algebra of matrices, as rows of coefficients.
+    """The parabolic subalgebra P, Pk or B of an algebra of matrices, as rows of coefficients (m, dim).
 
     Raises
     ------
     CatalogError
-        If the catalogue has no such parabolic.
+        If the catalogue has no such parabolic subalgebra.
     """
     size = matrices.shape[1]
     unit = _units(top)
@@ -46,11 +45,11 @@ def parabolic_rows(top: Term, head: str, matrices: IntegerArray) -> IntegerArray
     if str(top) == "g2(2)" and k == 1:
         plus, minus = _split_octonion_units()
         return preserving(matrices, subspaces=[(_axis(plus, 7) + _axis(minus, 7))[None]])
-    raise CatalogError(f"{top}/{head}: no such parabolic in the catalogue")
+    raise CatalogError(f"{top}/{head}: there is no such parabolic subalgebra in the catalogue")
 
 
 def special_rows(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """The rows of the subalgebra that a name under the bar stands for, or None if no rule here names it."""
+    """The rows (m, dim) of the subalgebra with a name in the rules of this module, or None."""
     found = _exceptional(f"{top}/{bottom}", matrices)
     for rule in _RULES:
         if found is None:
@@ -59,7 +58,7 @@ def special_rows(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
 
 
 def _exceptional(name: str, matrices: IntegerArray) -> Rows:
-    """The stabiliser of a sum of coordinate vectors: idempotents, the identity, an octonion."""
+    """The stabilizer of a sum of coordinate vectors (idempotents, the identity, an octonion), or None."""
     plus, minus = _split_octonion_units()
     points: dict[str, tuple[int, ...]] = {
         "f4/spin(9)": (0,),
@@ -83,7 +82,7 @@ def _exceptional(name: str, matrices: IntegerArray) -> Rows:
 
 
 def _unitary(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """su(p,q)/u(p-1,q), su(p,q)/u(p,q-1): the stabiliser of a complex line."""
+    """The stabilizer of a complex line, for su(p,q)/u(p-1,q) and su(p,q)/u(p,q-1), or None."""
     if top.head != "su" or not isinstance(bottom, Term) or bottom.head != "u":
         return None
     (p, q), below = _signature(top), _signature(bottom)
@@ -94,7 +93,7 @@ def _unitary(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
 
 
 def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """su(n)/s(u(p)+u(q)), su(p,q)/s(u(p)+u(q)), sl(n)/s(gl(p)+gl(q)): the stabiliser of two summands."""
+    """The stabilizer of two summands, for su(n)/s(u(p)+u(q)), su(p,q)/s(u(p)+u(q)), sl(n)/s(gl(p)+gl(q)), or None."""
     inner = bottom.items[0] if isinstance(bottom, Term) and bottom.head == "s" and len(bottom.items) == 1 else None
     if not isinstance(inner, Sum) or len(inner.terms) != 2 or {t.head for t in inner.terms} - {"u", "gl"}:
         return None
@@ -109,7 +108,7 @@ def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Ro
 
 
 def _symmetric(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """su(n)/so(n), sp(n)/u(n), sp(2n,R)/u(n), sp(2n,R)/gl(n), sp(2n,R)/sp(2p,R)+sp(2q,R)."""
+    """Stabilizers for su(n)/so(n), sp(n)/u(n), sp(2n,R)/u(n), sp(2n,R)/gl(n), sp(2n,R)/sp(2p,R)+sp(2q,R), or None."""
     size = matrices.shape[1]
     if isinstance(bottom, Sum):
         return _symplectic_sum(top, bottom, matrices)
@@ -145,7 +144,7 @@ _RULES: Sequence[Callable[[Term, Expression, IntegerArray], Rows]] = (_unitary, 
 
 
 def _units(top: Term) -> int:
-    """The real dimension of the scalars."""
+    """The real dimension of the scalars of a classical algebra: 1, 2 or 4."""
     return int(2 ** len(scalar_parameters(top)))
 
 
@@ -164,19 +163,19 @@ def _axis(i: int, size: int) -> IntegerArray:
 
 
 def _leading(k: int, size: int) -> IntegerArray:
-    """The span of the first k coordinate vectors."""
+    """The first k coordinate vectors as rows (k, size)."""
     rows: IntegerArray = np.eye(size, dtype=np.int64)[:k]
     return rows
 
 
 def _split(size: int, k: int) -> list[IntegerArray]:
-    """The first k coordinates and the others."""
+    """The coordinate subspaces of the first k and of the other coordinates, without empty ones."""
     one = np.eye(size, dtype=np.int64)
     return [w for w in (one[:k], one[k:]) if len(w)]
 
 
 def _isotropic(k: int, unit: int, size: int) -> IntegerArray:
-    """The span over the scalars of e_i + e_(n-1-i), i < k, isotropic for diag(1, ..., 1, -1, ..., -1)."""
+    """Rows of the scalar span of e_i + e_(n-1-i), i < k, which is isotropic for diag(1, ..., 1, -1, ..., -1)."""
     n = size // unit
     one = np.eye(n, dtype=np.int64)
     rows = np.array([one[i] + one[n - 1 - i] for i in range(k)])

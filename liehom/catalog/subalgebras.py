@@ -1,6 +1,6 @@
-"""Subalgebras of linear Lie algebras by what they preserve, and by inclusion of matrices.
+"""Subalgebras of linear Lie algebras as stabilizers, and by inclusion of matrices.
 
-Each condition is linear in the element X of g, and those that satisfy it are closed under commutators:
+Each of these conditions is linear in X, and the X that satisfy it are closed under commutators:
 
     X W in W for a subspace W,   X v = 0,   X T = T X,   X^T F + F X = 0.
 """
@@ -13,6 +13,7 @@ from math import prod
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.closure.sparse_commutators import entries_of, private_places
@@ -20,27 +21,26 @@ from liehom.algebra.matrices.matrix_basis import null_space
 from liehom.catalog.linear import at_offset
 from liehom.typing import IntegerArray
 
-NOTHING: Sequence[IntegerArray] = ()
-
 
 def preserving(
     matrices: IntegerArray,
     *,
-    subspaces: Sequence[IntegerArray] = NOTHING,
-    points: Sequence[IntegerArray] = NOTHING,
-    commuting: Sequence[IntegerArray] = NOTHING,
-    forms: Sequence[IntegerArray] = NOTHING,
+    subspaces: Sequence[IntegerArray] = (),
+    points: Sequence[IntegerArray] = (),
+    commuting: Sequence[IntegerArray] = (),
+    forms: Sequence[IntegerArray] = (),
 ) -> IntegerArray:
-    """Basis of the combinations of the matrices that satisfy all conditions, as rows of coefficients (m, dim).
+    """Basis of the combinations of the matrices that satisfy all conditions, as rows (m, dim).
 
     Parameters
     ----------
     matrices : (dim, N, N) integers
     subspaces : sequence of (r, N) integers
-        Rows that span the subspaces to keep.
+        Rows that span the subspaces W.
     points : sequence of (N,) integers
-        Vectors to kill.
+        The vectors v.
     commuting, forms : sequences of (N, N) integers
+        The matrices T and F.
 
     Examples
     --------
@@ -63,9 +63,9 @@ def preserving(
 
 
 def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray | None:
-    """Coefficients (m, dim) of elements in a matrix basis, scaled to integers; None if one is not in the span.
+    """Integer rows (m, dim) with the span of elements in a matrix basis, or None if one is not in the span.
 
-    Each row may be multiplied by a positive integer: what matters is the span of the rows.
+    Each row is a positive multiple of the coefficients of one element.
     """
     if matrices.shape[1:] != elements.shape[1:]:
         return None
@@ -74,26 +74,26 @@ def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray 
         return rows if not elements.any() else None
     flat = matrices.reshape(len(matrices), -1)
     wanted = elements.reshape(len(elements), -1)
-    places = private_places([entries_of(a) for a in square_matrices(list(matrices))], matrices.shape[1])
-    if places is None:
+    positions = private_places([entries_of(a) for a in square_matrices(list(matrices))], matrices.shape[1])
+    if positions is None:
         return _solved(flat, wanted)
-    own = flat[range(len(flat)), places]
+    own = flat[range(len(flat)), positions]
     scale = int(np.lcm.reduce(np.abs(own)))
-    rows = wanted[:, places] * (scale // own)
+    rows = wanted[:, positions] * (scale // own)
     used = np.flatnonzero(rows.any(axis=0))
     largest = max(np.abs(rows).sum(axis=1).max(initial=0) * np.abs(flat).max(), scale * np.abs(wanted).max(initial=0))
-    kind: Any = float if largest < 2**53 else object  # float products are exact below, and faster
-    product: Any = rows[:, used].astype(kind) @ flat[used].astype(kind)
+    kind = np.dtype(float if largest < 2**53 else object)  # float64 products below 2^53 are exact, and faster
+    product: npt.NDArray[Any] = rows[:, used].astype(kind) @ flat[used].astype(kind)
     return rows if np.array_equal(product, scale * wanted.astype(kind)) else None
 
 
 def _solved(flat: IntegerArray, wanted: IntegerArray) -> IntegerArray | None:
-    """The coefficients from the linear relations of both families together."""
+    """The coefficients by the linear relations between both families, or None."""
     m, n = len(wanted), len(flat)
     relations = null_space(np.concatenate([flat, wanted]).T)
     if len(relations) != m:
         return None
-    # The basis is independent, so each wanted element is the free column of one relation.
+    # the basis is independent, so each wanted element is the free column of one relation
     free = relations[:, n:]
     if np.count_nonzero(free) != m:
         return None
@@ -102,7 +102,7 @@ def _solved(flat: IntegerArray, wanted: IntegerArray) -> IntegerArray | None:
 
 
 def placements(parts: Sequence[IntegerArray], size: int) -> Iterator[IntegerArray]:
-    """The ways to put families of matrices as consecutive blocks on R^size, in any order, from either end."""
+    """Matrix bases with the parts as consecutive diagonal blocks on R^size, in any order, from either end."""
     total = sum(part.shape[1] for part in parts)
     if total > size:
         return

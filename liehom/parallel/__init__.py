@@ -1,7 +1,7 @@
-"""Work that is spread over executors and kept on disk: what ensembles, measured orders and sweeps share.
+"""Many tasks on any executor, and their results on disk; used by ensembles, measured orders and sweeps.
 
-In reading order: `tasks` (a function of many tasks on any `concurrent.futures.Executor`, loss of workers survived),
-`store` (results as they come, in a folder or a zarr group, so that nothing finished is done again).
+In reading order: `tasks` (results of a function on any `concurrent.futures.Executor`; tasks of lost workers are
+submitted again), `store` (finished results in a folder or a zarr group, so that no result is computed twice).
 """
 
 from liehom.parallel.store import Store as Store

@@ -1,6 +1,7 @@
-"""Store: results as they come, on disk, each whole or not there; a folder of .npz and .json files, or a zarr group.
+"""Stores of finished results on disk: a folder of .npz and .json files, or a zarr group.
 
-Nothing in it is a pickle.  A store knows by a fingerprint which problem it belongs to.
+A shard is written under a temporary name and then renamed, so a reader never sees a partial shard. A store has the
+fingerprint of its problem and contains no pickles.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ FORMAT = "liehom-store"
 ABOUT = "store.json"
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
 DAMAGED = (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error)
-"""What reading a damaged file may raise."""
+"""The exceptions that reading a damaged file may raise."""
 
 Shard: TypeAlias = tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]
-"""Arrays by name, and facts that JSON can hold."""
+"""Arrays by name, and a JSON object of facts."""
 
 
 class Store(ABC):
-    """Shards by name; made by `open_store`.
+    """Shards by name on disk, the result of `open_store`.
 
     Examples
     --------
@@ -47,26 +48,26 @@ class Store(ABC):
 
     @abstractmethod
     def names(self) -> frozenset[str]:
-        """The names of the shards that are there, whole."""
+        """The names of all complete shards."""
 
     @abstractmethod
     def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
-        """Write a shard; one that is there is replaced.
+        """Write a shard, replacing a shard of the same name.
 
         Raises
         ------
         InputError
-            If it cannot be written.
+            If the shard cannot be written.
         """
 
     @abstractmethod
     def load(self, name: str) -> Shard:
-        """Read a shard.
+        """The arrays and facts of a shard.
 
         Raises
         ------
         FormatError
-            If it is not there, or is damaged.
+            If the shard does not exist or is damaged.
         """
 
     def __repr__(self) -> str:
@@ -74,21 +75,22 @@ class Store(ABC):
 
 
 def open_store(path: str | os.PathLike[str], fingerprint: str | None = None) -> Store:
-    """The store at a path, made if there is none.
+    """The store at a path, created if it does not exist.
 
     Parameters
     ----------
     path : path_like
-        A folder; a name that ends in .zarr is a zarr group (extra ``distributed``).
+        A folder, or a zarr group if the path ends in .zarr (extra ``distributed``).
     fingerprint : str, optional
-        Of the problem: a store of another one is refused. None: the store must be there, of whatever problem.
+        Identifies the problem; a store with another fingerprint raises `InputError`. None opens an existing store of
+        any problem.
 
     Raises
     ------
     InputError
         If the store belongs to another problem, or cannot be written.
     FormatError
-        If there is something else at the path, or no store where there must be one.
+        If the path has other content, or the fingerprint is None and there is no store.
 
     Examples
     --------
@@ -111,6 +113,8 @@ def open_store(path: str | os.PathLike[str], fingerprint: str | None = None) -> 
 
 @final
 class _Folder(Store):
+    """A folder with one .npz or .json file for each shard."""
+
     def __init__(self, path: str, fingerprint: str | None) -> None:
         self.path = path
         self._folder = Path(path)
@@ -119,7 +123,7 @@ class _Folder(Store):
             if fingerprint is None:
                 raise _no_store(path)
             if self._folder.exists() and not _is_empty(self._folder):
-                raise FormatError(f"{path!r} is there and is no store of liehom: give the path of a new folder")
+                raise FormatError(f"{path!r} exists and is not a store of liehom: give the path of a new folder")
             with _writing(path):
                 self._folder.mkdir(parents=True, exist_ok=True)
             self._write(ABOUT, json.dumps(_about(fingerprint)).encode())
@@ -131,7 +135,7 @@ class _Folder(Store):
             _check(path, found, fingerprint)
 
     def names(self) -> frozenset[str]:
-        # shards end in .npz or .json; what is being written begins with a dot
+        # shards end in .npz or .json; unfinished files begin with a dot
         files = (f for f in self._folder.iterdir() if f.suffix in (".npz", ".json"))
         return frozenset(f.stem for f in files if f.name != ABOUT and not f.name.startswith("."))
 
@@ -175,6 +179,8 @@ class _Folder(Store):
 
 @final
 class _Zarr(Store):
+    """A zarr group with one group for each shard."""
+
     def __init__(self, path: str, fingerprint: str | None) -> None:
         try:
             import zarr
@@ -188,7 +194,7 @@ class _Zarr(Store):
         try:
             self._root: Any = zarr.open_group(path, mode="a")
         except DAMAGED as error:
-            raise FormatError(f"{path!r} is no zarr group: {error}") from None
+            raise FormatError(f"{path!r} is not a zarr group: {error}") from None
         found = dict(self._root.attrs)
         if fingerprint is not None and found:
             _check(path, found, fingerprint)
@@ -205,7 +211,7 @@ class _Zarr(Store):
             part = self._root.create_group(name, overwrite=True)
             for key, array in arrays.items():
                 part[key] = np.asarray(array)
-            part.attrs["facts"] = json.dumps(facts)  # last: a shard without it is not whole
+            part.attrs["facts"] = json.dumps(facts)  # last: a shard without facts is incomplete
 
     def load(self, name: str) -> Shard:
         try:
@@ -226,18 +232,19 @@ def _check(path: str, found: Mapping[str, object], fingerprint: str) -> None:
         raise FormatError(f"{path!r} is not a store of liehom of this version")
     if found.get("fingerprint") != fingerprint:
         raise InputError(
-            f"the store {path!r} belongs to another problem (what is computed, its numbers, options or chunk differ): "
+            f"the store {path!r} belongs to another problem (the computation, its numbers, options or chunk differ): "
             "delete it, or give another path"
         )
 
 
 def _is_empty(folder: Path) -> bool:
-    """Whether it is a folder without files; those that begin with a dot were not finished."""
+    """Whether a path is a folder without files; unfinished files, which begin with a dot, do not count."""
     return folder.is_dir() and all(file.name.startswith(".") for file in folder.iterdir())
 
 
 @contextlib.contextmanager
 def _writing(path: str) -> Iterator[None]:
+    """Context in which errors of the file system become `InputError`."""
     try:
         yield
     except (OSError, ValueError) as error:
@@ -250,4 +257,4 @@ def _no_store(path: str) -> FormatError:
 
 
 def _damaged(path: str, error: BaseException) -> FormatError:
-    return FormatError(f"the shard {path!r} is not there or is damaged ({error}): delete it, and it is computed again")
+    return FormatError(f"the shard {path!r} is missing or damaged ({error}): delete it, and it is computed again")

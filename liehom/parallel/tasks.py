@@ -1,7 +1,8 @@
-"""completed: the results of many tasks on any `concurrent.futures.Executor`, as they are done; lost workers survived.
+"""Results of many tasks on any `concurrent.futures.Executor`, in order of completion.
 
-Nothing is known of an executor but `submit`: processes, threads, a dask client's, those of mpi4py.  A task is a
-function of its argument alone, so that results do not depend on the executor.
+Only the methods `submit` and `shutdown` of an executor are called. It may be a pool of processes or threads, the
+executor of a dask client, or an executor of mpi4py. The result of a task depends on its argument alone, so results do
+not depend on the executor. Tasks of lost workers are submitted again.
 """
 
 from __future__ import annotations
@@ -35,37 +36,39 @@ ExecutorLike: TypeAlias = TaskExecutor | Callable[[], TaskExecutor] | None
 """An executor, a function that makes one (called again if one breaks), or None for the calling process."""
 
 RETRIES = 2
-# dask's own exceptions for workers that died, by name, as dask is not imported here
+"""Default number of times that the task of a lost worker is submitted again."""
+# exceptions of dask for dead workers, by name, since dask is not imported here
 WORKER_LOSS = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PConsistencyError")
 
 
 def completed(
     function: Callable[[Task], Result], tasks: Sequence[Task], executor: ExecutorLike = None, *, retries: int = RETRIES
 ) -> Iterator[tuple[int, Result]]:
-    """Pairs (number of the task, function(task)), in the order in which tasks are done.
+    """Iterator of pairs (number of the task, function(task)), in order of completion.
 
     Parameters
     ----------
     function : callable
-        Of one argument; where tasks go to other processes it must be picklable, as must tasks and results.
+        A function of one argument. For other processes it must be picklable, as must tasks and results.
     tasks : sequence
     executor : Executor, callable or None
-        An executor is used, and left open; a function without parameters that returns one is called to make it, and
-        again when it is broken; what it made is shut down at the end. None: in the calling process, in order.
+        An executor is used and left open. A function without parameters that returns an executor is called to make
+        one, and again if that one breaks; these executors are shut down at the end. None runs the tasks in the
+        calling process, in order.
     retries : int
-        How often a task is submitted again whose worker was lost, and how many times in succession an executor may
-        break with no task finished in between.
+        How often a task is submitted again after its worker was lost, and how many times in succession an executor
+        may break without a finished task in between.
 
     Raises
     ------
     InputError
-        If `executor` is neither, `retries` is negative, or something cannot be pickled.
+        If `executor` is neither an executor nor a function, `retries` is negative, or a task cannot be pickled.
     WorkerLostError
-        If workers are lost more often, or the executor is broken and there is no function to make another.
+        If workers are lost more often than `retries`, or the executor breaks and no function can make another.
 
     Notes
     -----
-    What `function` raises passes through, at once; tasks that were not begun are cancelled then.
+    An exception of `function` is raised immediately, and tasks that have not started are cancelled.
 
     Examples
     --------
@@ -82,7 +85,7 @@ def completed(
 
 @final
 class _Pool:
-    """The executor of the moment."""
+    """The current executor, replaced by another one when it breaks."""
 
     def __init__(self, source: TaskExecutor | Callable[[], TaskExecutor]) -> None:
         self._make: Callable[[], TaskExecutor] | None = None
@@ -98,11 +101,11 @@ class _Pool:
 
     @property
     def renewable(self) -> bool:
-        """Whether another executor can be made."""
+        """Whether there is a function that makes another executor."""
         return self._make is not None
 
     def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
-        """Submit a task; BrokenExecutor where the executor takes none."""
+        """The future of a task; raises `BrokenExecutor` if the executor does not accept tasks."""
         if self._executor is None and self._make is not None:
             made = self._make()
             if not callable(getattr(made, "submit", None)):
@@ -112,13 +115,13 @@ class _Pool:
             raise BrokenExecutor("there is no executor")
         try:
             return self._executor.submit(function, task)
-        except RuntimeError as error:  # also what an executor raises that was shut down
+        except RuntimeError as error:  # raised also by an executor that was shut down
             if isinstance(error, BrokenExecutor):
                 raise
             raise BrokenExecutor(str(error)) from error
 
     def drop(self) -> None:
-        """Have no more to do with an executor that is broken, or at the end."""
+        """Shut the current executor down if it was made here."""
         if self.renewable and self._executor is not None:
             self._executor.shutdown(wait=True, cancel_futures=True)
             self._executor = None
@@ -126,7 +129,7 @@ class _Pool:
 
 @final
 class _Run(Generic[Task, Result]):
-    """One call of `completed`."""
+    """The state of one call of `completed`."""
 
     def __init__(self, function: Callable[[Task], Result], tasks: Sequence[Task], pool: _Pool, retries: int) -> None:
         self.function, self.tasks, self.pool, self.retries = function, tasks, pool, retries
@@ -137,7 +140,7 @@ class _Run(Generic[Task, Result]):
         self.lost: Counter[int] = Counter()
 
     def results(self) -> Iterator[tuple[int, Result]]:
-        """The results as they come."""
+        """Iterator of (number of the task, result) in order of completion."""
         try:
             while self.todo or self.waiting:
                 broken = self._submit()
@@ -162,7 +165,7 @@ class _Run(Generic[Task, Result]):
             self.pool.drop()
 
     def _submit(self) -> BaseException | None:
-        """Submit what is to be done; the error if the executor is broken."""
+        """Submit all tasks in `todo`; returns the error if the executor is broken, else None."""
         while self.todo:
             try:
                 future = self.pool.submit(self.function, self.tasks[self.todo[0]])
@@ -175,7 +178,7 @@ class _Run(Generic[Task, Result]):
         return None
 
     def _finished(self) -> list[Future[Result]]:
-        """The futures that are done, at least one where there are some; none of an executor that is gone."""
+        """The finished futures, at least one if any is waiting; those of dropped executors are ignored."""
         found: list[Future[Result]] = []
         while self.waiting and (not found or not self.ready.empty()):
             future = self.ready.get()
@@ -184,14 +187,14 @@ class _Run(Generic[Task, Result]):
         return found
 
     def _again(self, number: int, error: BaseException) -> None:
-        """A task whose worker was lost: try it again."""
+        """Schedule a task again after its worker was lost; raises `WorkerLostError` after `retries` losses."""
         self.lost[number] += 1
         if self.lost[number] > self.retries:
             raise self._gave_up(error) from error
         self.todo.append(number)
 
     def _renew(self, error: BaseException) -> None:
-        """Have another executor made, for all that is not done."""
+        """Drop the broken executor and schedule all unfinished tasks for the next one."""
         self.breaks += 1
         if self.breaks > self.retries or not self.pool.renewable:
             raise self._gave_up(error) from error
@@ -200,15 +203,16 @@ class _Run(Generic[Task, Result]):
         self.pool.drop()
 
     def _gave_up(self, error: BaseException) -> WorkerLostError:
+        """The final error, with the numbers of finished and missing tasks."""
         missing = len(self.tasks) - self.done
-        advice = "pass a function that makes an executor, and another is made when one is broken"
+        advice = "pass a function that makes an executor, and another is made when one breaks"
         if self.pool.renewable or not isinstance(error, BrokenExecutor):
-            advice = "is there memory enough for a task? (a script that starts processes needs __name__ == '__main__')"
+            advice = "is there enough memory for a task? (a script that starts processes needs __name__ == '__main__')"
         return WorkerLostError(
             self.done,
             missing,
             f"workers were lost ({type(error).__name__}: {error}); {self.done} tasks are done, {missing} are not; "
-            f"what is in a store is kept, and the same call continues from it; {advice}",
+            f"finished results in a store remain, and the same call continues from them; {advice}",
         )
 
 
@@ -218,7 +222,7 @@ def _is_executor(source: object) -> TypeGuard[TaskExecutor]:
 
 
 def is_worker_loss(error: BaseException) -> bool:
-    """Whether an exception says that a worker, or all of them, are gone, rather than that the task failed.
+    """Whether an exception reports the loss of workers, rather than the failure of a task.
 
     Examples
     --------
@@ -230,6 +234,7 @@ def is_worker_loss(error: BaseException) -> bool:
 
 
 def _error_of(future: Future[Result]) -> BaseException | None:
+    """The exception of a finished future, `CancelledError` included, or None."""
     try:
         return future.exception()
     except CancelledError as error:
@@ -237,15 +242,15 @@ def _error_of(future: Future[Result]) -> BaseException | None:
 
 
 def _explained(error: BaseException) -> BaseException:
-    """The error of a task; of pickle's, one that says what to do."""
-    text = str(error)
-    is_type = isinstance(error, TypeError | AttributeError) and ("pickle" in text or "serialize" in text)
-    if not is_type and not isinstance(error, pickle.PicklingError):
+    """The error of a task; for a pickling error, an `InputError` with the remedy."""
+    message = str(error)
+    is_pickling = isinstance(error, TypeError | AttributeError) and ("pickle" in message or "serialize" in message)
+    if not is_pickling and not isinstance(error, pickle.PicklingError):
         return error
     made = InputError(
-        f"a task cannot be sent to another process: {text}; give functions that have a name in a module (no lambda, "
-        "no function within a function), psi as a list of texts such as ['m0', 'sin(t)'], or take an executor whose "
-        "tasks are pickled by cloudpickle (dask), or threads"
+        f"a task cannot be sent to another process: {message}; give functions that have a name in a module (no lambda, "
+        "no function within a function), psi as a list of strings such as ['m0', 'sin(t)'], or use an executor that "
+        "pickles tasks by cloudpickle (dask), or threads"
     )
     made.__cause__ = error
     return made

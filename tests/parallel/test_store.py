@@ -54,7 +54,7 @@ def test_another_problem_is_refused(path: str) -> None:
 def test_none_there(path: str) -> None:
     with pytest.raises(FormatError, match="there is no store"):
         open_store(path)
-    with pytest.raises(FormatError, match="is not there or is damaged"):
+    with pytest.raises(FormatError, match="is missing or damaged"):
         open_store(path, "abc").load("part")
 
 
@@ -63,7 +63,7 @@ def test_a_damaged_shard_is_named(tmp_path: Path) -> None:
     store.save("part", {"y": np.zeros(100)}, {})
     file = tmp_path / "runs" / "part.npz"
     file.write_bytes(file.read_bytes()[:200])
-    with pytest.raises(FormatError, match=r"part.npz' is not there or is damaged .* delete it"):
+    with pytest.raises(FormatError, match=r"part.npz' is missing or damaged .* delete it"):
         store.load("part")
 
 
@@ -90,9 +90,9 @@ def test_without_zarr_it_says_what_to_install(tmp_path: Path, monkeypatch: pytes
 
 def test_something_else_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("data")
-    with pytest.raises(FormatError, match="is no store of liehom"):
+    with pytest.raises(FormatError, match="is not a store of liehom"):
         open_store(tmp_path, "abc")
-    with pytest.raises(FormatError, match="is no store of liehom"):
+    with pytest.raises(FormatError, match="is not a store of liehom"):
         open_store(tmp_path / "mine.txt", "abc")
     (tmp_path / "store.json").write_text("{}")
     with pytest.raises(FormatError, match="is not a store of liehom of this version"):

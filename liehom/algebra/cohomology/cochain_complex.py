@@ -13,12 +13,12 @@ import itertools
 from bisect import bisect_left
 from collections.abc import Sequence
 from math import comb, lcm
-from typing import final
+from typing import Any, final
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.errors import InputError, RepresentationError, ShapeError
-from liehom.scalars import ExactField, ExactMatrix, Field, FloatField, Matrix, Scalar
+from liehom.scalars import ExactField, ExactMatrix, Field, FloatField, Matrix
 from liehom.scalars.fields.field import MatricesLike
 
 MAX_ENTRIES = 30_000_000
@@ -136,7 +136,7 @@ class CochainComplex:
         m, field = self.size, self.algebra.field
         source = {indices: x for x, indices in enumerate(self.index_tuples(degree))}
         den, action = _integral(self.matrices or (), field)
-        parts = [[0] * (shape[0] * shape[1]) for _ in range(field.degree)]
+        parts: list[list[Any]] = [[0] * (shape[0] * shape[1]) for _ in range(field.degree)]
         for x, grown in enumerate(self.index_tuples(degree + 1)):
             for a, t in enumerate(grown):
                 start = source[grown[:a] + grown[a + 1 :]] * m
@@ -147,15 +147,18 @@ class CochainComplex:
         return _matrix(field, parts, shape, den)
 
 
-def _matrix(field: Field, parts: list[list[Scalar]], shape: tuple[int, int], den: int) -> Matrix:
+def _matrix(field: Field, parts: Sequence[Sequence[Any]], shape: tuple[int, int], den: int) -> Matrix:
     if isinstance(field, ExactField):
         return field.from_parts(parts, *shape, den)
     made: Matrix = field.from_entries(parts[0], *shape)
     return made
 
 
-def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[list[tuple[int, Scalar]]]]]:
-    """A common denominator, and for each matrix and field coordinate the non-zero numerators by flat index."""
+def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[list[tuple[int, Any]]]]]:
+    """A common denominator, and for each matrix and field coordinate the non-zero numerators by flat index.
+
+    Over float64 the denominator is 1 and the numerators are floats.
+    """
     if not field.exact:
         return 1, [[[(x, v) for x, v in enumerate(a.entries()) if v != 0]] for a in matrices]
     exact = [a for a in matrices if isinstance(a, ExactMatrix)]

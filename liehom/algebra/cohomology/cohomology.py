@@ -14,7 +14,7 @@ from liehom.algebra.cohomology.cochain_complex import CochainComplex
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import InputError, InternalError, ShapeError, SingularError
-from liehom.scalars import ExactMatrix, Matrix, Scalar, Subspace
+from liehom.scalars import ExactMatrix, Matrix, Subspace
 from liehom.scalars.fields.field import MatricesLike
 from liehom.scalars.modular.modular import pivot_columns
 from liehom.typing import ScalarLike, VectorLike
@@ -151,7 +151,7 @@ class Cohomology:
         row: Matrix = field.from_entries(entries, 1, self._length())
         return row
 
-    def values(self, cochain: CochainLike) -> dict[tuple[int, ...], Scalar]:
+    def values(self, cochain: CochainLike) -> dict[tuple[int, ...], Any]:
         """The non-zero values by increasing indices: numbers, or lists of coordinates if dim V is not 1."""
         row, m = self._row(cochain).row(0), self.cochains.size
         blocks = {p: row[x * m : (x + 1) * m] for x, p in enumerate(self.cochains.index_tuples(self.degree))}

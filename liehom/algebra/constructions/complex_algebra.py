@@ -222,7 +222,7 @@ def _has_length(values: object, n: int) -> bool:
     return isinstance(values, (list, tuple)) and len(values) == n
 
 
-def _parts(value: object) -> tuple[Scalar, Scalar]:
+def _parts(value: object) -> tuple[Any, Any]:
     """Real and imaginary part of a complex number in any accepted form."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:

@@ -110,7 +110,7 @@ def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
 
 def _rounding(field: Field, values: list[Scalar]) -> float:
     """The bound below which a value counts as zero: 0 over an exact field, rtol max |value| over floats."""
-    return field.rtol * max(map(abs, values), default=0.0) if isinstance(field, FloatField) else 0.0
+    return field.rtol * max((abs(float(x)) for x in values), default=0.0) if isinstance(field, FloatField) else 0.0
 
 
 def _exceeds(value: Scalar, bound: float) -> bool:

@@ -171,7 +171,7 @@ def oscillator(n: int = 1, frequencies: Sequence[ScalarLike] | None = None) -> L
     values = [field.convert(w) for w in given]
     if any(w == 0 for w in values):
         raise InputError(f"the frequencies of an oscillator are not zero, got {', '.join(map(field.format, values))}")
-    brackets: dict[tuple[int, int], dict[int, Scalar]] = {}
+    brackets: dict[tuple[int, int], dict[int, Scalar | int]] = {}
     for i, w in enumerate(values):
         x, y = 1 + i, 1 + n + i
         brackets |= {(0, x): {y: w}, (0, y): {x: -w}, (x, y): {2 * n + 1: 1}}

@@ -1,7 +1,7 @@
 """Root systems and real forms: Dynkin, Vogan and Satake diagrams, and the algebras built from them.
 
-Combinatorics of Cartan matrices, the Chevalley basis, compact and real forms and their names. Identification and
-highest weight modules use this wing; see docs/theory/structure.md.
+The combinatorics of Cartan matrices, Chevalley bases, compact and real forms, and their names. The identification of
+algebras and the highest weight modules build on this wing; see docs/theory/structure.md.
 """
 
 from liehom.algebra.roots.chevalley import chevalley as chevalley

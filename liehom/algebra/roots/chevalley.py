@@ -1,12 +1,12 @@
 """The Chevalley basis of a semisimple Lie algebra, with integer structure constants for every root system.
 
-In a simply laced system let B be the bilinear form on the root lattice with B(a, a) = (a, a) / 2 and
-B(a, b) + B(b, a) = (a, b).  Then for roots a, b with (a, b) = -1
+In a simply laced system let B be a bilinear form on the root lattice with B(a, a) = (a, a) / 2 and
+B(a, b) + B(b, a) = (a, b). Then for roots a, b with (a, b) = -1
 
     [E_a, E_b] = (-1)^B(a, b) E_{a + b},      e_a = E_a,  f_a = -E_{-a}   (a positive)
 
-is a Lie algebra with [e_a, f_a] = h_a.  Every other system is folded from a simply laced one, in which each short
-simple root has two or three copies that the diagram's symmetry permutes: the sums of e over the orbits are a
+is a Lie algebra with [e_a, f_a] = h_a. Every other system is obtained by folding a simply laced one, in which each
+short simple root has two or three copies that a symmetry of the diagram permutes. The sums of e over the orbits are a
 Chevalley basis of the fixed algebra.
 """
 
@@ -25,11 +25,12 @@ from liehom.typing import IntegerArray
 
 
 class RootBrackets(NamedTuple):
-    """[e_a, e_b] = number * e_c for all ordered pairs of roots whose sum is a root, by places in `roots`.
+    """The brackets [e_a, e_b] = number * e_c of all ordered pairs of roots whose sum is a root.
 
     Attributes
     ----------
     a, b, c : (m,) int64
+        Indices of the roots in `RootSystem.roots`.
     number : (m,) int64
         N_{a,b}, which is p + 1 or -(p + 1) if b - p a is the last root of the string through b.
     """
@@ -41,7 +42,7 @@ class RootBrackets(NamedTuple):
 
 
 def chevalley(type_name: str) -> LieAlgebra:
-    """The split semisimple Lie algebra of a type in its Chevalley basis.
+    """The split semisimple Lie algebra of a type, over QQ, in its Chevalley basis.
 
     Parameters
     ----------
@@ -72,12 +73,12 @@ def chevalley(type_name: str) -> LieAlgebra:
     count = len(system.positive_roots)
     names = [f"h{i + 1}" for i in range(system.rank)]
     names += [f"{letter}{i + 1}" for letter in "ef" for i in range(count)]
-    # (-1)^B satisfies the cocycle identity, and fixed points of an automorphism are a subalgebra
+    # no check: (-1)^B satisfies the cocycle identity, and the fixed points of an automorphism are a subalgebra
     return LieAlgebra(chevalley_constants(system), basis=names, name=system.type, check=False)
 
 
 def chevalley_constants(system: RootSystem) -> StructureConstants:
-    """The structure constants of a Chevalley basis, all of them integers.
+    """The integer structure constants of a Chevalley basis, over QQ.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def chevalley_constants(system: RootSystem) -> StructureConstants:
 
 
 def cartan_weights(system: RootSystem) -> IntegerArray:
-    """<a, alpha_i^vee> for all roots a, shape (number of roots, r).
+    """The integers <a, alpha_i^vee> for all roots a, shape (number of roots, r).
 
     Examples
     --------
@@ -148,25 +149,26 @@ def root_brackets(system: RootSystem) -> RootBrackets:
     a, b, c, number = _simply_laced_brackets(cover)
     if folding is None:
         return RootBrackets(a, b, c, number)
-    place = np.array([system.index(x) for x in (cover.root_matrix() @ folding).tolist()], dtype=np.int64)
-    # the sum over an orbit c has every e of the orbit with the same coefficient: read off one of them
-    _, representatives = np.unique(place, return_index=True)
-    kept = np.isin(c, representatives) & (place[a] != place[b])
+    orbit = np.array([system.index(x) for x in (cover.root_matrix() @ folding).tolist()], dtype=np.int64)
+    # a bracket has the same coefficient at every e of an orbit, so one representative of each orbit is read
+    _, representatives = np.unique(orbit, return_index=True)
+    kept = np.isin(c, representatives) & (orbit[a] != orbit[b])
     total = system.number_of_roots
-    keys, inverse = np.unique(place[a[kept]] * total + place[b[kept]], return_inverse=True)
+    keys, inverse = np.unique(orbit[a[kept]] * total + orbit[b[kept]], return_inverse=True)
     sums = np.zeros(len(keys), dtype=np.int64)
     np.add.at(sums, inverse, number[kept])
     targets = np.zeros(len(keys), dtype=np.int64)
-    targets[inverse] = place[c[kept]]
+    targets[inverse] = orbit[c[kept]]
     return RootBrackets(keys // total, keys % total, targets, sums)
 
 
 def _simply_laced_brackets(system: RootSystem) -> RootBrackets:
+    """The brackets by the signs (-1)^B(a, b)."""
     rank, half = system.rank, len(system.positive_roots)
     roots, cartan = system.root_matrix(), _square(system.cartan)
     a, b = np.nonzero(roots @ cartan @ roots.T == -1)
-    places = {root.tobytes(): place for place, root in enumerate(roots)}
-    c = np.array([places[root.tobytes()] for root in roots[a] + roots[b]], dtype=np.int64)
+    index = {root.tobytes(): i for i, root in enumerate(roots)}
+    c = np.array([index[root.tobytes()] for root in roots[a] + roots[b]], dtype=np.int64)
     form = (roots @ np.triu(cartan % 2 + np.eye(rank, dtype=np.int64))) % 2  # B modulo 2
     parity = np.einsum("xi,xi->x", form[a], roots[b])
     parity += (a >= half).astype(np.int64) + (b >= half) + (c >= half)  # f_a is -E_{-a}
@@ -174,7 +176,7 @@ def _simply_laced_brackets(system: RootSystem) -> RootBrackets:
 
 
 def _unfolded(system: RootSystem) -> tuple[RootSystem, IntegerArray | None]:
-    """A simply laced system and the matrix that adds up the copies of a simple root; the system itself if it can be."""
+    """A simply laced cover and the folding matrix (rank of cover, r); the system and None if it is simply laced."""
     copies = [max(system.norms[k] for k in _component(system, i)) // norm for i, norm in enumerate(system.norms)]
     if set(copies) <= {1}:
         return system, None
@@ -183,7 +185,7 @@ def _unfolded(system: RootSystem) -> tuple[RootSystem, IntegerArray | None]:
     def entry(i: int, m: int, j: int, n: int) -> int:
         if i == j:
             return 2 if m == n else 0
-        # copies of equally many are joined one to one, a single node is joined to all copies of its neighbour
+        # nodes with equally many copies are joined copy by copy, a single node is joined to all copies of its neighbour
         joined = system.cartan[i][j] != 0 and (copies[i] != copies[j] or m == n)
         return -1 if joined else 0
 
@@ -193,10 +195,11 @@ def _unfolded(system: RootSystem) -> tuple[RootSystem, IntegerArray | None]:
 
 
 def _component(system: RootSystem, node: int) -> list[int]:
-    """The nodes connected with this one: the largest support of a root that contains it."""
+    """The nodes in the component of a node: the largest support of a root that contains the node."""
     supports = ([i for i, x in enumerate(root) if x] for root in system.positive_roots if root[node])
     return max(supports, key=len)
 
 
 def _square(cartan: CartanMatrix) -> IntegerArray:
+    """The Cartan matrix as an array (r, r), also for r = 0."""
     return np.array(cartan, dtype=np.int64).reshape(len(cartan), len(cartan))

@@ -1,12 +1,12 @@
-"""Compact forms from the Chevalley basis, and from a compact form and an involution every other real form.
+"""Compact forms from Chevalley bases, and all other real forms from compact forms and involutions.
 
 The compact form is spanned by H_j = i h_j and, for the positive roots a,
 
     X_a = e_a - f_a,    Y_a = i (e_a + f_a),
 
-with integer structure constants.  An involution theta that a Vogan diagram gives maps each of these to one of them,
-up to a sign.  With u = k + p its eigenspaces in the compact form, the real form is k + i p: in a basis of
-eigenvectors the brackets of two elements of p change their sign.
+with integer structure constants. The involution theta of a Vogan diagram permutes these basis elements up to signs. Let
+u = k + p be the decomposition of the compact form into eigenspaces of theta. The real form is k + i p: in a basis of
+eigenvectors, the brackets of two elements of p change sign.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from liehom.typing import IntegerArray
 
 
 def compact_form(type_name: str) -> LieAlgebra:
-    """The compact semisimple Lie algebra of a type, with integer structure constants.
+    """The compact semisimple Lie algebra of a type, over QQ, with integer structure constants.
 
     Parameters
     ----------
@@ -56,16 +56,16 @@ def compact_form(type_name: str) -> LieAlgebra:
     system = root_system(type_name)
     count = len(system.positive_roots)
     names = [f"H{i + 1}" for i in range(system.rank)] + [f"{x}{i + 1}" for x in "XY" for i in range(count)]
-    # a real form of the algebra with the Chevalley basis
+    # no check: this is a real form of the algebra with the Chevalley basis
     return LieAlgebra(compact_constants(system), basis=names, name=f"compact {system.type}", check=False)
 
 
 def compact_constants(system: RootSystem) -> StructureConstants:
-    """The structure constants of the compact form in the basis H_j, X_a, Y_a; integers.
+    """The integer structure constants of the compact form in the basis H_j, X_a, Y_a.
 
     Notes
     -----
-    With X_{-c} = -X_c and Y_{-c} = Y_c, for positive roots a, b that differ,
+    With X_{-c} = -X_c and Y_{-c} = Y_c, and for different positive roots a, b,
 
         [X_a, X_b] =  N_{a,b} X_{a+b} - N_{a,-b} X_{a-b},     [H_j, X_a] = a(h_j) Y_a,
         [Y_a, Y_b] = -N_{a,b} X_{a+b} - N_{a,-b} X_{a-b},     [H_j, Y_a] = -a(h_j) X_a,
@@ -132,15 +132,15 @@ def real_form_of(vogan: VoganDiagram, name: str | None = None) -> LieAlgebra:
     else:
         table = _in_eigenvectors(table, image, sign, plus, minus)
     flipped = [-v if i >= len(plus) else v for i, v in zip(table.i.tolist(), table.parts[0], strict=True)]
-    # i < j: both are in p as soon as i is
+    # i < j: if i is in p, so is j
     made = StructureConstants.from_integers(QQ, size, table.i, table.j, table.k, flipped, table.den)
     names = [f"k{i + 1}" for i in range(len(plus))] + [f"p{i + 1}" for i in range(len(minus))]
-    # a real form of the same complex algebra, since theta is an automorphism of order 2
+    # no check: this is a real form of the same complex algebra, since theta is an automorphism of order 2
     return LieAlgebra(made, basis=names, name=name, check=False)
 
 
 def _involution(vogan: VoganDiagram) -> tuple[IntegerArray, IntegerArray]:
-    """theta on the basis of the compact form: the place and the sign of each image."""
+    """theta on the basis of the compact form: the index and the sign of each image."""
     system = vogan.root_system()
     rank, count = system.rank, len(system.positive_roots)
     sigma = np.array(vogan.automorphism, dtype=np.int64)
@@ -152,8 +152,9 @@ def _involution(vogan: VoganDiagram) -> tuple[IntegerArray, IntegerArray]:
 
 
 def _reordered(table: StructureConstants, order: list[int]) -> StructureConstants:
-    place = np.argsort(np.array(order, dtype=np.int64))
-    i, j, k = place[table.i], place[table.j], place[table.k]
+    """The table in the basis elements with the given indices, in this order."""
+    position = np.argsort(np.array(order, dtype=np.int64))
+    i, j, k = position[table.i], position[table.j], position[table.k]
     values = [-v if swap else v for v, swap in zip(table.parts[0], (i > j).tolist(), strict=True)]
     return StructureConstants.from_integers(QQ, table.dimension, np.minimum(i, j), np.maximum(i, j), k, values)
 
@@ -163,12 +164,12 @@ def _in_eigenvectors(
 ) -> StructureConstants:
     """The table in the basis v + theta v, v - theta v for the two-element orbits, and v for the others."""
     size = table.dimension
-    # e_i is half the sum of coefficient * new vector over its two places; an unused place has the coefficient 0
-    places, coefficients = np.zeros((2, size), dtype=np.int64), np.zeros((2, size), dtype=np.int64)
+    # e_i is half the sum of coefficient * new vector over two indices; an unused index has the coefficient 0
+    new_indices, coefficients = np.zeros((2, size), dtype=np.int64), np.zeros((2, size), dtype=np.int64)
     single = image == np.arange(size)
     for row, i in enumerate([*plus, *minus]):
         side, j = int(row >= len(plus)), int(image[i])
-        places[side, [i, j]] = row
+        new_indices[side, [i, j]] = row
         coefficients[side, j] = -sign[i] if side else sign[i]
         coefficients[side, i] = 1
     first, second = np.concatenate([table.i, table.j]), np.concatenate([table.j, table.i])
@@ -177,7 +178,7 @@ def _in_eigenvectors(
     halves = coefficients * np.where(single, 2, 1)
     keys, terms = [], []
     for a, b, c in product((0, 1), repeat=3):
-        x, y, z = places[a, first], places[b, second], places[c, third]
+        x, y, z = new_indices[a, first], new_indices[b, second], new_indices[c, third]
         term = coefficients[a, first] * coefficients[b, second] * halves[c, third] * values
         kept = (x < y) & (term != 0)
         keys.append(((x * size + y) * size + z)[kept])

@@ -1,8 +1,8 @@
-"""Cartan matrices and Dynkin diagrams: the named ones, and the name of a given one.
+"""Cartan matrices and Dynkin diagrams: from the name of a type, and the name of a given diagram.
 
-a[i][j] = <alpha_i, alpha_j^vee> = 2 (alpha_i, alpha_j) / (alpha_j, alpha_j), with the simple roots numbered as by
-Bourbaki, but from 0.  The diagram is a directed graph with an edge i -> j of weight -a[i][j] wherever that is not
-0; its components are named by graph isomorphism.
+The Cartan matrix is a[i][j] = <alpha_i, alpha_j^vee> = 2 (alpha_i, alpha_j) / (alpha_j, alpha_j). Simple roots are in
+Bourbaki's order, numbered from 0. The diagram is a directed graph with an edge i -> j of weight -a[i][j] for each
+non-zero a[i][j], i != j. Graph isomorphism determines the names of its components.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _HIGHEST_RANK = {"E": 8, "F": 4, "G": 2}
 
 
 def parse_type(name: str) -> tuple[tuple[str, int], ...]:
-    """The letters and ranks of a type such as 'E8' or 'A2 + G2'; '0' is the empty type.
+    """The pairs (letter, rank) of a type such as 'E8' or 'A2 + G2'; empty for '0'.
 
     Raises
     ------
     CatalogError
-        If a summand is none of A1, A2, ...; B1, ...; C1, ...; D2, ...; E6, E7, E8, F4, G2.
+        If a summand is not one of A1, A2, ...; B1, ...; C1, ...; D2, ...; E6, E7, E8, F4, G2.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def parse_type(name: str) -> tuple[tuple[str, int], ...]:
 
 
 def cartan_matrix(name: str) -> CartanMatrix:
-    """The Cartan matrix of a type, with Bourbaki's numbering; of a sum, in blocks.
+    """The Cartan matrix of a type in Bourbaki's order; block diagonal for a sum.
 
     Parameters
     ----------
@@ -89,9 +89,9 @@ def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph:
     Returns
     -------
     networkx.DiGraph
-        Nodes 0, ..., r - 1; where a[i][j] is not 0 and i is not j, an edge i -> j with the attribute
-        ``entry = -a[i][j]``. So a simple edge is a pair of edges with entry 1, and the entry is greater than 1
-        on the edge from a longer root to a shorter one.
+        Nodes 0, ..., r - 1, and for i != j with non-zero a[i][j] an edge i -> j with the attribute
+        ``entry = -a[i][j]``. A simple edge is a pair of edges with entry 1. The entry exceeds 1 on the edge from a
+        longer root to a shorter root.
 
     Raises
     ------
@@ -115,23 +115,23 @@ def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph:
 
 
 def diagram_components(cartan: Sequence[Sequence[int]]) -> list[tuple[str, tuple[int, ...]]]:
-    """The components of a Cartan matrix: the type of each, and its nodes in Bourbaki's order.
+    """The irreducible components of a Cartan matrix: pairs of type and nodes in Bourbaki's order.
 
     Parameters
     ----------
     cartan : (r, r) integers
-        Of finite type, the simple roots in any order.
+        A Cartan matrix of finite type, with the simple roots in any order.
 
     Returns
     -------
     list of (str, tuple of int)
-        Sorted by type. B2 stands for C2, A3 for D3, A1 + A1 for D2. Where a diagram has symmetries, the order of
-        nodes is the lexicographically least one.
+        Sorted by type. C2 is named B2, D3 is named A3, and D2 is named A1 + A1. If a diagram has symmetries, the
+        lexicographically smallest order of nodes is returned.
 
     Raises
     ------
     InputError
-        If a component is isomorphic to no Dynkin diagram.
+        If a component is not isomorphic to a Dynkin diagram of finite type.
 
     Examples
     --------
@@ -142,12 +142,12 @@ def diagram_components(cartan: Sequence[Sequence[int]]) -> list[tuple[str, tuple
 
 
 def type_name(cartan: Sequence[Sequence[int]]) -> str:
-    """The type of a Cartan matrix, components sorted, such as 'A1 + B2'; '0' for rank 0.
+    """The type of a Cartan matrix as a string such as 'A1 + B2', components sorted; '0' for rank 0.
 
     Raises
     ------
     InputError
-        If a component is isomorphic to no Dynkin diagram.
+        If a component is not isomorphic to a Dynkin diagram of finite type.
 
     Examples
     --------
@@ -158,7 +158,7 @@ def type_name(cartan: Sequence[Sequence[int]]) -> str:
 
 
 def join_types(names: Iterable[str]) -> str:
-    """The names of simple types as one sum, in order of letters and rank; '0' if there is none.
+    """The sum of simple types as a string, sorted by letter and rank; '0' for the empty sum.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def join_types(names: Iterable[str]) -> str:
 
 
 def isomorphisms(first: Sequence[Sequence[int]], second: Sequence[Sequence[int]]) -> list[tuple[int, ...]]:
-    """The isomorphisms of two Dynkin diagrams, sorted: each the tuple p with second[p[i]][p[j]] = first[i][j].
+    """The sorted isomorphisms of two Dynkin diagrams: tuples p with second[p[i]][p[j]] = first[i][j].
 
     Examples
     --------
@@ -195,12 +195,12 @@ def _identified(cartan: CartanMatrix) -> tuple[tuple[str, tuple[int, ...]], ...]
                 found.append((name, min(orders)))
                 break
         else:
-            raise InputError(f"the nodes {sorted(nodes)} form no Dynkin diagram of finite type: {cartan}")
+            raise InputError(f"the nodes {sorted(nodes)} do not form a Dynkin diagram of finite type: {cartan}")
     return tuple(sorted(found, key=lambda pair: (pair[0][0], int(pair[0][1:]), pair[1])))
 
 
 def _isomorphisms(first: networkx.DiGraph, second: networkx.DiGraph) -> Iterator[tuple[int, ...]]:
-    """The isomorphisms of weighted graphs, as images of the nodes 0, 1, ... of the first."""
+    """The isomorphisms of two weighted graphs, as tuples of the images of the nodes 0, 1, ... of the first."""
     from networkx.algorithms.isomorphism import DiGraphMatcher, numerical_edge_match
 
     matcher = DiGraphMatcher(first, second, edge_match=numerical_edge_match("entry", 1))
@@ -209,7 +209,7 @@ def _isomorphisms(first: networkx.DiGraph, second: networkx.DiGraph) -> Iterator
 
 
 def _candidates(rank: int) -> list[str]:
-    """One name for each connected diagram of this rank."""
+    """The names of the connected diagrams of a rank, one name for each diagram."""
     least = {**_LOWEST_RANK, "B": 2, "C": 3, "D": 4}
     return [f"{letter}{rank}" for letter, low in least.items() if low <= rank <= _HIGHEST_RANK.get(letter, rank)]
 
@@ -225,7 +225,7 @@ def _parse_simple(name: str) -> tuple[str, int]:
 
 
 def _simple_matrix(letter: str, rank: int) -> list[list[int]]:
-    """The Cartan matrix: edges between neighbours of a chain, then what differs from a chain."""
+    """The Cartan matrix of a simple type: its simple edges, then the entry of its multiple edge."""
     a = [[2 if i == j else 0 for j in range(rank)] for i in range(rank)]
     for i, j in _simple_edges(letter, rank):
         a[i][j] = a[j][i] = -1
@@ -241,10 +241,11 @@ def _simple_matrix(letter: str, rank: int) -> list[list[int]]:
 
 
 def _simple_edges(letter: str, rank: int) -> list[tuple[int, int]]:
+    """The edges of the diagram without their multiplicities."""
     if letter in "ABCFG":
         return [(i, i + 1) for i in range(rank - 1)]
     if letter == "D":
         return [*((i, i + 1) for i in range(rank - 2)), *([(rank - 3, rank - 1)] if rank > 2 else [])]
     if letter == "E":
         return [(0, 2), (1, 3), *((i, i + 1) for i in range(2, rank - 1))]
-    raise InternalError(f"no diagram of the letter {letter!r}")
+    raise InternalError(f"there is no diagram with the letter {letter!r}")

@@ -1,7 +1,7 @@
-"""RealForm: a simple real Lie algebra by its name, and what follows from its Vogan diagram.
+"""Simple real Lie algebras by name, with the invariants that their Vogan diagrams determine.
 
-A table gives for each name the involution on the Dynkin diagram and the painted nodes; the dimensions of k and p, the
-real rank, the Satake diagram and the restricted roots with their multiplicities are computed from these on integers.
+A table gives the involution on the Dynkin diagram and the painted nodes for each name. The dimensions of k and p, the
+real rank, the Satake diagram and the restricted roots with their multiplicities are computed from these with integers.
 A complex simple algebra, as a real one, has two copies of its Dynkin diagram that the involution exchanges.
 """
 
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 @final
 @dataclass(frozen=True, slots=True)
 class RealForm:
-    """A simple real Lie algebra, up to isomorphism. `RealForm.of_name` and `real_forms` make them.
+    """A simple real Lie algebra up to isomorphism, the result of `RealForm.of_name` and `real_forms`.
 
     Attributes
     ----------
     name : str
         Canonical: 'so(3)', 'sl(2,R)', 'so(4,1)', 'sl(2,H)', 'e6(-26)', 'g2', 'sl(3,C)', ...
     type : str
-        The type of the complexification, such as 'B2'; of a complex algebra its own type as a complex one, so that
-        the complexification has that type twice.
+        The type of the complexification, such as 'B2'. For a complex algebra, its type as a complex algebra; its
+        complexification has this type twice.
     vogan : VoganDiagram
-        What the other properties are computed from.
+        The Vogan diagram, from which the other properties are computed.
 
     Examples
     --------
@@ -58,7 +58,7 @@ class RealForm:
 
     @classmethod
     def of_name(cls, name: str) -> RealForm:
-        """The real form with a given name, canonical or not.
+        """The real form with a name, canonical or not.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class RealForm:
     # -- properties --------------------------------------------------------------------------------------
     @property
     def is_complex(self) -> bool:
-        """Whether it is a complex simple algebra, seen as a real one."""
+        """Whether the algebra is a complex simple algebra, regarded as a real algebra."""
         return self.type != self.vogan.type
 
     @property
@@ -88,39 +88,39 @@ class RealForm:
 
     @property
     def is_split(self) -> bool:
-        """Whether the real rank is the rank."""
+        """Whether the real rank equals the rank."""
         return self.real_rank == self.rank
 
     @property
     def rank(self) -> int:
-        """The dimension of a Cartan subalgebra, over the reals."""
+        """The dimension of a Cartan subalgebra over the reals, an int."""
         return len(self.vogan.automorphism)
 
     @property
     def dimension(self) -> int:
-        """The dimension over the reals."""
+        """The dimension over the reals, an int."""
         return self.rank + self.vogan.root_system().number_of_roots
 
     @property
     def compact_dimension(self) -> int:
-        """The dimension of a maximal compact subalgebra k."""
+        """The dimension of a maximal compact subalgebra k, an int."""
         return self.vogan.compact_dimension
 
     @property
     def character(self) -> int:
-        """dim p - dim k, the signature of the Killing form as one number."""
+        """The character dim p - dim k, an int: the signature of the Killing form."""
         return self.vogan.character
 
     @property
     def real_rank(self) -> int:
-        """The dimension of a maximal abelian subspace of p."""
+        """The dimension of a maximal abelian subspace of p, an int."""
         return self.satake.real_rank
 
     @property
     def maximal_compact(self) -> str:
-        """The name of a maximal compact subalgebra, as it is usually written: 'so(4)', 'su(2)+u(1)', 'u(3)', 'f4'.
+        """The name of a maximal compact subalgebra in common notation, such as 'so(4)', 'su(2)+u(1)' or 'f4'.
 
-        Summands are joined by '+'; so(1) and su(1), which are 0, are left out.
+        Summands are joined by '+'. The zero algebras so(1) and su(1) are omitted.
 
         Examples
         --------
@@ -131,12 +131,12 @@ class RealForm:
 
     @property
     def satake(self) -> SatakeDiagram:
-        """The Satake diagram."""
+        """The Satake diagram of the real form."""
         return SatakeDiagram.of(self.vogan)
 
     @property
     def restricted_type(self) -> str:
-        """The type of the restricted root system: 'A1', 'B2', 'BC1', ...; '0' for a compact algebra."""
+        """The type of the restricted root system, such as 'A1', 'B2' or 'BC1', and '0' for a compact algebra."""
         return self.satake.restricted_type
 
     @property
@@ -158,7 +158,7 @@ class RealForm:
 
 
 def real_forms(type_name: str) -> list[RealForm]:
-    """All real forms of a simple complex type, by decreasing character: the split form first, the compact one last.
+    """All real forms of a simple complex type, by decreasing character, from the split to the compact form.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def real_forms_with(type_name: str, character: int) -> list[RealForm]:
 
     Examples
     --------
-    Mostly there is at most one, but not always:
+    There may be several:
 
     >>> [form.name for form in real_forms_with("D9", -9)]
     ['so(12,6)', 'so*(18)']
@@ -193,12 +193,12 @@ def real_forms_with(type_name: str, character: int) -> list[RealForm]:
 
 
 def real_form_with(type_name: str, character: int) -> RealForm:
-    """The real form of a type with a given character, where this determines it.
+    """The real form of a type with a given character, if it is unique.
 
     Raises
     ------
     CatalogError
-        If there is none, or more than one; lists what there is.
+        If there is not exactly one; the message lists the candidates.
 
     Examples
     --------
@@ -214,7 +214,7 @@ def real_form_with(type_name: str, character: int) -> RealForm:
 
 
 def complex_form(type_name: str) -> RealForm:
-    """The complex simple algebra of a type, as a real one.
+    """The complex simple algebra of a type, regarded as a real algebra.
 
     Raises
     ------
@@ -239,7 +239,7 @@ def _real_forms(type_name: str) -> tuple[RealForm, ...]:
 
 
 def _simple_type(type_name: str) -> str:
-    """The canonical spelling, B2 for C2, A3 for D3."""
+    """The canonical name of a simple type: B2 for C2, A3 for D3."""
     parts = parse_type(type_name)
     if len(parts) != 1 or parts[0] == ("D", 2):
         raise CatalogError(f"{type_name!r} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, E8, F4, G2")
@@ -248,6 +248,7 @@ def _simple_type(type_name: str) -> str:
 
 @lru_cache(maxsize=256)
 def _of_canonical(name: str) -> RealForm:
+    """The real form with a canonical name."""
     kind, numbers, letter = parse_name(name)
     if letter == "C":
         type_name = f"{kind[0].upper()}{kind[1]}" if kind in EXCEPTIONAL else _classical_type(kind, numbers[0], "C")
@@ -267,7 +268,7 @@ def _of_canonical(name: str) -> RealForm:
 
 
 def _classical_type(kind: str, size: int, letter: str) -> str:
-    """The canonical type of a canonical name; `size` is the number, or the sum of two."""
+    """The canonical type of a canonical name; `size` is the sum of its numbers."""
     if kind == "sl":
         return f"A{(2 * size if letter == 'H' else size) - 1}"
     if kind == "su":
@@ -280,20 +281,22 @@ def _classical_type(kind: str, size: int, letter: str) -> str:
 
 
 Nodes = tuple[tuple[int, ...], tuple[int, ...]]
+"""Painted nodes and automorphism, as in `VoganDiagram`."""
 
 
 def _linear(rank: int, _: tuple[int, ...], letter: str) -> Nodes:
-    """sl(n,R) and sl(m,H): the reflection of A_n, with the node in the middle painted for sl(2m,R)."""
+    """Painted nodes and automorphism of sl(n,R) and sl(m,H): the flip, and for sl(2m,R) the middle node."""
     middle = (rank // 2,) if rank % 2 and letter != "H" else ()
     return middle, tuple(range(rank))[::-1]
 
 
 def _unitary(_: int, numbers: tuple[int, ...], __: str) -> Nodes:
+    """Painted nodes and automorphism of su(p,q)."""
     return _painted(numbers[1:]), ()
 
 
 def _orthogonal(rank: int, numbers: tuple[int, ...], _: str) -> Nodes:
-    """so(p,q): in B_n by the part that is even; in D_n two odd parts need the reflection."""
+    """Painted nodes and automorphism of so(p,q): if p and q are odd the flip of D_n, else an even part's node."""
     p, q = numbers if len(numbers) > 1 else (*numbers, 0)
     if p % 2 and q % 2:
         return _painted(((q - 1) // 2,)), (*range(rank - 2), rank - 1, rank - 2)
@@ -301,11 +304,12 @@ def _orthogonal(rank: int, numbers: tuple[int, ...], _: str) -> Nodes:
 
 
 def _symplectic(rank: int, numbers: tuple[int, ...], letter: str) -> Nodes:
+    """Painted nodes and automorphism of sp(p,q), sp(2n,R) and so*(2n)."""
     return _painted((rank,) if letter else numbers[1:]), ()
 
 
 def _painted(numbers: tuple[int, ...]) -> tuple[int, ...]:
-    """Node number k, counted from 1, for the sequence (k,); nothing for 0 and for no number."""
+    """The node with number k counted from 1 for numbers (k,), no node for () and (0,)."""
     return tuple(k - 1 for k in numbers if k)
 
 
@@ -317,7 +321,7 @@ _CLASSICAL_NODES = {
     "sp": _symplectic,
 }
 
-# painted nodes, and whether the diagram of E6 is reflected
+# painted nodes, and whether the automorphism is the flip of E6
 _EXCEPTIONAL_NODES: dict[str, tuple[tuple[int, ...], bool]] = {
     "e6(6)": ((1,), True),
     "e6(2)": ((1,), False),

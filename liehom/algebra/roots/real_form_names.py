@@ -10,8 +10,8 @@ Cn    sp(n), sp(p,q), sp(2n,R)                                sp(2n,C)     n > 2
 Dn    so(2n), so(p,q), so*(2n) for n > 4                      so(2n,C)     n > 3
 ====  ======================================================  =====================
 
-with p >= q > 0; and e6(6), e6(2), e6(-14), e6(-26), e6, e6(C), and so on for e7, e8, f4, g2, where the number is the
-character dim p - dim k and the compact form has none.  'sp(3)' is compact and quaternionic, 'sp(6,R)' has the size 6.
+with p >= q > 0; and e6(6), e6(2), e6(-14), e6(-26), e6, e6(C), and so on for e7, e8, f4, g2. The number is the
+character dim p - dim k; the compact form has no number. 'sp(3)' is compact and quaternionic, 'sp(6,R)' has size 6.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ _KNOWN = (
 
 
 def canonical_real_form(name: str) -> str:
-    """The canonical name of a semisimple real Lie algebra, its simple ideals joined by ' + ' (`join_real_forms`).
+    """The canonical name of a semisimple real Lie algebra, its simple ideals joined by ' + '.
 
     Parameters
     ----------
     name : str
-        A name as in the table of the module, or one of the others that are in use: 'so(1,4)', 'su(1,1)', 'sl(3)',
-        'so*(8)', 'su*(4)', 'sp(4,R)', 'spin(7)', 'so(3,C)', 'e6(-78)', 'E6(-26)', and sums of these with '+'.
+        A name as in the table of the module, or another name in use: 'so(1,4)', 'su(1,1)', 'sl(3)', 'so*(8)',
+        'su*(4)', 'sp(4,R)', 'spin(7)', 'so(3,C)', 'e6(-78)', 'E6(-26)', and sums of these with '+'.
 
     Raises
     ------
     CatalogError
-        If the text is no such name, or the algebra is not semisimple, such as so(2) and so(1,1).
+        If the string is not such a name, or the algebra is not semisimple, such as so(2) and so(1,1).
 
     Examples
     --------
@@ -63,19 +63,20 @@ def canonical_real_form(name: str) -> str:
 
 
 def join_real_forms(names: Iterable[str]) -> str:
-    """Canonical names as one sum; '0' if there is none.
+    """The sum of canonical names as a string, sorted; '0' for the empty sum.
 
-    They are sorted by dimension; of one dimension the compact ones come first, the others by name.
+    Names are sorted by dimension. For equal dimensions, compact algebras come first, then the others by name.
 
     Examples
     --------
     >>> join_real_forms(["so(4,1)", "sl(2,R)", "so(3)"])
     'so(3) + sl(2,R) + so(4,1)'
     """
-    return " + ".join(sorted(names, key=_rank_in_sums)) or "0"
+    return " + ".join(sorted(names, key=_sort_key)) or "0"
 
 
-def _rank_in_sums(name: str) -> tuple[int, bool, str]:
+def _sort_key(name: str) -> tuple[int, bool, str]:
+    """(dimension, not compact, name) of a canonical name."""
     kind, numbers, letter = parse_name(name)
     n = sum(numbers)
     if kind in EXCEPTIONAL:
@@ -91,12 +92,12 @@ def _rank_in_sums(name: str) -> tuple[int, bool, str]:
 
 
 def canonical_ideals(name: str) -> list[str]:
-    """The canonical names of the simple ideals of an algebra that is named without a sum.
+    """The canonical names of the simple ideals of an algebra whose name has no '+'.
 
     Raises
     ------
     CatalogError
-        As `canonical_real_form`.
+        As for `canonical_real_form`.
 
     Examples
     --------
@@ -118,12 +119,12 @@ def canonical_ideals(name: str) -> list[str]:
 
 
 def parse_name(name: str) -> Parsed:
-    """The parts of a name: kind, numbers, letter.
+    """The parts (kind, numbers, letter) of the name of a real form.
 
     Raises
     ------
     CatalogError
-        If it is none.
+        If the string is not such a name.
 
     Examples
     --------
@@ -131,7 +132,7 @@ def parse_name(name: str) -> Parsed:
     (('so', (4, 1), ''), ('sp', (6,), 'R'), ('e6', (-26,), ''), ('g2', (-14,), ''))
     """
     text = name.replace(" ", "")
-    if re.match(r"[EFG][2-8]\(", text):  # with its character; E6 alone is a type, e6 the compact form
+    if re.match(r"[EFG][2-8]\(", text):  # E6 with a character is accepted; E6 alone is a type, e6 the compact form
         text = text[0].lower() + text[1:]
     if exceptional := re.fullmatch(r"(e6|e7|e8|f4|g2)(?:\((-?\d+|C)\))?", text, re.ASCII):
         kind, character = exceptional[1], exceptional[2] or str(EXCEPTIONAL[exceptional[1]][-1])
@@ -150,11 +151,11 @@ def parse_name(name: str) -> Parsed:
                 return kind, (first, int(second)), ""
         elif second in _LETTERS[kind] and not (kind == "sp" and second and first % 2):
             return kind, (first,), second
-    raise CatalogError(f"{name!r} names no semisimple real Lie algebra; known: {_KNOWN}")
+    raise CatalogError(f"{name!r} is not the name of a semisimple real Lie algebra; known: {_KNOWN}")
 
 
 def name_of(kind: str, numbers: tuple[int, ...], letter: str) -> str:
-    """The printed name of what `parse_name` gives, for canonical numbers.
+    """The canonical name with given kind, numbers and letter, the inverse of `parse_name`.
 
     Examples
     --------
@@ -170,7 +171,7 @@ def name_of(kind: str, numbers: tuple[int, ...], letter: str) -> str:
 
 
 def canonical_names(series: str, rank: int) -> list[str]:
-    """The canonical names of all real forms of a simple type in its canonical spelling, none of them complex.
+    """The canonical names of all real forms of a canonical simple type, without the complex algebra.
 
     Examples
     --------

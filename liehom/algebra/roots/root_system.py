@@ -1,6 +1,6 @@
-"""RootSystem: the roots of a Cartan matrix of finite type, in coordinates of the simple roots.
+"""Root systems of Cartan matrices of finite type, in coordinates of the simple roots.
 
-A root is a tuple of integers, alpha = sum_i alpha[i] alpha_i.  Positive roots are found height by height: for a
+A root is a tuple of integers, alpha = sum_i alpha[i] alpha_i. Positive roots are found height by height. For a
 positive root beta, beta + alpha_i is a root if and only if p > <beta, alpha_i^vee>, where beta - p alpha_i is the
 last root of the string through beta.
 """
@@ -35,16 +35,16 @@ class RootSystem:
     Parameters
     ----------
     cartan : (r, r) integers
-        ``a[i][j] = <alpha_i, alpha_j^vee> = 2 (alpha_i, alpha_j) / (alpha_j, alpha_j)``, of finite type; kept as
-        a tuple of tuples.
+        ``a[i][j] = <alpha_i, alpha_j^vee> = 2 (alpha_i, alpha_j) / (alpha_j, alpha_j)``, of finite type; stored
+        as a tuple of tuples.
 
     Attributes
     ----------
     cartan : tuple of tuples of int
     positive_roots : tuple of tuples of int
-        By height, and for one height in reverse lexicographic order: the simple roots come first, in order.
+        Sorted by height, and for one height in reverse lexicographic order. So the simple roots come first, in order.
     norms : tuple of int
-        (alpha_i, alpha_i); the short roots of each component have 2, so the values are 2, 4 and 6.
+        (alpha_i, alpha_i), normalized to 2 for the short roots of each component, so the values are 2, 4 and 6.
 
     Raises
     ------
@@ -55,7 +55,7 @@ class RootSystem:
 
     Notes
     -----
-    Roots, weights and linear forms are tuples of integers; the class holds no floating-point number.
+    Roots, weights and linear forms are tuples of integers. No floating-point numbers are used.
 
     Examples
     --------
@@ -80,32 +80,32 @@ class RootSystem:
         signed = [*positive, *(_negative(root) for root in positive)]
         for name, value in (("cartan", matrix), ("norms", norms), ("positive_roots", positive)):
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "_index", {root: place for place, root in enumerate(signed)})
+        object.__setattr__(self, "_index", {root: i for i, root in enumerate(signed)})
 
     # -- properties --------------------------------------------------------------------------------------
     @property
     def rank(self) -> int:
-        """The number of simple roots."""
+        """The number of simple roots, an int."""
         return len(self.cartan)
 
     @property
     def type(self) -> str:
-        """The type, found from the Dynkin diagram: 'B2', 'A1 + G2', '0' for rank 0."""
+        """The type as a string, such as 'B2' or 'A1 + G2'; '0' for rank 0."""
         return join_types(name for name, _ in self.components())
 
     @property
     def number_of_roots(self) -> int:
-        """How many roots there are."""
+        """The number of roots, positive and negative, an int."""
         return 2 * len(self.positive_roots)
 
     @property
     def roots(self) -> tuple[Root, ...]:
-        """The positive roots, then their negatives in the same order."""
+        """All roots: the positive roots, then their negatives in the same order."""
         return tuple(self._index)
 
     @property
     def simple_roots(self) -> tuple[Root, ...]:
-        """The simple roots, which are the unit vectors."""
+        """The simple roots, which are the unit vectors of length r."""
         return self.positive_roots[: self.rank]
 
     @property
@@ -126,7 +126,7 @@ class RootSystem:
         return np.array(self.roots, dtype=np.int64).reshape(self.number_of_roots, self.rank)
 
     def components(self) -> list[tuple[str, tuple[int, ...]]]:
-        """The irreducible components: the type of each and its nodes in Bourbaki's order, sorted by type.
+        """The irreducible components, sorted: pairs of type and nodes in Bourbaki's order.
 
         Examples
         --------
@@ -140,12 +140,12 @@ class RootSystem:
         return dynkin_diagram(self.cartan)
 
     def weyl_group_order(self) -> int:
-        """The order of the Weyl group, the product of all (m + 1) with m the exponents.
+        """The order of the Weyl group, an int: the product of m + 1 over the exponents m.
 
         Notes
         -----
-        The partition of the positive roots by height is dual to that by exponents (Kostant): there are as many
-        exponents m as there are more roots of height m than of height m + 1.
+        The exponents are the partition dual to the numbers of roots by height (Kostant). So the multiplicity of the
+        exponent m is the number of roots of height m minus the number of roots of height m + 1.
 
         Examples
         --------
@@ -156,29 +156,29 @@ class RootSystem:
         return prod((m + 1) ** (heights[m] - heights[m + 1]) for m in heights)
 
     def is_root(self, alpha: Sequence[int]) -> bool:
-        """Whether this combination of the simple roots is a root."""
+        """Whether integer coefficients in the simple roots define a root."""
         return tuple(alpha) in self._index
 
     def index(self, alpha: Sequence[int]) -> int:
-        """The place of a root in `roots`.
+        """The index of a root in `roots`.
 
         Raises
         ------
         InputError
-            If it is no root.
+            If alpha is not a root.
 
         Examples
         --------
         >>> root_system("A2").index((-1, -1))
         5
         """
-        place = self._index.get(tuple(alpha))
-        if place is None:
+        index = self._index.get(tuple(alpha))
+        if index is None:
             raise InputError(f"{tuple(alpha)} is not a root of {self.type}; `roots` lists them")
-        return place
+        return index
 
     def inner(self, alpha: Sequence[int], beta: Sequence[int]) -> int:
-        """The inner product (alpha, beta) for which the short roots of each component have norm 2."""
+        """The inner product (alpha, beta), an int, with (a, a) = 2 for the short roots a of each component."""
         self._require_length(alpha, beta)
         double = 0
         for x, row in zip(alpha, self.cartan, strict=True):
@@ -187,7 +187,7 @@ class RootSystem:
         return double // 2
 
     def norm(self, alpha: Sequence[int]) -> int:
-        """(alpha, alpha): 2 for a short root of its component, otherwise 4, or 6 in G2.
+        """(alpha, alpha), an int: 2 for a short root of its component, otherwise 4, or 6 in G2.
 
         Examples
         --------
@@ -198,12 +198,12 @@ class RootSystem:
         return self.inner(alpha, alpha)
 
     def pairing(self, alpha: Sequence[int], beta: Sequence[int]) -> int:
-        """<alpha, beta^vee> = 2 (alpha, beta) / (beta, beta), for a root beta and alpha in the root lattice.
+        """The integer <alpha, beta^vee> = 2 (alpha, beta) / (beta, beta) of a root beta and alpha in the root lattice.
 
         Raises
         ------
         InputError
-            If beta is no root.
+            If beta is not a root.
 
         Examples
         --------
@@ -214,7 +214,7 @@ class RootSystem:
         return 2 * self.inner(alpha, beta) // self.norm(beta)
 
     def reflection(self, alpha: Sequence[int], beta: Sequence[int]) -> Root:
-        """The mirror image of alpha in the hyperplane orthogonal to the root beta.
+        """The reflection of alpha in the hyperplane orthogonal to the root beta, in the simple roots.
 
         Examples
         --------
@@ -225,7 +225,7 @@ class RootSystem:
         return tuple(x - times * y for x, y in zip(alpha, beta, strict=True))
 
     def coroot(self, alpha: Sequence[int]) -> Root:
-        """alpha^vee in the basis of the simple coroots: alpha[i] (alpha_i, alpha_i) / (alpha, alpha).
+        """The coroot of alpha in the simple coroots, with coefficients alpha[i] (alpha_i, alpha_i) / (alpha, alpha).
 
         Examples
         --------
@@ -237,7 +237,7 @@ class RootSystem:
         return tuple(x * d // norm for x, d in zip(alpha, self.norms, strict=True))
 
     def fundamental_weights(self) -> tuple[tuple[Fraction, ...], ...]:
-        """The fundamental weights, <omega_i, alpha_j^vee> = 1 for i = j and else 0, in the simple roots.
+        """The fundamental weights in the simple roots: <omega_i, alpha_j^vee> is 1 for i = j, else 0.
 
         Examples
         --------
@@ -247,12 +247,12 @@ class RootSystem:
         return _inverse(self.cartan)
 
     def dominant(self, weight: Sequence[int]) -> tuple[int, ...]:
-        """The dominant weight in the orbit of a weight under the Weyl group.
+        """The dominant weight in the Weyl orbit of a weight.
 
         Parameters
         ----------
         weight : (r,) integers
-            Its coefficients <weight, alpha_i^vee> in the fundamental weights; so is the result.
+            The coefficients <weight, alpha_i^vee> in the fundamental weights; the result has the same form.
 
         Examples
         --------
@@ -276,7 +276,7 @@ class RootSystem:
 
 
 def root_system(name: str) -> RootSystem:
-    """The root system of a type, with Bourbaki's numbering of the simple roots.
+    """The root system of a type, with simple roots in Bourbaki's order.
 
     Parameters
     ----------
@@ -307,6 +307,7 @@ def _negative(root: Root) -> Root:
 
 
 def _checked(cartan: Sequence[Sequence[int]]) -> CartanMatrix:
+    """The matrix as a tuple of tuples, with the signs and zeros of a Cartan matrix."""
     rows = tuple(tuple(row) for row in cartan)
     if any(len(row) != len(rows) for row in rows):
         raise ShapeError(f"a Cartan matrix is square; got rows of lengths {[len(row) for row in rows]}")
@@ -324,7 +325,7 @@ def _checked(cartan: Sequence[Sequence[int]]) -> CartanMatrix:
 
 
 def _norms(cartan: CartanMatrix) -> tuple[int, ...]:
-    """(alpha_i, alpha_i), by a[i][j] (alpha_j, alpha_j) = a[j][i] (alpha_i, alpha_i), the shortest of a component 2."""
+    """The norms (alpha_i, alpha_i), by a[i][j] (alpha_j, alpha_j) = a[j][i] (alpha_i, alpha_i)."""
     norms: dict[int, Fraction] = {}
     for start in range(len(cartan)):
         if start in norms:
@@ -339,12 +340,12 @@ def _norms(cartan: CartanMatrix) -> tuple[int, ...]:
         least = min(component.values())
         norms |= {i: 2 * x / least for i, x in component.items()}
     if any(cartan[i][j] * norms[j] != cartan[j][i] * norms[i] for i in norms for j in norms):
-        raise InputError(f"no inner product belongs to the matrix {cartan}: it is not of finite type")
+        raise InputError(f"the matrix {cartan} does not come from an inner product: it is not of finite type")
     return tuple(int(norms[i]) for i in range(len(cartan)))
 
 
 def _require_finite(cartan: CartanMatrix, norms: tuple[int, ...]) -> None:
-    """The inner product must be positive definite: exact elimination without exchanges meets positive pivots only."""
+    """Raise `InputError` unless the inner product is positive definite, by the signs of exact pivots."""
     n = len(cartan)
     gram = [[Fraction(cartan[i][j] * norms[j], 2) for j in range(n)] for i in range(n)]
     for i, pivot in enumerate(gram):
@@ -357,9 +358,10 @@ def _require_finite(cartan: CartanMatrix, norms: tuple[int, ...]) -> None:
 
 
 def _positive_roots(cartan: CartanMatrix) -> tuple[Root, ...]:
+    """The positive roots by height, from the strings in the directions of simple roots."""
     rank = len(cartan)
     level: list[Root] = [tuple(int(i == j) for j in range(rank)) for i in range(rank)]
-    # for each root of the present height, how far the string through it goes down in the direction of alpha_i
+    # depth[root][i]: the largest p such that root - p alpha_i is a root
     depth: dict[Root, dict[int, int]] = {root: {} for root in level}
     found = list(level)
     while level:
@@ -378,6 +380,7 @@ def _positive_roots(cartan: CartanMatrix) -> tuple[Root, ...]:
 
 
 def _inverse(cartan: CartanMatrix) -> tuple[tuple[Fraction, ...], ...]:
+    """The exact inverse of a Cartan matrix."""
     n = len(cartan)
     rows = [[Fraction(x) for x in row] + [Fraction(i == j) for j in range(n)] for i, row in enumerate(cartan)]
     for i, pivot in enumerate(rows):  # the leading minors are positive: no exchange of rows is needed

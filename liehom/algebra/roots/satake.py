@@ -1,13 +1,13 @@
-"""SatakeDiagram: the involution on a maximally split Cartan subalgebra, drawn on the Dynkin diagram.
+"""Satake diagrams: involutions on maximally split Cartan subalgebras, drawn on Dynkin diagrams.
 
-The involution theta fixes the black nodes; for a white node, -theta(alpha_i) = alpha_{tau i} + (black nodes), with
-tau the arrows.  So with w the longest element of the Weyl group of the black nodes
+The involution theta fixes the black nodes. For a white node, -theta(alpha_i) = alpha_{tau i} + (black nodes), where
+tau is the permutation by the arrows. Let w be the longest element of the Weyl group of the black nodes. Then
 
     theta(alpha_i) = -w(alpha_{tau i})  (white),      theta(alpha_i) = alpha_i  (black),
 
-and the restricted roots are the differences (a - theta a) / 2 that are not 0.  From a Vogan diagram, whose Cartan
-subalgebra is maximally compact, one comes here by Cayley transforms: theta becomes theta s_b for a noncompact root b,
-until there is none.
+and the restricted roots are the non-zero differences (a - theta a) / 2. The Cartan subalgebra of a Vogan diagram is
+maximally compact. Cayley transforms lead from it to a maximally split one: theta is replaced by theta s_b with a
+noncompact root b, until no noncompact root is left.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class SatakeDiagram:
     Parameters
     ----------
     type : str
-        The type of the complex algebra, numbered by Bourbaki from 0.
+        The type of the complex algebra, nodes in Bourbaki's order from 0.
     black : tuple of int
         Nodes whose roots vanish on the split part of the Cartan subalgebra.
     arrows : tuple of (int, int)
@@ -49,11 +49,11 @@ class SatakeDiagram:
     CatalogError
         If there is no such type.
     InputError
-        If black nodes and arrows define no involution of the root system.
+        If black nodes and arrows do not define an involution of the root system.
 
     Notes
     -----
-    Every diagram that defines an involution is accepted; not each of them belongs to a real form.
+    Every diagram that defines an involution is accepted. Not all of these belong to a real form.
 
     Examples
     --------
@@ -76,13 +76,15 @@ class SatakeDiagram:
         theta, cartan = self.involution(), np.array(self.root_system().cartan, dtype=np.int64).reshape(rank, rank)
         gram = cartan * np.array(self.root_system().norms, dtype=np.int64)
         if (theta @ theta != np.eye(rank, dtype=np.int64)).any() or (theta @ gram @ theta.T != gram).any():
-            raise InputError(f"black nodes {self.black} and arrows {self.arrows} define no involution of {self.type}")
+            raise InputError(
+                f"black nodes {self.black} and arrows {self.arrows} do not define an involution of {self.type}"
+            )
 
     @classmethod
     def of(cls, vogan: VoganDiagram) -> SatakeDiagram:
         """The Satake diagram of the real form with a given Vogan diagram.
 
-        Where the Dynkin diagram has symmetries, the picture with the last possible nodes black is taken.
+        If the Dynkin diagram has symmetries, the diagram with the last possible nodes black is returned.
 
         Examples
         --------
@@ -94,32 +96,32 @@ class SatakeDiagram:
     # -- properties --------------------------------------------------------------------------------------
     @property
     def real_rank(self) -> int:
-        """The number of white nodes, those joined by an arrow counted once."""
+        """The real rank, an int: the number of white nodes, two nodes joined by an arrow counted once."""
         return self.root_system().rank - len(self.black) - len(self.arrows)
 
     @property
     def anisotropic_dimension(self) -> int:
-        """The dimension of m, the centralizer in k of the split part of the Cartan subalgebra."""
+        """The dimension of m, the centralizer in k of the split part of the Cartan subalgebra, an int."""
         zero = (0,) * self.root_system().rank
         return self._projections()[zero] + self.root_system().rank - self.real_rank
 
     @property
     def compact_dimension(self) -> int:
-        """dim k, which is dim m plus the multiplicities of the positive restricted roots."""
+        """dim k, an int: dim m plus the multiplicities of the positive restricted roots."""
         return self.anisotropic_dimension + sum(self.restricted_roots().values()) // 2
 
     @property
     def restricted_type(self) -> str:
-        """The type of the restricted root system: 'A1', 'B2', 'BC1', ...; '0' for a compact algebra."""
+        """The type of the restricted root system, such as 'A1', 'B2' or 'BC1', and '0' for a compact algebra."""
         return self._restricted()[0]
 
     @property
     def multiplicities(self) -> dict[str, int]:
         """The multiplicities of the restricted roots by their length.
 
-        The keys are 'all' where there is one length, 'short' and 'long' where there are two, and 'short',
-        'middle', 'long' in BC_n, n > 1; in BC_1 they are 'short' and 'long', the double of a short root. There
-        are none, {}, where the restricted root system is empty or has several components.
+        The key is 'all' if there is one length. The keys are 'short' and 'long' if there are two lengths, and
+        'short', 'middle', 'long' for BC_n, n > 1. For BC_1 the 'long' roots are doubles of 'short' ones. The result
+        is {} if the restricted root system is empty or has several components.
 
         Examples
         --------
@@ -134,7 +136,7 @@ class SatakeDiagram:
         return root_system(self.type)
 
     def involution(self) -> IntegerArray:
-        """theta on rows of coefficients in the simple roots, shape (r, r).
+        """The matrix (r, r) of theta on rows of coefficients in the simple roots.
 
         Examples
         --------
@@ -152,7 +154,7 @@ class SatakeDiagram:
         return np.array(rows, dtype=np.int64).reshape(roots.rank, roots.rank)
 
     def restricted_roots(self) -> dict[Root, int]:
-        """The restricted roots with their multiplicities, as {a - theta a: multiplicity}, twice the restrictions.
+        """The multiplicities of the restricted roots, by twice the restriction: {a - theta a: multiplicity}.
 
         Examples
         --------
@@ -167,8 +169,8 @@ class SatakeDiagram:
         Returns
         -------
         networkx.DiGraph
-            The Dynkin diagram of `liehom.algebra.dynkin_diagram`; nodes have the attribute ``black`` (bool) and
-            ``arrow`` (the node at the other end, or None).
+            The Dynkin diagram of `liehom.algebra.dynkin_diagram`; nodes have the attributes ``black`` (bool)
+            and ``arrow`` (the node at the other end of the arrow, or None).
 
         Examples
         --------
@@ -183,7 +185,7 @@ class SatakeDiagram:
 
     # -- helpers -----------------------------------------------------------------------------------------
     def _raised(self, weight: Root) -> Root:
-        """w(alpha) for alpha antidominant for the black nodes: reflect while some pairing is negative."""
+        """w(alpha) for alpha that is antidominant for the black nodes, by reflections while a pairing is negative."""
         cartan = self.root_system().cartan
         row = list(weight)
         while True:
@@ -194,6 +196,7 @@ class SatakeDiagram:
             row[k] -= pairings[k]
 
     def _projections(self) -> Counter[Root]:
+        """How many roots a have each value of a - theta a."""
         roots = self.root_system().root_matrix()
         return Counter(map(tuple, (roots - roots @ self.involution()).tolist()))
 
@@ -215,32 +218,33 @@ def _restricted_system(diagram: SatakeDiagram) -> tuple[str, dict[str, int]]:
         return join_types(names), {}
     by_norm = {system.norm(root): times for root, times in restricted.items()}
     if any(by_norm[system.norm(root)] != times for root, times in restricted.items()):
-        raise InternalError(f"restricted roots of one length with several multiplicities in {diagram}")
+        raise InternalError(f"restricted roots of one length have several multiplicities in {diagram}")
     labels = {0: (), 1: ("all",), 2: ("short", "long"), 3: ("short", "middle", "long")}[len(by_norm)]
     return join_types(names), dict(zip(labels, (by_norm[norm] for norm in sorted(by_norm)), strict=True))
 
 
 @lru_cache(maxsize=256)
 def _from_vogan(vogan: VoganDiagram) -> SatakeDiagram:
+    """The Satake diagram of the real form of a Vogan diagram."""
     system = vogan.root_system()
     theta = _maximally_split(vogan)
     rows = _simple_roots_for(system, theta)
     images = [tuple(x) for x in (np.array(rows, dtype=np.int64).reshape(system.rank, system.rank) @ theta).tolist()]
     black = {i for i, image in enumerate(images) if image == rows[i]}
     tau = {i: _white_part(system, rows, black, images[i]) for i in range(len(rows)) if i not in black}
-    pictures = []
+    diagrams = []
     for order in isomorphisms(system.cartan, gram_to_cartan(system, rows)):
-        place = {row: node for node, row in enumerate(order)}
-        arrows = sorted((place[i], place[j]) for i, j in tau.items() if place[i] < place[j])
-        single = sorted(place[i] for i, j in tau.items() if i == j)
-        # black nodes as far to the end as possible, then arrows that leave the first nodes alone
-        pictures.append((sorted(-place[i] for i in black), single, arrows))
-    last_black, _, arrows = min(pictures)
+        position = {row: node for node, row in enumerate(order)}
+        arrows = sorted((position[i], position[j]) for i, j in tau.items() if position[i] < position[j])
+        single = sorted(position[i] for i, j in tau.items() if i == j)
+        # prefer black nodes at the end, then arrows that leave the first nodes fixed
+        diagrams.append((sorted(-position[i] for i in black), single, arrows))
+    last_black, _, arrows = min(diagrams)
     return SatakeDiagram(vogan.type, tuple(sorted(-x for x in last_black)), tuple(arrows))
 
 
 def _maximally_split(vogan: VoganDiagram) -> IntegerArray:
-    """The involution on the root lattice after Cayley transforms by noncompact roots, until none is left."""
+    """The involution (r, r) on the root lattice after Cayley transforms by all noncompact roots."""
     system, theta = vogan.root_system(), vogan.involution()
     gram = np.array(system.cartan, dtype=np.int64).reshape(system.rank, system.rank) * np.array(system.norms) // 2
     roots = system.root_matrix()
@@ -253,20 +257,20 @@ def _maximally_split(vogan: VoganDiagram) -> IntegerArray:
         theta = reflection @ theta
         orthogonal = roots @ gram @ b == 0
         roots, signs = roots[orthogonal], signs[orthogonal]
-        # a root that is orthogonal, but not strongly orthogonal, to b changes its kind
+        # a root that is orthogonal to b, but not strongly orthogonal, changes between compact and noncompact
         signs = np.array([-s if system.is_root(x) else s for s, x in zip(signs, (roots + b).tolist(), strict=True)])
     return theta
 
 
 def _simple_roots_for(system: RootSystem, theta: IntegerArray) -> list[Root]:
-    """Simple roots for an order in which the part of a root in the (-1)-eigenspace of theta decides first."""
+    """Simple roots for an order that compares first the components in the (-1)-eigenspace of theta."""
     roots = system.root_matrix()
     split = dict(zip(system.roots, (roots - roots @ theta).tolist(), strict=True))
     return simple_system(system.roots, lambda a: (generic_form(split[a]), generic_form(a)))
 
 
 def _white_part(system: RootSystem, simple: Sequence[Root], black: set[int], image: Root) -> int:
-    """The j with -image = simple[j] + (black simple roots): simple roots are taken off while a root remains."""
+    """The index j with -image = simple[j] + (black simple roots), found by subtracting simple roots."""
     rest = tuple(-x for x in image)
     while rest not in simple:
         lower = (tuple(x - y for x, y in zip(rest, s, strict=True)) for s in simple)

@@ -1,12 +1,12 @@
-"""VoganDiagram: a Cartan involution on the Dynkin diagram, from which a real form is built.
+"""Vogan diagrams: Cartan involutions on Dynkin diagrams, which determine real forms.
 
 On a Chevalley basis of the complex algebra the involution is theta e_a = s(a) e_{sigma a}, where sigma is an
 automorphism of the diagram with sigma^2 = 1 and, modulo 2, for a = sum_i a_i alpha_i
 
     s(a) = (-1)^q(a),    q(a) = sum_{i painted} a_i + sum_{i < j} a_i a_j (B(sigma i, sigma j) - B(i, j)),
 
-with the bilinear form B of `liehom.algebra.chevalley`.  Roots with sigma a = a are compact for s(a) = 1 and
-noncompact for s(a) = -1; the others, complex, come in pairs.
+with the bilinear form B of `liehom.algebra.chevalley`. Roots with sigma a = a are compact if s(a) = 1 and noncompact if
+s(a) = -1. All other roots are complex and come in pairs {a, sigma a}.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ class VoganDiagram:
     Parameters
     ----------
     type : str
-        The type of the complex algebra, numbered by Bourbaki from 0.
+        The type of the complex algebra, nodes in Bourbaki's order from 0.
     painted : tuple of int
-        Nodes fixed by the automorphism whose root vectors are noncompact.
+        The nodes that the automorphism fixes and whose root vectors are noncompact.
     automorphism : tuple of int, optional
         The image of each node; () for the identity.
 
@@ -42,7 +42,7 @@ class VoganDiagram:
     CatalogError
         If there is no such type.
     InputError
-        If the automorphism is no involution of the diagram, or a painted node is not fixed by it.
+        If the automorphism is not an involution of the diagram, or it moves a painted node.
 
     Examples
     --------
@@ -60,32 +60,32 @@ class VoganDiagram:
         cartan = self.root_system().cartan
         sigma = self.automorphism or tuple(range(len(cartan)))
         if sorted(sigma) != list(range(len(cartan))) or any(sigma[sigma[i]] != i for i in sigma):
-            raise InputError(f"{sigma} is no involution of the {len(cartan)} nodes 0, ..., {len(cartan) - 1}")
+            raise InputError(f"{sigma} is not an involution of the {len(cartan)} nodes 0, ..., {len(cartan) - 1}")
         if any(cartan[sigma[i]][sigma[j]] != cartan[i][j] for i in sigma for j in sigma):
             raise InputError(f"{sigma} does not preserve the Dynkin diagram of {self.type}")
         wrong = [i for i in self.painted if not 0 <= i < len(cartan) or sigma[i] != i]
         if wrong:
-            raise InputError(f"painted nodes are nodes that the automorphism {sigma} fixes; got {wrong}")
+            raise InputError(f"painted nodes must be nodes that the automorphism {sigma} fixes; got {wrong}")
         object.__setattr__(self, "automorphism", sigma)
         object.__setattr__(self, "painted", tuple(sorted(set(self.painted))))
 
     # -- properties --------------------------------------------------------------------------------------
     @property
     def compact_dimension(self) -> int:
-        """The dimension of k, the fixed algebra of the involution."""
+        """The dimension of k, the fixed algebra of the involution, an int."""
         fixed, signs = self._fixed(), self.signs()
         orbits = sum(i <= j for i, j in enumerate(self.automorphism))
         return orbits + int((fixed & (signs == 1)).sum()) + int((~fixed).sum()) // 2
 
     @property
     def character(self) -> int:
-        """dim p - dim k."""
+        """The character dim p - dim k, an int."""
         roots = self.root_system()
         return roots.rank + roots.number_of_roots - 2 * self.compact_dimension
 
     # -- verbs -------------------------------------------------------------------------------------------
     def root_system(self) -> RootSystem:
-        """The root system of the type."""
+        """The root system of the complex algebra."""
         return root_system(self.type)
 
     def involution(self) -> IntegerArray:
@@ -93,7 +93,7 @@ class VoganDiagram:
         return np.eye(len(self.automorphism), dtype=np.int64)[list(self.automorphism)]
 
     def signs(self) -> IntegerArray:
-        """s(a) for each root a, in the order of `RootSystem.roots`.
+        """The signs s(a) of all roots a, 1 or -1, in the order of `RootSystem.roots`; shape (number of roots,).
 
         Examples
         --------
@@ -111,12 +111,12 @@ class VoganDiagram:
         return signs
 
     def maximal_compact_type(self) -> tuple[str, int]:
-        """The type of the semisimple part of k, and the dimension of its centre.
+        """The type of the semisimple part of k, and the dimension of the centre of k.
 
         Notes
         -----
-        The roots of k are the restrictions (a + sigma a) / 2 of compact roots and of one of each pair of complex
-        roots to the fixed part of the Cartan subalgebra.
+        The roots of k are the restrictions (a + sigma a) / 2 to the fixed part of the Cartan subalgebra, of all
+        compact roots and one root of each complex pair.
 
         Examples
         --------
@@ -132,16 +132,17 @@ class VoganDiagram:
         return join_types(name for name, _ in diagram_components(gram_to_cartan(system, simple))), orbits - len(simple)
 
     def _fixed(self) -> BooleanArray:
+        """Mask of the roots that the automorphism fixes."""
         roots = self.root_system().root_matrix()
         fixed: BooleanArray = (roots[:, list(self.automorphism)] == roots).all(axis=1)
         return fixed
 
 
 def bilinear_form(system: RootSystem) -> IntegerArray:
-    """B with B(a, a) = (a, a) / 2 and B(a, b) + B(b, a) = (a, b) for a simply laced system, in the simple roots.
+    """The matrix (r, r) of a form B with B(a, a) = (a, a) / 2 and B(a, b) + B(b, a) = (a, b), simply laced.
 
-    B(i, j) is 1 for i = j, -1 for neighbours i < j, else 0.  For other systems it is the same with norms as weights,
-    of use only for the identical automorphism.
+    In the simple roots B(i, j) is 1 for i = j, -1 for neighbours i < j, else 0. For systems that are not simply laced
+    the entries are weighted by norms, which is only used with the identity automorphism.
 
     Examples
     --------
@@ -162,7 +163,7 @@ def simple_system(roots: Iterable[Root], key: Callable[[Root], tuple[int, ...]])
     roots : collection of tuples of int
         Closed under -1.
     key : callable
-        Additive with values in tuples, compared lexicographically, none of them zero.
+        Additive, with non-zero tuples as values, which are compared lexicographically.
 
     Examples
     --------
@@ -180,7 +181,7 @@ def simple_system(roots: Iterable[Root], key: Callable[[Root], tuple[int, ...]])
 
 
 def gram_to_cartan(system: RootSystem, vectors: Sequence[Sequence[int]]) -> list[list[int]]:
-    """The matrix 2 (u, v) / (v, v) of vectors of the root lattice that are simple roots of some root system.
+    """The Cartan matrix 2 (u, v) / (v, v) of vectors of the root lattice that are simple roots of a root system.
 
     Examples
     --------
@@ -192,7 +193,7 @@ def gram_to_cartan(system: RootSystem, vectors: Sequence[Sequence[int]]) -> list
 
 
 def generic_form(a: Sequence[int], base: int = 1024) -> int:
-    """A linear form without zeros on non-zero vectors whose coordinates are less than base / 2 in absolute value.
+    """The value of a linear form that has no zeros on non-zero integer vectors with |coordinates| < base / 2.
 
     Examples
     --------

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.algebra.roots.real_form import RealForm, complex_form, real_forms
-from liehom.algebra.roots.real_form_names import _rank_in_sums, canonical_real_form
+from liehom.algebra.roots.real_form_names import _sort_key, canonical_real_form
 from tests.sampling import examples
 
 COINCIDENCES = {
@@ -142,7 +142,7 @@ def test_large_names_cost_nothing():
 def test_sums_are_sorted_by_the_dimension_of_the_real_form(type_name: str) -> None:
     forms = [*real_forms(type_name), complex_form(type_name)]
     for form in forms:
-        assert _rank_in_sums(form.name)[:2] == (form.dimension, not form.is_compact)
+        assert _sort_key(form.name)[:2] == (form.dimension, not form.is_compact)
 
 
 def test_compact_ideals_come_first() -> None:
