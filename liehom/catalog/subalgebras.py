@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra.closure.closure import square_matrices
-from liehom.algebra.closure.sparse_commutators import entries_of, private_places
+from liehom.algebra.closure.sparse_commutators import entries_of, exclusive_entries
 from liehom.algebra.matrices.matrix_basis import null_space
 from liehom.catalog.linear import at_offset
 from liehom.typing import IntegerArray
@@ -74,7 +74,7 @@ def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray 
         return rows if not elements.any() else None
     flat = matrices.reshape(len(matrices), -1)
     wanted = elements.reshape(len(elements), -1)
-    positions = private_places([entries_of(a) for a in square_matrices(list(matrices))], matrices.shape[1])
+    positions = exclusive_entries([entries_of(a) for a in square_matrices(list(matrices))], matrices.shape[1])
     if positions is None:
         return _solved(flat, wanted)
     own = flat[range(len(flat)), positions]

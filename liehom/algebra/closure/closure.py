@@ -12,8 +12,8 @@ from typing import Any, Literal, final
 
 import numpy as np
 
-from liehom.algebra.closure.generated_span import GeneratedSpan, commutator_pairs, generated_span, generating_words
-from liehom.algebra.closure.sparse_commutators import entries_of, private_places, sparse_commutator_table
+from liehom.algebra.closure.generated_span import GeneratedSpan, commutator_pairs, generated_span, spanning_commutators
+from liehom.algebra.closure.sparse_commutators import entries_of, exclusive_entries, sparse_commutator_table
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import field_of_values
@@ -172,7 +172,7 @@ def _completed(
     basis: list[Any], completion: Completion, limit: int | None
 ) -> tuple[list[Any], list[tuple[int, int]], StructureConstants | None]:
     """The basis completed modulo a prime, which commutators were appended, and the table where it is cheap."""
-    dimension = len(generating_words(basis))
+    dimension = len(spanning_commutators(basis))
     if dimension == len(basis):
         return basis, [], None
     pairs = commutator_pairs(basis, dimension) if completion != "reduced" else []
@@ -248,7 +248,7 @@ def _private(basis: list[Any]) -> list[int] | None:
     field = basis[0].field
     if not field.exact or field.degree > 1:
         return None
-    return private_places([entries_of(a) for a in basis], basis[0].nrows)
+    return exclusive_entries([entries_of(a) for a in basis], basis[0].nrows)
 
 
 def _is_sparse(basis: list[Any]) -> bool:

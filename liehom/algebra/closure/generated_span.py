@@ -55,13 +55,13 @@ class GeneratedSpan:
         return flat.select(columns=self.places)
 
 
-def generating_words(generators: Sequence[Any]) -> Words:
+def spanning_commutators(generators: Sequence[Any]) -> Words:
     """Words in the generators that are a basis modulo a prime: independent, and nearly always a basis.
 
     Examples
     --------
     >>> from liehom.scalars import QQ
-    >>> generating_words([QQ.matrix([[0, 1], [0, 0]]), QQ.matrix([[0, 0], [1, 0]])])
+    >>> spanning_commutators([QQ.matrix([[0, 1], [0, 0]]), QQ.matrix([[0, 0], [1, 0]])])
     [(0, -1), (1, -1), (0, 1)]
     """
     field, n = generators[0].field, generators[0].nrows
@@ -127,7 +127,7 @@ def commutator_pairs(basis: Sequence[Any], dimension: int) -> list[tuple[int, in
     basis : sequence of ExactMatrix
         Independent.
     dimension : int
-        That of the generated algebra modulo a prime, `generating_words`.
+        That of the generated algebra modulo a prime, `spanning_commutators`.
 
     Examples
     --------
@@ -173,7 +173,7 @@ def generated_span(generators: Sequence[Any]) -> GeneratedSpan | None:
     """
     field, n = generators[0].field, generators[0].nrows
     flat = field.stack_rows([a.reshape(1, n * n) for a in generators], n * n)
-    words = generating_words(generators)
+    words = spanning_commutators(generators)
     for rows in rational_lifts(lambda attempt: _echelon(generators, words, attempt), field):
         places = _pivots(rows)
         if not (flat - flat.select(columns=places) @ rows).is_zero():

@@ -20,7 +20,7 @@ def sparse_commutator_table(
     basis : list of ExactMatrix
         Independent, over QQ, (N, N).
     places : list of int, optional
-        Flat positions of d entries that determine an element of the span; None when `private_places` has them.
+        Flat positions of d entries that determine an element of the span; None when `exclusive_entries` has them.
     inverse : ExactMatrix, optional
         The inverse of the (d, d) matrix of the basis at these places; None where it is diagonal.
     """
@@ -28,7 +28,7 @@ def sparse_commutator_table(
     den = lcm(*(a.den for a in basis))
     tables = [entries_of(a, den // a.den) for a in basis]
     if places is None or inverse is None:
-        places = private_places(tables, n)
+        places = exclusive_entries(tables, n)
         rows: dict[int, list[tuple[int, Any]]] = {}
         for k, place in enumerate(places or []):
             rows[place] = [(k, field.one / field.convert(tables[k][divmod(place, n)]))]
@@ -58,7 +58,7 @@ def entries_of(matrix: Any, factor: int = 1) -> Entries:
     return {divmod(x, n): int(v) * factor for x, v in found if v}
 
 
-def private_places(tables: list[Entries], n: int) -> list[int] | None:
+def exclusive_entries(tables: list[Entries], n: int) -> list[int] | None:
     """For each matrix a flat position where it alone is non-zero, or None if one has no such position."""
     count: dict[tuple[int, int], int] = {}
     for table in tables:

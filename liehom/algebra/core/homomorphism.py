@@ -1,28 +1,34 @@
-"""Homomorphism: a linear map between Lie algebras that respects the bracket, proved at construction.
+"""Homomorphism: a linear map f between Lie algebras with f([x, y]) = [f(x), f(y)], proved at construction.
 
-f([x, y]) = [f(x), f(y)].  The matrix acts on columns of coefficients.
+The matrix acts on columns of coefficients.
 """
 
 from __future__ import annotations
 
 from typing import Any, final
 
+import numpy.typing as npt
+
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import HomomorphismError, InputError, ShapeError
+from liehom.scalars import Matrix
+from liehom.scalars.fields.field import MatrixLike
+from liehom.typing import VectorLike
 
 
 @final
 class Homomorphism:
-    """A homomorphism of Lie algebras over one field.
+    """A homomorphism of Lie algebras over the same field.
 
     Parameters
     ----------
     source, target : LieAlgebra
+        Over the same field.
     matrix : array_like of shape (dim target, dim source)
         Column j holds the coefficients of f(e_j).
     check : bool, optional
-        Prove that the bracket is respected (default). False is for callers that have proved it.
+        Prove that the bracket is respected (default). Pass False only if it is proved already.
 
     Raises
     ------
@@ -43,13 +49,13 @@ class Homomorphism:
 
     __slots__ = ("matrix", "source", "target")
 
-    def __init__(self, source: LieAlgebra, target: LieAlgebra, matrix: Any, *, check: bool = True) -> None:
+    def __init__(self, source: LieAlgebra, target: LieAlgebra, matrix: MatrixLike, *, check: bool = True) -> None:
         if source.field != target.field:
             raise InputError(f"the source is over {source.field.name}, the target over {target.field.name}")
         shape = (target.dimension, source.dimension)
         self.source = source
         self.target = target
-        self.matrix = source.field.read(matrix, shape)
+        self.matrix: Matrix = source.field.read(matrix, shape)
         if self.matrix.shape != shape:
             raise ShapeError(f"the matrix of a homomorphism has shape {shape}, got {self.matrix.shape}")
         if check:
@@ -63,7 +69,7 @@ class Homomorphism:
 
     @classmethod
     def inclusion(cls, subalgebra: Subalgebra) -> Homomorphism:
-        """The inclusion of a subalgebra, as an algebra in its own basis, into the whole.
+        """The inclusion of a subalgebra, as an algebra in its own basis, into the algebra that contains it.
 
         Examples
         --------
@@ -90,13 +96,13 @@ class Homomorphism:
                     f"not a homomorphism: f([{names[i]}, {names[j]}]) differs from [f({names[i]}), f({names[j]})]",
                 )
 
-    # -- verbs -------------------------------------------------------------------------------------------
-    def __call__(self, x: Any) -> Any:
+    # -- image, kernel, composition ----------------------------------------------------------------------
+    def __call__(self, x: VectorLike) -> npt.NDArray[Any]:
         """The coefficients of f(x), a numpy array, for a coefficient vector x."""
         return self.target._vector((self.source.row(x) @ self.matrix.T).row(0) if self.target.dimension else [])
 
     def rank(self) -> int:
-        """The dimension of the image."""
+        """The dimension of the image, an int."""
         return int(self.matrix.rank())
 
     def kernel(self) -> Subalgebra:
@@ -116,7 +122,7 @@ class Homomorphism:
         return self.rank() == self.target.dimension
 
     def is_isomorphism(self) -> bool:
-        """Whether it is injective and surjective."""
+        """Whether the map is injective and surjective."""
         return self.source.dimension == self.target.dimension and self.is_injective()
 
     def compose(self, first: Homomorphism) -> Homomorphism:
@@ -125,11 +131,13 @@ class Homomorphism:
         Raises
         ------
         InputError
-            If the target of the first is not the source of this one.
+            If the target of `first` is not the source of this map.
         """
         if first.target is not self.source and first.target != self.source:
             raise InputError("the target of the first homomorphism is not the source of the second")
-        return Homomorphism(first.source, self.target, self.matrix @ first.matrix, check=False)  # both respect it
+        return Homomorphism(
+            first.source, self.target, self.matrix @ first.matrix, check=False
+        )  # both respect the bracket
 
     def inverse(self) -> Homomorphism:
         """The inverse of an isomorphism.
@@ -137,10 +145,10 @@ class Homomorphism:
         Raises
         ------
         InputError
-            If it is not an isomorphism.
+            If the map is not an isomorphism.
         """
         if not self.is_isomorphism():
-            raise InputError(f"only an isomorphism has an inverse; this map of rank {self.rank()} is none: {self!r}")
+            raise InputError(f"only an isomorphism has an inverse; this map of rank {self.rank()} is not one: {self!r}")
         return Homomorphism(self.target, self.source, self.matrix.inverse(), check=False)  # of an isomorphism
 
     def __eq__(self, other: object) -> bool:

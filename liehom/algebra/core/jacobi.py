@@ -1,16 +1,19 @@
-"""The Jacobi identity, proved exactly and quickly.
+"""The Jacobi identity, proved exactly by the cheapest method for the size and sparsity of the table.
 
-Sparse tables: all double brackets.  Dense tables: the elements x for which ad x is a derivation form a
-subalgebra (if x, y are such, ad [x, y] = [ad x, ad y], and a commutator of derivations is one), so it is
-enough that ad x is a derivation for a few x that generate the algebra; that they generate is shown by a
-rank modulo a prime, which bounds the true rank from below.
+Sparse tables: all double brackets are computed.
+
+Dense tables: the elements x for which ad x is a derivation form a subalgebra, because ad [x, y] = [ad x, ad y] for
+such x, y and a commutator of derivations is a derivation.  It is therefore enough that ad x is a derivation for a few
+x that generate the algebra.  That they generate it is shown by a rank modulo a prime, which bounds the true rank from
+below.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra.core.jacobi_by_generators import (
     LARGEST,
@@ -22,11 +25,17 @@ from liehom.algebra.core.jacobi_by_generators import (
 )
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import JacobiError
-from liehom.scalars import FloatField
+from liehom.scalars import FloatField, Scalar
 from liehom.scalars.spaces.sparse import SparseInteger
+from liehom.typing import IntegerArray
 
-SPARSE_TERMS = 30_000
-HELD_TERMS = 50_000_000
+SPARSE_TERMS = 30_000  # products below which double brackets in Python are the fastest proof
+HELD_TERMS = 50_000_000  # products that are held in memory together
+SPARSE_PRODUCT, DENSE_PRODUCT, DENSE_ROW = 400, 4, 300  # times in tenths of a nanosecond: a product; per n^4; per n^3
+
+Triple = tuple[int, int, int]
+Coefficients = dict[int, Scalar]
+Brackets = dict[tuple[int, int], list[tuple[int, Scalar]]]
 
 
 def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
@@ -41,19 +50,19 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     Raises
     ------
     JacobiError
-        Naming i, j, k and the value of the cyclic sum.  Over floats the sum must exceed the field's rtol
-        times the square of the largest constant.
+        If the identity fails; names i, j, k and the value of the cyclic sum. Over floats the sum counts as non-zero
+        if it exceeds the field's rtol times the square of the largest constant.
     """
     if not len(table):
         return
     if isinstance(table.field, FloatField):
-        _check_float(table, names)
+        _check_float(table, table.field.rtol, names)
         return
     n, terms = table.dimension, table.jacobi_terms()
     over_rationals = len(table.parts) == 1
     if terms <= SPARSE_TERMS:
         triple = _failure_sparse_any_field(table)
-    elif over_rationals and terms < HELD_TERMS and terms * 400 < n**4 * 4 + n**3 * 300:  # in tenths of a nanosecond
+    elif over_rationals and terms < HELD_TERMS and _sparse_is_faster(terms, n):
         triple = _failure_sparse(table)
     elif derivations_fit(table):
         triple = _first_in(table, failure_in_floats(table))
@@ -67,30 +76,28 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
         _fail(table, triple, _cyclic_sum(_brackets(table), table.field.zero, *triple), names)
 
 
-def _fail(
-    table: StructureConstants, triple: tuple[int, int, int], value: dict[int, Any], names: tuple[str, ...]
-) -> None:
+def _sparse_is_faster(terms: int, n: int) -> bool:
+    return terms * SPARSE_PRODUCT < n**4 * DENSE_PRODUCT + n**3 * DENSE_ROW
+
+
+def _fail(table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...]) -> NoReturn:
     i, j, k = triple
     shown = {m: table.field.format(v) for m, v in value.items()}
     raise JacobiError(triple, shown, (names[i], names[j], names[k]))
 
 
-Triple = tuple[int, int, int]
-
-
-def _brackets(table: StructureConstants) -> dict[tuple[int, int], list[tuple[int, Any]]]:
-    brackets: dict[tuple[int, int], list[tuple[int, Any]]] = {}
+def _brackets(table: StructureConstants) -> Brackets:
+    """The table as {(a, b): [(c, value), ...]} for both orders of a, b, with field elements as values."""
+    brackets: Brackets = {}
     for a, b, c, v in table:
         brackets.setdefault((a, b), []).append((c, v))
         brackets.setdefault((b, a), []).append((c, -v))
     return brackets
 
 
-def _cyclic_sum(
-    brackets: dict[tuple[int, int], list[tuple[int, Any]]], zero: Any, i: int, j: int, k: int
-) -> dict[int, Any]:
+def _cyclic_sum(brackets: Brackets, zero: Scalar, i: int, j: int, k: int) -> Coefficients:
     """The non-zero coefficients of [[i, j], k] + [[j, k], i] + [[k, i], j]."""
-    total: dict[int, Any] = {}
+    total: Coefficients = {}
     for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
         for middle, v in brackets.get((a, b), ()):
             for m, w in brackets.get((middle, c), ()):
@@ -99,12 +106,12 @@ def _cyclic_sum(
 
 
 def _failure_sparse_any_field(table: StructureConstants) -> Triple | None:
-    """The first i < j < k whose cyclic sum does not vanish; by plain double brackets over any exact field."""
+    """The first i < j < k whose cyclic sum does not vanish, or None, by double brackets over any exact field."""
     pairs = table.by_pair()
-    by_first: dict[int, list[tuple[int, list[tuple[int, Any]]]]] = {}
+    by_first: dict[int, list[tuple[int, list[tuple[int, Scalar]]]]] = {}
     for (i, j), terms in pairs.items():
         by_first.setdefault(i, []).append((j, terms))
-    sums: dict[Triple, dict[int, Any]] = {}
+    sums: dict[Triple, Coefficients] = {}
     for (i, j), terms in pairs.items():
         if i > j:
             continue
@@ -122,7 +129,7 @@ def _failure_sparse_any_field(table: StructureConstants) -> Triple | None:
 
 
 def _failure_sparse(table: StructureConstants) -> Triple | None:
-    """The same over QQ for large tables, with sparse integer products."""
+    """The first i < j < k whose cyclic sum does not vanish, or None, over QQ by sparse integer products."""
     n = table.dimension
     nested = table.sparse().reshape(n, n * n)
     # All terms of a triple a < b < c, which meet the pairs (a,b), (a,c), (b,c), must be held together.
@@ -133,8 +140,10 @@ def _failure_sparse(table: StructureConstants) -> Triple | None:
     return _uncancelled(i, j, k, m, product.values, n)
 
 
-def _uncancelled(i: Any, j: Any, k: Any, m: Any, values: Any, n: int) -> Triple | None:
-    """The first sorted triple whose signed terms do not sum to zero in some coordinate m."""
+def _uncancelled(
+    i: IntegerArray, j: IntegerArray, k: IntegerArray, m: IntegerArray, values: npt.NDArray[Any], n: int
+) -> Triple | None:
+    """The first sorted triple whose signed terms do not sum to zero in some coordinate m, or None."""
     keep = (k != i) & (k != j)
     i, j, k, m, values = i[keep], j[keep], k[keep], m[keep], values[keep]
     if not len(values):
@@ -149,27 +158,28 @@ def _uncancelled(i: Any, j: Any, k: Any, m: Any, values: Any, n: int) -> Triple 
     left = np.flatnonzero(np.add.reduceat(signed, starts))
     if not len(left):
         return None
-    place = int(key[starts[left[0]]]) // n
-    return place // (n * n), place // n % n, place % n
+    flat = int(key[starts[left[0]]]) // n
+    return flat // (n * n), flat // n % n, flat % n
 
 
 def _first_in(table: StructureConstants, pair: tuple[int, int] | None) -> Triple | None:
-    """A failing triple with this pair in it, if ad x is no derivation there for some x; None for None."""
+    """A failing triple that contains a pair on which some ad x is not a derivation; None if the pair is None."""
     if pair is None:
         return None
     n, (i, j) = table.dimension, pair
     brackets, zero = _brackets(table), table.field.zero
     others = (k for k in range(n) if k not in (i, j) and _cyclic_sum(brackets, zero, i, j, k))
-    return tuple(sorted((i, j, next(others))))  # type: ignore[return-value]  # x is a combination of basis elements, so one of them fails
+    a, b, c = sorted((i, j, next(others)))  # x is a combination of basis elements, so one of them fails
+    return a, b, c
 
 
-def _check_float(table: StructureConstants, names: tuple[str, ...]) -> None:
+def _check_float(table: StructureConstants, rtol: float, names: tuple[str, ...]) -> None:
     n = table.dimension
-    c = table.dense().array.reshape(n, n, n)
+    c = table.dense().to_numpy().reshape(n, n, n)
     double = np.einsum("ijl,lkm->ijkm", c, c, optimize=True)
     cyclic = double + np.einsum("jkim->ijkm", double) + np.einsum("kijm->ijkm", double)
     size = np.abs(cyclic).max(axis=3)
-    bound = table.field.rtol * max(1.0, float(np.abs(c).max())) ** 2  # type: ignore[attr-defined]
+    bound = rtol * max(1.0, float(np.abs(c).max())) ** 2
     if size.max() > bound:
         i, j, k = (int(x) for x in sorted(np.unravel_index(int(size.argmax()), size.shape)))
         value = {m: v for m, v in enumerate(cyclic[i, j, k].tolist()) if abs(v) > bound}

@@ -1,23 +1,29 @@
-"""Whether ad x is a derivation for the x of a generating set: exact products in float64 or sparse int64.
+"""Whether ad x is a derivation for all x in a generating set, by exact products in float64 or sparse int64.
 
-Products of integers in float64 are exact as long as every sum stays below 2^53: the bound is checked before, or
+Products of integers in float64 are exact as long as every sum stays below 2^53.  Either this bound is checked first, or
 the numbers are reduced modulo primes below 2^22.
 """
 
 from __future__ import annotations
 
 import random
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.scalars import ExactMatrix
 from liehom.scalars.modular.modular import invariant_hull_rank, small_residues
+from liehom.typing import Array
 
-EXACT = 1 << 53
-WEIGHT = 2
-LARGEST = 320
-CHUNK = 1 << 24
+EXACT = 1 << 53  # float64 holds all integers up to this one
+WEIGHT = 2  # bound on the coefficients of the random elements
+LARGEST = 320  # dimension up to which the dense table (n, n, n) is held in memory
+SPARE = 20  # random elements beyond n before all basis elements are taken
+CHUNK = 1 << 24  # entries of one dense product
+
+SparseTable: TypeAlias = Any
+"""A sparse array of scipy, which is imported only where it is used."""
 
 
 def derivations_fit(table: StructureConstants) -> bool:
@@ -30,7 +36,9 @@ def derivations_fit(table: StructureConstants) -> bool:
 
 
 def failure_in_floats(table: StructureConstants) -> tuple[int, int] | None:
-    """A pair (i, j) on which ad x is no derivation for some x of a generating set, or None: Jacobi holds.
+    """A pair (i, j) on which ad x is not a derivation for some x of a generating set, or None if there is none.
+
+    None proves the Jacobi identity. The table must pass `derivations_fit`.
 
     Examples
     --------
@@ -47,10 +55,11 @@ def failure_in_floats(table: StructureConstants) -> tuple[int, int] | None:
 
 
 def failure_modulo_primes(table: StructureConstants) -> tuple[int, int] | None:
-    """The same for numbers of any size and over number fields, modulo enough primes to be a proof.
+    """A pair (i, j) on which some ad x is not a derivation, or None, by arithmetic modulo primes.
 
-    An entry of the defect is an algebraic integer of bounded norm; a prime p with a residue map b -> r kills it
-    only if p divides its norm, so if all entries vanish at primes whose product exceeds the bound, they are 0.
+    The entries may have any size and belong to a number field. An entry of the defect is an algebraic integer of
+    bounded norm. A prime p with a residue map b -> r maps it to 0 only if p divides its norm, so entries that vanish
+    modulo primes whose product exceeds the bound are 0.
 
     Examples
     --------
@@ -58,11 +67,11 @@ def failure_modulo_primes(table: StructureConstants) -> tuple[int, int] | None:
     >>> failure_modulo_primes(lh.so(4).over(lh.number_field("sqrt(2)")).table) is None
     True
     """
-    field, n = table.field, table.dimension
+    n = table.dimension
     size = max((abs(v) for part in table.parts for v in part), default=0)
     bound = 3 * n * n * WEIGHT * size * size
     elements = generators(table)
-    for p, root in small_residues(field, bound):  # type: ignore[arg-type]
+    for p, root in small_residues(table.exact_field(), bound):
         values = np.zeros(len(table))
         power = 1
         for part in table.parts:
@@ -76,13 +85,13 @@ def failure_modulo_primes(table: StructureConstants) -> tuple[int, int] | None:
     return None
 
 
-def generators(table: StructureConstants) -> list[Any]:
-    """Integer vectors (floats with small integer values) that generate the algebra, by a rank modulo a prime."""
-    n, field = table.dimension, table.field
+def generators(table: StructureConstants) -> list[Array]:
+    """Vectors (n,) with small integer entries that generate the algebra, which a rank modulo a prime shows."""
+    n, field = table.dimension, table.exact_field()
     rng = random.Random(n)
     elements: list[list[int]] = []
-    adjoints: list[Any] = []
-    while len(elements) <= n + 20:
+    adjoints: list[ExactMatrix] = []
+    while len(elements) <= n + SPARE:
         elements.append([rng.randint(-WEIGHT, WEIGHT) for _ in range(n)])
         rows = field.matrix(elements)
         adjoints.append(table.adjoint(rows.select(rows=[len(elements) - 1])).T)
@@ -91,7 +100,8 @@ def generators(table: StructureConstants) -> list[Any]:
     return list(np.eye(n))
 
 
-def _dense(table: StructureConstants, values: Any) -> Any:
+def _dense(table: StructureConstants, values: Array) -> Array:
+    """The array (n, n, n) of the table with other values."""
     dense = np.zeros((table.dimension,) * 3)
     dense[table.i, table.j, table.k] = values
     dense[table.j, table.i, table.k] = -values
@@ -105,9 +115,10 @@ def products_fit(table: StructureConstants) -> bool:
 
 
 def failure_in_slices(table: StructureConstants) -> tuple[int, int] | None:
-    """The same as `failure_in_floats` for large tables, one slice c[i, :, :] at a time, with sparse products.
+    """A pair (i, j) on which some ad x is not a derivation, or None, by sparse products for large tables.
 
-    The generators are sums of two basis elements, whose adjoints are nearly as sparse as the table.
+    One slice c[i, :, :] is treated at a time. The table must pass `products_fit`. The generators are sums of two
+    basis elements, whose adjoints are nearly as sparse as the table.
 
     Examples
     --------
@@ -119,25 +130,26 @@ def failure_in_slices(table: StructureConstants) -> tuple[int, int] | None:
     whole = _whole(table)
     slices = [_folded(whole[[i]], n) for i in range(n)]
     rng = random.Random(n)
-    elements: list[Any] = []
-    adjoints: list[Any] = []
-    while len(elements) <= n + 20:
+    field = table.exact_field()
+    elements: list[ExactMatrix] = []
+    adjoints: list[ExactMatrix] = []
+    while len(elements) <= n + SPARE:
         x = [0] * n
         for a in rng.sample(range(n), 2):
             x[a] = 1
-        adjoint = sum(slices[a] for a in range(n) if x[a])  # row j: [x, e_j]
+        adjoint: SparseTable = sum(slices[a] for a in range(n) if x[a])  # row j: [x, e_j]
         failing = _first_defect_in_slices(whole, slices, adjoint)
         if failing is not None:
             return failing
-        elements.append(table.field.matrix([x]))
-        adjoints.append(table.field.from_integers(adjoint.toarray().ravel().tolist(), n, n))  # type: ignore[attr-defined]
-        if len(elements) > 1 and invariant_hull_rank(table.field.stack_rows(elements, n), adjoints) == n:
+        elements.append(field.matrix([x]))
+        adjoints.append(field.from_integers(adjoint.toarray().ravel().tolist(), n, n))
+        if len(elements) > 1 and invariant_hull_rank(field.stack_rows(elements, n), adjoints) == n:
             return None
     failures = (_first_defect_in_slices(whole, slices, block) for block in slices)
     return next((failing for failing in failures if failing is not None), None)
 
 
-def _whole(table: StructureConstants) -> Any:
+def _whole(table: StructureConstants) -> SparseTable:
     """The table as a sparse int64 matrix (n, n * n) with c[i, j, k] in row i, column j n + k."""
     from scipy import sparse
 
@@ -148,15 +160,18 @@ def _whole(table: StructureConstants) -> Any:
     return sparse.coo_array((np.concatenate([first, -first]), (rows, columns)), shape=(n, n * n)).tocsr()
 
 
-def _folded(row: Any, n: int) -> Any:
-    """A sparse row of length n * n as a matrix (n, n)."""
+def _folded(row: SparseTable, n: int) -> SparseTable:
+    """A sparse row of length n * n as a sparse matrix (n, n)."""
     from scipy import sparse
 
     found = row.tocoo()
     return sparse.coo_array((found.data, (found.col // n, found.col % n)), shape=(n, n)).tocsr()
 
 
-def _first_defect_in_slices(whole: Any, slices: list[Any], adjoint: Any) -> tuple[int, int] | None:
+def _first_defect_in_slices(
+    whole: SparseTable, slices: list[SparseTable], adjoint: SparseTable
+) -> tuple[int, int] | None:
+    """The first (i, j) with [x, [e_i, e_j]] != [[x, e_i], e_j] + [e_i, [x, e_j]], or None; `adjoint` is ad x."""
     n = len(slices)
     for i, block in enumerate(slices):
         # rows j: [x, [e_i, e_j]] - [e_i, [x, e_j]] - [[x, e_i], e_j]
@@ -167,8 +182,8 @@ def _first_defect_in_slices(whole: Any, slices: list[Any], adjoint: Any) -> tupl
     return None
 
 
-def _first_defect(dense: Any, adjoint: Any, p: int = 0) -> tuple[int, int] | None:
-    """(i, j) with [x, [e_i, e_j]] != [[x, e_i], e_j] + [e_i, [x, e_j]], modulo p where it is given; or None."""
+def _first_defect(dense: Array, adjoint: Array, p: int = 0) -> tuple[int, int] | None:
+    """The first (i, j) with [x, [e_i, e_j]] != [[x, e_i], e_j] + [e_i, [x, e_j]] (modulo p if given), or None."""
     n = len(dense)
     step = max(1, CHUNK // (n * n))
     flat = dense.reshape(n, n * n)

@@ -1,25 +1,27 @@
 """StructureConstants: the bracket as a sparse table, and its contractions with matrices.
 
 The table holds c[i, j, k] for i < j only, [e_i, e_j] = sum_k c[i, j, k] e_k, as integers over a common
-denominator (over a number field: integer coordinates).  Contractions choose between one dense flint product
-and sparse integer products whose size excludes overflow.
+denominator; over a number field these are the integer coordinates of the entries.  Contractions choose between one
+dense flint product and sparse integer products that cannot overflow.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
-from typing import Any, final
+from typing import Any, TypeVar, final
 
 import numpy as np
-import numpy.typing as npt
 
-from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Scalar
+from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.spaces.sparse import SparseInteger
+from liehom.typing import IntegerArray
 
-IntArray = npt.NDArray[np.int64]
-DENSE_DIMENSION = 64
+M = TypeVar("M", bound=Matrix)
+
+DENSE_DIMENSION = 64  # up to this dimension one dense product is faster than sparse ones, whatever the table
+LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries are contracted densely
 
 
 @final
@@ -44,17 +46,24 @@ class StructureConstants:
         self.i, self.j, self.k = index[:, 0], index[:, 1], index[:, 2]
         values = [e[3] for e in ordered]
         self.parts, self.den = _integers(field, values)
-        self._dense: Any = None
-        self._flat: Any = None
-        self._sparse: Any = None
+        self._dense: Matrix | None = None
+        self._flat: Matrix | None = None
+        self._sparse: SparseInteger | None = None
 
     @classmethod
     def from_integers(
-        cls, field: Any, dimension: int, i: Any, j: Any, k: Any, numerators: Sequence[int], den: int = 1
+        cls,
+        field: Field,
+        dimension: int,
+        i: IntegerArray,
+        j: IntegerArray,
+        k: IntegerArray,
+        numerators: Sequence[int],
+        den: int = 1,
     ) -> StructureConstants:
-        """The table with rational entries numerators[x] / den at (i[x], j[x], k[x]), distinct places with i < j.
+        """The table with rational entries numerators[x] / den at distinct indices (i[x], j[x], k[x]) with i < j.
 
-        Zero entries are dropped.  This is the quick way for large tables: no field element is made.
+        Zero entries are dropped.  This is fast for large tables because it constructs no field element.
         """
         made = cls.__new__(cls)
         made.field, made.dimension = field, dimension
@@ -68,28 +77,28 @@ class StructureConstants:
         return made
 
     @classmethod
-    def from_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
-        """The table with [e_i, e_j] = row j of block i; antisymmetry is the caller's knowledge."""
+    def from_blocks(cls, field: Field, n: int, blocks: Sequence[Any]) -> StructureConstants:
+        """The table with [e_i, e_j] = row j of block i, a list of n matrices (n, n) known to be antisymmetric."""
         if field.degree == 1 and field.exact:
             return cls._from_rational_blocks(field, n, blocks)
         entries, zero = [], field.zero
         for i, block in enumerate(blocks):
             found = enumerate(block.entries())
-            entries += [(i, place // n, place % n, v) for place, v in found if place >= (i + 1) * n and v != zero]
+            entries += [(i, x // n, x % n, v) for x, v in found if x >= (i + 1) * n and v != zero]
         return cls(field, n, entries)
 
     @classmethod
-    def _from_rational_blocks(cls, field: Any, n: int, blocks: Sequence[Any]) -> StructureConstants:
+    def _from_rational_blocks(cls, field: Field, n: int, blocks: Sequence[ExactMatrix]) -> StructureConstants:
         den = lcm(*(block.den for block in blocks))
-        places: list[int] = []
+        positions: list[int] = []
         numerators: list[int] = []
         for i, block in enumerate(blocks):
             factor = den // block.den
             entries = block.parts[0].entries()
             found = [x for x in range((i + 1) * n, n * n) if entries[x]]
-            places += [i * n * n + x for x in found]
+            positions += [i * n * n + x for x in found]
             numerators += [int(entries[x]) * factor for x in found]
-        index = np.array(places, dtype=np.int64)
+        index = np.array(positions, dtype=np.int64)
         return cls.from_integers(field, n, index // (n * n), index // n % n, index % n, numerators, den)
 
     # -- entries -----------------------------------------------------------------------------------------
@@ -100,7 +109,7 @@ class StructureConstants:
         """The entries as field elements, in the table's order."""
         if isinstance(self.field, FloatField):
             return [float(x) for x in self.parts[0]]
-        make, den = self.field.from_integer_coordinates, self.den  # type: ignore[attr-defined]
+        make, den = _exact(self.field).from_integer_coordinates, self.den
         return [make(x, den) for x in zip(*self.parts, strict=True)]
 
     def __iter__(self) -> Iterator[tuple[int, int, int, Scalar]]:
@@ -115,8 +124,12 @@ class StructureConstants:
 
     __hash__ = None  # type: ignore[assignment]
 
+    def exact_field(self) -> ExactField:
+        """The field of a table over an exact field; `TypeError` over floats."""
+        return _exact(self.field)
+
     def by_pair(self) -> dict[tuple[int, int], list[tuple[int, Any]]]:
-        """{(i, j): [(k, value), ...]} for both orders of i, j; integer values over `den` where that is possible."""
+        """The table as {(i, j): [(k, value), ...]} for both orders of i, j; over QQ the values are numerators."""
         table: dict[tuple[int, int], list[tuple[int, Any]]] = {}
         integral = len(self.parts) == 1 and self.field.exact
         values = self.parts[0] if integral else self.values()
@@ -126,7 +139,7 @@ class StructureConstants:
         return table
 
     def jacobi_terms(self) -> int:
-        """The number of products in all double brackets: what a sparse proof of the Jacobi identity costs."""
+        """The number of products in all double brackets, the cost of a sparse proof of the Jacobi identity."""
         if not len(self):
             return 0
         n = self.dimension
@@ -136,18 +149,18 @@ class StructureConstants:
 
     # -- contractions ------------------------------------------------------------------------------------
     def is_dense(self) -> bool:
-        """Whether contractions go through one dense product."""
+        """Whether contractions use one dense product instead of sparse ones."""
         n = self.dimension
-        return n <= DENSE_DIMENSION or not self.field.exact or (n <= 160 and len(self) > n * n)
+        return n <= DENSE_DIMENSION or not self.field.exact or (n <= LARGEST_DENSE and len(self) > n * n)
 
-    def dense(self) -> Any:
+    def dense(self) -> Matrix:
         """The matrix (n*n, n) with row i*n + j the coefficients of [e_i, e_j]."""
         if self._dense is None:
             self._dense = self._filled(self.dimension**2, self.dimension)
         return self._dense
 
-    def _filled(self, nrows: int, ncols: int) -> Any:
-        """All c[i, j, k] in lexicographic order of (i, j, k), as a matrix of a shape."""
+    def _filled(self, nrows: int, ncols: int) -> Matrix:
+        """All c[i, j, k] in lexicographic order of (i, j, k), as a matrix of the given shape."""
         n = self.dimension
         forward = (self.i * n + self.j) * n + self.k
         backward = (self.j * n + self.i) * n + self.k
@@ -155,10 +168,12 @@ class StructureConstants:
             array = np.zeros(n**3)
             array[forward], array[backward] = self.parts[0], -np.array(self.parts[0])
             return FloatMatrix(self.field, array.reshape(nrows, ncols))
-        return _dense_exact(self.field, (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den)
+        return _dense_exact(
+            _exact(self.field), (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den
+        )
 
-    def flat(self) -> Any:
-        """The matrix (n, n*n) with row i the matrix c[i, :, :] row after row (cached: x flat() is ad x transposed)."""
+    def flat(self) -> Matrix:
+        """The matrix (n, n*n) with row i the matrix c[i, :, :] row after row (cached): x flat() is ad x transposed."""
         if self._flat is None:
             self._flat = self._filled(self.dimension, self.dimension**2)
         return self._flat
@@ -170,21 +185,24 @@ class StructureConstants:
             rows = np.concatenate([self.i * n + self.j, self.j * n + self.i])
             values = [*self.parts[0], *(-v for v in self.parts[0])]
             self._sparse = SparseInteger(rows, np.concatenate([self.k, self.k]), values, (n * n, n), self.den)
-        return self._sparse  # type: ignore[no-any-return]
+        return self._sparse
 
-    def adjoint(self, x: Any) -> Any:
-        """The matrix of y -> [x, y] on columns; x a row matrix (1, n)."""
+    def adjoint(self, x: M) -> M:
+        """The matrix (n, n) of y -> [x, y] on columns, for a row matrix x of shape (1, n)."""
         n = self.dimension
         if self.is_dense():
-            return (x @ self.flat()).reshape(n, n).T
+            matrix: M = (x @ self.flat()).reshape(n, n).T
+            return matrix
         if self.field.degree > 1:
-            return self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
-        return self._adjoint_sparse(x)
+            matrix = self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
+        else:
+            matrix = self._adjoint_sparse(x)
+        return matrix
 
     def _adjoint_sparse(self, x: Any) -> Any:
         n, weights = self.dimension, [int(w) for w in x.parts[0].entries()]
-        places = [i for i, w in enumerate(weights) if w]
-        chosen = np.flatnonzero(np.isin(self.i, places) | np.isin(self.j, places))
+        support = [i for i, w in enumerate(weights) if w]
+        chosen = np.flatnonzero(np.isin(self.i, support) | np.isin(self.j, support))
         out = [0] * (n * n)
         values = self.parts[0]
         for t, i, j, k in zip(
@@ -192,9 +210,9 @@ class StructureConstants:
         ):
             out[k * n + j] += weights[i] * values[t]
             out[k * n + i] -= weights[j] * values[t]
-        return self.field.from_integers(out, n, n, self.den * x.den)  # type: ignore[attr-defined]
+        return _exact(self.field).from_integers(out, n, n, self.den * x.den)
 
-    def contract(self, left: Any, right: Any, out: Any) -> list[Any]:
+    def contract(self, left: M, right: M, out: M) -> list[M]:
         """For each row a of `left`, the matrix with rows [left_a, right_b] @ out.
 
         Parameters
@@ -216,30 +234,31 @@ class StructureConstants:
             if self.field.exact and self.field.degree == 1:
                 return self._contract_rational(left, right, out)
             one = self.field.identity(n)
-            blocks = (self.flat() if left == one else left @ self.flat()).split_rows(n, n)
+            blocks: list[M] = (self.flat() if left == one else left @ self.flat()).split_rows(n, n)
             if right != one:
                 blocks = [right @ block for block in blocks]
             return blocks if out == one else [block @ out for block in blocks]
         product = self._contract_sparse(left, right, out)
-        return product.dense_blocks(self.field, p, q, r)  # type: ignore[arg-type]
+        dense: list[Any] = product.dense_blocks(_exact(self.field), p, q, r)
+        return dense
 
     def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
-        """The same for a dense table over QQ: numerators are multiplied, denominators reduced once."""
-        n, field = self.dimension, self.field
+        """`contract` for a dense table over QQ: numerators are multiplied, denominators reduced once."""
+        n, field = self.dimension, _exact(self.field)
         one = field.identity(n)
         flat: Any = self.flat()
         integers = flat.parts[0] if left == one else left.parts[0] * flat.parts[0]
         den = flat.den * left.den * right.den * out.den
-        blocks = ExactMatrix(field, (integers,), 1).split_rows(n, n)  # type: ignore[arg-type]
+        blocks = ExactMatrix(field, (integers,), 1).split_rows(n, n)
         made = []
         for block in blocks:
             inner = block.parts[0] if right == one else right.parts[0] * block.parts[0]
             inner = inner if out == one else inner * out.parts[0]
-            made.append(ExactMatrix(field, (inner,), den).normalized())  # type: ignore[arg-type]
+            made.append(ExactMatrix(field, (inner,), den).normalized())
         return made
 
-    def first_nonzero(self, left: Any, right: Any, out: Any) -> tuple[int, int] | None:
-        """The first (a, b) with [left_a, right_b] @ out not zero, or None: a proof that all vanish."""
+    def first_nonzero(self, left: Matrix, right: Matrix, out: Matrix) -> tuple[int, int] | None:
+        """The first (a, b) with [left_a, right_b] @ out not zero, or None, which proves that all vanish."""
         if min(left.nrows, right.nrows, out.ncols, self.dimension) == 0:
             return None
         if self.is_dense() or self.field.degree > 1:
@@ -255,8 +274,8 @@ class StructureConstants:
         row, column = found
         return column // out.ncols, row
 
-    def changed(self, rows: Any, inverse: Any) -> StructureConstants:
-        """The table in the basis given by the rows (n, n), whose inverse is given: an isomorphic algebra."""
+    def changed(self, rows: Matrix, inverse: Matrix) -> StructureConstants:
+        """The table in the basis given by the rows (n, n) of an invertible matrix and its inverse."""
         n = self.dimension
         if n and not self.is_dense() and self.field.degree == 1:
             product = self._contract_sparse(rows, rows, inverse)  # (b, a n + c)
@@ -267,7 +286,7 @@ class StructureConstants:
         return StructureConstants.from_blocks(self.field, n, self.contract(rows, rows, inverse))
 
     def _contract_sparse(self, left: Any, right: Any, out: Any) -> SparseInteger:
-        """Rows b, columns a * r + c."""
+        """The contraction as one sparse matrix with rows b and columns a * r + c."""
         n, p, r = self.dimension, left.nrows, out.ncols
         first = self.sparse() @ SparseInteger.from_matrix(out)  # (i n + j, c)
         second = SparseInteger.from_matrix(left) @ first.reshape(n, n * r)  # (a, j r + c)
@@ -276,24 +295,34 @@ class StructureConstants:
 
 
 def _integers(field: Field, values: Sequence[Any]) -> tuple[tuple[Any, ...], int]:
-    """Numerators (one sequence per coordinate) over a common denominator; floats as one array."""
+    """Numerators (one sequence per coordinate over QQ) and their common denominator; floats as one array over 1."""
     if isinstance(field, FloatField):
         return (np.array(values, dtype=np.float64),), 1
-    if not isinstance(field, ExactField):
-        raise TypeError(f"structure constants over {field} are not supported")
-    if field.degree == 1:
+    exact = _exact(field)
+    if exact.degree == 1:
         if all(v.q == 1 for v in values):
             return ([int(v.p) for v in values],), 1
         den = lcm(*(int(v.q) for v in values))
         return ([int(v.p) * (den // int(v.q)) for v in values],), den
-    columns = [field.coordinates(v) for v in values]
+    columns = [exact.coordinates(v) for v in values]
     den = lcm(*(int(c.q) for column in columns for c in column))
     integral = [[int(c.p) * (den // int(c.q)) for c in column] for column in columns]
-    return tuple(list(part) for part in zip(*integral, strict=True)) or ([],) * field.degree, den
+    return tuple(list(part) for part in zip(*integral, strict=True)) or ([],) * exact.degree, den
+
+
+def _exact(field: Field) -> ExactField:
+    if not isinstance(field, ExactField):
+        raise TypeError(f"structure constants over {field} are not supported")
+    return field
 
 
 def _dense_exact(
-    field: Any, shape: tuple[int, int], forward: list[int], backward: list[int], parts: Any, den: int
+    field: ExactField,
+    shape: tuple[int, int],
+    forward: list[int],
+    backward: list[int],
+    parts: tuple[Sequence[int], ...],
+    den: int,
 ) -> ExactMatrix:
     made = []
     for part in parts:
@@ -302,4 +331,4 @@ def _dense_exact(
             out[f] = v
             out[b] = -v
         made.append(out)
-    return field.from_parts(made, *shape, den)  # type: ignore[no-any-return]
+    return field.from_parts(made, *shape, den)

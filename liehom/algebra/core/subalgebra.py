@@ -1,21 +1,26 @@
-"""Subalgebra: a subspace of a Lie algebra that is closed under the bracket; and the standard ones.
+"""Subalgebra: a subspace of a Lie algebra that is closed under the bracket.
 
-Closure is proved at construction.  The basis is kept as given; `subspace` is canonical.
+Closure is proved at construction.  `basis` is the basis as given, `subspace` has the canonical one.  The functions
+below the class implement the methods of `LieAlgebra` that return subalgebras.
 """
 
 from __future__ import annotations
 
 import random
-from typing import Any, final
+from typing import Any, TypeVar, final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
-from liehom.scalars import Scalar, Subspace
-from liehom.scalars.fields.field import rows_of
+from liehom.scalars import ExactMatrix, Matrix, Scalar, Subspace
+from liehom.scalars.fields.field import MatrixLike, rows_of
 from liehom.scalars.spaces.quotient import Quotient, echelon_quotient, quotient
+from liehom.typing import VectorLike
 
-SAMPLES = 3
+M = TypeVar("M", bound=Matrix)
+
+SAMPLES = 3  # random combinations that are tried in place of all rows
+SHOWN_ROWS = 8
 
 
 @final
@@ -25,15 +30,20 @@ class Subalgebra:
     Parameters
     ----------
     algebra : LieAlgebra
-        The algebra g around.
+        The algebra g that contains h.
     rows : sequence of rows, or a matrix
-        Coefficients in the basis of g, shape (k, n), independent. No rows: the zero subalgebra.
+        Coefficients in the basis of g, shape (k, n), linearly independent. No rows give the zero subalgebra.
     check : bool, optional
-        Prove closure (default). False is for callers that have proved it.
+        Prove closure (default). Pass False only if it is proved already.
 
     Raises
     ------
-    DependentRowsError, NotASubalgebraError, ShapeError
+    DependentRowsError
+        If the rows are dependent.
+    NotASubalgebraError
+        If their span is not closed; names the bracket that leaves it.
+    ShapeError
+        If a row does not have length n.
 
     Examples
     --------
@@ -48,9 +58,9 @@ class Subalgebra:
 
     __slots__ = ("_quotient", "_subspace", "algebra", "basis")
 
-    def __init__(self, algebra: LieAlgebra, rows: Any, *, check: bool = True) -> None:
+    def __init__(self, algebra: LieAlgebra, rows: MatrixLike, *, check: bool = True) -> None:
         self.algebra = algebra
-        self.basis = _matrix(algebra, rows)
+        self.basis: Matrix = _matrix(algebra, rows)
         self._subspace: Subspace | None = None
         self._quotient: Quotient | None = None
         if self.basis.ncols != algebra.dimension:
@@ -61,7 +71,9 @@ class Subalgebra:
     def _prove(self) -> None:
         rank = self.basis.rank()
         if rank < self.basis.nrows:
-            raise DependentRowsError(rank, _dependent(self.basis), "rows of the subalgebra")
+            independent = set(independent_rows(self.basis))
+            dependent = [i for i in range(self.basis.nrows) if i not in independent]
+            raise DependentRowsError(rank, dependent, "rows of the subalgebra")
         failure = self.algebra.table.first_nonzero(self.basis, self.basis, self._projection())
         if failure is not None:
             a, b = failure
@@ -72,12 +84,12 @@ class Subalgebra:
     # -- properties --------------------------------------------------------------------------------------
     @property
     def dimension(self) -> int:
-        """The dimension."""
+        """The dimension k, an int."""
         return int(self.basis.nrows)
 
     @property
     def codimension(self) -> int:
-        """dim g - dim h."""
+        """The codimension dim g - dim h, an int."""
         return self.algebra.dimension - self.dimension
 
     @property
@@ -88,22 +100,25 @@ class Subalgebra:
         return self._subspace
 
     def quotient(self) -> Quotient:
-        """Coordinates on g/h (cached): a basis of h, a complement, and the projection, with small numbers."""
+        """Coordinates on g/h (cached): a basis of h, a complement and the projection, chosen with small entries."""
         if self._quotient is None:
             self._quotient = quotient(self.basis)
         return self._quotient
 
-    def _projection(self) -> Any:
-        """Some matrix (n, d) of rank d that kills h: for questions that are asked once."""
-        if self._quotient is not None or not self.algebra.field.exact:
-            return self.quotient().projection
-        return echelon_quotient(self.basis).projection
+    def _projection(self) -> Matrix:
+        """A matrix (n, d) of rank d = dim g/h that maps h to 0, by the fastest method; `quotient` has a smaller one."""
+        basis = self.basis
+        found = (
+            echelon_quotient(basis) if self._quotient is None and isinstance(basis, ExactMatrix) else self.quotient()
+        )
+        projection: Matrix = found.projection
+        return projection
 
     def rows(self) -> list[list[Scalar]]:
         """The basis as lists of field elements."""
-        return self.basis.to_rows()  # type: ignore[no-any-return]
+        return self.basis.to_rows()
 
-    def __contains__(self, x: Any) -> bool:
+    def __contains__(self, x: VectorLike) -> bool:
         return bool((self.algebra.row(x) @ self._projection()).is_zero())
 
     def __eq__(self, other: object) -> bool:
@@ -123,11 +138,11 @@ class Subalgebra:
         0
         """
         require_inside(self.algebra, other)
-        # What lies in two closed subspaces is closed.
+        # The intersection of two closed subspaces is closed.
         return Subalgebra(self.algebra, self.subspace.intersection(other.subspace).basis, check=False)
 
     def includes(self, other: Subalgebra) -> bool:
-        """Whether another subalgebra of the same algebra lies in this one."""
+        """Whether another subalgebra of the same algebra is contained in this one."""
         require_inside(self.algebra, other)
         return self.subspace.includes(other.subspace)
 
@@ -153,12 +168,18 @@ class Subalgebra:
         return self._leaving() is None
 
     def _leaving(self) -> tuple[int, int] | None:
-        """A row a of the basis and b with [row a, e_b] not in h, or None."""
+        """The first (a, b) with [row a of the basis, e_b] not in h, or None."""
         whole = self.algebra.field.identity(self.algebra.dimension)
         return self.algebra.table.first_nonzero(self.basis, whole, self._projection())
 
     def quotient_algebra(self, name: str | None = None) -> LieAlgebra:
-        """g/h for an ideal h, in the basis of the complement of `quotient`; `NotAnIdealError` otherwise."""
+        """The Lie algebra g/h of an ideal h, in the basis of the complement of `quotient`.
+
+        Raises
+        ------
+        NotAnIdealError
+            If [g, h] does not lie in h.
+        """
         leaving = self._leaving()
         if leaving is not None:
             other = self.algebra.basis_names[leaving[1]]
@@ -172,8 +193,8 @@ class Subalgebra:
             StructureConstants.from_blocks(self.algebra.field, self.codimension, blocks), name=name, check=False
         )
 
-    def conjugated(self, matrix: Any) -> Subalgebra:
-        """The image under an automorphism of g, given by its matrix (n, n) on columns; closure is proved."""
+    def conjugated(self, matrix: Matrix) -> Subalgebra:
+        """The image of h under an automorphism of g, given by its matrix (n, n) on columns; closure is proved."""
         return Subalgebra(self.algebra, self.basis @ matrix.T)
 
     def __repr__(self) -> str:
@@ -183,37 +204,64 @@ class Subalgebra:
     def __str__(self) -> str:
         around = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
         head = f"subalgebra of dimension {self.dimension} in {around} over {self.algebra.field.name}"
-        shown = self.basis.select(rows=range(min(self.dimension, 8)))
+        shown = self.basis.select(rows=range(min(self.dimension, SHOWN_ROWS)))
         lines = [f"  ({', '.join(row)})" for row in shown.to_strings()]
-        if self.dimension > 8:
-            lines.append(f"  ... and {self.dimension - 8} further rows")
+        if self.dimension > SHOWN_ROWS:
+            lines.append(f"  ... and {self.dimension - SHOWN_ROWS} further rows")
         return "\n".join([head, *lines])
 
 
-def _matrix(algebra: LieAlgebra, rows: Any) -> Any:
+def _matrix(algebra: LieAlgebra, rows: MatrixLike) -> Matrix:
+    """The rows as a matrix (k, n) over the field of the algebra; `ShapeError` if a row does not have length n."""
+    matrix: Matrix
     if hasattr(rows, "nrows"):
-        return algebra.field.read(rows)
+        matrix = algebra.field.read(rows)
+        return matrix
     table = rows_of(rows)
     for i, row in enumerate(table):
         if len(row) != algebra.dimension:
             raise ShapeError(f"row {i} of the subalgebra has length {len(row)}, expected {algebra.dimension}")
-    return algebra.field.matrix(table, (len(table), algebra.dimension))
+    matrix = algebra.field.matrix(table, (len(table), algebra.dimension))
+    return matrix
 
 
-def _dependent(basis: Any) -> list[int]:
-    """Rows in the span of the earlier ones."""
-    if basis.field.exact:
-        independent = set(basis.T.echelon()[1])
-        return [i for i in range(basis.nrows) if i not in independent]
-    ranks = [basis.select(rows=range(i)).rank() for i in range(basis.nrows + 1)]
-    return [i for i in range(basis.nrows) if ranks[i + 1] == ranks[i]]
+def independent_rows(matrix: Matrix) -> list[int]:
+    """Indices of the rows that are not in the span of the earlier ones.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> independent_rows(QQ.matrix([[1, 2], [2, 4], [0, 1]]))
+    [0, 2]
+    """
+    if isinstance(matrix, ExactMatrix):
+        return list(matrix.T.echelon()[1])
+    ranks = [matrix.select(rows=range(i)).rank() for i in range(matrix.nrows + 1)]
+    return [i for i in range(matrix.nrows) if ranks[i + 1] > ranks[i]]
 
 
-def _span(algebra: LieAlgebra, rows: Any) -> Any:
+def complement_rows(space: ExactMatrix, part: ExactMatrix) -> ExactMatrix:
+    """The first rows of `space` that are a basis modulo the span of the independent rows of `part`.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> print(complement_rows(QQ.identity(3), QQ.matrix([[1, 1, 0]])))
+    [1, 0, 0]
+    [0, 0, 1]
+    """
+    k = part.nrows
+    stacked = space.field.stack_rows([part, space], space.ncols)
+    return space.select(rows=[i - k for i in independent_rows(stacked) if i >= k])
+
+
+def _span(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Matrix:
+    """A basis of the span of the rows or of a subalgebra."""
     if isinstance(rows, Subalgebra):
         require_inside(algebra, rows)
         rows = rows.basis
-    return _matrix(algebra, rows).row_space()
+    span: Matrix = _matrix(algebra, rows).row_space()
+    return span
 
 
 def require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
@@ -222,35 +270,37 @@ def require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
         raise InputError(f"{subalgebra!r} is not a subalgebra of {algebra!r}: it belongs to {subalgebra.algebra!r}")
 
 
-def products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
-    """A basis of the span of [left, right]."""
+def products(algebra: LieAlgebra, left: M, right: M) -> M:
+    """A basis, as rows, of the span of the brackets of rows of `left` with rows of `right`."""
     n, field = algebra.dimension, algebra.field
     if field.exact and left.nrows > SAMPLES:
         found = _sampled_products(algebra, left, right)
         if found is not None:
             return found
-    return field.stack_rows(algebra.table.contract(left, right, field.identity(n)), n).row_space()
+    span: M = field.stack_rows(algebra.table.contract(left, right, field.identity(n)), n).row_space()
+    return span
 
 
-def _sampled_products(algebra: LieAlgebra, left: Any, right: Any) -> Any:
+def _sampled_products(algebra: LieAlgebra, left: M, right: M) -> M | None:
     """The span of [x, right] for a few combinations x of `left`, if all of [left, right] is in it; else None."""
     n = algebra.dimension
     rows = [right @ algebra.ad(x).T for x in _samples(left)]
-    span = algebra.field.stack_rows(rows, n).row_space()
+    span: Any = algebra.field.stack_rows(rows, n).row_space()
     if span.nrows == n or algebra.table.first_nonzero(left, right, echelon_quotient(span).projection) is None:
-        return span
+        found: M = span
+        return found
     return None
 
 
-def _samples(rows: Any) -> list[Any]:
-    """Random combinations of rows, each (1, n)."""
+def _samples(rows: M) -> list[M]:
+    """`SAMPLES` random combinations of rows, each (1, n)."""
     rng = random.Random(rows.nrows)
     weights = [[rng.randint(-9, 9) for _ in range(rows.nrows)] for _ in range(SAMPLES)]
     combined = rows.field.matrix(weights) @ rows
     return [combined.select(rows=[i]) for i in range(SAMPLES)]
 
 
-def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
+def generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
     """Implements `LieAlgebra.subalgebra_generated_by`."""
     n = algebra.dimension
     span, before = _span(algebra, rows), -1
@@ -260,7 +310,7 @@ def generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
     return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
 
 
-def ideal_generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
+def ideal_generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
     """Implements `LieAlgebra.ideal_generated_by`."""
     n = algebra.dimension
     whole = algebra.field.identity(n)
@@ -271,12 +321,12 @@ def ideal_generated(algebra: LieAlgebra, rows: Any) -> Subalgebra:
     return Subalgebra(algebra, span, check=False)  # an ideal is a subalgebra
 
 
-def centralizer(algebra: LieAlgebra, rows: Any) -> Subalgebra:
+def centralizer(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
     """Implements `LieAlgebra.centralizer`."""
     n, field = algebra.dimension, algebra.field
     span = _span(algebra, rows)
-    if field.exact and span.nrows > SAMPLES:
-        # what commutes with a few combinations: the centralizer, if it commutes with all
+    if isinstance(span, ExactMatrix) and span.nrows > SAMPLES:
+        # the space that commutes with a few combinations is the centralizer if it commutes with all rows
         found = field.stack_rows([algebra.ad(x) for x in _samples(span)], n).null_space()
         if algebra.table.first_nonzero(found, span, field.identity(n)) is None:
             return Subalgebra(algebra, found, check=False)

@@ -1,20 +1,46 @@
-"""From what a user writes to a bracket table: arrays, sparse arrays, mappings; antisymmetry is proved here."""
+"""Bracket tables from arrays, sparse arrays and mappings, with a proof of antisymmetry."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from numbers import Integral
-from typing import Any
+from typing import Any, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FieldError, ParseError, ShapeError, StructureError, shown
-from liehom.scalars import QQ, RR, AlgebraicNumber, Field, common_field, number_field
+from liehom.scalars import QQ, RR, AlgebraicNumber, Field, Scalar, common_field, number_field
 from liehom.scalars.fields import grammar
+from liehom.typing import ScalarLike, VectorLike
 
 
-def field_of_values(values: Iterable[Any]) -> Field:
+class SparseArray(Protocol):
+    """A sparse array of scipy, or any array with its coordinate format."""
+
+    @property
+    def data(self) -> Any:
+        """The stored entries."""
+        ...
+
+    def tocoo(self) -> Any:
+        """The array in coordinate format."""
+        ...
+
+
+ConstantsMapping: TypeAlias = Mapping[tuple[int, int], Mapping[int, ScalarLike]]
+"""Structure constants as ``{(i, j): {k: value}}``."""
+
+ConstantsLike: TypeAlias = (
+    StructureConstants | ConstantsMapping | Sequence[Sequence[VectorLike]] | npt.NDArray[Any] | SparseArray
+)
+"""What `LieAlgebra` reads as structure constants."""
+
+Entries = dict[tuple[int, int, int], Scalar]
+
+
+def field_of_values(values: Iterable[ScalarLike]) -> Field:
     """The field that a collection of values calls for: QQ, a number field, or float64 if a float occurs.
 
     Examples
@@ -22,38 +48,38 @@ def field_of_values(values: Iterable[Any]) -> Field:
     >>> field_of_values([1, "1/2"]), field_of_values(["sqrt(2)"]), field_of_values([0.5])
     (QQ, QQ(sqrt(2)), float64)
     """
-    texts: list[str] = []
-    others: dict[str, Any] = {}
+    strings: list[str] = []
+    others: dict[str, ScalarLike] = {}
     for value in values:
         if isinstance(value, (float, np.floating)) or getattr(value, "is_Float", False):
             return RR
         if isinstance(value, AlgebraicNumber):
             return value.field
-        if hasattr(value, "free_symbols") and not _is_radical_text(str(value)):
-            # A sympy number beyond square roots: its own field; several of them need `field`.
+        if hasattr(value, "free_symbols") and not _is_radical(str(value)):
+            # A sympy number that the grammar does not write needs a field of its own, so there can be only one.
             others = {str(value): value, **others}
         elif isinstance(value, str) or hasattr(value, "free_symbols"):
-            texts.append(str(value))
+            strings.append(str(value))
     if not others:
-        return common_field(texts)
-    if len(others) > 1 or common_field(texts) != QQ:
+        return common_field(strings)
+    if len(others) > 1 or common_field(strings) != QQ:
         raise FieldError(f"the values {', '.join(others)} need a common field: give it, made by liehom.number_field")
     return number_field(next(iter(others.values())))
 
 
-def _is_radical_text(text: str) -> bool:
+def _is_radical(expression: str) -> bool:
     try:
-        grammar.parse(text)
+        grammar.parse(expression)
     except ParseError:
         return False
     return True
 
 
-def field_of_constants(constants: Any) -> Field:
+def field_of_constants(constants: ConstantsLike) -> Field:
     """The field that structure constants in any accepted form call for."""
     if isinstance(constants, Mapping):
         return field_of_values(v for row in constants.values() if isinstance(row, Mapping) for v in row.values())
-    if hasattr(constants, "tocoo"):
+    if _is_sparse(constants):
         return field_of_values(constants.data[:1])
     array = _array(constants)
     if array.dtype.kind in "iu" or (array.size == 0 and not isinstance(constants, np.ndarray)):
@@ -61,17 +87,21 @@ def field_of_constants(constants: Any) -> Field:
     return RR if array.dtype.kind == "f" else field_of_values(array.ravel().tolist())
 
 
-def constants_from(constants: Any, field: Field, dimension: int | None) -> StructureConstants:
+def _is_sparse(constants: object) -> TypeGuard[SparseArray]:
+    return hasattr(constants, "tocoo")
+
+
+def constants_from(constants: ConstantsLike, field: Field, dimension: int | None) -> StructureConstants:
     """The bracket table that an array, sparse array or mapping describes.
 
     Raises
     ------
     StructureError
-        Naming the indices out of range, or where antisymmetry fails.
+        If an index is out of range or antisymmetry fails; names the indices.
     """
     if isinstance(constants, Mapping):
         n, given = _from_mapping(constants, field, dimension)
-    elif hasattr(constants, "tocoo"):
+    elif _is_sparse(constants):
         n, given = _from_sparse(constants, field)
     else:
         n, given = _from_array(constants, field)
@@ -80,13 +110,10 @@ def constants_from(constants: Any, field: Field, dimension: int | None) -> Struc
     return StructureConstants(field, n, _antisymmetric(given, field))
 
 
-Given = dict[tuple[int, int, int], Any]
-
-
-def _from_mapping(constants: Any, field: Field, dimension: int | None) -> tuple[int, Given]:
+def _from_mapping(constants: ConstantsMapping, field: Field, dimension: int | None) -> tuple[int, Entries]:
     for pair, row in constants.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
-            raise StructureError(f"{pair!r}: {row!r} is no bracket; write {{(i, j): {{k: value}}}}")
+            raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{(i, j): {{k: value}}}}")
         if not all(isinstance(x, (int, np.integer, Integral)) for x in (*pair, *row)):  # the first two: quickly
             raise StructureError(f"the indices of {pair!r}: {dict(row)!r} are not all integers")
     largest = max((int(x) for (i, j), row in constants.items() for x in (i, j, *row)), default=-1)
@@ -94,7 +121,7 @@ def _from_mapping(constants: Any, field: Field, dimension: int | None) -> tuple[
     if not isinstance(n, Integral) or n < 0:
         raise ShapeError(f"the dimension is {n!r}, expected an integer that is not negative")
     n = int(n)
-    given: Given = {}
+    given: Entries = {}
     for (i, j), row in constants.items():
         for k, value in row.items():
             if not all(0 <= x < n for x in (i, j, k)):
@@ -108,19 +135,19 @@ def _from_mapping(constants: Any, field: Field, dimension: int | None) -> tuple[
     return n, given
 
 
-def _from_sparse(constants: Any, field: Field) -> tuple[int, Given]:
+def _from_sparse(constants: SparseArray, field: Field) -> tuple[int, Entries]:
     table = constants.tocoo()
     n = int(table.shape[-1])
     if table.shape != (n * n, n):
         raise ShapeError(f"a sparse table has shape (n*n, n), got {table.shape}")
-    given: Given = {}
+    given: Entries = {}
     for row, k, value in zip(table.row.tolist(), table.col.tolist(), table.data.tolist(), strict=True):
-        place = (*divmod(row, n), k)
-        given[place] = given.get(place, field.zero) + field.convert(value)
+        index = (*divmod(row, n), k)
+        given[index] = given.get(index, field.zero) + field.convert(value)
     return n, given
 
 
-def _from_array(constants: Any, field: Field) -> tuple[int, Given]:
+def _from_array(constants: ConstantsLike, field: Field) -> tuple[int, Entries]:
     array = _array(constants)
     n = array.shape[0]
     if array.shape == (0,):
@@ -130,29 +157,31 @@ def _from_array(constants: Any, field: Field) -> tuple[int, Given]:
     if array.dtype.kind == "f" and not np.isfinite(array).all():
         i, j, k = np.argwhere(~np.isfinite(array))[0].tolist()
         raise StructureError(f"c[{i}, {j}, {k}] is {array[i, j, k]}, expected a finite number")
-    places = np.argwhere(array != 0) if array.dtype.kind in "iuf" else np.argwhere(np.ones(array.shape, dtype=bool))
-    given: Given = {}
-    for i, j, k in places.tolist():
+    indices = np.argwhere(array != 0) if array.dtype.kind in "iuf" else np.argwhere(np.ones(array.shape, dtype=bool))
+    given: Entries = {}
+    for i, j, k in indices.tolist():
         value = field.convert(array[i, j, k])
         if value != 0:
             given[i, j, k] = value
     return n, given
 
 
-def _array(constants: Any) -> Any:
-    """Nested lists, or an array of numpy or sympy, as a numpy array that is no number."""
+def _array(constants: ConstantsLike) -> npt.NDArray[Any]:
+    """Nested lists, or an array of numpy or sympy, as a numpy array with at least one axis."""
     try:
         array = np.asarray(constants)
     except ValueError:
         raise ShapeError("structure constants have shape (n, n, n); these lists are not of equal lengths") from None
     if array.ndim == 0:
         raise StructureError(
-            f"{constants!r} are no structure constants; write {{(i, j): {{k: value}}}} or an array of shape (n, n, n)"
+            f"{constants!r} is not a table of structure constants; write {{(i, j): {{k: value}}}} or an array of shape "
+            "(n, n, n)"
         )
     return array
 
 
-def _antisymmetric(given: Given, field: Field) -> Iterator[tuple[int, int, int, Any]]:
+def _antisymmetric(given: Entries, field: Field) -> Iterator[tuple[int, int, int, Scalar]]:
+    """The non-zero entries (i, j, k, value) with i < j; `StructureError` if c[i, j, k] + c[j, i, k] is not 0."""
     bound = getattr(field, "rtol", 0.0) * max((abs(v) for v in given.values()), default=0.0) if not field.exact else 0
     for (i, j, k), value in given.items():
         defect = value + given.get((j, i, k), field.zero)

@@ -1,22 +1,46 @@
-"""Cartan involutions of algebras in floating point, from whichever generic element gives the most accurate one."""
+"""Cartan involutions of algebras in floating point, the most accurate one for several generic elements."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.involutions.cartan_involution import cartan_involution_of_constants, nearest_cartan_involution
+from liehom.algebra.involutions.cartan_involution import (
+    cartan_involution_of_constants,
+    involution_frame,
+    nearest_cartan_involution,
+)
 from liehom.errors import ConvergenceError
 from liehom.scalars import RR
+from liehom.typing import Array
 
-SEEDS = 4
-ACCURATE = 1e-11
+SEEDS = 4  # generic elements that are tried
+ACCURATE = 1e-11  # largest entry of theta^2 - 1 with which no further generic element is tried
+NULL = 1e-6  # eigenvalues of a generic ad x below this fraction of the largest count as 0
 
 
-def numerical_involution(algebra: LieAlgebra) -> Any:
-    """The Cartan involution with the least trace of -K(x, theta y), (n, n) on rows, of an algebra over float64.
+def float_constants(algebra: LieAlgebra) -> Array:
+    """The structure constants of an algebra over any field as an array (n, n, n) of float64.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> float_constants(lh.so(3))[0]
+    array([[ 0.,  0.,  0.],
+           [ 0.,  0.,  1.],
+           [ 0., -1.,  0.]])
+    """
+    n = algebra.dimension
+    return algebra.over(RR).table.dense().to_numpy().reshape(n, n, n)
+
+
+def orthonormal_frame(algebra: LieAlgebra, theta: Array) -> Array:
+    """A frame F, (n, n), with F F^T the form -K(x, theta y), for a Cartan involution theta on rows."""
+    return involution_frame(algebra.killing_form().to_numpy(), theta)
+
+
+def numerical_involution(algebra: LieAlgebra) -> Array:
+    """The Cartan involution with the smallest trace of -K(x, theta y), (n, n) on rows, of an algebra over float64.
 
     Raises
     ------
@@ -32,14 +56,15 @@ def numerical_involution(algebra: LieAlgebra) -> Any:
            [-1.,  0.,  0.],
            [ 0.,  0., -1.]])
     """
-    n = algebra.dimension
-    constants = algebra.table.dense().array.reshape(n, n, n)
+    constants = float_constants(algebra)
     killing = algebra.killing_form().to_numpy()
     return _found(constants, killing, _numerical_rank(constants))
 
 
-def approximate_involution(algebra: LieAlgebra, rank: int) -> Any:
-    """The same, (n, n) on rows, for a semisimple algebra of known rank over any field; None without convergence.
+def approximate_involution(algebra: LieAlgebra, rank: int) -> Array | None:
+    """A Cartan involution, (n, n) on rows, of a semisimple algebra of known rank over any field, in floating point.
+
+    It is the one with the smallest trace of -K(x, theta y), or None if double precision is not enough.
 
     Examples
     --------
@@ -47,24 +72,24 @@ def approximate_involution(algebra: LieAlgebra, rank: int) -> Any:
     >>> approximate_involution(lh.so(4, 1), 2).shape
     (10, 10)
     """
-    n = algebra.dimension
     try:
-        constants = algebra.over(RR).table.dense().array.reshape(n, n, n)
-        return _found(constants, algebra.killing_form().to_numpy(), rank)
+        return _found(float_constants(algebra), algebra.killing_form().to_numpy(), rank)
     except (ConvergenceError, np.linalg.LinAlgError):
         return None
 
 
-def _numerical_rank(constants: Any) -> int:
+def _numerical_rank(constants: Array) -> int:
+    """The number of eigenvalues of a generic ad x that are 0 up to rounding."""
     x = np.random.default_rng(len(constants)).standard_normal(len(constants))
     values = np.abs(np.linalg.eigvals(np.einsum("i,ijk->jk", x, constants)))
-    return int((values < 1e-6 * max(values.max(), 1e-300)).sum())
+    return int((values < NULL * max(values.max(), 1e-300)).sum())
 
 
-def _found(constants: Any, killing: Any, rank: int) -> Any:
-    """Theta on rows, from the generic element that gives the most accurate one."""
+def _found(constants: Array, killing: Array, rank: int) -> Array:
+    """Theta on rows, from the generic element that gives the most accurate one; `ConvergenceError` if none does."""
     failure: Exception | None = None
-    best, least = None, np.inf
+    best: Array | None = None
+    least = np.inf
     for seed in range(SEEDS):
         try:
             theta = cartan_involution_of_constants(constants, killing, rank, seed)

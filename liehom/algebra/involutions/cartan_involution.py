@@ -1,11 +1,11 @@
-"""Cartan involutions in floating point: found from root vectors, then moved to the one that suits the basis best.
+"""Cartan involutions in floating point, from root vectors, and the one that is best adapted to a basis.
 
-tau is the conjugation of g (x) C with tau(e_i) = -f_i on root vectors of simple roots, [e_i, f_i] the coroot: its fixed
-points are a compact form.  With sigma the conjugation of g, N = sigma tau and P = N^2 > 0, the conjugation
+Let tau be the conjugation of g (x) C with tau(e_i) = -f_i on root vectors of simple roots, [e_i, f_i] the coroot; its
+fixed points are a compact form.  With sigma the conjugation of g, N = sigma tau and P = N^2 > 0, the conjugation
 P^(1/4) tau P^(-1/4) commutes with sigma, and its product with sigma is a Cartan involution theta of g (Helgason,
-Differential Geometry, Lie Groups, and Symmetric Spaces, III.7).  Among all Cartan involutions, the one that minimises
-the trace of B_theta(x, y) = -K(x, theta y) in the given basis is found by Newton's method: the trace is convex along
-the geodesics exp(ad X) theta exp(-ad X), X in p.  Maps act on rows: theta(x) = x @ Theta.
+Differential Geometry, Lie Groups, and Symmetric Spaces, III.7).  Among all Cartan involutions, the one that minimizes
+the trace of B_theta(x, y) = -K(x, theta y) in the given basis is found by Newton's method, because the trace is convex
+along the geodesics exp(ad X) theta exp(-ad X), X in p.  Maps act on rows: theta(x) = x @ Theta.
 """
 
 from __future__ import annotations
@@ -17,9 +17,13 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import ConvergenceError
+from liehom.typing import Array, ComplexArray
 
-Array = npt.NDArray[Any]
-SEPARATED = 1e-9
+Inexact = npt.NDArray[Any]  # real or complex floats
+SEPARATED = 1e-9  # eigenvalues of a generic ad x below this fraction of the largest count as 0
+INTEGRAL = 1e-3  # largest deviation of a Cartan integer from an integer
+STEP = 0.5  # norm of ad X, in an orthonormal frame, up to which a Newton step is taken in full
+CONVERGED = 1e-11  # norm of ad X per dimension at which Newton's method ends
 
 
 def cartan_involution_of_constants(constants: Array, killing: Array, rank: int, seed: int = 0) -> Array:
@@ -28,12 +32,13 @@ def cartan_involution_of_constants(constants: Array, killing: Array, rank: int, 
     Parameters
     ----------
     constants : (n, n, n) float array
-        c[i, j, k], as everywhere.
+        The structure constants c[i, j, k].
     killing : (n, n) float array
+        The Killing form.
     rank : int
-        The dimension of its Cartan subalgebras.
+        The dimension of the Cartan subalgebras.
     seed : int
-        Of the generic element.
+        Seed of the random generator that draws the generic element.
 
     Returns
     -------
@@ -43,7 +48,7 @@ def cartan_involution_of_constants(constants: Array, killing: Array, rank: int, 
     Raises
     ------
     ConvergenceError
-        If roots cannot be told apart in double precision.
+        If double precision does not separate the roots.
     """
     system = _root_vectors(constants, killing, rank, seed)
     basis, images = _generated(constants, system)
@@ -65,16 +70,17 @@ def cartan_involution_of_constants(constants: Array, killing: Array, rank: int, 
 def nearest_cartan_involution(
     constants: Array, killing: Array, theta: Array, steps: int = 60, gram: Array | None = None
 ) -> Array:
-    """The Cartan involution with the least trace of -K(x, theta y), from a given one.
+    """The Cartan involution with the smallest trace of -K(x, theta y), (n, n) on rows, from a given one.
 
     Parameters
     ----------
     constants, killing, theta
-        As in `cartan_involution_of_constants`; theta approximately a Cartan involution.
+        As in `cartan_involution_of_constants`; theta is approximately a Cartan involution.
     steps : int
-        Of Newton's method, at most.
+        Maximum number of Newton steps.
     gram : (n, n) float array, optional
-        The sum of v^T v over rows v: then the sum of -K(v, theta v) is minimised, in place of that over the basis.
+        The sum of v^T v over row vectors v. The sum of -K(v, theta v) over these v is minimized; by default the v
+        are the basis.
 
     Examples
     --------
@@ -90,8 +96,7 @@ def nearest_cartan_involution(
     """
     n = len(killing)
     for _ in range(steps):
-        form = -killing @ theta.T
-        factor = np.linalg.cholesky((form + form.T) / 2)
+        factor = involution_frame(killing, theta)
         inverse = np.linalg.inv(factor)
         framed = inverse @ theta @ factor
         values, vectors = np.linalg.eigh((framed + framed.T) / 2)
@@ -106,17 +111,16 @@ def nearest_cartan_involution(
         hessian = 4 * np.einsum("aij,bji->ab", moved, framed_actions)
         step = np.linalg.lstsq((hessian + hessian.T) / 2, -gradient, rcond=1e-12)[0]
         size = float(np.linalg.norm(np.einsum("a,aij->ij", step, framed_actions), 2))
-        scale = min(1.0, 0.5 / size) if size > 0 else 1.0
+        scale = min(1.0, STEP / size) if size > 0 else 1.0
         theta = _moved(theta, np.einsum("a,aij->ij", scale * step, actions))
-        if size < 1e-11 * max(1, n):
+        if size < CONVERGED * max(1, n):
             break
     return theta
 
 
-def kicked(constants: Array, killing: Array, theta: Array, rng: np.random.Generator) -> Array:
-    """Another Cartan involution, by a random inner automorphism of moderate size."""
-    form = -killing @ theta.T
-    factor = np.linalg.cholesky((form + form.T) / 2)
+def perturbed(constants: Array, killing: Array, theta: Array, rng: np.random.Generator) -> Array:
+    """The image, (n, n) on rows, of a Cartan involution under a random inner automorphism of moderate size."""
+    factor = involution_frame(killing, theta)
     x = rng.standard_normal(len(killing)) @ np.linalg.inv(factor)
     x -= x @ theta  # in p
     action = np.einsum("i,ijk->jk", x, constants)
@@ -124,24 +128,31 @@ def kicked(constants: Array, killing: Array, theta: Array, rng: np.random.Genera
     return _moved(theta, action * (rng.uniform(0.5, 2) / np.linalg.norm(framed, 2)))
 
 
+def involution_frame(killing: Array, theta: Array) -> Array:
+    """The lower triangular F with F F^T = -K(x, theta y), for a Cartan involution theta on rows."""
+    form = -killing @ theta.T
+    return np.asarray(np.linalg.cholesky((form + form.T) / 2), dtype=np.float64)
+
+
 def _moved(theta: Array, action: Array) -> Array:
-    """exp(ad X) theta exp(-ad X), on rows."""
+    """The involution exp(ad X) theta exp(-ad X), on rows, for the matrix of ad X on rows."""
     from scipy.linalg import expm
 
-    return expm(-action) @ theta @ expm(action)  # type: ignore[no-any-return]
+    moved: Array = expm(-action) @ theta @ expm(action)
+    return moved
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class _RootVectors:
-    """Root vectors (m, n) and the roots in simple roots (m, r), with the places of the simple ones."""
+    """Root vectors, shape (m, n), and the coefficients of the roots in simple roots, m tuples of length r."""
 
-    vectors: Array
+    vectors: ComplexArray
     roots: list[tuple[int, ...]]
-    killing: Array
 
 
 def _root_vectors(constants: Array, killing: Array, rank: int, seed: int) -> _RootVectors:
+    """The root vectors as eigenvectors of a generic ad x; `ConvergenceError` if they are not separated."""
     n = len(killing)
     rng = np.random.default_rng(seed)
     x = rng.standard_normal(n)
@@ -156,17 +167,18 @@ def _root_vectors(constants: Array, killing: Array, rank: int, seed: int) -> _Ro
     cartan = null[n - rank :]
     # alpha(h_j) from the largest coordinate of each root vector
     images = np.einsum("ja,abk,mb->mjk", cartan, constants, rows)
-    place = np.argmax(np.abs(rows), axis=1)
+    largest = np.argmax(np.abs(rows), axis=1)
     index = np.arange(n - rank)
-    alpha = images[index, :, place] / rows[index, place][:, None]
+    alpha = images[index, :, largest] / rows[index, largest][:, None]
     gram = (alpha @ np.linalg.inv(cartan @ killing @ cartan.T) @ alpha.T).real
     pairing = np.rint(2 * gram / np.diag(gram))
-    if np.abs(2 * gram / np.diag(gram) - pairing).max() > 1e-3:
+    if np.abs(2 * gram / np.diag(gram) - pairing).max() > INTEGRAL:
         raise ConvergenceError("Cartan integers are not integers in double precision")
-    return _RootVectors(rows, _in_simple_roots(pairing, rng), killing)
+    return _RootVectors(rows, _in_simple_roots(pairing, rng))
 
 
 def _in_simple_roots(pairing: Array, rng: np.random.Generator) -> list[tuple[int, ...]]:
+    """The coefficients of the roots in a choice of simple roots, from the Cartan integers."""
     heights = pairing @ rng.standard_normal(len(pairing))
     simple: list[int] = []
     for i in np.argsort(heights, kind="stable"):
@@ -176,18 +188,18 @@ def _in_simple_roots(pairing: Array, rng: np.random.Generator) -> list[tuple[int
     return [tuple(row) for row in solved.tolist()]
 
 
-def _generated(constants: Array, system: _RootVectors) -> tuple[Array, Array]:
-    """A basis of g (x) C made from e_i and f_i by brackets, and its images under tau, as rows."""
-    places = {root: i for i, root in enumerate(system.roots)}
+def _generated(constants: Array, system: _RootVectors) -> tuple[ComplexArray, ComplexArray]:
+    """A basis of g (x) C, made from e_i and f_i by brackets, and its images under tau, as rows."""
+    index = {root: i for i, root in enumerate(system.roots)}
     rank = len(system.roots[0])
-    basis: list[Array] = []
-    images: list[Array] = []
-    raising: list[Array] = []
-    lowering: list[Array] = []
-    made: dict[tuple[int, ...], tuple[Array, Array]] = {}
+    basis: list[Inexact] = []
+    images: list[Inexact] = []
+    raising: list[Inexact] = []
+    lowering: list[Inexact] = []
+    made: dict[tuple[int, ...], tuple[Inexact, Inexact]] = {}
     for i in range(rank):
         unit = tuple(int(i == j) for j in range(rank))
-        e, f = system.vectors[places[unit]], system.vectors[places[tuple(-x for x in unit)]]
+        e, f = system.vectors[index[unit]], system.vectors[index[tuple(-x for x in unit)]]
         h = _bracket(constants, e, f)
         eigenvalue = _bracket(constants, h, e) @ e.conj() / (e @ e.conj())
         f = f * (2 / eigenvalue)
@@ -199,7 +211,7 @@ def _generated(constants: Array, system: _RootVectors) -> tuple[Array, Array]:
         images.append(-h * (2 / eigenvalue))
         made[unit] = (e, -f)
         made[tuple(-x for x in unit)] = (f, -e)
-    for root in sorted(places, key=lambda r: sum(map(abs, r))):
+    for root in sorted(index, key=lambda r: sum(map(abs, r))):
         if root not in made:
             sign = 1 if sum(root) > 0 else -1
             steps, others = (raising, lowering) if sign > 0 else (lowering, raising)
@@ -215,8 +227,10 @@ def _generated(constants: Array, system: _RootVectors) -> tuple[Array, Array]:
 
 
 def _less(root: tuple[int, ...], i: int, sign: int) -> tuple[int, ...]:
+    """The root minus or plus simple root i, for sign 1 or -1."""
     return tuple(x - sign * (i == j) for j, x in enumerate(root))
 
 
-def _bracket(constants: Array, x: Array, y: Array) -> Array:
-    return np.einsum("i,ijk,j->k", x, constants, y, optimize=True)  # type: ignore[no-any-return]
+def _bracket(constants: Array, x: Inexact, y: Inexact) -> Inexact:
+    bracket: Inexact = np.einsum("i,ijk,j->k", x, constants, y, optimize=True)
+    return bracket

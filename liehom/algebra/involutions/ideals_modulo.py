@@ -1,8 +1,8 @@
-"""Ideals of a Lie algebra over a small prime field: submodules of its adjoint module, found by spinning vectors.
+"""Ideals of a Lie algebra over a small prime field, as submodules of its adjoint module that a vector generates.
 
-A vector killed by a random element a of the associative algebra of all ad x, or by a - t, lies in a proper submodule
-more often than others; the same for the dual module, whose submodules are annihilators of ideals.  The list is not
-complete.
+A vector that a random element a of the associative algebra of all ad x annihilates, or a - t with a number t, lies in a
+proper submodule more often than other vectors do.  This also holds for the dual module, whose submodules are the
+annihilators of ideals.  The list of ideals need not be complete.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ import numpy as np
 from liehom.scalars.modular.modular_span import ModularSpan, invariant_span, left_kernel
 from liehom.typing import IntegerArray
 
-LARGEST_PRIME = 1000
+LARGEST_PRIME = 1000  # primes below this one are small
+SHIFTS = 3  # numbers t that are tried for each random element
 
 
 def ideals_modulo(constants: IntegerArray, p: int, tries: int, limit: int) -> list[IntegerArray]:
-    """Some proper non-zero ideals, each by its reduced echelon basis, by dimension.
+    """Some proper non-zero ideals, each by its reduced echelon basis, sorted by dimension.
 
     Parameters
     ----------
@@ -25,9 +26,9 @@ def ideals_modulo(constants: IntegerArray, p: int, tries: int, limit: int) -> li
     p : int
         A prime below 1000.
     tries : int
-        How many random elements.
+        Number of random elements.
     limit : int
-        How many ideals at most.
+        Number of ideals after which the search ends.
 
     Examples
     --------
@@ -44,13 +45,13 @@ def ideals_modulo(constants: IntegerArray, p: int, tries: int, limit: int) -> li
     for attempt in range(tries):
         a, b, c = (np.einsum("i,ijk->jk", rng.integers(0, p, n), maps) % p for _ in range(3))
         action = (a + b @ c) % p if attempt % 2 else a
-        for t in range(min(p, 3)):
-            shifted = (action - int(rng.integers(p) if p > 3 else t) * np.eye(n, dtype=np.int64)) % p
+        for t in range(min(p, SHIFTS)):
+            shifted = (action - int(rng.integers(p) if p > SHIFTS else t) * np.eye(n, dtype=np.int64)) % p
             for module, rows in ((maps, left_kernel(shifted, p)), (dual, left_kernel(shifted.T, p))):
                 if not len(rows):
                     continue
-                seed = rng.integers(0, p, len(rows)) @ rows % p
-                space = invariant_span(module, seed[None, :], p).echelon()[0]
+                vector = rng.integers(0, p, len(rows)) @ rows % p
+                space = invariant_span(module, vector[None, :], p).echelon()[0]
                 if module is dual and len(space):
                     space = _annihilator(space, p)
                 if 0 < len(space) < n:

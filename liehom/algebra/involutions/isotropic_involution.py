@@ -1,4 +1,4 @@
-"""Cartan involutions from a rational minimal parabolic subalgebra, by linear algebra: nothing is searched for.
+"""Cartan involutions from a rational minimal parabolic subalgebra, by linear algebra without a search.
 
 Let [h, e] = 2 e, [h, f] = -2 f, [e, f] = h with l = z(h) the Levi factor of a minimal parabolic subalgebra and e
 generic in g_2, g_k the eigenspaces of ad h.  Let theta_0 be 1 on [l, l], which is compact, and on the compact part of
@@ -6,8 +6,9 @@ the centre of l, and -1 on its split part.  Then g_2 = [l, e], g_2 generates the
 
     theta = theta_0 on l,   theta [x, e] = -[theta_0 x, f],   theta [u, v] = [theta u, theta v],   theta theta = 1
 
-is a Cartan involution: one that is theta_0 on l maps the part e_a of e in a simple restricted root space to -c_a f_a,
-c_a > 0, and c_a = 1 after an automorphism from the split torus.  The parts of the centre are found in floating point.
+is a Cartan involution.  For a Cartan involution that is theta_0 on l maps the part e_a of e in a simple restricted root
+space to -c_a f_a, c_a > 0, and c_a = 1 after an automorphism from the split torus.  The split and the compact part of
+the centre are found in floating point.
 """
 
 from __future__ import annotations
@@ -16,26 +17,27 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.involutions.nilpotent_element import Triple, eigenspace, generic_nilpotent, positive_eigenvalues
+from liehom.algebra.core.subalgebra import independent_rows
+from liehom.algebra.involutions.nilpotent_element import SL2Triple, eigenspace, generic_nilpotent, positive_eigenvalues
 from liehom.errors import SingularError
+from liehom.scalars import ExactMatrix
 from liehom.scalars.lattices.lattice import reduced_rows
 from liehom.scalars.spaces.integral_basis import integral_basis
+from liehom.typing import Array, ComplexArray, ObjectArray
 
-Array = npt.NDArray[Any]
-CLOSE = 1e-7
-DENOMINATOR = 10_000
+CLOSE = 1e-7  # relative error up to which a float is recognized as a fraction
+DENOMINATOR = 10_000  # largest denominator of such a fraction
 
 
-def isotropic_involution(algebra: LieAlgebra, theta: Array) -> Any:
+def isotropic_involution(algebra: LieAlgebra, theta: Array) -> ExactMatrix | None:
     """A candidate for a Cartan involution over QQ, (n, n) on columns, or None.
 
     Parameters
     ----------
     algebra : LieAlgebra
-        Semisimple, over QQ, in the basis of a lattice that is closed under brackets.
+        A semisimple algebra over QQ in the basis of a lattice that is closed under brackets.
     theta : (n, n) float array
         A Cartan involution, on rows, approximately.
 
@@ -55,8 +57,8 @@ def isotropic_involution(algebra: LieAlgebra, theta: Array) -> Any:
         return None
 
 
-def involution_of_triple(algebra: LieAlgebra, triple: Triple) -> Any:
-    """The theta of the triple, (n, n) on columns, or None where it is not defined.
+def involution_of_triple(algebra: LieAlgebra, triple: SL2Triple) -> ExactMatrix | None:
+    """The map theta of a triple, (n, n) on columns, or None if it is not defined.
 
     Examples
     --------
@@ -66,42 +68,37 @@ def involution_of_triple(algebra: LieAlgebra, triple: Triple) -> Any:
     >>> involution_of_triple(g, sl2_triple(g, g.field.matrix([[1, 0, 0]]))).to_strings()
     [['0', '-1', '0'], ['-1', '0', '0'], ['0', '0', '-1']]
     """
-    field, n = algebra.field, algebra.dimension
+    field, n = triple.h.field, algebra.dimension
     on_levi = _on_levi(algebra, triple)
     if on_levi is None:
         return None
     levi, images = on_levi
-    ad_e, ad_f = (algebra.ad(x.to_rows()[0]).T for x in (triple.e, triple.f))
+    ad_e, ad_f = (algebra.ad(x).T for x in (triple.e, triple.f))
     # rows [e, x] and [f, theta_0 x]: theta [x, e] = -[theta_0 x, f] as [x, e] = -[e, x]
-    places = _independent(levi @ ad_e)
-    raised = (levi @ ad_e).select(rows=places)
-    lowered = -(images @ ad_f).select(rows=places)
+    chosen = independent_rows(levi @ ad_e)
+    raised = (levi @ ad_e).select(rows=chosen)
+    lowered = -(images @ ad_f).select(rows=chosen)
     ups, downs = [raised], [lowered]
     for _ in positive_eigenvalues(algebra, triple.h)[1:]:
         up = field.stack_rows(algebra.table.contract(raised, ups[-1], field.identity(n)), n)
         down = field.stack_rows(algebra.table.contract(lowered, downs[-1], field.identity(n)), n)
-        places = _independent(up)
-        ups.append(up.select(rows=places))
-        downs.append(down.select(rows=places))
+        chosen = independent_rows(up)
+        ups.append(up.select(rows=chosen))
+        downs.append(down.select(rows=chosen))
     basis = field.stack_rows([levi, *ups, *downs], n)
     if basis.nrows != n or basis.rank() < n:
         return None
     return (basis.inverse() @ field.stack_rows([images, *downs, *ups], n)).T
 
 
-def _independent(rows: Any) -> list[int]:
-    """The places of rows that are a basis of the row space."""
-    return list(rows.T.echelon()[1])
-
-
-def _on_levi(algebra: LieAlgebra, triple: Triple) -> tuple[Any, Any] | None:
-    """A basis of l, as rows, and theta_0 of it."""
-    field, n = algebra.field, algebra.dimension
+def _on_levi(algebra: LieAlgebra, triple: SL2Triple) -> tuple[ExactMatrix, ExactMatrix] | None:
+    """A basis of l, as rows, and its image under theta_0; None if theta_0 is not found."""
+    field, n = triple.h.field, algebra.dimension
     levi = algebra.subalgebra(eigenspace(algebra, triple.h, 0))
     inner = levi.as_algebra()
-    centre = integral_basis(inner.center().basis @ levi.basis)
+    center = integral_basis(inner.center().basis @ levi.basis)
     derived = integral_basis(inner.derived_subalgebra().basis @ levi.basis)
-    parts = _parts(algebra, centre)
+    parts = _parts(algebra, center)
     if parts is None:
         return None
     split, compact = parts
@@ -110,32 +107,33 @@ def _on_levi(algebra: LieAlgebra, triple: Triple) -> tuple[Any, Any] | None:
     return rows, images
 
 
-def _parts(algebra: LieAlgebra, centre: Any) -> tuple[Any, Any] | None:
-    """Bases of the split and the compact part of the centre of l, as rows; None where they are not recognised."""
-    field, n, k = algebra.field, algebra.dimension, centre.nrows
-    form = centre @ algebra.killing_form() @ centre.T
+def _parts(algebra: LieAlgebra, center: ExactMatrix) -> tuple[ExactMatrix, ExactMatrix] | None:
+    """Bases of the split and the compact part of the centre of l, as rows; None if they are not recognized."""
+    field, n, k = center.field, algebra.dimension, center.nrows
+    killing: Any = algebra.killing_form()
+    form = center @ killing @ center.T
     if form.is_positive_definite():
-        return centre, field.zeros(0, n)
-    values = _roots(algebra, centre)
+        return center, field.zeros(0, n)
+    values = _roots(algebra, center)
     gram = (values @ values.conj().T).real
     change = reduced_rows(field.identity(k), np.linalg.cholesky((gram + gram.T) / 2))
     values = change.to_numpy() @ values
-    split, compact = (_recognised(_null_rows(table)) for table in (values.imag, values.real))
+    split, compact = (_recognized(_null_rows(table)) for table in (values.imag, values.real))
     if split is None or compact is None or len(split) + len(compact) != k:
         return None
-    parts = [field.matrix(x.tolist(), x.shape) @ change @ centre for x in (split, compact)]
+    parts = [field.matrix(x.tolist(), x.shape) @ change @ center for x in (split, compact)]
     return parts[0], parts[1]
 
 
-def _roots(algebra: LieAlgebra, centre: Any) -> Array:
+def _roots(algebra: LieAlgebra, center: ExactMatrix) -> ComplexArray:
     """The values (k, n) of the roots, and of zeros, on rows of a commutative subalgebra."""
-    actions = np.array([algebra.ad(x).to_numpy() for x in centre.to_rows()])
+    actions = np.array([algebra.ad(x).to_numpy() for x in center.to_rows()])
     weights = np.random.default_rng(len(actions)).standard_normal(len(actions))
     weights /= np.linalg.norm(actions, axis=(1, 2))
     _, vectors = np.linalg.eig(np.einsum("a,aij->ij", weights, actions))
-    places = np.argmax(np.abs(vectors), axis=0)
+    largest = np.argmax(np.abs(vectors), axis=0)
     index = np.arange(vectors.shape[1])
-    values: Array = (actions @ vectors)[:, places, index] / vectors[places, index]
+    values: ComplexArray = (actions @ vectors)[:, largest, index] / vectors[largest, index]
     return values
 
 
@@ -146,7 +144,7 @@ def _null_rows(table: Array) -> Array:
     return rows[rank:]
 
 
-def _recognised(rows: Array) -> Array | None:
+def _recognized(rows: Array) -> ObjectArray | None:
     """The reduced echelon form of float rows as fractions with small denominators, or None."""
     table = rows.copy()
     row = 0

@@ -1,55 +1,59 @@
-"""A large Lie order: a lattice in g that is closed under brackets and that suits g better than the basis does.
+"""A large Lie order in g: a lattice that is closed under brackets, with a short and nearly orthogonal basis.
 
 For any lattice L the normalizer N(L) = {x : [x, L] in L} is an order.  An order M is enlarged at a number d that
-divides the discriminant of its Killing form: the normalizer of an ideal J of M contains M, and for
-J = {x in M : K(x, M) = 0 mod d} it is larger for most M that are not maximal (the idea of the round-2 algorithm for
-orders in fields and algebras); for primes d < 1000 the {x in M : K(x, M) = 0 mod d^k} + d M and other ideals are
-tried too: at larger ones, lattices in special position may stay below a maximal order.  With d M in J and M = N(M),
-N(J) lies in M/d, so that linear algebra modulo d finds it; d need not be a prime, and is split where elimination meets
-a divisor.  Nothing here is proved to be maximal.
+divides the discriminant of its Killing form.  The normalizer of an ideal J of M contains M.  For
+J = {x in M : K(x, M) = 0 mod d} it is larger than M for most M that are not maximal, as in the round-2 algorithm for
+orders in fields and algebras.  For primes d < 1000 the ideals {x in M : K(x, M) = 0 mod d^k} + d M and others are also
+tried; at larger primes the result may fail to be maximal.  If d M lies in J and M = N(M), then N(J) lies in M/d and is
+found by linear algebra modulo d.  The number d need not be a prime: it is split if elimination meets a divisor of it.
+No order is proved to be maximal.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.involutions.ideals_modulo import LARGEST_PRIME, ideals_modulo
-from liehom.scalars import QQ
+from liehom.scalars import QQ, ExactMatrix
 from liehom.scalars.lattices.lattice import integral_preimage, kernel_modulo, pairwise_coprime, reduced_rows
 from liehom.scalars.modular.modular_span import ModularSpan
+from liehom.typing import Array
 
-STEPS = 60
-SPARE = 20
-TRIES = 12
-IDEALS = 24
+STEPS = 60  # enlargements at one number d
+SPARE = 20  # random equations beyond the n unknowns
+TRIES = 12  # random elements by which ideals are sought
+IDEALS = 24  # ideals that are tried at one prime
+
+Rows: TypeAlias = tuple[list[list[int]], list[int]]
+"""A subspace of (Z/d)^n: rows that are unit vectors outside the pivots, and the pivots."""
 
 
-def lie_order(algebra: LieAlgebra, factor: Any, *, thorough: bool = True) -> Any:
-    """A basis of a lattice closed under brackets, as rows (n, n) in the basis of a semisimple algebra over QQ.
+def lattice_order(algebra: LieAlgebra, frame: Array, *, thorough: bool = True) -> ExactMatrix:
+    """A basis of a lattice closed under brackets, as rows (n, n), for a semisimple algebra over QQ.
 
     Parameters
     ----------
     algebra : LieAlgebra
-    factor : (n, n) float array
-        A frame: the basis is short and nearly orthogonal for the form factor factor^T.
+    frame : (n, n) float array
+        A matrix F. The basis is short and nearly orthogonal for the form F F^T.
     thorough : bool, optional
-        Whether other ideals than the radical of the Killing form are tried, most of the cost: then the order is larger.
+        Try other ideals than the radical of the Killing form too (default). The order may then be larger, at several
+        times the cost.
 
     Examples
     --------
     >>> import numpy as np
     >>> import liehom as lh
     >>> g = lh.so(3).change_of_basis([[5, 0, 0], [1, 1, 0], [0, 1, 7]])
-    >>> order = g.change_of_basis(lie_order(g, np.eye(3)))
+    >>> order = g.change_of_basis(lattice_order(g, np.eye(3)))
     >>> int(g.killing_form().determinant()), int(order.killing_form().determinant())
     (-9800, -8)
     """
-    basis = algebra.field.identity(algebra.dimension)
-    order = _Order(algebra, basis, factor)
+    order = _Order(algebra, QQ.identity(algebra.dimension), frame)
     for _ in range(STEPS):
         larger = order.normalizer()
         if larger is None:
@@ -69,26 +73,34 @@ def lie_order(algebra: LieAlgebra, factor: Any, *, thorough: bool = True) -> Any
 
 
 class _Order:
-    """A lattice (rows of `basis`) and the structure constants in its basis."""
+    """A lattice with a reduced basis (rows of `basis`) and the algebra in this basis (`inner`)."""
 
-    def __init__(self, algebra: LieAlgebra, basis: Any, factor: Any) -> None:
-        self.algebra, self.factor = algebra, factor
-        self.basis = reduced_rows(basis, factor)
+    def __init__(self, algebra: LieAlgebra, basis: ExactMatrix, frame: Array) -> None:
+        self.algebra, self.frame = algebra, frame
+        self.basis = reduced_rows(basis, frame)
         self.n = algebra.dimension
         self.inner = algebra.change_of_basis(self.basis)
 
     def exponent(self) -> int:
-        """The exponent of M^# / M for the Killing form."""
-        return int(self.inner.killing_form().inverse().den)
+        """The exponent of M^# / M, M^# the dual lattice for the Killing form."""
+        return int(self.killing_form().inverse().den)
+
+    def killing_form(self) -> ExactMatrix:
+        """The Killing form in the basis of the lattice."""
+        form: Any = self.inner.killing_form()
+        rational: ExactMatrix = form
+        return rational
 
     def normalizer(self) -> _Order | None:
-        rows = integral_preimage(self.inner.table.flat())
+        """The normalizer of the lattice, or None if it is the lattice itself."""
+        flat: Any = self.inner.table.flat()
+        rows = integral_preimage(flat)
         if abs(rows.determinant()) == 1:
             return None
-        return _Order(self.algebra, rows @ self.basis, self.factor)
+        return _Order(self.algebra, rows @ self.basis, self.frame)
 
     def enlarged(self, d: int, thorough: bool) -> _Order | int | None:
-        """A larger order inside M/d, a divisor of d, or None."""
+        """A larger order inside M/d, or a divisor of d that elimination met, or None if no larger order was found."""
         for space in self._ideals(d):
             if isinstance(space, int):
                 return space
@@ -99,12 +111,13 @@ class _Order:
                 return self._with(found, d)
         return self._enlarged_by_search(d) if thorough and d < LARGEST_PRIME else None
 
-    def _ideals(self, d: int) -> Iterator[Any]:
-        """0, the radical of the Killing form over its content, for small primes the images of {x : K(x, M) in d^k}.
+    def _ideals(self, d: int) -> Iterator[Rows | int]:
+        """Ideals of M / d M, or a divisor of d that elimination met.
 
-        Where d divides the dual Coxeter number the whole form vanishes modulo d.
+        These are 0, the radical of the Killing form divided by its content (the form itself may vanish modulo d), and
+        for small primes the images of {x : K(x, M) in d^k}.
         """
-        killing = self.inner.killing_form()
+        killing = self.killing_form()
         yield [], list(range(self.n))
         yield kernel_modulo(killing.primitive(), d)
         power, last = d, self.n
@@ -121,23 +134,25 @@ class _Order:
             power, last = power * d, len(pivots)
 
     def _enlarged_by_search(self, p: int) -> _Order | None:
-        """The largest of the normalizers of some ideals modulo a small prime."""
+        """The largest of the normalizers of some ideals modulo a small prime, or None if none is larger than M."""
         n = self.n
-        constants = np.array([int(x) % p for x in self.inner.table.dense().parts[0].entries()], dtype=np.int64)
-        best: Any = ([], [])
+        dense: Any = self.inner.table.dense()
+        constants = np.array([int(x) % p for x in dense.parts[0].entries()], dtype=np.int64)
+        best: Rows = ([], [])
         for space in ideals_modulo(constants.reshape(n, n, n), p, TRIES, IDEALS):
             pivots = [next(j for j in range(n) if row[j]) for row in space.tolist()]
             found = self._normalizer_of((space.tolist(), [j for j in range(n) if j not in pivots]), p)
-            if len(found[0]) > len(best[0]):
+            if not isinstance(found, int) and len(found[0]) > len(best[0]):
                 best = found
         return self._with(best, p) if best[0] else None
 
-    def _with(self, space: Any, d: int) -> _Order:
+    def _with(self, space: Rows, d: int) -> _Order:
+        """The order generated by M and the rows divided by d."""
         lattice = QQ.from_integers(_flattened(space, d, self.n), self.n, self.n, d)
-        return _Order(self.algebra, lattice @ self.basis, self.factor)
+        return _Order(self.algebra, lattice @ self.basis, self.frame)
 
-    def _normalizer_of(self, space: Any, d: int) -> Any:
-        """The y modulo d with [y, J] in d J for an ideal J / d M of M / d M."""
+    def _normalizer_of(self, space: Rows, d: int) -> Rows | int:
+        """The y modulo d with [y, J] in d J for an ideal J / d M of M / d M, or a divisor of d."""
         field, n = QQ, self.n
         ideal = field.from_integers(_flattened(space, d, n), n, n)
         blocks = self.inner.table.contract(field.identity(n), ideal, ideal.inverse())
@@ -148,8 +163,8 @@ class _Order:
         return kernel_modulo(flat @ mixing, d)
 
 
-def _flattened(space: Any, d: int, n: int) -> list[int]:
-    """The lattice of the rows and d Z^n, for rows that are the unit vectors outside the pivots."""
+def _flattened(space: Rows, d: int, n: int) -> list[int]:
+    """The entries, row after row, of a basis of the lattice that is generated by the rows and d Z^n."""
     rows, pivots = space
     units = [d * int(j == i) for i in pivots for j in range(n)]
     return [x for row in rows for x in row] + units

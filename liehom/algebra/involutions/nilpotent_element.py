@@ -1,11 +1,11 @@
-"""Nilpotent elements of a semisimple algebra over QQ, sought among short vectors of a lattice; their sl2-triples.
+"""Nilpotent elements of a semisimple algebra over QQ among short vectors of a lattice, and their sl2-triples.
 
-A lattice that is closed under brackets and reduced for -K(x, theta y) holds many short nilpotent elements, if the
-algebra has any with rational coefficients.  For e nilpotent, every h in [e, g] with [h, e] = 2 e belongs to a triple
-[h, e] = 2 e, [h, f] = -2 f, [e, f] = h (Jacobson, Morozov), and f is unique.  From e one comes to more generic ones:
-z(h) is a Levi factor of the parabolic subalgebra of the eigenvalues >= 0, and a nilpotent element of z(h) plus a random
-one of eigenvalue > 0 is nilpotent too.  It ends where z(h) is compact but for its centre: there the parabolic
-subalgebra is minimal.
+A lattice that is closed under brackets and reduced for -K(x, theta y) contains many short nilpotent elements, if the
+algebra has any with rational coefficients.  For nilpotent e, every h in [e, g] with [h, e] = 2 e belongs to a triple
+[h, e] = 2 e, [h, f] = -2 f, [e, f] = h (Jacobson, Morozov), and f is unique.  A triple leads to more generic nilpotent
+elements: z(h) is a Levi factor of the parabolic subalgebra of the eigenvalues >= 0 of ad h, and a nilpotent element of
+z(h) plus a random sum of eigenvectors with eigenvalues > 0 is nilpotent.  The iteration ends when [z(h), z(h)] is
+compact, because then the parabolic subalgebra is minimal.
 """
 
 from __future__ import annotations
@@ -14,41 +14,41 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
-from liehom.algebra.involutions.approximate_involution import approximate_involution
-from liehom.algebra.involutions.lattice_order import lie_order
+from liehom.algebra.involutions.approximate_involution import approximate_involution, float_constants, orthonormal_frame
+from liehom.algebra.involutions.lattice_order import lattice_order
 from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
 from liehom.errors import SingularError
-from liehom.scalars import QQ, RR
+from liehom.scalars import QQ, ExactMatrix
 from liehom.scalars.lattices.lattice import reduced_rows
 from liehom.scalars.spaces.integral_basis import integral_basis
+from liehom.typing import Array
 
-Array = npt.NDArray[Any]
-TRIED = 80
-STEPS = 12
-ISOTROPIC = 1e-8
-PRIME = 33_554_393
+TRIED = 80  # short vectors that are tested
+STEPS = 12  # iterations to a generic element
+ISOTROPIC = 1e-8  # |K(x, x)| relative to -K(x, theta x) up to which x is tested for being nilpotent
+RANK = 1e-6  # singular values below this count as 0
+PRIME = 33_554_393  # below 2^25; nilpotency is tested modulo this prime
 
 
 @final
 @dataclass(frozen=True, slots=True)
-class Triple:
-    """[h, e] = 2 e, [h, f] = -2 f, [e, f] = h in an algebra; rows (1, n).
+class SL2Triple:
+    """Elements of an algebra with [h, e] = 2 e, [h, f] = -2 f, [e, f] = h, as rows (1, n).
 
     Attributes
     ----------
-    e, h, f : Matrix
+    e, h, f : ExactMatrix
     """
 
-    e: Any
-    h: Any
-    f: Any
+    e: ExactMatrix
+    h: ExactMatrix
+    f: ExactMatrix
 
 
-def sl2_triple(algebra: LieAlgebra, e: Any) -> Triple:
+def sl2_triple(algebra: LieAlgebra, e: ExactMatrix) -> SL2Triple:
     """The triple through a nilpotent element (1, n) of a semisimple algebra.
 
     Raises
@@ -63,44 +63,44 @@ def sl2_triple(algebra: LieAlgebra, e: Any) -> Triple:
     >>> sl2_triple(g, g.field.matrix([[1, 0, 0]])).h.to_strings()
     [['0', '0', '1']]
     """
-    field, n = algebra.field, algebra.dimension
+    field, n = e.field, algebra.dimension
     if e.is_zero():
         raise SingularError("there is no sl2-triple through 0; give a nilpotent element that is not 0")
-    action = algebra.ad(e.to_rows()[0]).T  # on rows: y @ action = [e, y]
+    action = algebra.ad(e).T  # on rows: y @ action = [e, y]
     h = _small_semisimple(algebra, e, action)
-    inner = algebra.ad(h.to_rows()[0]).T + field.identity(n).scale(field.convert(2))
+    inner = algebra.ad(h).T + field.identity(n).scale(field.convert(2))
     joined = field.stack_columns([action, inner], n)
     f = joined.T.solve(field.stack_columns([h, field.zeros(1, n)], 1).T).T
-    return Triple(e, h, f)
+    return SL2Triple(e, h, f)
 
 
-def _small_semisimple(algebra: LieAlgebra, e: Any, action: Any) -> Any:
-    """An h in [e, g] with [h, e] = 2 e, of small numbers: w / s for a short integer w in [e, g] with [w, e] = 2 s e."""
-    field, n = algebra.field, algebra.dimension
+def _small_semisimple(algebra: LieAlgebra, e: ExactMatrix, action: ExactMatrix) -> ExactMatrix:
+    """An h in [e, g] with [h, e] = 2 e, with small numbers: w / s for a short integer w with [w, e] = 2 s e."""
+    field, n = e.field, algebra.dimension
     z = (action @ action).T.solve(e.T.scale(-field.convert(2))).T
-    # x action lies in [e, g], and commutes with e where x action^2 = 0
+    # x action lies in [e, g], and commutes with e if x action^2 = 0
     commuting = (action @ action).T.null_space() @ action
-    place = next(i for i, x in enumerate(e.to_rows()[0]) if x != 0)
+    pivot = next(i for i, x in enumerate(e.to_rows()[0]) if x != 0)
     rows = integral_basis(field.stack_rows([z @ action, commuting], n))
-    values = [-x / (2 * e[0, place]) for x in (rows @ action).T.to_rows()[place]]
+    values = [-x / (2 * e[0, pivot]) for x in (rows @ action).T.to_rows()[pivot]]
     found = [(abs(s), i) for i, s in enumerate(values) if s != 0]
     i = min(found)[1]
     return rows.select(rows=[i]).scale(1 / values[i])
 
 
-def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> Triple | None:
+def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> SL2Triple | None:
     """The triple of an element that is generic in the nilradical of a minimal parabolic subalgebra, or None.
 
     Parameters
     ----------
     algebra : LieAlgebra
-        Semisimple, over QQ, in the basis of a lattice closed under brackets.
+        A semisimple algebra over QQ in the basis of a lattice that is closed under brackets.
     theta : (n, n) float array
         A Cartan involution, on rows, approximately.
 
     Notes
     -----
-    None where no nilpotent element was found, in g or in a z(h) that is not compact but for its centre.
+    The result is None if no nilpotent element was found in g or in a z(h) for which [z(h), z(h)] is not compact.
     Random choices are made from a fixed seed.
 
     Examples
@@ -119,10 +119,10 @@ def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> Triple | None:
     for _ in range(STEPS):
         triple = sl2_triple(algebra, e)
         levi = algebra.centralizer(triple.h)
-        inside = _nilpotent_inside(levi)
-        if inside is None and _is_even(algebra, triple):
+        compact, inside = _nilpotent_inside(levi)
+        if compact and _is_even(algebra, triple):
             return triple
-        if inside is False:
+        if not compact and inside is None:
             return None
         e = _random_element(_positive_part(algebra, triple), rng)
         if inside is not None:
@@ -130,8 +130,8 @@ def generic_nilpotent(algebra: LieAlgebra, theta: Array) -> Triple | None:
     return None
 
 
-def eigenspace(algebra: LieAlgebra, h: Any, value: int) -> Any:
-    """The rows x with [h, x] = value x.
+def eigenspace(algebra: LieAlgebra, h: ExactMatrix, value: int) -> ExactMatrix:
+    """A basis, as rows, of the x with [h, x] = value x.
 
     Examples
     --------
@@ -140,12 +140,12 @@ def eigenspace(algebra: LieAlgebra, h: Any, value: int) -> Any:
     >>> eigenspace(g, g.field.matrix([[0, 0, 1]]), 2).to_strings()
     [['1', '0', '0']]
     """
-    field, n = algebra.field, algebra.dimension
-    return (algebra.ad(h.to_rows()[0]) - field.identity(n).scale(field.convert(value))).null_space()
+    field, n = h.field, algebra.dimension
+    return (algebra.ad(h) - field.identity(n).scale(field.convert(value))).null_space()
 
 
-def positive_eigenvalues(algebra: LieAlgebra, h: Any) -> list[int]:
-    """The eigenvalues k > 0 of ad h, h from a triple: integers.
+def positive_eigenvalues(algebra: LieAlgebra, h: ExactMatrix) -> list[int]:
+    """The positive eigenvalues of ad h, which are integers, for the h of a triple.
 
     Examples
     --------
@@ -154,59 +154,59 @@ def positive_eigenvalues(algebra: LieAlgebra, h: Any) -> list[int]:
     >>> positive_eigenvalues(g, g.field.matrix([[0, 0, 1]]))
     [2]
     """
-    values = np.linalg.eigvals(algebra.ad(h.to_rows()[0]).to_numpy()).real
+    values = np.linalg.eigvals(algebra.ad(h).to_numpy()).real
     return [k for k in sorted({int(x) for x in np.rint(values)}) if k > 0]
 
 
-def _positive_part(algebra: LieAlgebra, triple: Triple) -> Any:
+def _positive_part(algebra: LieAlgebra, triple: SL2Triple) -> ExactMatrix:
+    """A basis, as rows, of the sum of the eigenspaces of ad h with positive eigenvalues."""
     spaces = [eigenspace(algebra, triple.h, k) for k in positive_eigenvalues(algebra, triple.h)]
-    return integral_basis(algebra.field.stack_rows(spaces, algebra.dimension))
+    return integral_basis(triple.h.field.stack_rows(spaces, algebra.dimension))
 
 
-def _random_element(space: Any, rng: np.random.Generator) -> Any:
+def _random_element(space: ExactMatrix, rng: np.random.Generator) -> ExactMatrix:
+    """A random combination of rows with coefficients -1, 0, 1, not all 0."""
     weights = rng.integers(-1, 2, space.nrows)
     weights[rng.integers(space.nrows)] = 1
     return space.field.from_integers(weights.tolist(), 1, space.nrows) @ space
 
 
-def _is_even(algebra: LieAlgebra, triple: Triple) -> bool:
+def _is_even(algebra: LieAlgebra, triple: SL2Triple) -> bool:
+    """Whether all eigenvalues of ad h are even."""
     return all(k % 2 == 0 for k in positive_eigenvalues(algebra, triple.h))
 
 
-def _is_compact(levi: Subalgebra, derived: Any) -> bool:
-    return bool((-(derived @ levi.algebra.killing_form() @ derived.T)).is_positive_definite())
+def _is_compact(levi: Subalgebra, derived: ExactMatrix) -> bool:
+    """Whether the Killing form is negative definite on these rows."""
+    killing: Any = levi.algebra.killing_form()
+    return bool((-(derived @ killing @ derived.T)).is_positive_definite())
 
 
-def _nilpotent_inside(levi: Subalgebra) -> Any:
-    """A nilpotent element of [z(h), z(h)] in the algebra around; None if that is compact; False if none was found."""
+def _nilpotent_inside(levi: Subalgebra) -> tuple[bool, ExactMatrix | None]:
+    """Whether [z(h), z(h)] is compact, and if not, a nilpotent element of it, (1, n), or None if none was found."""
     algebra = levi.algebra
     inner = levi.as_algebra()
-    rows = inner.derived_subalgebra().basis @ levi.basis
+    rows: ExactMatrix = inner.derived_subalgebra().basis @ levi.basis
     if rows.nrows == 0 or _is_compact(levi, rows):
-        return None
+        return True, None
     rows = integral_basis(rows)
     inner = Subalgebra(algebra, rows, check=False).as_algebra()  # derived, so closed
     theta = approximate_involution(inner, cartan_subalgebra(inner).dimension)
     if theta is None:
-        return False
+        return False, None
     e = _longest_nilpotent(inner, theta)
     if e is None:
-        order = lie_order(inner, _frame(inner, theta))
+        order = lattice_order(inner, orthonormal_frame(inner, theta))
         inner, rows = inner.change_of_basis(order), order @ rows
         e = _longest_nilpotent(inner, order.to_numpy() @ theta @ order.inverse().to_numpy())
-    return False if e is None else e @ rows
+    return False, None if e is None else e @ rows
 
 
-def _frame(algebra: LieAlgebra, theta: Array) -> Array:
-    form = -algebra.killing_form().to_numpy() @ theta.T
-    return np.linalg.cholesky((form + form.T) / 2)
-
-
-def _longest_nilpotent(algebra: LieAlgebra, theta: Array) -> Any:
-    """The nilpotent element of the largest rank among short vectors, (1, n), or None."""
+def _longest_nilpotent(algebra: LieAlgebra, theta: Array) -> ExactMatrix | None:
+    """The nilpotent element x, (1, n), with ad x of the largest rank among short vectors, or None."""
     n, field = algebra.dimension, QQ
-    change = reduced_rows(field.identity(n), _frame(algebra, theta))
-    constants = algebra.change_of_basis(change).over(RR).table.dense().array.reshape(n, n, n)
+    change = reduced_rows(field.identity(n), orthonormal_frame(algebra, theta))
+    constants = float_constants(algebra.change_of_basis(change))
     if np.abs(constants - np.rint(constants)).max() > 0:
         return None
     u, v = change.to_numpy(), change.inverse().to_numpy()
@@ -217,11 +217,11 @@ def _longest_nilpotent(algebra: LieAlgebra, theta: Array) -> Any:
     vectors = np.concatenate([one, one[i] + one[j], one[i] - one[j], constants.reshape(-1, n)])
     sizes = np.einsum("ai,ij,aj->a", vectors, form, vectors, optimize=True)
     squares = np.einsum("ai,ij,aj->a", vectors, killing, vectors, optimize=True)
-    places = np.flatnonzero((np.abs(squares) < ISOTROPIC * sizes) & (sizes > 0))
+    candidates = np.flatnonzero((np.abs(squares) < ISOTROPIC * sizes) & (sizes > 0))
     best, largest = None, 0
-    for a in places[np.argsort(sizes[places], kind="stable")][:TRIED]:
+    for a in candidates[np.argsort(sizes[candidates], kind="stable")][:TRIED]:
         action = np.einsum("i,ijk->jk", vectors[a], constants)
-        size = int(np.linalg.matrix_rank(action, tol=1e-6))
+        size = int(np.linalg.matrix_rank(action, tol=RANK))
         if size > largest and _is_nilpotent(action):
             best, largest = vectors[a], size
     if best is None:

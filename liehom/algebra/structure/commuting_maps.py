@@ -1,4 +1,4 @@
-"""Algebras of commuting matrices: minimal polynomials, the trace form, elements to try as generators.
+"""Algebras of commuting matrices: minimal polynomials, the trace form, candidates for a generator.
 
 A commutative algebra A of matrices has A / rad A = K_1 x ... x K_s with fields K_i, and rad A is the radical of the
 form tr(a b) (characteristic 0).  An element whose minimal polynomial has a squarefree part of degree
@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from liehom.errors import InternalError, SingularError
-from liehom.scalars import Polynomial
+from liehom.scalars import ExactMatrix, Polynomial
 
-ATTEMPTS = 40
+ATTEMPTS = 40  # random sums of matrices that are tried as generators
 
 
-def minimal_polynomial(matrix: Any, start: Any) -> Polynomial:
-    """The monic polynomial f of least degree with f(A) v = 0.
+def minimal_polynomial(matrix: ExactMatrix, start: ExactMatrix) -> Polynomial:
+    """The monic polynomial f of smallest degree with f(A) v = 0.
 
     Parameters
     ----------
@@ -43,13 +42,13 @@ def minimal_polynomial(matrix: Any, start: Any) -> Polynomial:
                 if degree or rows[-1].is_zero():
                     return Polynomial(field, [*(-c for c in found.entries()), field.one])
             except SingularError:
-                pass  # dependent modulo the prime only
+                pass  # the vectors are dependent modulo the prime only
         rows.append((matrix @ rows[-1].T).T)
     raise InternalError("a vector and its images are independent in a space that is too small for them")
 
 
-def evaluate(polynomial: Polynomial, matrix: Any) -> Any:
-    """The matrix f(A), by Horner's rule.
+def evaluate(polynomial: Polynomial, matrix: ExactMatrix) -> ExactMatrix:
+    """The matrix f(A) for a polynomial f over the field of A, by Horner's rule.
 
     Examples
     --------
@@ -65,8 +64,8 @@ def evaluate(polynomial: Polynomial, matrix: Any) -> Any:
     return total
 
 
-def semisimple_rank(maps: Sequence[Any]) -> int:
-    """dim A / rad A for a commutative algebra A of matrices with this basis: the rank of the form tr(a b).
+def semisimple_rank(maps: Sequence[ExactMatrix]) -> int:
+    """The dimension of A / rad A for a commutative algebra A of matrices with this basis, the rank of tr(a b).
 
     Examples
     --------
@@ -83,8 +82,8 @@ def semisimple_rank(maps: Sequence[Any]) -> int:
     return int((flat @ turned.T).rank())
 
 
-def combinations(maps: Sequence[Any], rng: random.Random) -> Iterator[Any]:
-    """The matrices themselves, then random sums of them with growing weights, `ATTEMPTS` of these."""
+def combinations(maps: Sequence[ExactMatrix], rng: random.Random) -> Iterator[ExactMatrix]:
+    """The matrices themselves, then `ATTEMPTS` random sums of them with growing integer weights."""
     yield from maps
     for attempt in range(ATTEMPTS):
         size = len(maps) * (1 + attempt // 2) // 2
@@ -94,7 +93,7 @@ def combinations(maps: Sequence[Any], rng: random.Random) -> Iterator[Any]:
         yield total
 
 
-def are_independent(maps: Sequence[Any]) -> bool:
+def are_independent(maps: Sequence[ExactMatrix]) -> bool:
     """Whether matrices of one shape are linearly independent.
 
     Examples

@@ -1,4 +1,4 @@
-"""The card of a Lie algebra: what a mathematician asks first, every line of it computed exactly."""
+"""The summary that `LieAlgebra.describe` returns, with every line computed exactly."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def describe(algebra: LieAlgebra) -> str:
 
 
 def semisimple_lines(algebra: LieAlgebra) -> list[str]:
-    """The lines on a semisimple algebra."""
+    """The lines of the summary for a semisimple algebra: name and ranks, complex type and restricted roots."""
     parts = simple_parts(algebra)
-    kind = join_types(part.type for part in parts for _ in range(part.centre.degree))
+    kind = join_types(part.type for part in parts for _ in range(part.centroid.degree))
     try:
         forms = [form for part in parts for form in part.real_forms()]
     except UndecidedError as undecided:
         return [f"semisimple of complex type {kind}; {undecided}"]
-    forms.sort(key=lambda form: (form.dimension, form.real_rank > 0, form.name))  # in the order of the name of the sum
+    forms.sort(key=lambda form: (form.dimension, form.real_rank > 0, form.name))  # the order of join_real_forms
     rank = sum(form.rank for form in forms)
     real_rank = sum(form.real_rank for form in forms)
     compact = "+".join(form.maximal_compact for form in forms if form.maximal_compact != "0") or "0"
@@ -58,10 +58,10 @@ def _restricted(forms: list[RealForm]) -> str:
             continue
         multiplicities = form.multiplicities
         if set(multiplicities) == {"all"}:
-            text = f"multiplicity {multiplicities['all']}"
+            counts = f"multiplicity {multiplicities['all']}"
         else:
-            text = "multiplicities " + ", ".join(f"{m} ({length})" for length, m in multiplicities.items())
-        shown.append(f"{form.restricted_type} with {text}")
+            counts = "multiplicities " + ", ".join(f"{m} ({length})" for length, m in multiplicities.items())
+        shown.append(f"{form.restricted_type} with {counts}")
     return "restricted roots " + "; ".join(shown)
 
 

@@ -1,31 +1,30 @@
 """A Lie algebra as the direct sum of indecomposable ideals, over its own field.
 
-Central elements outside [g, g] split off as abelian ideals of dimension 1.  What remains has its centre in [g, g];
-its centroid A is commutative modulo the maps g/[g, g] -> z(g), which are an ideal of square 0.  An element theta that
-generates A modulo its radical has a minimal polynomial with one irreducible factor p_i for each field in A / rad A,
-so the ideals ker p_i(theta)^k are indecomposable and their sum is direct.
+Central elements outside [g, g] split off as abelian ideals of dimension 1.  The complement then has its centre in
+[g, g], and its centroid A is commutative modulo the maps g/[g, g] -> z(g), which are an ideal of square 0.  An element
+theta that generates A modulo its radical has a minimal polynomial with one irreducible factor p_i for each field in
+A / rad A, so the ideals ker p_i(theta)^k are indecomposable and their sum is direct.
 """
 
 from __future__ import annotations
 
 import random
-from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.algebra.core.subalgebra import Subalgebra, complement_rows
 from liehom.algebra.structure.bracket_seeds import BracketSeeds
-from liehom.algebra.structure.centroid import centroid_of, seeds_of
+from liehom.algebra.structure.centroid import centroid_of
 from liehom.algebra.structure.commuting_maps import combinations, evaluate, minimal_polynomial, semisimple_rank
 from liehom.errors import InternalError
-from liehom.scalars import Polynomial
+from liehom.scalars import ExactMatrix, Matrix, Polynomial
 from liehom.scalars.spaces.integral_basis import integral_basis
 
 
 def direct_sum_decomposition(algebra: LieAlgebra) -> list[Subalgebra]:
     """Implements `LieAlgebra.direct_sum_decomposition`."""
     field, n = algebra.field, algebra.dimension
-    parts: list[Any] = []
+    parts: list[Matrix] = []
     for indices in components(algebra.table):
         if len(indices) == 1:
             parts.append(field.unit(n, indices[0]))
@@ -40,7 +39,7 @@ def direct_sum_decomposition(algebra: LieAlgebra) -> list[Subalgebra]:
 
 
 def components(table: StructureConstants) -> list[list[int]]:
-    """The finest partition of the basis into sets that span ideals: connected by the non-zero c[i, j, k].
+    """The finest partition of the basis indices into sets that span ideals and are connected by non-zero c[i, j, k].
 
     Examples
     --------
@@ -66,24 +65,24 @@ def components(table: StructureConstants) -> list[list[int]]:
 
 
 def _restricted(algebra: LieAlgebra, indices: list[int]) -> LieAlgebra:
-    """The ideal that basis elements span, as an algebra."""
-    place = {x: i for i, x in enumerate(indices)}
-    entries = [(place[i], place[j], place[k], v) for i, j, k, v in algebra.table if i in place]
+    """The ideal spanned by these basis elements, as an algebra."""
+    position = {x: i for i, x in enumerate(indices)}
+    entries = [(position[i], position[j], position[k], v) for i, j, k, v in algebra.table if i in position]
     # The restriction of a bracket to an ideal.
     return LieAlgebra(StructureConstants(algebra.field, len(indices), entries), check=False)
 
 
-def _indecomposable(algebra: LieAlgebra) -> list[Any]:
-    """Bases (matrices of rows) of indecomposable ideals with direct sum g."""
-    seeds = seeds_of(algebra)
+def _indecomposable(algebra: LieAlgebra) -> list[ExactMatrix]:
+    """Bases, as rows, of indecomposable ideals whose direct sum is the algebra."""
+    seeds = BracketSeeds(algebra)
     if seeds.is_perfect():
         return _split(seeds, None)
-    field, n = algebra.field, algebra.dimension
+    field, n = seeds.field, algebra.dimension
     center = seeds.center()
     if center.nrows == 0:
         return _split(seeds, None)
     derived = field.stack_rows(seeds.ads(field.identity(n)), n).row_space()
-    abelian = _outside(derived, center)
+    abelian = complement_rows(center, derived)
     lines = [integral_basis(abelian.select(rows=[i])) for i in range(abelian.nrows)]
     if not lines:
         return _split(seeds, center if derived.nrows == seeds.spanned else None)
@@ -94,15 +93,8 @@ def _indecomposable(algebra: LieAlgebra) -> list[Any]:
     return lines + [rows @ rest for rows in _indecomposable(inner)]
 
 
-def _outside(space: Any, rows: Any) -> Any:
-    """Rows that are a basis modulo the space of what they span."""
-    k = space.nrows
-    stacked = space.field.stack_rows([space, rows], rows.ncols)
-    return rows.select(rows=[x - k for x in stacked.T.echelon()[1] if x >= k])
-
-
-def _completed(space: Any, other: Any) -> Any:
-    """A basis of a space that contains the given one and is a complement of the other."""
+def _completed(space: ExactMatrix, other: ExactMatrix) -> ExactMatrix:
+    """A basis, as rows, of a complement of `other` that contains `space`."""
     n, field = space.ncols, space.field
     k = space.nrows + other.nrows
     stacked = field.stack_rows([space, other, field.identity(n)], n)
@@ -110,7 +102,7 @@ def _completed(space: Any, other: Any) -> Any:
     return integral_basis(field.stack_rows([space, field.identity(n).select(rows=units)], n))
 
 
-def _split(seeds: BracketSeeds, center: Any) -> list[Any]:
+def _split(seeds: BracketSeeds, center: ExactMatrix | None) -> list[ExactMatrix]:
     """Bases of the indecomposable ideals of an algebra whose centre lies in [g, g]."""
     field, n = seeds.field, seeds.n
     maps = centroid_of(seeds, center)
@@ -126,8 +118,8 @@ def _split(seeds: BracketSeeds, center: Any) -> list[Any]:
     raise InternalError("no element generates the centroid modulo its radical")
 
 
-def _kernels(theta: Any, factors: list[tuple[Polynomial, int]]) -> list[Any]:
-    """Bases of the ker p_i(theta)^k with k so large that their sum is all."""
+def _kernels(theta: ExactMatrix, factors: list[tuple[Polynomial, int]]) -> list[ExactMatrix]:
+    """Bases of the spaces ker p_i(theta)^k with k so large that their sum is the algebra."""
     n = theta.nrows
     if len(factors) == 1:
         return [theta.field.identity(n)]
@@ -140,12 +132,15 @@ def _kernels(theta: Any, factors: list[tuple[Polynomial, int]]) -> list[Any]:
     return [integral_basis(space) for space in kernels]
 
 
-def _kernel(matrix: Any, exponent: int) -> Any:
+def _kernel(matrix: ExactMatrix, exponent: int) -> ExactMatrix:
+    """A basis, as rows, of the null space of a power of the matrix."""
     power = matrix
     for _ in range(exponent - 1):
         power = (power @ matrix).primitive()
     return power.null_space()
 
 
-def _order(ideal: Subalgebra) -> Any:
-    return ideal.dimension, ideal.subspace.basis.to_strings()
+def _order(ideal: Subalgebra) -> tuple[int, list[list[str]]]:
+    """The key by which ideals are sorted."""
+    basis: Matrix = ideal.subspace.basis
+    return ideal.dimension, basis.to_strings()

@@ -1,8 +1,8 @@
-"""Which semisimple algebra it is: complex type and real form by name, exactly and in any basis.
+"""Complex type and real form of a semisimple algebra by name, exactly and in any basis.
 
 A simple algebra over the field splits over the reals by the places of its centroid (real_splitting).  The complex type
-of each part follows from its dimension and rank, and where these do not decide (B_n, C_n and E6) from the Dynkin
-diagram of certain roots (root_data).  A real form is then determined by its Killing signature (Helgason, Differential
+of each part follows from its dimension and rank.  If several types have these (B_n, C_n and E6), the Dynkin diagram of
+the enclosed roots decides (root_data).  A real form is then determined by its Killing signature (Helgason, Differential
 Geometry, Lie Groups, and Symmetric Spaces, X.6), except for so*(18) and so(12,6), sl(7,H) and su(9,5) and larger pairs.
 """
 
@@ -18,10 +18,11 @@ from liehom.algebra.roots.real_form import RealForm, complex_form, real_forms_wi
 from liehom.algebra.roots.real_form_names import join_real_forms
 from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
 from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition
+from liehom.algebra.structure.exact_field import exact_field
 from liehom.algebra.structure.levi import levi_decomposition
 from liehom.algebra.structure.real_splitting import CentroidField, Place, centroid_field, field_places
 from liehom.algebra.structure.root_data import root_data
-from liehom.errors import FieldError, InputError, UndecidedError
+from liehom.errors import InputError, UndecidedError
 
 
 @final
@@ -32,21 +33,21 @@ class SimplePart:
     Attributes
     ----------
     ideal : Subalgebra
-        Of the semisimple algebra (`semisimple_part`), simple over its field.
+        An ideal of the semisimple algebra (`semisimple_part`), simple over its field.
     type : str
         The type of each simple ideal of its complexification.
-    centre : CentroidField
-        Its centroid; the degree is the number of simple ideals of the complexification.
+    centroid : CentroidField
+        The centroid of the ideal. Its degree is the number of simple ideals of the complexification.
     """
 
     ideal: Subalgebra
     type: str
-    centre: CentroidField
+    centroid: CentroidField
 
     @property
     def places(self) -> list[Place]:
         """The simple ideals over the reals."""
-        return field_places(self.centre)
+        return field_places(self.centroid)
 
     def real_forms(self) -> list[RealForm]:
         """The real form of each simple ideal over the reals, in the order of `places`.
@@ -54,13 +55,13 @@ class SimplePart:
         Raises
         ------
         UndecidedError
-            Where type and Killing signature are shared by two real forms.
+            If two real forms have this type and this Killing signature.
         """
         return [_real_form(self.type, place) for place in self.places]
 
 
 def semisimple_part(algebra: LieAlgebra) -> LieAlgebra:
-    """The algebra itself if it is semisimple, else a Levi factor in its own basis.
+    """The algebra itself if it is semisimple, else a Levi factor as an algebra in its own basis.
 
     Examples
     --------
@@ -68,15 +69,14 @@ def semisimple_part(algebra: LieAlgebra) -> LieAlgebra:
     >>> semisimple_part(lh.gl(3)).dimension
     8
     """
-    if not algebra.field.exact:
-        raise FieldError("real forms are identified exactly: build the algebra over QQ or a number field")
+    exact_field(algebra, "real forms")
     if int(algebra.killing_form().rank()) == algebra.dimension:
         return algebra
     return levi_decomposition(algebra).levi.as_algebra()
 
 
 def simple_parts(algebra: LieAlgebra) -> list[SimplePart]:
-    """The simple ideals, over its field, of a semisimple algebra (of a Levi factor), with their types.
+    """The simple ideals, over its field, of a semisimple algebra or of a Levi factor, with their types.
 
     Examples
     --------
@@ -87,14 +87,14 @@ def simple_parts(algebra: LieAlgebra) -> list[SimplePart]:
     whole = semisimple_part(algebra)
     parts = []
     for ideal in direct_sum_decomposition(whole):
-        centre = centroid_field(ideal)
-        parts.append(SimplePart(ideal, _type(centre), centre))
+        centroid = centroid_field(ideal)
+        parts.append(SimplePart(ideal, _type(centroid), centroid))
     return parts
 
 
 def semisimple_type(algebra: LieAlgebra) -> str:
     """Implements `LieAlgebra.semisimple_type`."""
-    return join_types(part.type for part in simple_parts(algebra) for _ in range(part.centre.degree))
+    return join_types(part.type for part in simple_parts(algebra) for _ in range(part.centroid.degree))
 
 
 def real_forms_of(algebra: LieAlgebra) -> list[RealForm]:
@@ -111,7 +111,7 @@ def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
     """Implements `LieAlgebra.is_isomorphic`."""
     for algebra in (first, second):
         if not isinstance(algebra, LieAlgebra):
-            raise InputError(f"isomorphism is of two Lie algebras, such as lh.so(3); got {algebra!r}")
+            raise InputError(f"expected a Lie algebra to compare with, such as lh.so(3); got {algebra!r}")
     if first.dimension != second.dimension:
         return False
     for algebra in (first, second):
@@ -120,9 +120,9 @@ def is_isomorphic(first: LieAlgebra, second: LieAlgebra) -> bool:
     return real_form(first) == real_form(second)
 
 
-def _type(centre: CentroidField) -> str:
+def _type(centroid: CentroidField) -> str:
     """The type of the simple ideals of the complexification of a simple algebra."""
-    algebra, degree = centre.algebra, centre.degree
+    algebra, degree = centroid.algebra, centroid.degree
     cartan = cartan_subalgebra(algebra)
     candidates = _types(algebra.dimension // degree, cartan.dimension // degree)
     if len(candidates) == 1:

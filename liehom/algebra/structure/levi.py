@@ -1,10 +1,10 @@
 """The Levi decomposition g = s + rad(g): a semisimple subalgebra that complements the radical.
 
-Two elements a, b generate g/rad(g), so a basis of it consists of words in a and b.  Along the derived series
-r = r_0 > r_1 > ... of the radical, r_t / r_{t+1} = V is an abelian ideal of g / r_{t+1}, and a section over
-g / r_t is corrected by adding y_a, y_b in V to the lifts of a and b: the relations of the words become linear
-equations in these 2 dim V unknowns, which Whitehead's second lemma solves.
-(The subalgebra of all x whose brackets with every word lift correctly is closed, so relations with a and b are enough.)
+Two elements a, b generate g/rad(g), so it has a basis of words in a and b, that is, iterated brackets.  Let
+r = r_0 > r_1 > ... be the derived series of the radical and V = r_t / r_{t+1}, an abelian ideal of g / r_{t+1}.  A
+section over g / r_t is corrected by adding y_a, y_b in V to the lifts of a and b.  The relations between the words
+become linear equations in these 2 dim V unknowns, which have a solution by Whitehead's second lemma.  Relations with
+a and b are enough, because the x whose brackets with every word lift correctly form a subalgebra.
 """
 
 from __future__ import annotations
@@ -17,24 +17,31 @@ from typing import Any, final
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.subalgebra import Subalgebra, products
+from liehom.algebra.structure.exact_field import exact_field
 from liehom.algebra.structure.radical import radical
-from liehom.errors import FieldError, InternalError, SingularError
+from liehom.errors import InternalError, SingularError
+from liehom.scalars import ExactField, ExactMatrix
 from liehom.scalars.modular.modular import extending_rows, stacked_residues
 from liehom.scalars.spaces.quotient import echelon_quotient
 
-Word = tuple[int, int]  # (generator, index of the word it acts on); the generators are words 0 and 1
+PAIRS = 200  # random pairs of elements that are tried as generators
+STRIDE = 20  # pairs after which the coefficients may be larger by 1
+
+Word = tuple[int, int]  # (generator, index of the word on which it acts); the generators are words 0 and 1
+Relation = tuple[int, int, ExactMatrix]  # (generator, word, coefficients (1, n) of their bracket in the words)
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class LeviDecomposition:
-    """g as the semidirect sum of a semisimple subalgebra and the radical.
+    """A decomposition of g as the semidirect sum of a semisimple subalgebra and the radical.
 
     Attributes
     ----------
     levi : Subalgebra
-        A Levi factor: semisimple, a complement of the radical.
+        A Levi factor, that is, a semisimple subalgebra that is a complement of the radical.
     radical : Subalgebra
+        The solvable radical.
     """
 
     levi: Subalgebra
@@ -46,8 +53,7 @@ class LeviDecomposition:
 
 def levi_decomposition(algebra: LieAlgebra) -> LeviDecomposition:
     """Implements `LieAlgebra.levi_decomposition`."""
-    if not algebra.field.exact:
-        raise FieldError("a Levi factor is computed exactly: build the algebra over QQ or a number field")
+    exact_field(algebra, "Levi factors")
     ideal = radical(algebra)
     n = algebra.dimension
     if ideal.dimension == 0:
@@ -57,15 +63,16 @@ def levi_decomposition(algebra: LieAlgebra) -> LeviDecomposition:
     return LeviDecomposition(Subalgebra(algebra, _levi_rows(algebra, ideal)), ideal)
 
 
-def _levi_rows(algebra: LieAlgebra, ideal: Subalgebra) -> Any:
-    field, n = algebra.field, algebra.dimension
-    coordinates = echelon_quotient(ideal.basis)
-    lift = coordinates.lift
+def _levi_rows(algebra: LieAlgebra, ideal: Subalgebra) -> ExactMatrix:
+    """A basis, as rows, of a Levi factor, for the radical of the algebra."""
+    field, n = exact_field(algebra, "Levi factors"), algebra.dimension
+    below: Any = ideal.basis
+    coordinates = echelon_quotient(below)
+    lift: ExactMatrix = coordinates.lift
     blocks = algebra.table.contract(lift, lift, coordinates.projection)
     # The bracket descends to the quotient by the radical.
     plan = _plan(LieAlgebra(StructureConstants.from_blocks(field, lift.nrows, blocks), check=False))
     generators = [plan.first @ lift, plan.second @ lift]
-    below = ideal.basis
     while below.nrows:
         above, below = below, products(algebra, below, below)
         generators = _corrected(algebra, plan, generators, above, below)
@@ -78,16 +85,21 @@ def _levi_rows(algebra: LieAlgebra, ideal: Subalgebra) -> Any:
 class _Plan:
     """Words in two generators that are a basis of g/rad(g), and their relations.
 
-    first, second: rows of coefficients in g/rad(g); steps: the words after these two; relations: (generator, word,
-    row of the coefficients of their bracket in the words).
+    Attributes
+    ----------
+    first, second : ExactMatrix
+        The generators, rows (1, dim g/rad(g)).
+    steps : tuple of Word
+        The words after these two.
+    relations : tuple of Relation
     """
 
-    first: Any
-    second: Any
+    first: ExactMatrix
+    second: ExactMatrix
     steps: tuple[Word, ...]
-    relations: tuple[tuple[int, int, Any], ...]
+    relations: tuple[Relation, ...]
 
-    def words_of(self, algebra: LieAlgebra, generators: Sequence[Any]) -> list[Any]:
+    def words_of(self, algebra: LieAlgebra, generators: Sequence[ExactMatrix]) -> list[ExactMatrix]:
         """The words as rows of g, for given lifts of the generators."""
         actions = [algebra.ad(x).T for x in generators]
         made = list(generators)
@@ -98,10 +110,10 @@ class _Plan:
 
 def _plan(algebra: LieAlgebra) -> _Plan:
     """A plan for a semisimple algebra, from the first two small elements that generate it."""
-    field, n = algebra.field, algebra.dimension
+    field, n = exact_field(algebra, "Levi factors"), algebra.dimension
     rng = random.Random(n)
-    for attempt in range(1, 200):
-        size = 1 + attempt // 20
+    for attempt in range(1, PAIRS):
+        size = 1 + attempt // STRIDE
         pair = [field.matrix([[rng.randint(-size, size) for _ in range(n)]]) for _ in range(2)]
         steps = _spanning_words(algebra, pair)
         if steps is not None:
@@ -110,8 +122,8 @@ def _plan(algebra: LieAlgebra) -> _Plan:
     raise InternalError("no two elements generate a semisimple algebra")
 
 
-def _spanning_words(algebra: LieAlgebra, pair: list[Any]) -> list[Word] | None:
-    """Words that with the pair are a basis, chosen modulo a prime; None if the pair does not generate."""
+def _spanning_words(algebra: LieAlgebra, pair: list[ExactMatrix]) -> list[Word] | None:
+    """Words that complete the pair to a basis, chosen modulo a prime, or None if the pair does not generate."""
     n = algebra.dimension
     actions = [algebra.ad(x).T.modulo() for x in pair]
     words = [x.modulo() for x in pair]
@@ -127,9 +139,9 @@ def _spanning_words(algebra: LieAlgebra, pair: list[Any]) -> list[Word] | None:
     return steps if len(words) == n and int(stacked_residues(words).rank()) == n else None
 
 
-def _relations(algebra: LieAlgebra, plan: _Plan) -> tuple[tuple[int, int, Any], ...]:
-    """[generator, word] in terms of the words, where that is not itself a word."""
-    field, n = algebra.field, algebra.dimension
+def _relations(algebra: LieAlgebra, plan: _Plan) -> tuple[Relation, ...]:
+    """The brackets [generator, word] in terms of the words, except those that are words themselves."""
+    field, n = exact_field(algebra, "Levi factors"), algebra.dimension
     words = field.stack_rows(plan.words_of(algebra, [plan.first, plan.second]), n)
     inverse = words.inverse()
     made = set(plan.steps)
@@ -142,18 +154,19 @@ def _relations(algebra: LieAlgebra, plan: _Plan) -> tuple[tuple[int, int, Any], 
     return tuple(found)
 
 
-def _corrected(algebra: LieAlgebra, plan: _Plan, generators: list[Any], above: Any, below: Any) -> list[Any]:
-    """Lifts of the generators whose words satisfy the relations modulo `below`, if they did modulo `above`."""
-    field = algebra.field
+def _corrected(
+    algebra: LieAlgebra, plan: _Plan, generators: list[ExactMatrix], above: ExactMatrix, below: ExactMatrix
+) -> list[ExactMatrix]:
+    """Lifts of the generators with the relations modulo `below`, from lifts with the relations modulo `above`."""
+    field = above.field
     projection = echelon_quotient(below).projection if below.nrows else field.identity(algebra.dimension)
-    images = (above @ projection).echelon()
-    basis, pivots = images
+    basis, pivots = (above @ projection).echelon()
     d = basis.nrows
     lifts = above.select(rows=(above @ projection).T.echelon()[1])
     change = (lifts @ projection).select(columns=pivots)  # rows: the lifted basis in the echelon basis
     words = plan.words_of(algebra, generators)
     stacked = field.stack_rows(words, algebra.dimension)
-    # rho[w]: rows of V (echelon basis), acted on from the right by ad of word w
+    # rho[w] is the matrix of ad of word w on V, on rows in the echelon basis
     rho = _module(algebra, words, lifts, projection, pivots, change)
     shifts = _shifts(field, plan, rho, d)
     flat = field.stack_rows([x.reshape(1, 2 * d * d) for x in shifts], 2 * d * d)
@@ -174,15 +187,23 @@ def _corrected(algebra: LieAlgebra, plan: _Plan, generators: list[Any], above: A
     return [x + correction.select(rows=[i]) for i, x in enumerate(generators)]
 
 
-def _module(algebra: LieAlgebra, words: list[Any], lifts: Any, projection: Any, pivots: list[int], change: Any) -> Any:
-    field = algebra.field
+def _module(
+    algebra: LieAlgebra,
+    words: list[ExactMatrix],
+    lifts: ExactMatrix,
+    projection: ExactMatrix,
+    pivots: list[int],
+    change: ExactMatrix,
+) -> list[ExactMatrix]:
+    """The matrices (d, d) by which the words act on V."""
+    field = lifts.field
     inverse = change.inverse()
     table = algebra.table.contract(field.stack_rows(words, algebra.dimension), lifts, projection.select(columns=pivots))
     return [inverse @ block for block in table]
 
 
-def _shifts(field: Any, plan: _Plan, rho: list[Any], d: int) -> list[Any]:
-    """For each word the matrix (2 d, d): how it moves when (y_a, y_b) is added to the generators."""
+def _shifts(field: ExactField, plan: _Plan, rho: list[ExactMatrix], d: int) -> list[ExactMatrix]:
+    """For each word the matrix (2 d, d) that maps (y_a, y_b) to the change of the word if they are added to a, b."""
     zero, one = field.zeros(d, d), field.identity(d)
     made = [field.stack_rows([one, zero], d), field.stack_rows([zero, one], d)]
     for generator, parent in plan.steps:

@@ -1,8 +1,9 @@
-"""The solvable radical, the nilradical, and what they decide: solvable, nilpotent, semisimple.
+"""The solvable radical and the nilradical.
 
     rad(g) = {x : K(x, [g, g]) = 0},    nil(g) = {x in rad(g) : ad x is nilpotent},
 
-K the Killing form (Cartan's criterion; Jacobson, Lie Algebras, chapters II and III).  Characteristic 0.
+with K the Killing form (Cartan's criterion; Jacobson, Lie Algebras, chapters II and III).  Both formulas hold in
+characteristic 0.
 """
 
 from __future__ import annotations
@@ -11,17 +12,18 @@ import random
 from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.core.subalgebra import Subalgebra, products
-from liehom.errors import FieldError, InternalError
-from liehom.scalars import Polynomial
+from liehom.algebra.core.subalgebra import Subalgebra, complement_rows, products
+from liehom.algebra.structure.exact_field import exact_field
+from liehom.errors import InternalError
+from liehom.scalars import ExactMatrix, Polynomial
 
-ATTEMPTS = 20
+ATTEMPTS = 20  # random elements of the radical
 
 
 def radical(algebra: LieAlgebra) -> Subalgebra:
     """Implements `LieAlgebra.radical`."""
     field, n = algebra.field, algebra.dimension
-    killing = algebra.killing_form()
+    killing: Any = algebra.killing_form()
     if n == 0 or (field.exact and int(killing.modulo().rank()) == n):
         return Subalgebra(algebra, field.zeros(0, n), check=False)  # Cartan's criterion: semisimple
     whole = field.identity(n)
@@ -32,37 +34,28 @@ def radical(algebra: LieAlgebra) -> Subalgebra:
 
 def nilradical(algebra: LieAlgebra) -> Subalgebra:
     """Implements `LieAlgebra.nilradical`."""
-    field, n = algebra.field, algebra.dimension
-    if not field.exact:
-        raise FieldError("the nilradical is computed exactly: build the algebra over QQ or a number field")
+    field, n = exact_field(algebra, "nilradicals"), algebra.dimension
     solvable = radical(algebra)
-    inner = products(algebra, field.identity(n), solvable.basis)
+    basis: Any = solvable.basis
+    inner = products(algebra, field.identity(n), basis)
     if inner.nrows == solvable.dimension:
         return Subalgebra(algebra, inner, check=False)  # [g, rad g] is a nilpotent ideal
-    outer = _complement(solvable.basis, inner)
+    outer = complement_rows(basis, inner)
     rng = random.Random(n)
     for _ in range(ATTEMPTS):
-        kept = _killed_by_weights(algebra, outer, field.matrix([[rng.randint(-9, 9) for _ in range(outer.nrows)]]))
+        kept = _annihilated_by_weights(algebra, outer, field.matrix([[rng.randint(-9, 9) for _ in range(outer.nrows)]]))
         if all(_is_ad_nilpotent(algebra, kept.select(rows=[i])) for i in range(kept.nrows)):
             rows = field.stack_rows([inner, kept], n).row_space()
             return Subalgebra(algebra, rows, check=False)  # the nilradical is an ideal
     raise InternalError("no element of the radical separates its weights")
 
 
-def _complement(space: Any, part: Any) -> Any:
-    """Rows of `space` that span a complement of the row space `part` in it."""
-    field, n = space.field, space.ncols
-    joined = field.stack_rows([part, space], n)
-    pivots = joined.T.echelon()[1]
-    return space.select(rows=[i - part.nrows for i in pivots if i >= part.nrows])
-
-
-def _killed_by_weights(algebra: LieAlgebra, outer: Any, coefficients: Any) -> Any:
-    """The combinations x of rows with tr(ad x (ad y)^k) = 0 for all k >= 1, y the combination given."""
-    field = algebra.field
+def _annihilated_by_weights(algebra: LieAlgebra, outer: ExactMatrix, coefficients: ExactMatrix) -> ExactMatrix:
+    """The combinations x of rows with tr(ad x (ad y)^k) = 0 for all k >= 1, for one combination y with coefficients."""
+    field = outer.field
     adjoints = [algebra.ad(outer.select(rows=[i])) for i in range(outer.nrows)]
     y = algebra.ad(coefficients @ outer)
-    characteristic = Polynomial(field, y.characteristic_coefficients())  # type: ignore[arg-type]
+    characteristic = Polynomial(field, y.characteristic_coefficients())
     distinct = sum(f.degree for f, _ in characteristic.squarefree_parts())
     conditions, power = [], field.identity(algebra.dimension)
     for _ in range(distinct):
@@ -71,6 +64,6 @@ def _killed_by_weights(algebra: LieAlgebra, outer: Any, coefficients: Any) -> An
     return field.matrix(conditions, (distinct, outer.nrows)).null_space() @ outer
 
 
-def _is_ad_nilpotent(algebra: LieAlgebra, row: Any) -> bool:
+def _is_ad_nilpotent(algebra: LieAlgebra, row: ExactMatrix) -> bool:
     coefficients = algebra.ad(row).characteristic_coefficients()
     return all(c == 0 for c in coefficients[:-1])

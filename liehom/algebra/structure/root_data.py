@@ -1,10 +1,10 @@
-"""The roots of a semisimple algebra on a rational Cartan subalgebra, as certain balls; their Cartan integers, exactly.
+"""The roots of a semisimple algebra on a Cartan subalgebra in rigorous enclosures, and their exact Cartan integers.
 
-The Cartan subalgebra h need not split.  ad h acts on g/h with the roots as joint eigenvalues; flint encloses the
-eigenvalues and eigenvectors of one generic element in balls that are proved to hold them (rigorous ball arithmetic),
-and with them all alpha(h_j).  The Cartan integers <alpha, beta^vee> = 2 (alpha, beta) / (beta, beta), in the dual of
-the Killing form on h, are integers inside balls that hold one integer each, so they are exact; so is the permutation
-of the roots by complex conjugation.  Where balls are too wide the precision is doubled.
+The Cartan subalgebra h need not split.  ad h acts on g/h with the roots as joint eigenvalues.  The ball arithmetic of
+flint encloses the eigenvalues and eigenvectors of one generic element, and with them all alpha(h_j), in balls that are
+proved to contain them.  The Cartan integers <alpha, beta^vee> = 2 (alpha, beta) / (beta, beta), in the dual of the
+Killing form on h, lie in balls that contain exactly one integer each, so they are exact.  So is the permutation of the
+roots by complex conjugation.  If the balls are too wide the precision is doubled.
 """
 
 from __future__ import annotations
@@ -20,12 +20,16 @@ from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.dynkin import CartanMatrix
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra, is_self_normalizing
-from liehom.errors import FieldError, InputError, InternalError
-from liehom.scalars.roots.joint_spectrum import JointSpectrum, joint_spectrum
+from liehom.algebra.structure.exact_field import exact_field
+from liehom.errors import InputError, InternalError
+from liehom.scalars import ExactMatrix
+from liehom.scalars.roots.joint_spectrum import Balls, JointSpectrum, joint_spectrum
 from liehom.scalars.spaces.quotient import echelon_quotient
+from liehom.typing import IntegerArray
 
-PRECISIONS = (64, 128, 256, 512, 1024, 2048, 4096)
-WEIGHT = 99_999
+PRECISIONS = (64, 128, 256, 512, 1024, 2048, 4096)  # in bits
+WEIGHT = 99_999  # bound on the coefficients of the generic element
+HEIGHT = 10**6  # bound on the coefficients of the generic linear form that orders the roots
 
 
 @final
@@ -37,13 +41,13 @@ class RootData:
     ----------
     algebra : LieAlgebra
     cartan : Subalgebra
-        h, with basis h_1, ..., h_r.
+        The Cartan subalgebra h, with basis h_1, ..., h_r.
     root_system : RootSystem
-        That of the complexification, for some choice of simple roots.
+        The root system of the complexification, for some choice of simple roots.
     roots : tuple of tuples of int
-        The roots in these simple roots, in the order of `spectrum.values`.
+        The coefficients of the roots in these simple roots, in the order of `spectrum.values`.
     spectrum : JointSpectrum
-        Its `values` are the alpha_i(h_j) as balls (``flint.acb``).
+        The joint eigenvalues, with `values` the alpha_i(h_j) as balls (``flint.acb``).
     """
 
     algebra: LieAlgebra
@@ -54,7 +58,7 @@ class RootData:
 
     @property
     def conjugation(self) -> tuple[int, ...]:
-        """Root i followed by complex conjugation is root ``conjugation[i]``."""
+        """The permutation of the roots by complex conjugation: root i is mapped to root ``conjugation[i]``."""
         return self.spectrum.conjugation
 
     @property
@@ -68,14 +72,14 @@ class RootData:
         negative = [tuple(-x for x in self.roots[j]) for j in self.conjugation]
         return all(a == b for a, b in zip(self.roots, negative, strict=True))
 
-    def simple_values(self) -> list[tuple[Any, ...]]:
-        """The balls of the simple roots on the basis of h, in the order of the root system."""
-        places = {root: i for i, root in enumerate(self.roots)}
-        return [self.spectrum.values[places[root]] for root in self.root_system.simple_roots]
+    def simple_values(self) -> list[Balls]:
+        """The values of the simple roots on the basis of h as balls, in the order of the root system."""
+        index = {root: i for i, root in enumerate(self.roots)}
+        return [self.spectrum.values[index[root]] for root in self.root_system.simple_roots]
 
 
 def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData:
-    """The roots of a semisimple algebra on a Cartan subalgebra (by default the one of `cartan_subalgebra`).
+    """The roots of a semisimple algebra on a Cartan subalgebra, by default on the one of `cartan_subalgebra`.
 
     Raises
     ------
@@ -91,11 +95,10 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
     >>> data.root_system.type, data.is_compact
     ('A1', True)
     """
-    if not algebra.field.exact:
-        raise FieldError("roots are computed exactly: build the algebra over QQ or a number field")
-    killing = algebra.killing_form()
+    exact_field(algebra, "roots")
+    killing: Any = algebra.killing_form()
     if killing.rank() < algebra.dimension:
-        raise InputError("roots are those of a semisimple algebra; take the Levi factor of levi_decomposition()")
+        raise InputError("only a semisimple algebra has a root system; take the Levi factor of levi_decomposition()")
     h = cartan_subalgebra(algebra) if cartan is None else cartan
     if algebra.dimension == 0:
         return RootData(algebra, h, RootSystem(()), (), JointSpectrum((), (), 0))
@@ -108,31 +111,31 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
         if spectrum is not None and pairing is not None:
             cartan_matrix, roots = _in_simple_roots(pairing)
             return RootData(algebra, h, RootSystem(cartan_matrix), roots, spectrum)
-    raise InternalError(f"the roots could not be told apart with {PRECISIONS[-1]} bits")
+    raise InternalError(f"the roots could not be separated with {PRECISIONS[-1]} bits")
 
 
-def _precisions(actions: list[Any]) -> list[int]:
-    """Bits to try: as a rule a little more than three times those of the largest entry separate the eigenvalues."""
+def _precisions(actions: list[ExactMatrix]) -> list[int]:
+    """The precisions to try, in bits: at least three times the bits of the largest entry, which is mostly enough."""
     bits = max(int(abs(x)).bit_length() for a in actions for part in a.parts for x in part.entries())
     return [p for p in PRECISIONS if p >= 3 * bits] or [PRECISIONS[-1]]
 
 
-def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[Any]:
+def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[ExactMatrix]:
     """The matrices of ad h_j on g/h, acting on rows."""
     if not is_self_normalizing(h) or not h.as_algebra().is_abelian():
         raise InputError("a Cartan subalgebra of a semisimple algebra is abelian and its own normalizer")
-    coordinates = echelon_quotient(h.basis)
-    blocks = algebra.table.contract(h.basis, coordinates.lift, coordinates.projection)
-    return list(blocks)
+    basis: Any = h.basis
+    coordinates = echelon_quotient(basis)
+    return algebra.table.contract(basis, coordinates.lift, coordinates.projection)
 
 
-def _in_simple_roots(pairing: Any) -> tuple[CartanMatrix, tuple[tuple[int, ...], ...]]:
-    """The Cartan matrix of a choice of simple roots, and all roots in them; exact, from the Cartan integers alone."""
+def _in_simple_roots(pairing: IntegerArray) -> tuple[CartanMatrix, tuple[tuple[int, ...], ...]]:
+    """The Cartan matrix for a choice of simple roots and all roots in these, from the Cartan integers alone."""
     m = len(pairing)
     rng = random.Random(m)
     heights = np.zeros(m, dtype=np.int64)
     while not heights.all():
-        heights = pairing @ np.array([rng.randint(-(10**6), 10**6) for _ in range(m)], dtype=np.int64)
+        heights = pairing @ np.array([rng.randint(-HEIGHT, HEIGHT) for _ in range(m)], dtype=np.int64)
     positive = [int(i) for i in np.argsort(heights, kind="stable") if heights[i] > 0]
     simple: list[int] = []
     for i in positive:  # a positive root that is not simple pairs positively with a lower simple one

@@ -1,7 +1,7 @@
 """The simple ideals of a Lie algebra, over the reals.
 
-A simple ideal has an inner derivation algebra and no centre, so it is a direct summand: the simple ideals over the
-field are among the indecomposable ones, and over the reals each of these splits by the places of its centroid.
+A simple ideal has only inner derivations and no centre, so it is a direct summand.  The simple ideals over the field
+are therefore among the indecomposable summands, and over the reals each of them splits by the places of its centroid.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from liehom.representations.analysis.submodules import restricted
 from liehom.representations.core.generating_matrices import exact_matrices
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.irreducibility import combination, evaluated, trace_form
-from liehom.scalars import ExactMatrix, Polynomial, Scalar, Subspace
+from liehom.scalars import ExactMatrix, Polynomial, Scalar, Subspace, as_exact
 
 
 def socle(rho: Representation) -> Subspace:
@@ -51,7 +51,7 @@ def is_visibly_semisimple(rho: Representation) -> bool:
     >>> is_visibly_semisimple(lh.defining(lh.so(3))), is_visibly_semisimple(lh.defining(lh.gl(2)))
     (True, False)
     """
-    return int(rho.algebra.killing_form().modulo().rank()) == rho.algebra.dimension
+    return int(as_exact(rho.algebra.killing_form()).modulo().rank()) == rho.algebra.dimension
 
 
 def nilpotent_rows(rho: Representation) -> ExactMatrix:

@@ -16,7 +16,7 @@ from liehom.algebra.structure.root_data import root_data
 from liehom.errors import InternalError
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.characters import decompose_character
-from liehom.scalars import ExactMatrix
+from liehom.scalars import ExactMatrix, as_exact
 from liehom.scalars.roots.joint_multiplicities import coroot_pairings, joint_multiplicities
 
 Weight = tuple[int, ...]
@@ -31,7 +31,7 @@ def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
         return {(0,) * rank: rho.size} if rho.size else {}
     h = data.cartan.basis
     matrices = [cast(ExactMatrix, rho(h.row(j))) for j in range(rank)]
-    form = (h @ rho.algebra.killing_form() @ h.T).inverse()
+    form = as_exact(h @ rho.algebra.killing_form() @ h.T).inverse()
     rng = random.Random(rho.size)
     for attempt in range(ATTEMPTS):
         bound = (3 + rho.size**2) << attempt

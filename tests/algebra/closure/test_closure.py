@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.algebra.closure.closure import lie_closure
-from liehom.algebra.closure.generated_span import commutator_pairs, generated_span, generating_words
+from liehom.algebra.closure.generated_span import commutator_pairs, generated_span, spanning_commutators
 from liehom.errors import InputError, NotClosedError
 from liehom.scalars import QQ, RR, NumberField
 from liehom.scalars.modular.modular_span import ModularSpan, product, rational_lifts
@@ -141,7 +141,7 @@ def test_spans_modulo_a_prime() -> None:
     assert span.extend(rows) == []
     a, b = np.full((2, 1500), p - 1.0), np.full((1500, 2), p - 2.0)
     assert product(a, b, p).tolist() == [[1500 * 2 % p] * 2] * 2
-    words = generating_words([QQ.matrix([[0, 1], [0, 0]]), QQ.matrix([[0, 0], [1, 0]])])
+    words = spanning_commutators([QQ.matrix([[0, 1], [0, 0]]), QQ.matrix([[0, 0], [1, 0]])])
     assert len(words) == 3 and commutator_pairs([QQ.identity(2)], 1) == []
 
 

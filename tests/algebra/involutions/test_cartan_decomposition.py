@@ -14,7 +14,7 @@ from liehom.algebra.involutions.cartan_decomposition import (
     cartan_decomposition,
     is_cartan_involution,
 )
-from liehom.algebra.involutions.lattice_order import lie_order
+from liehom.algebra.involutions.lattice_order import lattice_order
 from liehom.errors import InputError, NoRationalInvolutionError, UndecidedError
 from liehom.testing import random_unimodular
 
@@ -143,7 +143,7 @@ def test_an_order_of_the_discriminant_of_a_nice_basis(name: str, prime: int) -> 
     rows = [[int(i == j) if j else rng.randint(1, prime) for j in range(n)] for i in range(n)]
     rows[0][0] = prime
     algebra = natural.change_of_basis(rows)
-    order = algebra.change_of_basis(lie_order(algebra, np.eye(n)))
+    order = algebra.change_of_basis(lattice_order(algebra, np.eye(n)))
     assert order.table.den == 1
     assert int(order.killing_form().determinant()) % prime != 0
 
@@ -152,7 +152,7 @@ def test_an_order_leaves_a_special_sublattice_at_a_small_prime() -> None:
     """{x : x_0 = 0 mod p} normalizes to less than a maximal order; other ideals lead out, for p below 1000 only."""
     natural = form("sl(3,R)")
     algebra = natural.change_of_basis([[(11 if i == 0 else 1) * int(i == j) for j in range(8)] for i in range(8)])
-    order = algebra.change_of_basis(lie_order(algebra, np.eye(8)))
+    order = algebra.change_of_basis(lattice_order(algebra, np.eye(8)))
     assert int(order.killing_form().determinant()) % 11 != 0
 
 

@@ -11,7 +11,7 @@ import liehom as lh
 from liehom.algebra.involutions.approximate_involution import approximate_involution
 from liehom.algebra.involutions.cartan_decomposition import cartan_decomposition, is_cartan_involution
 from liehom.algebra.involutions.isotropic_involution import isotropic_involution
-from liehom.algebra.involutions.lattice_order import lie_order
+from liehom.algebra.involutions.lattice_order import lattice_order
 from liehom.algebra.involutions.nilpotent_element import generic_nilpotent, sl2_triple
 from liehom.errors import SingularError
 from liehom.testing import random_unimodular
@@ -82,7 +82,7 @@ def test_an_order_at_a_prime_that_divides_the_dual_coxeter_number() -> None:
     rng = random.Random(1)
     rows = [[rng.randint(-3, 3) + 5 * (i == j) for j in range(21)] for i in range(21)]
     algebra = natural.change_of_basis(rows)
-    order = algebra.change_of_basis(lie_order(algebra, np.eye(21), thorough=False))
+    order = algebra.change_of_basis(lattice_order(algebra, np.eye(21), thorough=False))
     assert order.table.den == 1
     assert int(order.killing_form().determinant()) % 5**22 != 0
     found = cartan_decomposition(algebra)

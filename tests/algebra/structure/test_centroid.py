@@ -137,7 +137,7 @@ def test_seeds_express_every_vector() -> None:
     algebra = scrambled(lh.direct_sum(lh.gl(2), lh.heisenberg(1)), 4)
     seeds, n = BracketSeeds(algebra), algebra.dimension
     factor, moved, weights = seeds.coordinates(QQ.identity(n))
-    total = weights @ QQ.stack_rows(seeds.seeds, n)
+    total = weights @ QQ.stack_rows(seeds.vectors, n)
     for w, table in zip(moved, seeds.tables, strict=True):
         total = total + w @ table
     assert factor > 0 and total == QQ.identity(n).scale(factor)

@@ -108,5 +108,5 @@ def test_what_the_killing_signature_does_not_tell_is_not_guessed(name: str) -> N
 
 def test_number_of_simple_ideals_over_the_complex_numbers() -> None:
     (part,) = simple_parts(lh.so(3, 1))
-    assert part.centre.degree == 2 and part.type == "A1"
+    assert part.centroid.degree == 2 and part.type == "A1"
     assert [place.kind for place in part.places] == ["complex"]
