@@ -1,15 +1,16 @@
-"""integrate: trajectories of a generator field, in the manner of scipy's solve_ivp.
+"""integrate: trajectories of a generator field, with the interface of scipy's solve_ivp.
 
-The door checks what comes in; the work is in `run.py`.
+This module checks the arguments; the loop over steps is in `liehom.integrators.run.run`.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import Generator, Step
@@ -21,123 +22,134 @@ from liehom.integrators.compiled.compiled import compiled_steps
 from liehom.integrators.compiled.jax_integration import integrate_on_jax
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.run.checkpoint import checked_path
-from liehom.integrators.run.options import Options
-from liehom.integrators.run.points import points_of
+from liehom.integrators.run.events import EventFunction
+from liehom.integrators.run.options import ExponentialLike, Options, Span
+from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
 from liehom.series.arrays import is_jax
+from liehom.typing import Array
 
 CLOCKS = ("corrected", "nominal")
 
 
 def integrate(
     field: GeneratorField,
-    t_span: Any,
-    y0: Any,
+    t_span: Iterable[float] | Span,
+    y0: npt.ArrayLike,
     *,
     step: Step | None = None,
-    dt: Any = None,
+    dt: npt.ArrayLike | None = None,
     rtol: float = 1e-6,
     atol: float = 1e-9,
-    t_eval: Any = None,
+    t_eval: npt.ArrayLike | None = None,
     dense_output: bool = False,
-    events: Any = None,
-    exponential: Any = "exp",
+    events: EventFunction | Sequence[EventFunction] | None = None,
+    exponential: ExponentialLike = "exp",
     clock: str = "corrected",
     max_step: float = np.inf,
     first_step: float | None = None,
     max_steps: int = 10_000_000,
-    progress: bool | Callable[[float], Any] = False,
+    progress: bool | Callable[[float], object] = False,
     checkpoint: str | os.PathLike[str] | None = None,
     checkpoint_every: float = 30.0,
     compile: str | None = None,
 ) -> Solution:
-    """Integrate m' = rho(psi(m, t)) m, staying on the orbit of the start.
+    """Trajectories of m' = rho(psi(m, t)) m, a `Solution` that stays on the orbit of the initial point.
 
     Parameters
     ----------
     field : GeneratorField
     t_span : (float, float)
-        Start and end; the end may lie before the start.
+        Initial and final time; the final time may be the smaller one.
     y0 : array_like of shape (N,) or (..., N)
-        The starting point, or those of an ensemble, which is integrated at once (psi is always called on all of
-        it). numpy.longdouble is kept.
+        The initial point, or the initial points of an ensemble, which is integrated at once (psi is always called on
+        the whole ensemble). numpy.longdouble gives a solution in extended precision.
     step : Step, optional
         The method (default ``LieTaylor(6)``): ``Corrected(Euler(), order=4)``, ``RKMK("rk45")``, ....
     dt : float or array of shape (...,), optional
-        A fixed step size. Without it the step size is adapted to `rtol` and `atol`, for every trajectory apart.
+        A fixed step size. Without it the step size is adaptive, by `rtol` and `atol`, for every trajectory separately.
     rtol, atol : float
-        The error of a step is at most atol + rtol |m|, root mean squares over the coordinates, and never asked to be
-        below 10 units of round-off.
+        The error of a step is at most atol + rtol |m|, as root mean squares over the coordinates. The tolerance is
+        never below 10 units of round-off.
     t_eval : array_like of shape (k,), optional
-        Times at which to store the solution, in the order of integration; by default every step. Nothing else is
-        kept then, so that ``t_eval=[end]`` saves memory.
+        Times at which to store the solution, in the direction of integration; by default every step. With ``t_eval``
+        no other points are stored, so that ``t_eval=[end]`` saves memory.
     dense_output : bool
         Whether to return the solution as a function of time, in `sol`.
     events : callable or list of callables, optional
-        Functions g(t, y) whose zeros are looked for, with the attributes `terminal` and `direction` of solve_ivp;
-        for an ensemble they return one number per trajectory. A change of sign between the ends of a step is
-        located on the dense output to round-off; two zeros within one step are not seen (see `max_step`; adapted
-        steps move a point by at most half its size where there are events). A zero at the start is recorded, but
-        does not end the run.
+        Functions g(t, y) whose zeros are recorded, with the attributes `terminal` and `direction` of solve_ivp. For
+        an ensemble they return one number per trajectory. A change of sign between the ends of a step is located on
+        the dense output to round-off. Two zeros within one step are not noticed: see `max_step` (with events, an
+        adaptive step moves a point by at most half of |m|). A zero at the initial time is recorded, but does not end
+        the run.
     exponential : str, Exponential or callable
         "exp", "cayley", ...: see `liehom.homogeneous.exponential_of`.
     clock : "corrected" or "nominal"
-        Whether time advances by tau(h), so that a corrected step is right as a trajectory, or by h, as in the
-        paper, where only the orbit is right to the order of the correction.
+        The time that passes in a step of size h: "corrected" for the time reparametrization τ(h) of the step (its
+        "clock"), with which a corrected step has its order as a trajectory; "nominal" for h, as in the paper, with
+        which only the orbit has the order of the correction.
     max_step, first_step : float, optional
-        Bounds for adapted step sizes.
+        Bound for adaptive step sizes, and the first size.
     max_steps : int
-        After so many steps a trajectory ends with status -1.
+        The largest number of steps of a trajectory; at that number it ends with status -1.
     progress : bool or callable
         A progress bar on standard error, or a function of the fraction done.
     checkpoint : path, optional
-        A file (.npz) in which the state is kept every `checkpoint_every` seconds, and when an interruption or an
-        error ends the run; a run that finds it continues from it, bit for bit, and deletes it when it is done.
+        A file (.npz) to which the state is written every `checkpoint_every` seconds, and when an interruption or an
+        error ends the run. A run that finds it continues from it, bit for bit, and deletes it at the end.
     checkpoint_every : float
         Seconds between two checkpoints.
     compile : "llvm" or "jax", optional
-        Compile the step (extra ``llvm`` or ``jax``), for fixed and for adapted step sizes: see Notes.
+        Compile the step (extra ``llvm`` or ``jax``), for fixed and for adaptive step sizes: see Notes.
 
     Returns
     -------
     Solution
-        With `t`, `y`, `sol`, `t_events`, `status`, ... as solve_ivp has them, and `report`.
+        With the entries `t`, `y`, `sol`, `t_events`, `status`, ... of solve_ivp, and `report`.
 
     Raises
     ------
     ShapeError, InputError
-        If the start, psi at the start, or an option is not right; TangencyError if a field X is not tangent.
+        If the initial point, psi at that point, or an option is not right.
+    TangencyError
+        If a field X is not tangent to the orbit.
     SeriesError
-        If the step expands psi, and psi branches on values: `RKMK` only calls it.
+        If the step expands psi, and psi branches on values; `RKMK` only calls it.
     TraceError
-        With `compile`, if the step cannot be compiled; says why.
+        With `compile`, if the step cannot be compiled; the message says why.
     FormatError
         If the file at `checkpoint` is not a checkpoint, or is damaged.
 
     Notes
     -----
-    The last step is shortened (tau(h) = remaining time, by Newton), so that t[-1] == t_span[1]. Where trajectories
-    take different numbers of steps, t and y are filled with NaN unless `t_eval` is given. Leading axes: t is handed
-    to psi with the shape of the ensemble.
+    The last step is shortened (τ(h) = remaining time, by Newton), so that t[-1] == t_span[1]. If trajectories take
+    different numbers of steps, t and y are filled up with NaN unless `t_eval` is given. For an ensemble, psi gets
+    times t of the shape of the leading axes.
 
     Step sizes are adapted by the estimate of an embedded pair, or by the Taylor coefficients of the error at the
-    start of a step; the latter cannot foresee a jump of psi (take a pair, or `max_step`).
+    initial point of a step. The latter cannot foresee a jump of psi: take a pair, or `max_step`.
 
-    A trajectory that cannot go on (psi is not finite, steps below round-off, a clock that does not run, an implicit
-    step without a solution, `max_steps`) ends with status -1 and what was computed up to there; the others of an
-    ensemble go on, and `statuses` and `message` say which ended and when.
+    A trajectory ends with status -1, and with the points computed so far, if one of the following occurs; the other
+    trajectories of an ensemble go on, and `statuses` and `message` say which ended and when.
 
-    With ``compile`` the step is traced once, with everything that derives it, and becomes machine code, which is kept
-    on disk. It makes the plain steps; the first one, the last one, those that pass a time of `t_eval` and those of a
-    trajectory that fails are made as without it. The results agree to round-off, and psi must be the same
-    function all the time: it is called while the step is traced, not in the steps (`nfev` says how often it would be
-    called by the trajectory that calls it most). Adapted step sizes agree as well as
-    the estimate of the error does, which is a small difference of large numbers: where it is far below the tolerance
-    sizes may differ by 1e-7 of themselves, and a step that is accepted by less than that may be rejected.
+    * psi is not finite;
+    * the step size is below round-off;
+    * τ does not increase at an admissible rate, between 1/5 and 5, over the step;
+    * the equations of an implicit step have no solution;
+    * `max_steps` is reached.
 
-    With ``compile="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default start and end), and
-    jax.jit, jax.grad and jax.vmap pass through; it needs `dt`, and `report` then only says what was asked for.
+    With ``compile`` the step is traced once, with everything that derives it, and compiled to machine code, which is
+    cached on disk. Compiled code makes the ordinary steps. The first and the last step, steps that pass a time of
+    `t_eval` and steps that fail are made without it. The results agree to round-off. psi is called while the step is
+    traced, not in the steps, so it must be the same function all the time; `nfev` is the number of calls that the
+    trajectory with the most of them would make. Adaptive step sizes depend on the estimate of the error, a small
+    difference of large numbers: if it is far below the tolerance, sizes may differ by 1e-7 relatively, and a step
+    accepted by less than that may be rejected.
+
+    With ``compile="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default the initial and the
+    final time), and works under jax.jit, jax.grad and jax.vmap. It needs `dt`, and `report` then only says what was
+    asked for.
 
     Examples
     --------
@@ -156,11 +168,11 @@ def integrate(
     if not isinstance(step, Step):
         raise InputError(f"step is {step!r}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
     if compile == "jax" and is_jax(y0):
-        plain = events is None and not dense_output and checkpoint is None
-        return _on_jax(field, t_span, y0, step, dt if plain else None, t_eval, exponential, clock)
+        possible = events is None and not dense_output and checkpoint is None
+        return _on_jax(field, t_span, y0, step, dt if possible else None, t_eval, exponential, clock)
     start = points_of(y0)
     orbit_dimension = check_point(field.representation, start)
-    span = _span(t_span, start.dtype)
+    span = span_of(t_span, start.dtype)
     action = Action(field.representation, exponential)
     _check_generator(field, start, span[0])
     if clock not in CLOCKS:
@@ -182,7 +194,7 @@ def integrate(
         raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
     path = None if checkpoint is None else checked_path(checkpoint)
     action = _with_tight_frame(action, step, start, orbit_dimension)
-    # what is not finite is noticed, and ends a trajectory with a message
+    # numbers that are not finite are noticed, and end a trajectory with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
         if compile is not None:
@@ -199,39 +211,35 @@ def _with_tight_frame(action: Action, step: Step, start: Any, orbit_dimension: A
 
 
 def _on_jax(
-    field: GeneratorField, t_span: Any, y0: Any, step: Step, dt: Any, t_eval: Any, exponential: Any, clock: str
+    field: GeneratorField,
+    t_span: Iterable[float] | Span,
+    y0: npt.ArrayLike,
+    step: Step,
+    dt: npt.ArrayLike | None,
+    t_eval: npt.ArrayLike | None,
+    exponential: ExponentialLike,
+    clock: str,
 ) -> Solution:
-    """Checked arguments for `integrate_on_jax` (dt None: refused); without t_eval the points at start and end."""
+    """`integrate_on_jax` with checked arguments; without t_eval, the points at the initial and the final time."""
     if dt is None:
         raise InputError(
             "integrate on JAX arrays takes fixed steps (give dt), and no events, dense output or checkpoints: from "
             "numpy arrays compile='jax' adapts steps too"
         )
-    dt = float(dt)
-    span = _span(t_span, np.dtype(np.float64))
+    size = float(dt)  # type: ignore[arg-type]
+    span = span_of(t_span, np.dtype(np.float64))
     if clock not in CLOCKS:
         raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
-    if not (np.isfinite(dt) and dt > 0):
-        raise InputError(f"dt is {dt!r}, expected a positive step size (the direction is that of t_span)")
-    times = np.unique(span)[:: 1 if span[1] >= span[0] else -1] if t_eval is None else _times(t_eval, span)
+    if not (np.isfinite(size) and size > 0):
+        raise InputError(f"dt is {size!r}, expected a positive step size (the direction is that of t_span)")
+    ends: Any = np.unique(span)[:: 1 if span[1] >= span[0] else -1]
+    times = ends if t_eval is None else _times(t_eval, span)
     action = Action(field.representation, exponential)
-    return integrate_on_jax(action, field, step, span, y0, dt, times, nominal=clock == "nominal")
+    return integrate_on_jax(action, field, step, span, y0, size, times, nominal=clock == "nominal")
 
 
-def _span(t_span: Any, dtype: Any) -> tuple[Any, Any]:
-    try:
-        if isinstance(t_span, str | bytes):
-            raise TypeError
-        first, last = (dtype.type(t) for t in t_span)
-    except (TypeError, ValueError):
-        raise InputError(f"t_span is {t_span!r}, expected two numbers (start, end)") from None
-    if not (np.isfinite(first) and np.isfinite(last)):
-        raise InputError(f"t_span is {t_span!r}: start and end must be finite")
-    return first, last
-
-
-def _check_generator(field: GeneratorField, start: Any, t: Any) -> None:
-    """psi has the right shape at the start (it says so itself), is real and finite."""
+def _check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) -> None:
+    """Raise InputError unless psi is real and finite at the initial points (`field.psi` checks its shape)."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         psi = np.asarray(field.psi(start, np.full(start.shape[:-1], t)))
     if psi.dtype.kind not in "iuf":
@@ -243,7 +251,8 @@ def _check_generator(field: GeneratorField, start: Any, t: Any) -> None:
         raise InputError(f"psi is {psi[index]} at the start{where}, t = {t}, m = {start[index]}: it must be finite")
 
 
-def _step_size(dt: Any, start: Any, span: tuple[Any, Any]) -> Any:
+def _step_size(dt: npt.ArrayLike, start: Array, span: Span) -> Array:
+    """Fixed step sizes of shape (...,), checked."""
     try:
         sizes = np.asarray(dt).astype(start.dtype, casting="same_kind")
     except (TypeError, ValueError):
@@ -259,7 +268,7 @@ def _step_size(dt: Any, start: Any, span: tuple[Any, Any]) -> Any:
         raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
 
 
-def _positive(name: str, value: Any, *, zero: bool = False) -> float:
+def _positive(name: str, value: float, *, zero: bool = False) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -269,9 +278,10 @@ def _positive(name: str, value: Any, *, zero: bool = False) -> float:
     return number
 
 
-def _times(t_eval: Any, span: tuple[Any, Any]) -> Any:
+def _times(t_eval: npt.ArrayLike, span: Span) -> Array:
+    """Times of t_eval, shape (k,), checked."""
     try:
-        times = np.asarray(t_eval, dtype=span[0].dtype)
+        times: Any = np.asarray(t_eval, dtype=span[0].dtype)
     except (TypeError, ValueError):
         raise InputError(f"t_eval is {t_eval!r}, expected a list of times") from None
     if times.ndim != 1:
@@ -282,4 +292,5 @@ def _times(t_eval: Any, span: tuple[Any, Any]) -> Any:
     steps = np.diff(times) * (1 if span[1] >= span[0] else -1)
     if bool(np.any(steps <= 0)):
         raise InputError("t_eval must be sorted in the direction of integration, without repetitions")
-    return times.copy()
+    checked: Array = times.copy()
+    return checked

@@ -1,5 +1,5 @@
-"""Compiled runs: a step traced as a graph, then run by LLVM or JAX in place of numpy.
+"""Compiled runs: a step traced as a graph, then run by LLVM or JAX instead of numpy.
 
-What the compiled code cannot do, an output time or a failure, it leaves to `liehom.integrators.run`. See
-docs/tutorials/compiled.md.
+Compiled code makes ordinary steps only, those without an output time, an end or a failure in them, and
+`liehom.integrators.run` makes the others. `liehom.integrators.integration` uses it; see docs/tutorials/compiled.md.
 """

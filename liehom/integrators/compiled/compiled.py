@@ -1,18 +1,18 @@
-"""Runs of plain steps made ahead by compiled code; what is not plain is left to the run itself.
+"""The fast path of a run: ordinary steps by compiled code, between the steps that `Run.advance` makes.
 
-The trajectories are lanes of a kernel, those with orbits of one dimension together.  A lane rests before its last step,
-before a time of t_eval, and before a step that fails in any way.  Where step sizes are adapted, each lane has its own.
+The trajectories are the lanes of a kernel, one kernel for all orbits of one dimension. A lane is masked out before its
+last step, before a time of t_eval, and before a step that fails in any way. Adaptive step sizes are those of each lane.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, final
+from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
@@ -20,40 +20,41 @@ from liehom.integrators.compiled.jax_kernel import JaxKernel
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.run.clock import SLACK
+from liehom.integrators.run.run import Run
 from liehom.tracing import Kernel, StepGraph, needed, padded
-
-if TYPE_CHECKING:
-    from liehom.integrators.run.run import Run
+from liehom.typing import Array, IntegerArray
 
 BACKENDS = ("llvm", "jax")
 WIDE_LANES, NARROW_LANES = 16, 8
+"""Lanes of a block of short and of long code."""
 LONG_OPERATIONS = 700
-"""Operations between two loops, from which on blocks are narrow."""
+"""Operations between two loops from which on blocks are narrow."""
 PATH_BYTES_PER_CALL = 64_000_000
+"""Bytes of points, times and sizes that a kernel call records at most."""
 OPERATIONS_PER_CALL = 4_000_000_000
-"""Operations, of all lanes together, between two looks at progress, checkpoints and interruptions."""
+"""Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
 ASSUMED_ITERATIONS = 5
-"""For so many iterations a loop in a step is taken."""
+"""Iterations that a loop in a step is assumed to make, for the number of its operations."""
 MIN_STEPS_PER_CALL = 8
-"""Steps that are made in any case, as a pause takes as long as some steps."""
+"""Steps per kernel call at least: the time between two calls is that of some steps."""
 LANE_STEPS_FOR_THREADS = 50_000
-"""From so many steps of lanes on, threads share the blocks."""
+"""Steps of a call, summed over lanes, from which on threads share the blocks."""
 
 
-def compiled_steps(run: Run, backend: str) -> Callable[[Run], bool]:
-    """What makes the plain steps of a run ahead, and says whether it can go on at once.
+def compiled_steps(run: Run, backend: str) -> FastPath:
+    """The fast path of a run, a function that makes ordinary steps of it and returns whether there are more to be made.
 
     Parameters
     ----------
     run : Run
-    backend : str
+    backend : "llvm" or "jax"
 
     Raises
     ------
     InputError
         If the backend is unknown, or the run has something that is not compiled.
     TraceError
-        If the step is not compiled.
+        If the step cannot be compiled.
     """
     if backend not in BACKENDS:
         hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if backend == "numba" else ""
@@ -90,19 +91,19 @@ def _size_limits(run: Run) -> SizeLimits:
 
 @final
 class LaneGroup:
-    """The lanes with orbits of one dimension, and their kernel.
+    """Trajectories with orbits of one dimension, and their kernel.
 
     Parameters
     ----------
     graph : StepGraph
-    lanes : array of int
-        Places in the flattened ensemble.
-    backend : str
+    lanes : array of int of shape (L,)
+        Indices of the trajectories in the flattened ensemble.
+    backend : "llvm" or "jax"
     points : array of shape (L, N)
-        Their starts.
+        Their initial points.
     """
 
-    def __init__(self, graph: StepGraph, lanes: Any, backend: str, points: Any) -> None:
+    def __init__(self, graph: StepGraph, lanes: IntegerArray, backend: str, points: Array) -> None:
         self.graph, self.lanes = graph, lanes
         self.width = 1 if backend == "jax" else _width(graph, len(lanes))
         self.kernel: Kernel | JaxKernel = JaxKernel(graph) if backend == "jax" else Kernel(graph, self.width)
@@ -110,14 +111,14 @@ class LaneGroup:
         rows = [self.padded_row(x) for x in graph.constants(points)]
         self.constants = np.array(rows) if rows else None
 
-    def padded_row(self, values: Any) -> Any:
-        """Values of these lanes, in whole blocks."""
+    def padded_row(self, values: Array) -> Array:
+        """Values (L,) of these lanes, filled up with 1 to whole blocks."""
         out = np.ones(self.blocks * self.width)
         out[: len(values)] = values
         return out
 
-    def packed(self, values: Any, fill: float = 0.0) -> Any:
-        """Values (..., L of the ensemble) of these lanes, in whole blocks."""
+    def packed(self, values: npt.NDArray[Any], fill: float = 0.0) -> Array:
+        """Values of these lanes from those of the ensemble (last axis), filled up to whole blocks."""
         count = self.blocks * self.width
         if len(self.lanes) == values.shape[-1] == count:
             return np.array(values, dtype=np.float64, order="C")
@@ -125,8 +126,8 @@ class LaneGroup:
         out[..., : len(self.lanes)] = values[..., self.lanes]
         return out
 
-    def run(self, arrays: list[Any], steps: int, origin: float, direction: float) -> None:
-        """Step all blocks, in threads where that is worth while."""
+    def run(self, arrays: list[Array | None], steps: int, origin: float, direction: float) -> None:
+        """Make at most `steps` steps of all blocks, in threads if there are enough of them."""
         count = self.blocks * self.width
         shared = count * steps >= LANE_STEPS_FOR_THREADS and isinstance(self.kernel, Kernel)
         workers = min(_cores(), self.blocks) if shared else 1
@@ -146,9 +147,9 @@ class LaneGroup:
 
 @final
 class FastPath:
-    """The plain steps of a run, made ahead between steps of its own.
+    """Ordinary steps of a run by compiled code.
 
-    How many are made in one call is of no effect on the results: where a call has to pause, the next one goes on.
+    The number of steps in one call has no effect on the results: the next call continues where one ended.
 
     Parameters
     ----------
@@ -158,13 +159,13 @@ class FastPath:
     def __init__(self, groups: list[LaneGroup]) -> None:
         self.groups = groups
         self.work = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
-        self.calls: Any = 0
+        self.calls: Array = np.zeros(())
 
     def __call__(self, run: Run) -> bool:
-        """Make plain steps until every trajectory rests, or for a while; whether there are more to be made."""
+        """Make ordinary steps until every lane is masked out or a call is full; whether there are more to be made."""
         lanes = int(np.prod(run.shape, dtype=int))
         if not run.state.active.any() or (run.tried is None and not run.state.taken.any()):
-            return False  # the first step is that of the run
+            return False  # the run makes the first step
         most = max(MIN_STEPS_PER_CALL, OPERATIONS_PER_CALL // (self.work * lanes))
         steps = int(min(run.options.max_steps - 1 - int(np.max(run.state.taken)), most))
         if run.keeps:
@@ -174,7 +175,7 @@ class FastPath:
         state = _Lanes(run)
         for group in self.groups:
             state.step(group, steps)
-        # psi is counted for the trajectory that calls it most, over all calls
+        # calls of psi are counted for the trajectory with the most of them
         before, self.calls = np.max(self.calls), self.calls + state.calls
         run.state.calls += int(np.max(self.calls) - before)
         state.hand_back()
@@ -182,7 +183,7 @@ class FastPath:
 
 
 def _operations(graph: StepGraph) -> int:
-    """About how many operations a step has."""
+    """Approximate number of scalar operations of a step."""
     rows = needed(graph.outputs)
     return len(rows) + ASSUMED_ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop")
 
@@ -195,28 +196,29 @@ class _Lanes:
         size = run.start.shape[-1]
         self.m = run.state.m.reshape(-1, size).T.astype(np.float64, order="C", copy=True)
         self.t = np.array(run.state.t, dtype=np.float64).reshape(-1)
-        self.adaptive = run.options.dt is None
-        if self.adaptive:  # proposed sizes, without a sign
+        dt = run.options.dt
+        self.adaptive = dt is None
+        if dt is None:  # proposed sizes, without a sign
             self.h = np.array(run.state.h, dtype=np.float64).reshape(-1)
         else:
-            self.h = (run.direction * np.broadcast_to(run.options.dt, run.shape)).reshape(-1)
+            self.h = (run.direction * np.broadcast_to(dt, run.shape)).reshape(-1)
         self.limit = np.full(self.t.shape, float(run.end))
         if run.state.samples is not None and len(run.state.samples.times):
             done, times = run.state.samples.done.reshape(-1), run.state.samples.times
             ahead = times[np.minimum(done, len(times) - 1)]
             self.limit = np.where(done < len(times), ahead, self.limit)
-        # without a proposal the first size is for the run to find
+        # without a proposal, the run finds the first size
         self.alive = run.state.active.reshape(-1) & np.isfinite(self.h)
         self.going = np.zeros(self.t.shape)
         self.before = run.state.taken.reshape(-1).astype(np.float64)
         self.count = self.before.copy()
         self.tries = np.zeros(self.t.shape)
-        self.paths: list[tuple[Any, Any, Any, Any]] = []
-        self.accounts: list[tuple[Any, dict[str, Any]]] = []
+        self.paths: list[tuple[IntegerArray, Array, Array, Array | None]] = []
+        self.totals: list[tuple[IntegerArray, dict[str, Array]]] = []
         self.calls = np.zeros(self.t.shape)
 
     def step(self, group: LaneGroup, steps: int) -> None:
-        """Let a kernel step its lanes."""
+        """Make at most `steps` steps of the lanes of a group."""
         run, graph, lanes = self.run, group.graph, group.lanes
         m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
         limit = self.limit
@@ -250,12 +252,12 @@ class _Lanes:
         rows: dict[str, Any] = {}
         if graph.summed:
             rows = dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))
-            self.accounts.append((lanes, rows))
+            self.totals.append((lanes, rows))
         # where steps iterate, each trajectory has its own number
         self.calls[lanes] = self.tries[lanes] * graph.calls if graph.calls is not None else rows["calls"]
 
     def hand_back(self) -> None:
-        """The new state of the run."""
+        """Write the new times, points, sizes and records to the state of the run."""
         run, shape = self.run, self.run.shape
         new = (self.count - self.before).astype(int)
         most = int(self.tries.max(initial=0))
@@ -266,15 +268,17 @@ class _Lanes:
         if self.adaptive:
             run.state.h = self.h.reshape(shape)
         run.state.taken = run.state.taken + new.reshape(shape)
-        for lanes, extra in self.accounts:
+        for lanes, extra in self.totals:
             run.state.statistics.add_compiled(lanes, extra)
         if run.keeps:
-            self._keep(new, most)
+            self._record(new, most)
 
-    def _keep(self, new: Any, most: int) -> None:
+    def _record(self, new: IntegerArray, most: int) -> None:
+        """Append the steps to the path of the run: `new` of each trajectory, `most` attempts."""
         run, shape = self.run, self.run.shape
         if len(self.paths) == 1 and len(self.paths[0][0]) == len(new):
-            points, times, sizes = np.swapaxes(self.paths[0][1], 1, 2), *self.paths[0][2:]
+            _, points, times, made = self.paths[0]
+            points, sizes = np.swapaxes(points, 1, 2), np.zeros(0) if made is None else made
         else:
             points, times = np.zeros((most, len(new), run.start.shape[-1])), np.zeros((most, len(new)))
             sizes = np.zeros(times.shape)
@@ -305,7 +309,7 @@ def _width(graph: StepGraph, lanes: int) -> int:
 
 
 def _cores() -> int:
-    """How many threads may run at once."""
+    """Number of threads that may run at once."""
     given = os.environ.get("LIEHOM_NUM_THREADS")
     if given and given.isdigit() and int(given) > 0:
         return int(given)

@@ -1,7 +1,7 @@
-"""integrate on JAX arrays: a function that jax.jit, jax.grad and jax.vmap pass through.
+"""integrate on JAX arrays, in a form that works under jax.jit, jax.grad and jax.vmap.
 
-Between two requested times plain steps are made in a loop of fixed length; the point at a time is that of the step in
-which it lies, at the parameter s with tau(s) = time - t, by Newton.
+Between two requested times, steps are made in a loop of fixed length. The point at a requested time is computed by the
+step that contains it, at the parameter s with τ(s) = time - t, by Newton's method.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from math import ceil
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import Step
@@ -18,28 +19,32 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.run.clock import SLACK
+from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Report, Solution
 from liehom.series.arrays import is_traced
 from liehom.tracing import StepGraph
 from liehom.tracing.jax_code import evaluate_with_jax
+from liehom.typing import Array
 
 STEPS_PER_NOMINAL_STEP = 1.5
-"""A corrected clock may take so many times the nominal number of steps; where it takes more the result is nan."""
+"""Largest number of steps of a step with a τ of its own, in units of the nominal number; beyond it points are NaN."""
 NEWTON_ITERATIONS = 6
 
 
 def integrate_on_jax(
-    action: Action, field: GeneratorField, step: Step, span: tuple[float, float], y0: Any, dt: float, times: Any,
+    action: Action, field: GeneratorField, step: Step, span: Span, y0: npt.ArrayLike, dt: float, times: Array,
     *, nominal: bool,
 ) -> Solution:  # fmt: skip
-    """The solution at given times, on JAX arrays.
+    """The solution at given times, with JAX arrays for t and y.
 
     Parameters
     ----------
-    action, field, step
+    action : Action
+    field : GeneratorField
+    step : Step
     span : (float, float)
     y0 : JAX array of shape (..., N)
-        Where its values are traced, it is taken to be on an orbit of the largest dimension.
+        If JAX traces it, its points are assumed to be on orbits of the largest dimension.
     dt : float
     times : array of shape (k,)
         In the direction of integration.
@@ -50,24 +55,26 @@ def integrate_on_jax(
     InputError
         If y0 is not of type float64 (see ``jax.config.update("jax_enable_x64", True)``).
     TraceError
-        If the step is not compiled.
+        If the step cannot be compiled.
 
     Notes
     -----
-    The number of steps between two times is bounded by 1.5 times the nominal one, and by the nominal one for a step
-    without a clock. `report` says what was asked for; what was reached is not known while JAX traces.
+    The number of steps between two times is at most 1.5 times the nominal number, and at most the nominal number for a
+    step without a time reparametrization. `report` repeats what was asked for, because the order that is reached is
+    not known while JAX traces.
     """
     from jax import numpy as jnp
 
-    if y0.dtype != np.float64:
+    start: Any = y0
+    if start.dtype != np.float64:
         raise InputError(
-            f"compile='jax' computes in float64, the start is of type {y0.dtype}: "
+            f"compile='jax' computes in float64, the start is of type {start.dtype}: "
             'jax.config.update("jax_enable_x64", True)'
         )
     n = field.representation.size
-    if y0.ndim == 0 or y0.shape[-1] != n:
-        raise InputError(f"a point has {n} coordinates (on its last axis), got shape {y0.shape}")
-    known = None if is_traced(y0) else np.asarray(y0).reshape(-1, n)
+    if start.ndim == 0 or start.shape[-1] != n:
+        raise InputError(f"a point has {n} coordinates (on its last axis), got shape {start.shape}")
+    known = None if is_traced(start) else np.asarray(start).reshape(-1, n)
     points = np.random.default_rng(0).normal(size=(16, n)) if known is None else known
     dimensions = np.unique(check_point(field.representation, points))
     if known is not None and len(dimensions) > 1:
@@ -76,11 +83,12 @@ def integrate_on_jax(
         )
     dimension = int(dimensions.max())
     graph = traced_step(action, field, step, points, dimension, nominal=nominal)
-    lanes = jnp.moveaxis(y0, -1, 0)
-    found, taken = _through(graph, lanes, span, dt, times)
-    y = jnp.moveaxis(jnp.moveaxis(found, 0, -1), 0, -2)
+    found, taken = _through(graph, jnp.moveaxis(start, -1, 0), span, dt, times)
+    y: Any = jnp.moveaxis(jnp.moveaxis(found, 0, -1), 0, -2)
+    t: Any = jnp.asarray(times)
+    statuses: Any = jnp.zeros(start.shape[:-1], dtype=int) if start.ndim > 1 else 0
     return Solution(
-        t=jnp.asarray(times),
+        t=t,
         y=y,
         sol=None,
         t_events=None,
@@ -90,7 +98,7 @@ def integrate_on_jax(
         message="Integrated by JAX; where a time was not reached, y is nan.",
         n_steps=taken,
         report=_report(action, step, dimension, nominal=nominal),
-        statuses=jnp.zeros(y0.shape[:-1], dtype=int) if y0.ndim > 1 else 0,
+        statuses=statuses,
     )
 
 
@@ -113,8 +121,8 @@ def _report(action: Action, step: Step, dimension: int, *, nominal: bool) -> Rep
     )
 
 
-def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, times: Any) -> tuple[Any, Any]:
-    """The points (k, N, ...) at the times, and the numbers of steps."""
+def _through(graph: StepGraph, m: Any, span: Span, dt: float, times: Array) -> tuple[Any, Any]:
+    """Points (k, N, ...) at the times, and the numbers of steps."""
     from jax import lax
     from jax import numpy as jnp
 
@@ -163,7 +171,7 @@ def _through(graph: StepGraph, m: Any, span: tuple[float, float], dt: float, tim
 
 
 def _constants(graph: StepGraph, m: Any) -> list[Any]:
-    """Numbers of the trajectories, from their starts."""
+    """Constants of the trajectories, computed from their initial points m (N, ...)."""
     from jax import numpy as jnp
 
     return [number(jnp.moveaxis(m, 0, -1)) for number in graph.constant_functions]

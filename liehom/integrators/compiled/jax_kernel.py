@@ -1,4 +1,4 @@
-"""The loop over plain steps around a traced step, by JAX: the twin of `liehom.tracing.Kernel`, for CPU and GPU."""
+"""The loop over ordinary steps around a traced step by JAX, the counterpart of `liehom.tracing.Kernel`."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from liehom.tracing import StepGraph, needed
 from liehom.tracing.jax_code import evaluate_with_jax
 
 MAX_STORED_STEPS = 256
-"""Steps are stored in blocks of powers of 2, at most so many, so that few functions are compiled."""
-
-
+"""Steps are stored in blocks of powers of 2, at most this one, so that few functions are compiled."""
 CPU_OPERATION_COST = 16
-_JITTED: dict[str, Any] = {}
+"""Duration of an operation by JAX on the CPU, in units of an operation of machine code."""
 MAX_JITTED = 64
+"""Number of graphs whose jitted functions are cached."""
+_JITTED: dict[str, Any] = {}
 
 
 def _fingerprint(graph: StepGraph) -> str:
-    """The same for graphs of the same operations."""
+    """Digest of the operations of a graph; graphs with equal operations share their jitted functions."""
     rows = [(x.op, *[a.index for a in x.args], x.value) for x in needed(graph.outputs)]
     layout = [x.index for x in graph.outputs], graph.size, len(graph.largest), len(graph.constant_functions)
     optional = graph.elapsed is None, graph.ordinary is None, graph.sizes is None
@@ -43,7 +43,7 @@ class JaxKernel:
     Attributes
     ----------
     cost : int
-        How long an operation takes, in those of machine code.
+        Duration of an operation, in units of an operation of machine code.
     """
 
     width = 1
@@ -63,7 +63,7 @@ class JaxKernel:
         self._jit = _JITTED[key]
 
     def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:
-        """Step all lanes at most so many times; `arrays` are changed in place, None is no path."""
+        """Make at most `steps` steps of all lanes; `arrays` are changed in place (the path may be None)."""
         m, t, h, limit, count, alive, extra, constants, path, path_t, *more = arrays
         tries, path_h = more or (np.zeros_like(t), None)
         with enabled_x64():
@@ -102,7 +102,7 @@ class JaxKernel:
         return lax.scan(body, state, None, length=stored)
 
     def _step(self, state: Any, fixed: Any) -> Any:
-        """One step of the lanes for which it is a plain one, and its size; the others rest from now on."""
+        """State after one step, and step sizes; lanes for which the step is not an ordinary one are masked out."""
         import jax.numpy as jnp
 
         m, t, count, alive, extra, h, tries = state
@@ -140,10 +140,10 @@ class JaxKernel:
 
 @cache
 def _how() -> dict[str, Any]:
-    """How functions are jitted for this backend.
+    """Options of jax.jit for this backend.
 
-    On the CPU not by the emitters that compute a number once for each of its uses, and so on through a whole step:
-    without them 200 times fewer operations are made of RK4, and 1000 times fewer of dop853.
+    On the CPU, fusion emitters are switched off. They compute a number again for each of its uses, and so on through a
+    whole step: without them RK4 takes 200 times fewer operations, and dop853 1000 times fewer.
     """
     import jax
 

@@ -1,4 +1,4 @@
-"""Adapted step sizes of a traced step: the rules of `control`, run on numbers that are not known."""
+"""Adaptive step sizes of a traced step: the rules of `liehom.integrators.run.control`, run on tracers."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from liehom.integrators.run.control import (
     size_from_defects,
     time_scale,
 )
+from liehom.typing import Real, Values
 
 
 class SizeLimits(NamedTuple):
-    """What sizes are adapted to: numbers of a run, the same or not for all trajectories.
+    """Tolerances and bounds of adaptive step sizes: numbers of a run, or tracers for them.
 
     Attributes
     ----------
@@ -31,33 +32,42 @@ class SizeLimits(NamedTuple):
     end : float
         The time at the end.
     direction : float
-        1 or -1.
+        1, or -1 if time decreases.
     tiny : float
-        Below this size, steps make no sense.
+        Below this size time does not advance.
     """
 
-    rtol: Any
-    atol: Any
-    max_step: Any
-    end: Any
-    direction: Any
-    tiny: Any
+    rtol: Real
+    atol: Real
+    max_step: Real
+    end: Real
+    direction: Real
+    tiny: Real
 
 
 def tried_size(
-    limits: SizeLimits, action: Action, psi: Generator, local: LocalStep, step: Step, m: Any, t: Any, proposal: Any
-) -> tuple[Any, Any]:
-    """The signed size of the next step, and whether it is one that a run would not fail by.
+    limits: SizeLimits,
+    action: Action,
+    psi: Generator,
+    local: LocalStep,
+    step: Step,
+    m: Values,
+    t: Values,
+    proposal: Values,
+) -> tuple[Values, Values]:
+    """The signed size of the next step, and whether time advances by it; if not, the run ends the trajectory.
 
     Parameters
     ----------
     limits : SizeLimits
-    action, psi
+    action : Action
+    psi : Generator
     local : LocalStep
         ``step.at(action, psi, m, t)``
     step : Step
     m : array of shape (..., N)
-    t, proposal : array of shape (...,)
+    t, proposal : arrays of shape (...,)
+        Time, and the size proposed by the step before.
 
     Examples
     --------
@@ -71,7 +81,7 @@ def tried_size(
     (-0.5, True)
     """
     left = np.abs(limits.end - t)
-    h = np.minimum(proposal, largest_size(limits.max_step, left))
+    h: Any = np.minimum(proposal, largest_size(limits.max_step, left))
     if getattr(local, "estimate", None) is None:
         speed = length(m) / time_scale(psi.field, m, t)
         defects = defects_of(action, psi, local, m, t, step.order)
@@ -79,8 +89,8 @@ def tried_size(
     return limits.direction * h, is_large_enough(h, limits.tiny, left)
 
 
-def judgement(limits: SizeLimits, local: LocalStep, m: Any, size: Any) -> tuple[Any, Any]:
-    """Whether a step is accepted, and the size that is proposed for the next one, for a signed size (..., 1).
+def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Values) -> tuple[Values | bool, Values]:
+    """Whether a step of signed size (..., 1) is accepted, and the size proposed for the next step.
 
     Examples
     --------
@@ -89,7 +99,7 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Any, size: Any) -> tuple[
     >>> bool(accepted), float(proposal)
     (True, 2.0)
     """
-    h = size[..., 0]
+    h: Values = size[..., 0]
     estimate = getattr(local, "estimate", None)
     if estimate is None:
         return True, MAX_GROWTH * np.abs(h)

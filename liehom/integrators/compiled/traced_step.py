@@ -1,8 +1,8 @@
-"""A step of the library as a graph of scalar operations: the step's own code, run on numbers that are not known."""
+"""A step of the library as a graph of scalar operations: the code of the step, run on tracers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
 from liehom.correctors.isotropy.range_solver import TightFrameSolver
-from liehom.correctors.step import Generator, Step, apply_factors
+from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
@@ -20,34 +20,37 @@ from liehom.integrators.run.clock import clock_at, has_clock
 from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
 from liehom.integrators.run.control import ERROR_TERMS
 from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
+from liehom.typing import Array, Real, Values
 
 MAX_CLOCK_DEVIATION = 0.8
-"""A clock certainly runs if tau' is that close to 1 over the whole step."""
+"""τ certainly increases at an admissible rate if |τ' - 1| is below this over the whole step."""
 
 
 def traced_step(
-    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, *, nominal: bool,
+    action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
     limits: SizeLimits | None = None, kept_order: int | None = None,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
     Parameters
     ----------
-    action, field, step
+    action : Action
+    field : GeneratorField
+    step : Step
     points : array of shape (L, N)
-        On the orbits of the run: what is special about them may be used.
+        Points on the orbits of the run; special properties of these orbits may be used.
     orbit_dimension : int
     nominal : bool
-        Whether time advances by the step size rather than by the step's own clock.
+        Whether time advances by the step size rather than by the time reparametrization τ of the step.
     limits : SizeLimits, optional
-        Adapt the step size to them.
+        Tolerances for an adaptive step size; without them the size is an input of the graph.
     kept_order : int, optional
-        ``Conserving.kept_order``, which the sizes of a conserving step depend on.
+        ``Conserving.kept_order``, on which the sizes of a conserving step depend.
 
     Raises
     ------
     TraceError
-        If the step or psi does something with values that compiled code cannot.
+        If the step or psi does something with values that compiled code cannot do.
 
     Examples
     --------
@@ -69,7 +72,7 @@ def traced_step(
 
 
 def _traced(
-    action: Action, field: GeneratorField, step: Step, points: Any, orbit_dimension: int, nominal: bool,
+    action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
     limits: SizeLimits | None, kept_order: int | None,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
@@ -81,7 +84,8 @@ def _traced(
         over = tape.trajectory_constant(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
         tight = tight._replace(over=Traced(tape, over))
     action = action.with_tight_frame(tight)
-    m, t, h = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n)), Traced(tape, tape.input(n + 1))
+    m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
+    h: Any = Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
     psi.prepared[step] = kept_order
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
@@ -95,9 +99,9 @@ def _traced(
     passed, runs = None, None
     clock: tuple[tuple[int, Expr], ...] = ()
     if has_clock(local) and not nominal:
-        passed, inner = _number(tape, local.time(h)), local.base if isinstance(local, ConservingStep) else local
-        runs, clock = _clock_is_admissible(tape, inner, h), _coefficients(tape, inner)
-        if limits is not None:  # larger steps than fixed ones: the clock is looked at as closely as it can be
+        passed, coefficients = _number(tape, local.time(h)), _clock_of(local)
+        runs, clock = _clock_is_admissible(tape, coefficients, h), _clock_coefficients(tape, coefficients)
+        if limits is not None:  # adaptive steps are larger than fixed ones: the rate is sampled, as in a run
             runs = _number(tape, clock_at(local, h)[0])
     sizes = None
     if given_limits is not None:
@@ -115,32 +119,45 @@ def _traced(
 
 
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
-    def psi(m: Any, t: Any = 0.0) -> Any:
+    """The field, with its calls counted on the tape."""
+
+    def psi(m: Values, t: Real = 0.0) -> Values:
         tape.calls = tape.calls + tape.one
-        return field.psi(m, t)
+        made: Values = field.psi(m, t)
+        return made
 
     return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
 
 
-def _everywhere(x: float) -> Callable[[Any], Any]:
+def _everywhere(x: Real) -> Callable[[Array], Array]:
+    """Function of points (L, N) with the constant value x, of shape (L,)."""
     return lambda points: np.full(len(points), x)
 
 
-def _number(tape: Tape, x: Any) -> Expr:
+def _number(tape: Tape, x: object) -> Expr:
+    """A number, or a tracer of shape (), as an expression on the tape."""
     made: Expr = Traced(tape, x).entries[()]
     return made
 
 
-def _coefficients(tape: Tape, local: Any) -> tuple[tuple[int, Expr], ...]:
-    return tuple((k, _number(tape, c)) for k, c in enumerate(local.correction.clock) if k > 1 and c is not None)
-
-
-def _clock_is_admissible(tape: Tape, local: Any, h: Any) -> Expr | None:
-    """Whether |tau' - 1| is small over the step, by the sizes of the coefficients."""
-    if not isinstance(local, CorrectedStep):
+def _clock_of(local: LocalStep) -> Sequence[Any]:
+    """Coefficients of the powers of h in τ(h)."""
+    inner = local.base if isinstance(local, ConservingStep) else local
+    if not isinstance(inner, CorrectedStep):
         raise TraceError("a clock that is not that of a corrected step is not compiled")
+    coefficients: Sequence[Any] = inner.correction.clock
+    return coefficients
+
+
+def _clock_coefficients(tape: Tape, clock: Sequence[Any]) -> tuple[tuple[int, Expr], ...]:
+    """(k, coefficient of h^k in τ(h)) for k > 1."""
+    return tuple((k, _number(tape, c)) for k, c in enumerate(clock) if k > 1 and c is not None)
+
+
+def _clock_is_admissible(tape: Tape, clock: Sequence[Any], h: Any) -> Expr | None:
+    """Whether |τ' - 1| is small over the step, by the sizes of the coefficients; None if τ(h) = h."""
     size, power, total = abs(h), None, None
-    for k, c in enumerate(local.correction.clock):
+    for k, c in enumerate(clock):
         if k < 2:
             continue
         power = size if power is None else power * size
@@ -150,8 +167,8 @@ def _clock_is_admissible(tape: Tape, local: Any, h: Any) -> Expr | None:
     return None if total is None else _number(tape, total < MAX_CLOCK_DEVIATION)
 
 
-def _statistics(tape: Tape, local: Any, step: Step, size: Any) -> tuple[dict[str, Expr], dict[str, Expr]]:
-    """What the report has of a step: numbers of which the largest is kept, and numbers that are summed up."""
+def _statistics(tape: Tape, local: LocalStep, step: Step, size: Values) -> tuple[dict[str, Expr], dict[str, Expr]]:
+    """Numbers of a step for the report: those of which the largest is stored, and those that are summed up."""
     largest: dict[str, Any] = {}
     summed: dict[str, Any] = {}
     if isinstance(local, ConservingStep):

@@ -1,7 +1,7 @@
 """Measured orders: errors against a reference solution, on trajectories and on orbits.
 
-Users call `liehom.observed_order`; `reference` integrates to round-off by Taylor series. See
-docs/tutorials/integrating.md.
+Users call `liehom.observed_order`. `Reference` is a solution to round-off by Taylor series, with which methods are
+compared. See docs/tutorials/integrating.md.
 """
 
 from liehom.integrators.convergence.convergence_table import ConvergenceTable as ConvergenceTable

@@ -1,4 +1,4 @@
-"""ConvergenceTable: errors for several step sizes, the slopes between them, and which of them mean something."""
+"""ConvergenceTable: errors for several step sizes, and the slopes between those above round-off."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, final
 
-# an error is an error of the method if it is at least so many times the reference's accuracy and round-off
 MARGIN = 10.0
+"""Smallest ratio of an error of the method to the accuracy of the reference and to round-off."""
 NAN = math.nan
 
 
 class ConvergenceRow(NamedTuple):
-    """One step size; the slopes are to the previous row, NaN where they mean nothing."""
+    """Errors for one step size, with slopes to the previous row; NaN if an error is below its floor."""
 
     dt: float
     orbit_error: float
@@ -26,7 +26,7 @@ class ConvergenceRow(NamedTuple):
 @final
 @dataclass(frozen=True, slots=True, repr=False)
 class ConvergenceTable:
-    """Errors for several step sizes, and the slopes between them: what `observed_order` returns.
+    """Errors for several step sizes, and the slopes between them; the result of `observed_order`.
 
     Attributes
     ----------
@@ -35,24 +35,24 @@ class ConvergenceTable:
     order : int
         The order that the step claims.
     t_span : (float, float)
-        Errors are those at its end.
+        Errors are measured at its end.
     trajectories : int
         The size of the ensemble; errors are root mean squares over it.
     precision : str
-        The type of float that the method was run in.
+        Floating type of the method's computations.
     dts : tuple of float
         Step sizes, decreasing.
     orbit_errors, trajectory_errors : tuple of float
-        NaN where the run failed; orbit errors also for a time-dependent field under the nominal clock.
+        NaN if the run failed; orbit errors also for a time-dependent field with the nominal clock.
     floors : tuple of float
-        Below these an error is within a factor 10 of the reference's accuracy or of round-off, and no slope is
-        taken from it.
+        An error below its floor is within a factor 10 of the accuracy of the reference or of round-off, and no slope
+        is computed from it.
     reference_accuracy : float
         The largest difference of the reference from a second solution.
     messages : tuple of str
-        Why the run failed; empty where it did not.
+        Why the run failed; empty if it did not.
     orbit_slopes, trajectory_slopes : tuple of float
-        The slope to the previous step size; NaN in the first row and where one of the two errors is below its floor.
+        The slope to the previous step size; NaN in the first row and if one of the two errors is below its floor.
 
     Examples
     --------
@@ -92,7 +92,7 @@ class ConvergenceTable:
 
     @property
     def orders(self) -> tuple[float, float]:
-        """(orbit order, trajectory order): the slopes of the last two step sizes where they mean something, or NaN."""
+        """(orbit order, trajectory order): the slopes at the smallest step sizes whose errors are above the floor."""
         return _last(self.orbit_slopes), _last(self.trajectory_slopes)
 
     @property
@@ -133,7 +133,7 @@ class ConvergenceTable:
         return "\n".join([*lines, "", *(f"{note}  " for note in self._notes())]).rstrip()
 
     def to_csv(self) -> str:
-        """Comma-separated values with a line of names, all digits; NaN as nothing.
+        """Comma-separated values with a line of names, all digits, and empty entries for NaN.
 
         Examples
         --------

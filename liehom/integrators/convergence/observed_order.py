@@ -1,4 +1,4 @@
-"""observed_order: the order of a method as it is measured, on orbits and on trajectories.
+"""observed_order: the measured order of a method, on orbits and on trajectories.
 
     orbit error = min over s near T of |y - F_s(m_0)|,   trajectory error = |y - F_T(m_0)|,   y after steps of size h,
 
@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.step import Step
 from liehom.errors import ConvergenceError, InputError
@@ -21,19 +22,21 @@ from liehom.integrators.convergence.convergence_table import MARGIN, NAN, Conver
 from liehom.integrators.convergence.orbit_error import orbit_distance
 from liehom.integrators.convergence.reference import Reference
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, all_solved
-from liehom.integrators.run.points import points_of
+from liehom.integrators.run.options import ExponentialLike
+from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike
+from liehom.typing import Array
 
 
 def observed_order(
     field: GeneratorField,
-    y0: Any,
+    y0: npt.ArrayLike,
     step: Step,
-    dts: Sequence[float],
+    dts: Iterable[float],
     *,
-    t_span: tuple[float, float] = (0.0, 1.0),
-    exponential: Any = "exp",
+    t_span: Iterable[float] = (0.0, 1.0),
+    exponential: ExponentialLike = "exp",
     clock: str = "corrected",
     compile: str | None = None,
     reference: Reference | None = None,
@@ -41,25 +44,24 @@ def observed_order(
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,
 ) -> ConvergenceTable:
-    """Measure the order of a step on a problem.
+    """Measured order of a step on a problem, as a `ConvergenceTable` of errors and slopes.
 
     Parameters
     ----------
     field : GeneratorField
     y0 : array_like of shape (N,) or (..., N)
-        The start, or those of an ensemble. numpy.longdouble shows errors below 1e-12.
+        The initial point, or the initial points of an ensemble. numpy.longdouble shows errors below 1e-12.
     step : Step
     dts : sequence of float
         Step sizes; halvings are best.
     t_span : (float, float)
-        Errors are measured at its end, by default t = 1 from t = 0: choose it so that the solution moves by about
-        its own size.
+        Errors are measured at its end, by default t = 1 from t = 0. Choose it so that a point moves by about |m|.
     exponential, clock, compile
         As for `integrate`. With clock="nominal" the trajectory is compared at the nominal time.
     reference : Reference, optional
-        The exact solution through (t_span[0], y0); by default it is made in extended precision.
+        The exact solution through (t_span[0], y0); by default it is computed in extended precision.
     executor, store, retries
-        As for `integrate_ensemble`: the runs with the different step sizes go to an executor, and are kept.
+        As for `integrate_ensemble`: the runs with the different step sizes go to an executor, and are stored.
 
     Returns
     -------
@@ -68,14 +70,14 @@ def observed_order(
     Raises
     ------
     InputError, ShapeError
-        If an argument is not right: there are no two different step sizes, or the reference belongs to another start.
+        If an argument is not right: fewer than two different step sizes, or a reference with another initial point.
     ConvergenceError
-        If the run fails for every step size, or there is no solution until the end.
+        If the run fails for every step size, or the solution does not exist until the end.
 
     Notes
     -----
     Definition 1 of the paper: a method captures orbits to order n if its orbit error is O(h^n). That holds for any
-    time-step control; with the clock of the correctors, trajectories have the same order.
+    time-step control; with the time reparametrization τ of the correctors, trajectories have the same order.
 
     Examples
     --------
@@ -88,7 +90,7 @@ def observed_order(
     """
     start = points_of(y0)
     sizes = _sizes(dts)
-    first, last = _ends(t_span, start.dtype)
+    first, last = span_of(t_span, start.dtype)
     if sizes[0] > abs(last - first):
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
     if reference is not None and not isinstance(reference, Reference):
@@ -123,7 +125,8 @@ def observed_order(
     )
 
 
-def _sizes(dts: Sequence[float]) -> tuple[float, ...]:
+def _sizes(dts: Iterable[float]) -> tuple[float, ...]:
+    """Different step sizes in decreasing order, at least two."""
     try:
         sizes = sorted({float(h) for h in dts}, reverse=True)
     except (TypeError, ValueError):
@@ -133,15 +136,7 @@ def _sizes(dts: Sequence[float]) -> tuple[float, ...]:
     return tuple(sizes)
 
 
-def _ends(t_span: Any, dtype: Any) -> tuple[Any, Any]:
-    try:
-        first, last = (dtype.type(t) for t in t_span)
-    except (TypeError, ValueError):
-        raise InputError(f"t_span is {t_span!r}, expected two numbers (start, end)") from None
-    return first, last
-
-
-def _errors(reference: Reference, run: Solution, end: Any, has_orbits: bool) -> tuple[float, float]:
+def _errors(reference: Reference, run: Solution, end: np.floating[Any], has_orbits: bool) -> tuple[float, float]:
     """(orbit error, trajectory error) at the end of a run."""
     if not run.success:
         return NAN, NAN
@@ -151,17 +146,19 @@ def _errors(reference: Reference, run: Solution, end: Any, has_orbits: bool) -> 
     return orbit, trajectory
 
 
-def _end_points(run: Solution) -> Any:
-    """The last points (..., N): behind them rows of ensembles are filled up with NaN."""
+def _end_points(run: Solution) -> Array:
+    """The last points (..., N); behind them rows of ensembles are filled up with NaN."""
     count = np.isfinite(run.t).sum(axis=-1)
-    return np.take_along_axis(run.y, (count - 1)[..., None, None], axis=-1)[..., 0]
+    points: Array = np.take_along_axis(run.y, (count - 1)[..., None, None], axis=-1)[..., 0]
+    return points
 
 
-def _mean(distances: Any) -> float:
+def _mean(distances: Array) -> float:
+    """Root mean square."""
     return float(np.sqrt(np.mean(distances**2)))
 
 
-def _floor(points: Any, dtype: Any, run: Solution, accuracy: float) -> float:
-    """Ten times what cannot be seen: the reference's accuracy, or the rounding of every step, added up at random."""
+def _floor(points: Array, dtype: np.dtype[Any], run: Solution, accuracy: float) -> float:
+    """Ten times the accuracy of the reference, or ten times the rounding of all steps added up as a random walk."""
     unit = float(np.finfo(dtype).eps) * float(np.max(np.linalg.norm(points, axis=-1), initial=0.0))
     return MARGIN * max(accuracy, unit * math.sqrt(float(np.max(run.n_steps, initial=1))))

@@ -1,6 +1,6 @@
-"""orbit_distance: how far a point is from the orbit of the flow, min over s of |y - F_s(m_0)|, s near t.
+"""orbit_distance: the distance of a point from the orbit of the flow, min over s of |y - F_s(m_0)|, s near t.
 
-On any manifold, and no energy takes part: Newton's method on <y - F_s, F_s'> = 0.
+Newton's method on <y - F_s, F_s'> = 0, on any manifold; first integrals are not used.
 """
 
 from __future__ import annotations
@@ -8,19 +8,23 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import ConvergenceError, InputError, ShapeError
 from liehom.integrators.convergence.reference import Reference
 from liehom.integrators.run.points import points_of
+from liehom.typing import Array
 
 ITERATIONS = 100
 HALVINGS = 30
-# a Newton step goes at most this share of |F'| / |F''|, over which the tangent turns or changes its length by itself
 TRUST_FRACTION = 0.5
+"""Longest Newton step in units of |F'| / |F''|, a time in which the tangent turns or changes by its own length."""
 
 
-def orbit_distance(reference: Reference, y: Any, t: Any, *, window: Any = None) -> tuple[Any, Any]:
-    """The distance of points from the orbits of the flow through the starts of a reference, and where it is assumed.
+def orbit_distance(
+    reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike, *, window: npt.ArrayLike | None = None
+) -> tuple[Array, Array]:
+    """Distances of points from the orbits through the initial points of a reference, and the times of the minima.
 
     Parameters
     ----------
@@ -30,7 +34,7 @@ def orbit_distance(reference: Reference, y: Any, t: Any, *, window: Any = None) 
     t : float or array of shape (...,)
         The times near which the orbit is searched.
     window : float or array, optional
-        How far from t; by default as far as t is from the start of the reference, beyond t too.
+        The largest |s - t|; by default |t - t0|, t0 the initial time of the reference.
 
     Returns
     -------
@@ -40,14 +44,15 @@ def orbit_distance(reference: Reference, y: Any, t: Any, *, window: Any = None) 
     Raises
     ------
     ShapeError, InputError
-        If y or the window does not fit.
+        If y or the window has a wrong shape or is not finite.
     ConvergenceError
         If the solution does not exist until t.
 
     Notes
     -----
-    A step is that of Newton, or of Gauss and Newton where the distance is not convex in s; it is halved until the
-    distance decreases. At equilibria F' = 0 and s stays. The distance has an error of second order in that of s.
+    A step of the descent is a Newton step, or a Gauss-Newton step if the distance is not convex in s. It is halved
+    until the distance decreases. At equilibria F' = 0, and s does not change. The error of the distance is of second
+    order in the error of s.
 
     Examples
     --------
@@ -75,7 +80,10 @@ def orbit_distance(reference: Reference, y: Any, t: Any, *, window: Any = None) 
     return best, s
 
 
-def _arguments(reference: Reference, y: Any, t: Any, window: Any) -> tuple[Any, Any, Any]:
+def _arguments(
+    reference: Reference, y: npt.ArrayLike, t: npt.ArrayLike, window: npt.ArrayLike | None
+) -> tuple[Array, Array, Array]:
+    """Points, times and windows, checked and broadcast."""
     dtype, lead = reference.start.dtype, reference.start.shape[:-1]
     points = points_of(y).astype(dtype)
     if points.shape[-1:] != reference.start.shape[-1:]:
@@ -83,10 +91,12 @@ def _arguments(reference: Reference, y: Any, t: Any, window: Any) -> tuple[Any, 
     try:
         shape = np.broadcast_shapes(points.shape[:-1], np.shape(t), lead)
         times = np.broadcast_to(np.asarray(t).astype(dtype, casting="same_kind"), shape)
-        wide = np.abs(times - reference.t0) if window is None else np.asarray(window).astype(dtype, casting="same_kind")
+        wide: Any = np.abs(times - reference.t0)
+        if window is not None:
+            wide = np.asarray(window).astype(dtype, casting="same_kind")
         wide = np.broadcast_to(wide, shape)
     except TypeError:
-        raise InputError(f"t or window is no number: {t!r}, {window!r}") from None
+        raise InputError(f"t or window is not a number: {t!r}, {window!r}") from None
     except ValueError:
         raise ShapeError(
             f"points of shape {points.shape}, times of shape {np.shape(t)} and the ensemble {lead} do not fit together"
@@ -98,27 +108,28 @@ def _arguments(reference: Reference, y: Any, t: Any, window: Any) -> tuple[Any, 
     return np.broadcast_to(points, (*shape, points.shape[-1])), times, wide
 
 
-def _distance(reference: Reference, y: Any, s: Any) -> Any:
-    return np.linalg.norm(y - reference(s), axis=-1)
+def _distance(reference: Reference, y: Array, s: Array) -> Array:
+    distance: Array = np.linalg.norm(y - reference(s), axis=-1)
+    return distance
 
 
-def _newton_step(reference: Reference, y: Any, s: Any) -> tuple[Any, Any]:
-    """The change of s, and the speed |F'|."""
+def _newton_step(reference: Reference, y: Array, s: Array) -> tuple[Array, Array]:
+    """The change of s by a Newton step, and the speed |F'|."""
     rest = y - reference(s)
     first, second = reference.derivative(s, 1), reference.derivative(s, 2)
     speed, bend = np.linalg.norm(first, axis=-1), np.linalg.norm(second, axis=-1)
     moves = speed > np.finfo(y.dtype).tiny
     safe = np.where(moves, speed, 1)
-    # all divided by the speed, whose square may underflow
-    ahead = np.sum(rest * first / safe[..., None], axis=-1)
+    # every term is divided by the speed, whose square may underflow
+    slope = np.sum(rest * first / safe[..., None], axis=-1)
     curvature = np.sum(rest * second / safe[..., None], axis=-1)
     steepness = np.where(curvature < 0.75 * safe, safe - curvature, safe)
     bound = TRUST_FRACTION * np.divide(safe, bend, out=np.full_like(safe, np.inf), where=bend > 0)
-    return np.where(moves, np.clip(ahead / steepness, -bound, bound), 0), speed
+    return np.where(moves, np.clip(slope / steepness, -bound, bound), 0), speed
 
 
-def _descended(reference: Reference, y: Any, s: Any, step: Any, best: Any) -> tuple[Any, Any]:
-    """The step, halved where the distance does not decrease by it, and the distances after it."""
+def _descended(reference: Reference, y: Array, s: Array, step: Array, best: Array) -> tuple[Array, Array]:
+    """The step, halved until the distance decreases, and the distances after it."""
     found = best
     for _ in range(HALVINGS):
         try:

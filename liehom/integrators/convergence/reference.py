@@ -1,53 +1,56 @@
-"""Reference: the solution of m' = rho(psi(m, t)) m to round-off, against which integrators are measured.
+"""Reference: the solution of m' = rho(psi(m, t)) m to round-off, with which integrators are compared.
 
-A piecewise Taylor series in V, F(t_i + s) = w_0 + w_1 s + ... + w_n s^n with the coefficients of `flow_series`; no
-exponential, no step of the library takes part.
+It is a piecewise Taylor series in V, F(t_i + s) = w_0 + w_1 s + ... + w_n s^n with the coefficients of `flow_series`,
+and uses no exponential and no step of the library.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.expansion import flow_series
 from liehom.errors import ConvergenceError, InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.run.points import points_of
+from liehom.typing import Array, IntegerArray
 
 ORDERS = {np.dtype(np.float64): 20, np.dtype(np.longdouble): 24}
-LEAST_ORDER = 4
-# the second solution: so many orders more, and steps shorter by this factor
+MIN_ORDER = 4
 MORE_ORDERS, SHORTER = 3, 0.7
+"""The second solution, for the accuracy: orders added to those of the first, and the ratio of the lengths of pieces."""
 
 
 @final
 class Reference:
-    """The solution through (t0, y0) as a function of t, extended forwards and backwards as far as it is asked for.
+    """The solution through (t0, y0) as a function of time, extended forwards and backwards on demand.
 
     Parameters
     ----------
     field : GeneratorField
     y0 : array_like of shape (N,) or (..., N)
-        The point at t0, or those of an ensemble; numpy.longdouble is kept and gives three or more digits more.
+        The point at t0, or the points of an ensemble. numpy.longdouble gives three or more additional digits.
     t0 : float
     order : int, optional
         Degree n of the series, at least 4 (default 20, in extended precision 24).
     tolerance : float, optional
-        The last term of a series relative to |m|, which decides the length of a piece (default: the unit of
+        The last term of a series relative to |m|, which determines the length of a piece (default: the unit of
         round-off of the dtype).
 
     Raises
     ------
     ShapeError, InputError
-        If a start, the order or the tolerance is not right.
+        If an initial point, the order or the tolerance is not right.
     SeriesError
         If psi cannot be expanded.
 
     Notes
     -----
-    All trajectories of an ensemble have the same pieces, so that psi is always called on all of them. A piece ends at
+    All trajectories of an ensemble have the same pieces, because psi is always called on all of them. A piece ends at
     tolerance^(1/n) times the radius of convergence, estimated by the root test on the upper half of the coefficients.
 
     Examples
@@ -62,15 +65,21 @@ class Reference:
     __slots__ = ("_other", "_solution", "field", "order", "start", "t0", "tolerance")
 
     def __init__(
-        self, field: GeneratorField, y0: Any, t0: Any = 0.0, *, order: int | None = None, tolerance: Any = None
+        self,
+        field: GeneratorField,
+        y0: npt.ArrayLike,
+        t0: float | np.floating[Any] = 0.0,
+        *,
+        order: int | None = None,
+        tolerance: float | None = None,
     ) -> None:
         if not isinstance(field, GeneratorField):
             raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
         start = points_of(y0)
         check_point(field.representation, start)
         order = ORDERS[start.dtype] if order is None else order
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < LEAST_ORDER:
-            raise InputError(f"the order of a reference is an integer at least {LEAST_ORDER}, got {order!r}")
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < MIN_ORDER:
+            raise InputError(f"the order of a reference is an integer at least {MIN_ORDER}, got {order!r}")
         eps = np.finfo(start.dtype).eps
         self.field, self.start, self.order = field, start, int(order)
         self.t0 = _number("t0", t0, start.dtype)
@@ -80,8 +89,8 @@ class Reference:
         self._solution = _Solution(field, start, self.t0, self.order, self.tolerance, 1.0)
         self._other = _Solution(field, start, self.t0, self.order + MORE_ORDERS, self.tolerance, SHORTER)
 
-    def __call__(self, t: Any) -> Any:
-        """The points at time t, shape (..., N).
+    def __call__(self, t: npt.ArrayLike) -> Array:
+        """Points at time t, shape (..., N).
 
         Parameters
         ----------
@@ -91,7 +100,7 @@ class Reference:
         Raises
         ------
         ConvergenceError
-            If the solution does not exist as long as that.
+            If the solution does not exist until t.
 
         Examples
         --------
@@ -102,16 +111,16 @@ class Reference:
         """
         return self._solution.evaluate(self._times(t), 0)
 
-    def derivative(self, t: Any, k: int = 1) -> Any:
-        """The k-th derivative at time t, of the shape of ``ref(t)``."""
+    def derivative(self, t: npt.ArrayLike, k: int = 1) -> Array:
+        """The k-th derivative with respect to time at t, of the shape of ``ref(t)``."""
         if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 0:
             raise InputError(f"the number of derivatives is an integer at least 0, got {k!r}")
         return self._solution.evaluate(self._times(t), int(k))
 
-    def accuracy(self, t: Any) -> Any:
-        """How far a second solution, of order n + 3 and with shorter pieces, is away at time t or was before it, (...).
+    def accuracy(self, t: npt.ArrayLike) -> Array:
+        """Largest distance from a second solution, of order n + 3 and with shorter pieces, until t, shape (...,).
 
-        The largest distance at t and at all ends of pieces before it, at least one unit of round-off of |m|.
+        The distance is measured at t and at all ends of pieces before it; it is at least one unit of round-off of |m|.
 
         Examples
         --------
@@ -126,12 +135,13 @@ class Reference:
         made = self._solution.evaluate(times, 0)
         gap = np.linalg.norm(made - self._other.evaluate(times, 0), axis=-1)
         gap = np.maximum(gap, self._solution.gaps(self._other, times))
-        return np.maximum(gap, np.finfo(made.dtype).eps * np.linalg.norm(made, axis=-1))
+        largest: Array = np.maximum(gap, np.finfo(made.dtype).eps * np.linalg.norm(made, axis=-1))
+        return largest
 
-    def _times(self, t: Any) -> Any:
-        """t, broadcast against the ensemble."""
+    def _times(self, t: npt.ArrayLike) -> Array:
+        """t as an array that is broadcast against the ensemble."""
         try:
-            times = np.asarray(t).astype(self.start.dtype, casting="same_kind")
+            times: Any = np.asarray(t).astype(self.start.dtype, casting="same_kind")
             times = np.broadcast_to(times, np.broadcast_shapes(times.shape, self.start.shape[:-1]))
         except TypeError:
             raise InputError(f"the time is {t!r}, expected a number or an array of numbers") from None
@@ -139,13 +149,15 @@ class Reference:
             raise ShapeError(f"the times have shape {np.shape(t)}, the ensemble {self.start.shape[:-1]}") from None
         if not bool(np.isfinite(times).all()):
             raise InputError(f"the time is {t!r}, expected finite numbers")
-        return times
+        checked: Array = times
+        return checked
 
     def __repr__(self) -> str:
         return f"<reference of order {self.order}, {self.start.dtype.name}, through t = {self.t0} for {self.field!r}>"
 
 
-def _number(name: str, value: Any, dtype: Any) -> Any:
+def _number(name: str, value: float | np.floating[Any], dtype: np.dtype[Any]) -> Any:
+    """A finite number in a floating type."""
     try:
         number = dtype.type(value)
     except (TypeError, ValueError):
@@ -157,21 +169,30 @@ def _number(name: str, value: Any, dtype: Any) -> Any:
 
 @final
 class _Solution:
-    """One piecewise solution: a branch after t0 and one before it."""
+    """A piecewise solution: a branch after t0 and one before it."""
 
-    def __init__(self, field: GeneratorField, start: Any, t0: Any, order: int, tolerance: Any, factor: float) -> None:
+    def __init__(
+        self,
+        field: GeneratorField,
+        start: Array,
+        t0: np.floating[Any],
+        order: int,
+        tolerance: float | np.floating[Any],
+        factor: float,
+    ) -> None:
         self.t0 = t0
         self.branches = [_Branch(field, start, t0, order, tolerance, sign * factor) for sign in (1, -1)]
 
-    def evaluate(self, times: Any, k: int) -> Any:
-        """The k-th derivative at times that have the shape of the ensemble, or more axes in front."""
+    def evaluate(self, times: Array, k: int) -> Array:
+        """The k-th derivative at times of the shape of the ensemble, or with more leading axes."""
         return self._joined(times, lambda branch, t: branch.evaluate(t, k))
 
-    def gaps(self, other: _Solution, times: Any) -> Any:
+    def gaps(self, other: _Solution, times: Array) -> Array:
         """The largest distance from another solution at the ends of pieces before the times."""
         return self._joined(times, lambda branch, t: branch.gaps(other, t))
 
-    def _joined(self, times: Any, value: Any) -> Any:
+    def _joined(self, times: Array, value: Callable[[_Branch, Array], Array]) -> Array:
+        """Values from the branch to which each time belongs."""
         after = times >= self.t0
         if bool(after.all()):
             return value(self.branches[0], times)
@@ -186,43 +207,54 @@ class _Solution:
 class _Branch:
     """The pieces on one side of t0: piece i from times[i] to times[i + 1], with its coefficients."""
 
-    def __init__(self, field: GeneratorField, start: Any, t0: Any, order: int, tolerance: Any, factor: float) -> None:
+    def __init__(
+        self,
+        field: GeneratorField,
+        start: Array,
+        t0: np.floating[Any],
+        order: int,
+        tolerance: float | np.floating[Any],
+        factor: float,
+    ) -> None:
         self.field, self.order, self.tolerance = field, order, tolerance
         self.direction, self.factor = start.dtype.type(np.sign(factor)), abs(factor)
-        self.times, self.point = [t0], start
-        self.pieces: list[Any] = []  # (..., N, n + 1)
-        self.worst: list[Any] = []  # (...): the largest gap up to the beginning of piece i
-        self._stacked: tuple[int, Any] = (0, None)
+        self.times: list[Any] = [t0]
+        self.point = start
+        self.pieces: list[Array] = []  # (..., N, n + 1)
+        self.worst: list[Array] = []  # (...): the largest gap up to the beginning of piece i
+        self._stacked: Array = np.zeros((0,))
 
-    def evaluate(self, times: Any, k: int) -> Any:
+    def evaluate(self, times: Array, k: int) -> Array:
         """The k-th derivative at times on this side of t0."""
         index = self._pieces_at(times)
-        if self._stacked[0] != len(self.pieces):
-            self._stacked = (len(self.pieces), np.stack(self.pieces))
+        if len(self._stacked) != len(self.pieces):
+            self._stacked = np.stack(self.pieces)
         lead = np.indices(self.point.shape[:-1])
-        series = self._stacked[1][(index, *lead)]
+        series = self._stacked[(index, *lead)]
         s = (times - np.array(self.times)[index])[..., None]
         return _horner(series, s, k)
 
-    def gaps(self, other: _Solution, times: Any) -> Any:
-        """For each time the largest distance at beginnings of pieces before it, (...)."""
+    def gaps(self, other: _Solution, times: Array) -> Array:
+        """For each time, the largest distance at beginnings of pieces before it, (...,)."""
         index = self._pieces_at(times)
         for i in range(len(self.worst), len(self.pieces)):
             at = np.broadcast_to(self.times[i], self.point.shape[:-1])
             gap = np.linalg.norm(self.pieces[i][..., 0] - other.evaluate(at, 0), axis=-1)
             self.worst.append(np.maximum(gap, self.worst[-1]) if self.worst else gap)
-        return np.stack(self.worst)[(index, *np.indices(self.point.shape[:-1]))]
+        largest: Array = np.stack(self.worst)[(index, *np.indices(self.point.shape[:-1]))]
+        return largest
 
-    def _pieces_at(self, times: Any) -> Any:
-        """The numbers of the pieces in which the times are; makes those that are not there yet."""
+    def _pieces_at(self, times: Array) -> IntegerArray:
+        """Indices of the pieces that contain the times; computes missing pieces."""
         furthest = max((times * self.direction).max(initial=-np.inf), self.times[0] * self.direction)
         while not self.pieces or furthest > self.times[-1] * self.direction:
             self._extend(furthest * self.direction)
         ends = np.array(self.times[1:]) * self.direction
-        return np.minimum(np.searchsorted(ends, times * self.direction), len(self.pieces) - 1)
+        index: IntegerArray = np.minimum(np.searchsorted(ends, times * self.direction), len(self.pieces) - 1)
+        return index
 
-    def _extend(self, target: Any) -> None:
-        """One more piece; `target` bounds it where the series does not."""
+    def _extend(self, target: np.floating[Any]) -> None:
+        """Compute one more piece; it ends at `target` if the series converges everywhere."""
         here = self.times[-1]
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             flow = flow_series(self.field, self.point, self.order, np.full(self.point.shape[:-1], here))
@@ -243,10 +275,10 @@ class _Branch:
         self.times.append(after)
         self.point = point
 
-    def _length(self, series: Any) -> Any:
-        """tolerance^(1/n) times the least radius of convergence; inf where the upper coefficients all vanish.
+    def _length(self, series: Array) -> Any:
+        """tolerance^(1/n) times the smallest radius of convergence; inf if the upper coefficients all vanish.
 
-        NaN in a coefficient becomes length 0, which is refused.
+        NaN in a coefficient becomes length 0, which raises an error.
         """
         sizes = np.abs(series).max(axis=-2)  # (..., n + 1)
         k = np.arange((self.order + 1) // 2, self.order + 1)
@@ -257,9 +289,9 @@ class _Branch:
         return self.factor * self.tolerance ** (series.dtype.type(1) / self.order) / largest
 
 
-def _horner(series: Any, s: Any, k: int) -> Any:
+def _horner(series: Array, s: Array, k: int) -> Array:
     """The k-th derivative of sum_i series[..., i] s^i."""
-    total = np.zeros_like(series[..., 0])
+    total: Array = np.zeros_like(series[..., 0])
     for i in range(series.shape[-1] - 1, k - 1, -1):
         factor = np.prod(np.arange(i - k + 1, i + 1, dtype=series.dtype))
         total = total * s + factor * series[..., i]

@@ -1,4 +1,4 @@
-"""Ensembles in chunks on any executor, stored as they are done and merged into one Solution.
+"""Ensembles in chunks on any executor, stored in order of completion and merged into one Solution.
 
 Users call `liehom.integrate_ensemble`; see docs/distributed.md.
 """

@@ -1,39 +1,41 @@
-"""integrate_ensemble: an ensemble in chunks, each by `integrate`, on any executor; kept on disk as they are done.
+"""integrate_ensemble: an ensemble in chunks, each by `integrate`, on any executor and optionally stored on disk.
 
-Where the boundaries of the chunks are depends on their number and size alone, never on the executor, so that neither
-do the results.
+The boundaries of the chunks depend on the size of the ensemble and of a chunk alone. So they, and the results, do not
+depend on the executor.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, Fields, solved
 from liehom.integrators.ensembles.merging import from_shard, merged, to_shard
+from liehom.integrators.run.options import EnsembleOptions
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike, completed, open_store
 
 CHUNK = 1024
-"""Trajectories of a chunk, where the caller does not say: many enough to hide what a step costs besides them."""
+"""Default number of trajectories in a chunk, large enough for the fixed cost of a step to be small."""
 UNSUPPORTED_OPTIONS = {
     "dense_output": "take t_eval: the interpolant of an ensemble is not put together from chunks",
-    "checkpoint": "give store=...: what is finished is kept there",
-    "checkpoint_every": "give store=...: what is finished is kept there",
+    "checkpoint": "give store=...: finished chunks are stored there",
+    "checkpoint_every": "give store=...: finished chunks are stored there",
 }
 
 
 class EnsemblePart(NamedTuple):
-    """Trajectories `first` to `last` - 1 of an ensemble, and their solution."""
+    """The solution of the trajectories `first` to `last` - 1 of an ensemble."""
 
     first: int
     last: int
@@ -42,44 +44,44 @@ class EnsemblePart(NamedTuple):
 
 def integrate_ensemble(
     field: Fields,
-    t_span: Any,
-    y0: Any,
+    t_span: Iterable[float],
+    y0: npt.ArrayLike,
     *,
-    parameters: Mapping[str, Any] | None = None,
+    parameters: Mapping[str, npt.ArrayLike] | None = None,
     executor: ExecutorLike = None,
     chunk: int = CHUNK,
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,
-    progress: bool | Callable[[float], Any] = False,
-    **options: Any,
+    progress: bool | Callable[[float], object] = False,
+    **options: Unpack[EnsembleOptions],
 ) -> Solution:
-    """Integrate an ensemble in chunks, on any executor, with the results of one run.
+    """Solution of an ensemble that is integrated in chunks, on any executor, like that of one run of `integrate`.
 
     Parameters
     ----------
     field : GeneratorField or callable
-        The field; or, where trajectories have parameters of their own, a function ``field(**parameters)`` that makes
-        it: it is called with the rows that belong to a chunk.
+        The field; or, if trajectories have their own parameters, a function ``field(**parameters)`` that returns the
+        field of a chunk, called with the rows of the parameters that belong to it.
     t_span, y0
         As for `integrate`; y0 has shape (n, ..., N) and is cut along its first axis.
     parameters : mapping of str to array of shape (n, ...), optional
         Only with a function as `field`.
     executor : Executor or callable, optional
-        Any `concurrent.futures.Executor`, such as those of processes, threads, of a dask client
-        (``client.get_executor()``) or of mpi4py; or a function without parameters that makes one: then another is
-        made when workers die. Without it chunks are solved one after the other.
+        Any `concurrent.futures.Executor`: of processes, of threads, of a dask client (``client.get_executor()``), of
+        mpi4py, ...; or a function without parameters that returns one, which is called again when workers die.
+        Without it chunks are solved one after the other.
     chunk : int
-        How many rows of y0 a task has, at most; tasks are of equal size up to one row.
+        The largest number of rows of y0 in a task; the sizes of tasks differ by at most one row.
     store : path, optional
-        A folder, or a name that ends in .zarr for a zarr group, where each chunk is written when it is done. The same
-        call, after whatever interruption, continues with the chunks that are missing.
+        A folder, or a name that ends in .zarr for a zarr group, to which each finished chunk is written. After an
+        interruption of any kind, the same call continues with the missing chunks.
     retries : int
-        How often a chunk is tried again whose worker was lost, and how many times in succession executors may break
-        with nothing finished in between.
+        How many times a chunk whose worker was lost is tried again, and how many times in succession executors may
+        break without a chunk finished in between.
     progress : bool or callable
-        As for `integrate`; by finished chunks.
+        As for `integrate`, by finished chunks.
     **options
-        Those of `integrate` (step, dt, rtol, t_eval, events, ...); dt may have a step size for each trajectory.
+        Options of `integrate` (step, dt, rtol, t_eval, events, ...); dt may have a step size for each trajectory.
 
     Returns
     -------
@@ -89,17 +91,17 @@ def integrate_ensemble(
     Raises
     ------
     ShapeError, InputError
-        As `integrate`; also if psi needs the whole ensemble, or something cannot be sent to another process.
+        As for `integrate`; also if psi needs the whole ensemble, or an argument cannot be sent to another process.
     WorkerLostError
         If workers are lost more often than `retries` allows.
     FormatError
-        If `store` is no store, or a shard in it is damaged.
+        If `store` is not a store, or a shard in it is damaged.
 
     Notes
     -----
-    For a given `chunk` results do not depend on the executor, bit for bit on machines of one kind. They hardly depend
-    on `chunk`: trajectories are stepped together, each with its own time and step size, but some decisions are made
-    for all at once (how many terms of a series are summed), which shows in the last bit, if at all.
+    For a given `chunk` the results do not depend on the executor, bit for bit on machines of one kind. They hardly
+    depend on `chunk`: trajectories are stepped together, each with its own time and step size, but some decisions (the
+    number of terms of a series) are made for all of them, which may show in the last bit.
 
     Examples
     --------
@@ -113,6 +115,7 @@ def integrate_ensemble(
     >>> sol.y.shape, np.array_equal(sol.y, integrate_ensemble(field, (0, 1), starts, chunk=5, t_eval=[0.5, 1]).y)
     ((20, 3, 2), True)
     """
+    given: Any = y0
     with Progress(progress) as shown:
         parts: list[EnsemblePart] = []
         for part in ensemble_parts(
@@ -127,7 +130,7 @@ def integrate_ensemble(
             **options,
         ):
             parts.append(part)
-            done = sum(p.last - p.first for p in parts) / len(y0)
+            done = sum(p.last - p.first for p in parts) / len(given)
             shown.update(lambda done=done: done)  # type: ignore[misc]
         shown.update(lambda: 1.0, last=True)
     sampled = options.get("t_eval") is not None
@@ -136,17 +139,17 @@ def integrate_ensemble(
 
 def ensemble_parts(
     field: Fields,
-    t_span: Any,
-    y0: Any,
+    t_span: Iterable[float],
+    y0: npt.ArrayLike,
     *,
-    parameters: Mapping[str, Any] | None = None,
+    parameters: Mapping[str, npt.ArrayLike] | None = None,
     executor: ExecutorLike = None,
     chunk: int = CHUNK,
     store: str | os.PathLike[str] | None = None,
     retries: int = 2,
-    **options: Any,
+    **options: Unpack[EnsembleOptions],
 ) -> Iterator[EnsemblePart]:
-    """The chunks of an ensemble as they are done, those in the store first: where all together are too large.
+    """Iterator over the chunks of an ensemble in order of completion, for ensembles that do not fit in memory.
 
     Parameters
     ----------
@@ -156,7 +159,8 @@ def ensemble_parts(
     Returns
     -------
     iterator of EnsemblePart
-        (first, last, solution): rows first to last - 1 of y0. Each is in the store when it is handed out.
+        (first, last, solution): rows first to last - 1 of y0. Chunks in the store come first, and each chunk is in the
+        store when it is returned.
 
     Examples
     --------
@@ -170,13 +174,13 @@ def ensemble_parts(
     1 3 (2, 2, 5)
     """
     for name in UNSUPPORTED_OPTIONS.keys() & options.keys():
-        raise InputError(f"{name} is no option of an ensemble in chunks; {UNSUPPORTED_OPTIONS[name]}")
+        raise InputError(f"{name} is not an option of an ensemble in chunks; {UNSUPPORTED_OPTIONS[name]}")
     start = points_of(y0)
     if start.ndim < 2 or not len(start):
         raise ShapeError(f"y0 has shape {start.shape}, expected an ensemble, (n, ..., N); one run is `integrate`'s")
     if isinstance(chunk, bool) or not isinstance(chunk, int | np.integer) or chunk < 1:
         raise InputError(f"chunk is {chunk!r}, expected the number of trajectories of a task")
-    problem = EnsembleProblem(field, t_span, start, _checked(parameters, field, len(start)), options)
+    problem = EnsembleProblem(field, t_span, start, _checked(parameters, field, len(start)), dict(options))
     bounds = _bounds(len(start), int(chunk))
     whole = problem.check(bounds)
     kept = None if store is None else open_store(store, problem.fingerprint(whole, bounds))
@@ -197,7 +201,7 @@ def ensemble_parts(
 
 
 def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
-    """The chunks in a store, in the order of the trajectories, one at a time; those that are missing are left out.
+    """Iterator over the chunks in a store, in the order of the trajectories; missing chunks are skipped.
 
     Parameters
     ----------
@@ -206,7 +210,7 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
     Raises
     ------
     FormatError
-        If there is no store of an ensemble, or a shard is damaged.
+        If the path is not a store of an ensemble, or a shard is damaged.
 
     Examples
     --------
@@ -224,7 +228,8 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
     return (EnsemblePart(*r, from_shard(*kept.load(_name(r)))) for r in sorted(rows))
 
 
-def _checked(parameters: Mapping[str, Any] | None, field: Any, n: int) -> dict[str, Any]:
+def _checked(parameters: Mapping[str, npt.ArrayLike] | None, field: Fields, n: int) -> dict[str, npt.NDArray[Any]]:
+    """The parameters as arrays of n rows each."""
     if parameters is None:
         if not isinstance(field, GeneratorField) and not callable(field):
             raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
@@ -241,7 +246,7 @@ def _checked(parameters: Mapping[str, Any] | None, field: Any, n: int) -> dict[s
 
 
 def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:
-    """Rows (first, last) of the chunks: as few as there can be, of sizes that differ by 1 at most."""
+    """Rows (first, last) of the chunks: as few as possible, of sizes that differ by at most 1."""
     count = -(-n // chunk)
     ends = [i * n // count for i in range(count + 1)]
     return list(pairwise(ends))

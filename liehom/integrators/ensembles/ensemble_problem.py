@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, LiehomError, ShapeError
 from liehom.homogeneous import GeneratorField
@@ -14,17 +15,20 @@ from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.ensembles.merging import from_shard, to_shard
 from liehom.integrators.integration import integrate
 from liehom.integrators.run.checkpoint import digest, stable_repr
+from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike, completed, open_store
+from liehom.typing import Array
 
 ARRAYS = ("dt", "t_eval")
 """The options of `integrate` that are arrays."""
 
-Fields = GeneratorField | Callable[..., GeneratorField]
+Fields: TypeAlias = GeneratorField | Callable[..., GeneratorField]
+"""A field, or a function of parameters that returns one."""
 
 
 class EnsembleProblem(NamedTuple):
-    """One call of `integrate`, or of an ensemble that is cut into such calls: the tasks that workers get.
+    """The arguments of a call of `integrate`, for a whole ensemble or for the rows that one worker gets.
 
     Examples
     --------
@@ -35,13 +39,13 @@ class EnsembleProblem(NamedTuple):
     """
 
     field: Fields
-    t_span: Any
-    start: Any
-    parameters: dict[str, Any]
+    t_span: Iterable[float] | Span
+    start: Array
+    parameters: dict[str, npt.NDArray[Any]]
     options: dict[str, Any]
 
     def task(self, rows: tuple[int, int]) -> EnsembleProblem:
-        """The problem of some rows."""
+        """The problem of the rows first to last - 1, given as (first, last)."""
         here = slice(*rows)
         options = self.options
         dt: Any = options.get("dt")
@@ -54,7 +58,7 @@ class EnsembleProblem(NamedTuple):
         return EnsembleProblem(self.field, self.t_span, self.start[here], mine, options)
 
     def ends(self) -> tuple[float, float]:
-        """Start and end as floats; what is no time is refused by `integrate`."""
+        """Initial and final time as floats; (0, 0) if they are not numbers, which `integrate` rejects."""
         try:
             first, last = (float(t) for t in self.t_span)
         except (TypeError, ValueError):
@@ -69,7 +73,7 @@ class EnsembleProblem(NamedTuple):
         return found
 
     def check(self, bounds: list[tuple[int, int]]) -> GeneratorField:
-        """The field of the whole ensemble, if psi of a chunk is what it is within the whole."""
+        """The field of the whole ensemble, after a test that psi of a chunk equals psi of the whole on its rows."""
         whole = self.made()
         time = self.ends()[0]
         # here rather than by the workers, who would count trajectories from the first of their chunk
@@ -89,8 +93,8 @@ class EnsembleProblem(NamedTuple):
         return whole
 
     def fingerprint(self, whole: GeneratorField, bounds: list[tuple[int, int]]) -> str:
-        """What tells the problem from others: numbers, texts, and psi at the start and next to it."""
-        texts = [f"{name}={_text(value)}" for name, value in sorted(self.options.items()) if name not in ARRAYS]
+        """Digest that distinguishes this problem from others: numbers, strings, psi at the initial points and near."""
+        texts = [f"{name}={_option_text(value)}" for name, value in sorted(self.options.items()) if name not in ARRAYS]
         numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
         parameters = [self.parameters[name] for name in sorted(self.parameters)]
         matrices = [a.to_numpy() for a in whole.representation.matrices]
@@ -104,7 +108,7 @@ class EnsembleProblem(NamedTuple):
 
 
 def solved(task: EnsembleProblem) -> Solution:
-    """The solution of a problem: what workers do.
+    """The solution of a problem, by `integrate`; the function that workers call.
 
     Examples
     --------
@@ -119,7 +123,7 @@ def solved(task: EnsembleProblem) -> Solution:
 def all_solved(
     problems: Sequence[EnsembleProblem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
 ) -> list[Solution]:
-    """The solutions of some problems in their order, on an executor; kept in a store, if one is given.
+    """The solutions of some problems, in their order, computed on an executor and kept in a store if one is given.
 
     Examples
     --------
@@ -152,10 +156,10 @@ def _whole_only(rows: tuple[int, int]) -> ShapeError:
     )
 
 
-def _text(value: Any) -> str:
-    """A text for an option, the same in every process."""
+def _option_text(value: object) -> str:
+    """String of an option for fingerprints, equal in every process."""
     if isinstance(value, list | tuple):
-        return repr([_text(x) for x in value])
+        return repr([_option_text(x) for x in value])
     if callable(value) and hasattr(value, "__qualname__"):
         marks = [repr(getattr(value, name, None)) for name in ("terminal", "direction")]
         return f"{value.__module__}.{value.__qualname__} {marks}"

@@ -1,23 +1,25 @@
-"""Parts of an ensemble, each solved for itself, as one Solution; and a Solution as arrays and facts, for a store."""
+"""Solutions of the parts of an ensemble merged into one, and a Solution as arrays and facts, for a store."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import FormatError
 from liehom.integrators.run.conservation_statistics import ConservationReport
 from liehom.integrators.run.solution import Report, Solution
+from liehom.typing import Array, IntegerArray
 
 TRAJECTORY_MARK = ", trajectory "
-"""What follows it in a message says which trajectory of the part failed."""
+"""In a message, this string precedes the index of the trajectory of the part that failed."""
 
 
 def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
-    """The solution of an ensemble from those of its parts, which follow each other on the first axis.
+    """The solution of an ensemble from the solutions of its parts, consecutive rows of it.
 
     Parameters
     ----------
@@ -56,7 +58,7 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
 
 
 def merged_report(reports: Sequence[Report]) -> Report:
-    """The extremes and sums of reports of runs by one method.
+    """The report of several runs by one method: extremes and sums of their reports.
 
     Examples
     --------
@@ -84,8 +86,8 @@ def merged_report(reports: Sequence[Report]) -> Report:
     )
 
 
-def to_shard(solution: Solution) -> tuple[dict[str, Any], dict[str, Any]]:
-    """A solution of an ensemble as arrays and facts that JSON can hold.
+def to_shard(solution: Solution) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]:
+    """A solution of an ensemble as (arrays, facts), facts in types that JSON has.
 
     Examples
     --------
@@ -112,13 +114,13 @@ def to_shard(solution: Solution) -> tuple[dict[str, Any], dict[str, Any]]:
     return arrays, facts
 
 
-def from_shard(arrays: dict[str, Any], facts: dict[str, Any]) -> Solution:
-    """The solution that `to_shard` has taken apart.
+def from_shard(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any]) -> Solution:
+    """The solution that `to_shard` turned into arrays and facts.
 
     Raises
     ------
     FormatError
-        If it is not one.
+        If they are not a solution of this version.
 
     Examples
     --------
@@ -136,10 +138,10 @@ def from_shard(arrays: dict[str, Any], facts: dict[str, Any]) -> Solution:
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _from_shard(arrays: dict[str, Any], facts: dict[str, Any]) -> Solution:
+def _from_shard(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any]) -> Solution:
     shape = arrays["statuses"].shape
-    t_events: list[Any] | None = None
-    y_events: list[Any] | None = None
+    t_events: list[npt.NDArray[Any]] | None = None
+    y_events: list[npt.NDArray[Any]] | None = None
     if facts["events"] is not None:
         t_events, y_events = [], []
         for i in range(facts["events"]):
@@ -161,7 +163,7 @@ def _from_shard(arrays: dict[str, Any], facts: dict[str, Any]) -> Solution:
     )
 
 
-def _report(facts: dict[str, Any]) -> Report:
+def _report(facts: Mapping[str, Any]) -> Report:
     at, conservation = facts["singular_at"], facts["conservation"]
     if conservation is not None:
         short = conservation["short_at"]
@@ -171,28 +173,29 @@ def _report(facts: dict[str, Any]) -> Report:
     return Report(**{**facts, "singular_at": at, "conservation": conservation})
 
 
-def _objects(found: list[Any], shape: tuple[int, ...]) -> Any:
+def _objects(found: Sequence[object], shape: tuple[int, ...]) -> npt.NDArray[Any]:
+    """An array of objects with some entries; `np.array` would join entries of equal shapes."""
     made = np.empty(len(found), dtype=object)
     for i, entry in enumerate(found):
         made[i] = entry
     return made.reshape(shape)
 
 
-def _filled(array: Any, count: int) -> Any:
-    """The array with its last axis filled up with NaN."""
+def _filled(array: Array, count: int) -> Array:
+    """The array with its last axis filled up with NaN to length `count`."""
     missing = count - array.shape[-1]
     if missing == 0:
         return array
     return np.concatenate([array, np.full((*array.shape[:-1], missing), np.nan, dtype=array.dtype)], axis=-1)
 
 
-def _joined(parts: Sequence[list[Any] | None]) -> list[Any]:
-    """Events of the parts, event by event."""
+def _joined(parts: Sequence[list[npt.NDArray[Any]] | None]) -> list[npt.NDArray[Any]]:
+    """For each event, the arrays of the parts joined."""
     return [np.concatenate(found) for found in zip(*[part or [] for part in parts], strict=True)]
 
 
-def _message(parts: Sequence[Solution], statuses: Any, status: int) -> str:
-    """The message of the first part with the status; of a failure with the place in the whole ensemble."""
+def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int) -> str:
+    """The message of the first part with the status; after a failure, with the index in the whole ensemble."""
     message = next(part.message for part in parts if part.status == status)
     if status >= 0:
         return message
@@ -203,7 +206,7 @@ def _message(parts: Sequence[Solution], statuses: Any, status: int) -> str:
 
 
 def _least_rank(ranks: Sequence[int]) -> int:
-    """0 stands for none met."""
+    """The smallest rank that was met; 0 stands for no rank, in `ranks` and as the result."""
     return min((rank for rank in ranks if rank), default=0)
 
 

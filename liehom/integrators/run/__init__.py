@@ -1,7 +1,8 @@
-"""One call of `integrate` on its way: the loop over steps, sizes, events, dense output, checkpoints, results.
+"""The loop behind `integrate`: steps and their sizes, events, dense output, checkpoints and the result.
 
-`run` is the loop, `state` what a checkpoint keeps of it, `records` and `path` what it collects, `solution` what the
-user gets. Used by `liehom.integrators.integration` and by the compiled runs; see docs/tutorials/integrating.md.
+`run` is the loop, `state` the part of it that changes from step to step and is saved in checkpoints, `records` the
+path, samples, events and statistics, `solution` the object that users get. `liehom.integrators.integration` and the
+compiled runs use it; see docs/tutorials/integrating.md.
 """
 
 from liehom.integrators.run.conservation_statistics import ConservationReport as ConservationReport

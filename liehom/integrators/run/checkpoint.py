@@ -1,6 +1,7 @@
 """Checkpoints: the whole state of a run in one .npz file, from which it continues bit for bit.
 
-Written to a temporary file first, so that an interruption leaves the older one whole; read without pickles.
+A checkpoint is written to a temporary file first, so that an interruption leaves the older one whole, and it is read
+without pickles.
 """
 
 from __future__ import annotations
@@ -17,23 +18,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import FormatError, InputError
 
 FORMAT = "liehom-checkpoint 1"
 FORMER_NAMES = {"NominalTimeCorrected(": "OnTime("}
-"""Parts of a repr, with what stood there in version 0.1.0, whose checkpoints and stores are still continued."""
+"""Parts of a repr and their spelling in version 0.1.0, whose checkpoints and stores can still be continued."""
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
-"""What reading a damaged archive may raise, besides the errors of the archive's own formats."""
+"""Exceptions that reading a damaged archive may raise, besides the errors of zip and zlib."""
 
 
-def checked_path(path: Any) -> Path:
-    """The path of a checkpoint, if a file can be written there.
+def checked_path(path: str | os.PathLike[str]) -> Path:
+    """The path of a checkpoint, after a test that a file can be written there.
 
     Raises
     ------
     InputError
-        If it is not the name of a file, is a directory, or cannot be written.
+        If the path is not a file name, is a directory, or cannot be written.
 
     Examples
     --------
@@ -58,8 +60,8 @@ def checked_path(path: Any) -> Path:
     return target
 
 
-def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, Any]) -> None:
-    """Write the arrays of a state.
+def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, npt.ArrayLike]) -> None:
+    """Write the arrays of a state to a checkpoint.
 
     Raises
     ------
@@ -78,7 +80,8 @@ def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, Any
     temporary = _temporary(target)
     try:
         with open(temporary, "wb") as file:
-            np.savez(file, format=np.array(FORMAT), fingerprint=np.array(fingerprint), **dict(state))
+            arrays: dict[str, Any] = dict(state)
+            np.savez(file, format=np.array(FORMAT), fingerprint=np.array(fingerprint), **arrays)
             file.flush()
             os.fsync(file.fileno())
         os.replace(temporary, target)
@@ -89,15 +92,15 @@ def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, Any
             temporary.unlink()
 
 
-def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, Any]:
-    """Read the arrays of a state.
+def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArray[Any]]:
+    """Arrays of the state in a checkpoint, by name.
 
     Raises
     ------
     FormatError
         If the file is not a checkpoint, or is damaged.
     InputError
-        If it belongs to another problem.
+        If it belongs to another problem: its fingerprint differs.
 
     Examples
     --------
@@ -136,8 +139,8 @@ def remove(path: str | os.PathLike[str]) -> None:
         os.remove(path)
 
 
-def digest(*parts: Any) -> str:
-    """A fingerprint of arrays and texts.
+def digest(*parts: npt.ArrayLike) -> str:
+    """SHA-256 fingerprint of arrays and strings, 64 hexadecimal digits.
 
     Examples
     --------
@@ -155,7 +158,7 @@ def digest(*parts: Any) -> str:
 
 
 def stable_repr(value: object) -> str:
-    """The repr of a step or an option, equal in every process and as version 0.1.0 wrote it in fingerprints.
+    """String of a step or an option for fingerprints: its repr without addresses, spelled as in version 0.1.0.
 
     Examples
     --------

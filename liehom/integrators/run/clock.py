@@ -1,6 +1,7 @@
-"""The clock of a step: whether it runs, and the step size s with tau(s) = a given time, by Newton.
+"""The time reparametrization τ of a step, its "clock": τ(h) is the time that passes in a step of size h.
 
-A clock runs over a step if it advances everywhere at between 1/5 and 5 times the nominal rate.
+The clock is admissible over a step if τ increases everywhere at between 1/5 and 5 times the nominal rate 1. The step
+size s with τ(s) = a given time is found by Newton's method.
 """
 
 from __future__ import annotations
@@ -10,18 +11,22 @@ from typing import Any
 import numpy as np
 
 from liehom.correctors.step import LocalStep
+from liehom.typing import Array, BooleanArray, Values
 
 NEWTON_ITERATIONS = 60
 MIN_RATE = 0.2
+"""Smallest admissible rate dτ/dh."""
 MAX_RATE = 5.0
+"""Largest admissible rate dτ/dh."""
 RATE_SAMPLES = 4
+"""Equal parts of a step over which the rate is measured."""
 MAX_HALVINGS = 40
 SLACK = 1e-9
 """A step that ends this close to the end of the integration, in units of the step, ends there."""
 
 
 def has_clock(local: LocalStep) -> bool:
-    """Whether the step has a clock of its own.
+    """Whether the step has a time reparametrization of its own, so that τ(h) is not h.
 
     Examples
     --------
@@ -31,8 +36,8 @@ def has_clock(local: LocalStep) -> bool:
     return type(local).time is not LocalStep.time
 
 
-def clock_at(local: LocalStep, h: Any) -> tuple[Any, Any]:
-    """Whether the clock runs over [0, h], bool (...,), and tau(h), for h of shape (...,).
+def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
+    """Whether the clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,).
 
     Examples
     --------
@@ -41,25 +46,26 @@ def clock_at(local: LocalStep, h: Any) -> tuple[Any, Any]:
     >>> bool(runs), float(passed)
     (True, 0.1)
     """
+    size: Any = h
     if not has_clock(local):
-        return np.ones(np.shape(h), dtype=bool), h
-    parts = np.arange(RATE_SAMPLES + 1).reshape(-1, *[1] * np.ndim(h)) / RATE_SAMPLES * h
-    times = local.time(parts)
-    advance = (times[1:] - times[:-1]) * np.sign(h)
-    part = np.abs(h) / RATE_SAMPLES
+        return np.ones(np.shape(size), dtype=bool), size
+    parts = np.arange(RATE_SAMPLES + 1).reshape(-1, *[1] * np.ndim(size)) / RATE_SAMPLES * size
+    times: Any = local.time(parts)
+    advance = (times[1:] - times[:-1]) * np.sign(size)
+    part = np.abs(size) / RATE_SAMPLES
     runs = ((advance > MIN_RATE * part) & (advance < MAX_RATE * part)).all(axis=0)
-    return runs | (h == 0), times[-1]
+    return runs | (size == 0), times[-1]
 
 
-def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
-    """s (...,) with local.time(s) = time, of the sign of time; 0 where time is 0, NaN where none is found.
+def size_for(local: LocalStep, time: Array, guess: Array) -> Array:
+    """Step sizes s (...,) with τ(s) = time, of the sign of time; 0 where time is 0, NaN if no s is found.
 
     Parameters
     ----------
     local : LocalStep
     time : array of shape (...,)
     guess : array of shape (...,)
-        The size of a step over which the clock runs; s is looked for within it, or beyond it where time is.
+        Size of a step over which the clock is admissible; s is sought within it, or beyond it if time is beyond.
 
     Examples
     --------
@@ -69,15 +75,16 @@ def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
     """
     if not has_clock(local):
         return time + 0 * guess
-    reached = local.time(guess)
-    share = np.divide(time, reached, out=np.ones_like(time), where=reached != 0)
-    within = (share >= 0) & (share <= 1)
-    s = np.where(within, share * guess, time)
+    reached: Any = local.time(guess)
+    fraction = np.divide(time, reached, out=np.ones_like(time), where=reached != 0)
+    within = (fraction >= 0) & (fraction <= 1)
+    s = np.where(within, fraction * guess, time)
     low, high = 0 * s, np.where(within, guess, np.sign(time) * np.inf)
     eps = np.finfo(s.dtype).eps
     settled = np.zeros(np.shape(s), dtype=bool)  # a trajectory does not depend on those it is solved with
     for _ in range(NEWTON_ITERATIONS):
-        before, now, beyond = local.time(np.stack([s - 1e-4 * s, s, s + 1e-4 * s]))
+        times: Any = local.time(np.stack([s - 1e-4 * s, s, s + 1e-4 * s]))
+        before, now, beyond = times
         missing = time - now
         short = missing * np.sign(time) > 0
         low, high = np.where(short, s, low), np.where(short, high, s)
@@ -94,23 +101,23 @@ def size_for(local: LocalStep, time: Any, guess: Any) -> Any:
     return np.where(solved, s, np.nan)
 
 
-def fitted(local: LocalStep, h: Any, left: Any, *, halve: bool) -> tuple[Any, Any, Any, Any]:
-    """A step of size h, or the one that ends exactly after the time `left`, if that is shorter.
+def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Array, Array, BooleanArray, BooleanArray]:
+    """Step sizes that end within the time `left`: h, or the size that takes exactly that time if it is shorter.
 
     Parameters
     ----------
     local : LocalStep
     h : array of shape (...,)
-        Signed; 0 where no step is made.
+        Signed; 0 for trajectories that take no step.
     left : array of shape (...,)
         The time to the end, of the same sign.
     halve : bool
-        Whether h may be halved until the clock runs.
+        Whether h may be halved until the clock is admissible.
 
     Returns
     -------
     h, passed, last, runs : arrays of shape (...,)
-        The size, the time that passes, whether that is `left`, and whether the clock runs over the step.
+        The size, the time that passes, whether that is `left`, and whether the clock is admissible over the step.
 
     Examples
     --------
@@ -125,7 +132,7 @@ def fitted(local: LocalStep, h: Any, left: Any, *, halve: bool) -> tuple[Any, An
         h = np.where(runs, h, h / 2)
         runs, passed = clock_at(local, h)
     over = (h != 0) & (np.sign(h) * (left - passed) <= SLACK * np.abs(h))
-    # where the clock does not run over the whole step it may still run up to the end
+    # a clock that is not admissible over the whole step may still be so up to the end
     last = over if bool(runs.all()) else np.where(runs, over, np.abs(left) <= MAX_RATE * np.abs(h))
     if not bool(last.any()):
         return h, passed, last, runs

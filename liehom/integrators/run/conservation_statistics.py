@@ -1,42 +1,48 @@
-"""What a run reports of the first integrals that its step conserves: extremes over all steps."""
+"""Statistics of a conserving step over a run: how well first integrals were conserved, as extremes over all steps."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.conserving.conservation import combination
+from liehom.correctors.step import Step
+from liehom.typing import Array, BooleanArray, IntegerArray
 
 CONSERVED_ROUNDOFFS = 32.0
 """F counts as conserved up to this many units of its round-off."""
 NO_RANK = int(np.iinfo(np.int64).max)
+"""Stands for the smallest rank as long as no rank was met."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class ConservationReport:
-    """How first integrals were kept along the trajectories.
+    """How well first integrals F were conserved along the trajectories.
 
     Attributes
     ----------
     rank, wanted : int
-        The least rank of chi_m that was met, and how many integrals were independent on the orbits.
+        The smallest rank of chi_m that was met, and the number of integrals that are independent on the orbits.
     iterations : int
-        The most of Newton's method in a step; 0 for the linear correction.
+        The largest number of iterations of Newton's method in a step; 0 for the linear correction.
     defect : float
         The largest |F(step) - target|, over all integrals.
     missed_steps : int
-        Steps after which F was not its target to round-off.
+        Number of steps after which F differed from its target by more than round-off.
     left_steps : int
-        Steps at equilibria, or where F does not resolve the orbits: isotropy was left alone.
+        Number of steps without a correction: at equilibria, or where F does not resolve the orbits.
     short_steps : int
-        Steps at which chi_m was not onto.
+        Number of steps at which chi_m was not onto.
     short_at : tuple or None
-        (t, point, the combination of the integrals that is not reached) where that happened first.
+        (t, point, the combination of the integrals that is not reached) of the first such step.
     linear : bool
+        Whether each step was corrected by one linear solve instead of Newton's method.
 
     Examples
     --------
@@ -70,19 +76,29 @@ class ConservationReport:
             text += f"\n    NOT to round-off after {self.missed_steps} steps"
         if self.short_at is not None:
             time, point, names = self.short_at
-            shown = ", ".join(f"{x:.4g}" for x in point[:8]) + (", ..." if len(point) > 8 else "")
             text += (
-                f"\n    chi is NOT onto at {self.short_steps} steps, first at t = {time:.6g}, m = ({shown}): isotropy "
-                f"does not reach {names}"
+                f"\n    chi is NOT onto at {self.short_steps} steps, first at t = {time:.6g}, m = "
+                f"({shown_point(point)}): isotropy does not reach {names}"
             )
         if self.left_steps:
             text += f"\n    left alone at {self.left_steps} steps, at or next to equilibria"
         return text
 
 
+def shown_point(point: Sequence[float]) -> str:
+    """Up to 8 coordinates of a point with 4 digits, for reports.
+
+    Examples
+    --------
+    >>> shown_point([0.6, 0.0, 0.8])
+    '0.6, 0, 0.8'
+    """
+    return ", ".join(f"{x:.4g}" for x in point[:8]) + (", ..." if len(point) > 8 else "")
+
+
 @final
 class ConservationStatistics:
-    """The extremes of what conserving steps reported.
+    """Extremes and counts of what conserving steps reported, for each trajectory.
 
     Examples
     --------
@@ -91,9 +107,9 @@ class ConservationStatistics:
     True
     """
 
-    def __init__(self, step: Any, shape: tuple[int, ...]) -> None:
+    def __init__(self, step: Step, shape: tuple[int, ...]) -> None:
         self._step = step
-        self._seen: dict[str, Any] = {
+        self._seen: dict[str, npt.NDArray[Any]] = {
             "rank": np.full(shape, NO_RANK),
             "wanted": np.zeros(shape, dtype=int),
             "iterations": np.zeros(shape, dtype=int),
@@ -105,8 +121,8 @@ class ConservationStatistics:
             "covectors": np.zeros((0, 0)),
         }
 
-    def add(self, local: ConservingStep, h: Any, t: Any, m: Any, active: Any) -> None:
-        """Take in one step of size h (...,) where trajectories are active."""
+    def add(self, local: ConservingStep, h: Array, t: Array, m: Array, active: BooleanArray) -> None:
+        """Record one step of size h (...,) of the active trajectories."""
         made, old = local.conserved(h[..., None]), self._seen
         usual = active & ~made.left
         short = usual & (made.rank < made.wanted)
@@ -127,10 +143,10 @@ class ConservationStatistics:
             seen["covectors"] = local.found.unreachable(index)
         self._seen = seen  # arrays are replaced, never written into: older states stay whole
 
-    def add_compiled(self, lanes: Any, extra: dict[str, Any]) -> None:
-        """Take in what compiled steps with one integral summed up, for some lanes of the flattened ensemble.
+    def add_compiled(self, lanes: IntegerArray, extra: Mapping[str, Array]) -> None:
+        """Record the totals of compiled steps with one integral, for some trajectories of the flattened ensemble.
 
-        Of those that are not left alone ("usual") chi is onto; others are not made by compiled code.
+        At the steps that are corrected ("usual") chi is onto; compiled code does not make others.
         """
         old = self._seen
         seen = {name: np.array(x).reshape(-1) for name, x in old.items() if name not in ("place", "covectors")}
@@ -144,7 +160,7 @@ class ConservationStatistics:
         self._seen = {**old, **{name: x.reshape(np.shape(old[name])) for name, x in seen.items()}}
 
     def report(self) -> ConservationReport | None:
-        """The account as a report; None for other steps."""
+        """The report of a conserving step; None for other steps."""
         if not isinstance(self._step, Conserving):
             return None
         seen = self._seen
@@ -162,10 +178,10 @@ class ConservationStatistics:
             linear=self._step.linear,
         )
 
-    def arrays(self) -> dict[str, Any]:
-        """The state, for a checkpoint."""
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """The state as named arrays, for a checkpoint."""
         return dict(self._seen)
 
-    def restore(self, arrays: dict[str, Any]) -> None:
-        """Take a state back."""
+    def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Replace the state by one that `arrays` returned."""
         self._seen = {name: arrays[name] for name in self._seen}

@@ -1,15 +1,16 @@
 """Step sizes from the Taylor coefficients of the error, or from an embedded pair.
 
-For a step with defects d_k = |[t^k](F - step)| the step size is the largest h with d_k h^k within the tolerance and
-below a share of the way |X| h that is made (so that the series is used where it converges, next to equilibria too);
-for an embedded pair the step is taken, judged, and repeated where it was too large.  The rules of sizes run on arrays
-and on traced numbers.
+For a step with defects d_k = |[t^k](F - step)|, F the flow, the step size is the largest h with d_k h^k within the
+tolerance and below a fraction of |X| h, the length of the step; the second bound keeps h where the series converges,
+also next to equilibria. For an embedded pair the step is taken, judged, and repeated if it was too large.
+
+The rules run on arrays, and on the tracers of compiled steps (`Values`); results are of the same kind.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
@@ -17,26 +18,37 @@ from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import Generator, LocalStep
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
+from liehom.typing import Array, BooleanArray, Real, Values
 
 SAFETY = 0.9
+"""Fraction of the step size at which the estimated error equals the tolerance."""
 MAX_PAIR_GROWTH = 5.0
+"""With an embedded pair, the largest ratio of the next step size to the last one."""
 MAX_SHRINK = 0.2
+"""The smallest ratio of the next step size to the last one."""
 ERROR_TERMS = 2
+"""Number of Taylor coefficients of the error that are computed."""
 SERIES_FRACTION = 0.1
+"""The largest length of a term of the error, in units of the length |X| h of the step."""
 MAX_GROWTH = 8.0
-"""Without an embedded pair the next size is bounded by so many times the last one."""
+"""Without an embedded pair, the largest ratio of the next step size to the last one."""
 NONFINITE_RATIO = 1e10
-"""What an error that is not finite counts as, in units of the tolerance."""
+"""Error, in units of the tolerance, that stands for one that is not finite."""
 MAX_TRIALS = 200
+"""Number of attempts to find out which trajectories a step cannot be solved for."""
 MIN_ROUNDOFFS = 10.0
+"""The smallest relative tolerance, in units of round-off."""
+
+Defects: TypeAlias = tuple[tuple[int, Values], ...]
+"""(k, |[t^k] (flow - step)|) for the orders k above the order of a step; arrays of shape (...,)."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """The error allowed in a step: its root mean square is at most atol + rtol |m| (also a root mean square).
+    """Error allowed in a step: at most atol + rtol |m|, as root mean squares over the coordinates.
 
-    It is never less than 10 units of round-off of m.
+    It is never less than 10 units of round-off of m. Compiled steps give tracers for `rtol` and `atol`.
 
     Examples
     --------
@@ -45,17 +57,19 @@ class Tolerance:
     0.00500...
     """
 
-    rtol: float
-    atol: float
+    rtol: Real
+    atol: Real
 
-    def norm(self, m: Any) -> Any:
-        """The 2-norm of the error that is allowed at m, shape (...,)."""
-        relative = np.maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(m.dtype).eps))
-        return self.atol * m.shape[-1] ** 0.5 + relative * length(m)
+    def norm(self, m: Values) -> Array:
+        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
+        point: Any = m
+        relative = np.maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
+        allowed: Array = self.atol * point.shape[-1] ** 0.5 + relative * length(point)
+        return allowed
 
 
-def length(x: Any) -> Any:
-    """The 2-norm over the last axis, in float64.
+def length(x: Values) -> Array:
+    """2-norm over the last axis, in float64.
 
     Examples
     --------
@@ -63,39 +77,43 @@ def length(x: Any) -> Any:
     >>> float(length(np.array([3.0, 4.0])))
     5.0
     """
-    x = _floats(x)
-    return np.sqrt((x * x).sum(axis=-1))
+    values = _floats(x)
+    found: Array = np.sqrt((values * values).sum(axis=-1))
+    return found
 
 
-def _floats(x: Any) -> Any:
-    """In float64; traced numbers are."""
+def _floats(x: Values) -> Any:
+    """x in float64; a tracer is in float64 already."""
     return x.astype(np.float64, copy=False) if hasattr(x, "astype") else np.asarray(x, dtype=np.float64)
 
 
-def largest_size(max_step: Any, left: Any) -> Any:
-    """A bound for the step sizes with the time `left` to the end; not `left`: the clock may be slow.
+def largest_size(max_step: Real, left: Values) -> Array:
+    """Bound for the step sizes with the time `left` to the end, twice that time because the clock may be slow.
 
     Examples
     --------
     >>> float(largest_size(np.inf, np.array(0.5)))
     1.0
     """
-    return np.minimum(max_step, 2 * left)
+    bound: Array = np.minimum(max_step, 2 * left)
+    return bound
 
 
-def is_large_enough(h: Any, tiny: Any, left: Any) -> Any:
-    """Whether steps of these sizes go on: nan does not.
+def is_large_enough(h: Values, tiny: Real, left: Real) -> BooleanArray:
+    """Whether steps of these sizes advance time, bool (...,); False for NaN.
 
     Examples
     --------
     >>> is_large_enough(np.array([1e-3, 1e-17, np.nan]), 1e-16, 1.0).tolist()
     [True, False, False]
     """
-    return h >= np.minimum(tiny, left)
+    size: Any = h
+    enough: BooleanArray = size >= np.minimum(tiny, left)
+    return enough
 
 
-def time_scale(field: GeneratorField, m: Any, t: Any) -> Any:
-    """|m| / |X|, (...,).
+def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
+    """|m| / |X(m, t)|, the time in which a point moves by its own size, shape (...,).
 
     Examples
     --------
@@ -106,14 +124,18 @@ def time_scale(field: GeneratorField, m: Any, t: Any) -> Any:
     return length(m) / length(field.vector(m, t))
 
 
-def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, speed: Any, largest: Any) -> Any:
+def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest: Values) -> Array:
     """The largest step size whose error is within the tolerance, by its Taylor coefficients; shape (...,).
 
     Parameters
     ----------
     defects : tuple of (int, array of shape (...,))
-    allowed, speed, largest : array of shape (...,)
-        The error allowed; |X|, 0 where it is not to matter; a bound.
+    allowed : array of shape (...,)
+        The error allowed.
+    speed : array of shape (...,)
+        |X|, or 0 to disregard the length of the step.
+    largest : array of shape (...,)
+        A bound for the size.
 
     Examples
     --------
@@ -121,23 +143,22 @@ def size_from_defects(defects: tuple[tuple[int, Any], ...], allowed: Any, speed:
     >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0), np.array(1.0)))
     0.009000000000000001
     """
-    h = _floats(largest)
-    for k, size in defects:
-        size = _floats(size)
+    h: Array = _floats(largest)
+    way: Any = speed
+    for k, defect in defects:
+        size = _floats(defect)
         some = size > 0
         safe = np.where(some, size, 1.0)
-        found = (allowed / safe) ** (1 / k)
+        found: Any = (allowed / safe) ** (1 / k)
         if k > 2:  # not for k = 2: next to a time at which X vanishes steps would shrink with X
-            series = (SERIES_FRACTION * speed / safe) ** (1 / (k - 1))
-            found = np.where(speed > 0, np.minimum(found, series), found)
+            series = (SERIES_FRACTION * way / safe) ** (1 / (k - 1))
+            found = np.where(way > 0, np.minimum(found, series), found)
         h = np.minimum(h, np.where(some, SAFETY * found, np.where(np.isnan(size), np.nan, np.inf)))
     return h
 
 
-def defects_of(
-    action: Action, psi: Generator, local: LocalStep, m: Any, t: Any, order: int
-) -> tuple[tuple[int, Any], ...]:
-    """|[t^k] (F - step)| for the orders above the order of a step.
+def defects_of(action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> Defects:
+    """(k, |[t^k] (F - step)|) for `ERROR_TERMS` orders k above the order of a step, F the flow.
 
     Examples
     --------
@@ -158,8 +179,8 @@ def defects_of(
     return tuple((k, length(flow.point(k) - made.coefficient(k))) for k in range(order + 1, total + 1))
 
 
-def judged(error: Any, allowed: Any, h: Any, order: int) -> tuple[Any, Any]:
-    """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next size.
+def judged(error: Values, allowed: Values, h: Values, order: int) -> tuple[BooleanArray, Array]:
+    """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next step size.
 
     Examples
     --------
@@ -167,13 +188,13 @@ def judged(error: Any, allowed: Any, h: Any, order: int) -> tuple[Any, Any]:
     >>> bool(accepted), float(size.round(4))
     (True, 0.107)
     """
-    ratio = length(error) / allowed
+    ratio: Any = length(error) / allowed
     ratio = np.where(np.isfinite(ratio), ratio, NONFINITE_RATIO)
     return ratio <= 1, next_size(np.abs(h), ratio, order)
 
 
-def next_size(h: Any, ratio: Any, order: int) -> Any:
-    """The next step size from error / tolerance of an embedded pair whose error is of the given order.
+def next_size(h: Array, ratio: Array, order: int) -> Array:
+    """The next step size after one of size h > 0, from error / tolerance of an embedded pair of the given order.
 
     Examples
     --------
@@ -183,13 +204,15 @@ def next_size(h: Any, ratio: Any, order: int) -> Any:
     """
     safe = np.where(ratio > 0, ratio, 1.0)
     factor = np.where(ratio > 0, SAFETY * safe ** (-1 / order), MAX_PAIR_GROWTH)
-    return h * np.clip(factor, MAX_SHRINK, MAX_PAIR_GROWTH)
+    size: Array = h * np.clip(factor, MAX_SHRINK, MAX_PAIR_GROWTH)
+    return size
 
 
-def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
+def unsolvable(local: LocalStep, h: Array, where: BooleanArray) -> BooleanArray:
     """For which trajectories the equations of a step of size h have no solution, bool (...,).
 
-    They are tried group by group, with h = 0 for the others; psi is still called on the whole ensemble.
+    Groups of trajectories are tried one after the other, with h = 0 for the others, so that psi is still called on the
+    whole ensemble.
 
     Examples
     --------
@@ -207,7 +230,7 @@ def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
         group = groups.pop()
         chosen = np.zeros(np.size(h), dtype=bool)
         chosen[group] = True
-        # of the first group it is known
+        # the first group, all of them, is known to fail
         if trials and _is_solvable(local, np.where(chosen.reshape(np.shape(h)), h, 0)):
             trials += 1
         elif len(group) <= 1 or trials > MAX_TRIALS:
@@ -219,7 +242,7 @@ def unsolvable(local: LocalStep, h: Any, where: Any) -> Any:
     return found.reshape(np.shape(h)) if bool(found.any()) else where
 
 
-def _is_solvable(local: LocalStep, h: Any) -> bool:
+def _is_solvable(local: LocalStep, h: Array) -> bool:
     try:
         local.factors(h[..., None])
     except (ConvergenceError, np.linalg.LinAlgError):

@@ -1,19 +1,23 @@
 """Events: zeros of functions g(t, y) along trajectories, located on the dense output of a step.
 
-An event is a passage of g from one sign to the other, or to 0, between the ends of a step; Chandrupatla's method
-(inverse quadratic interpolation where it is safe, else bisection) locates it to round-off.
+An event is a change of the sign of g, or a change to 0, between the ends of a step. Chandrupatla's method (inverse
+quadratic interpolation if it is safe, else bisection) locates it to round-off.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
 from liehom.errors import InputError
+from liehom.typing import Array, BooleanArray
 
 ITERATIONS = 200
+
+EventFunction: TypeAlias = Callable[[Any, Any], Any]
+"""g(t, y): times (...,) and points (..., N) to real numbers (...,)."""
 
 
 @final
@@ -23,20 +27,21 @@ class Events:
     Parameters
     ----------
     functions : callable or sequence of callables
-        g(t, y) with y (N,); for an ensemble y (..., N) and t (...,), result (...,). As in solve_ivp a function may
+        g(t, y) with y (N,); for an ensemble y (..., N) and t (...,), result (...,). As in solve_ivp, a function may
         have the attributes `terminal` (bool, or the number of occurrences that ends the integration) and
-        `direction` (positive: only where g rises with time as it is integrated; negative: only where it falls).
+        `direction` (positive: only zeros at which g increases in the direction of integration; negative: only those
+        at which g decreases).
 
     Raises
     ------
     InputError
-        If one is not a function, or returns an array of another shape.
+        If an entry is not a function, or returns an array of another shape.
 
     Notes
     -----
-    A zero at the start is recorded, as solve_ivp does, if g leaves it in the right direction; but it is not counted
-    towards `terminal`, so that a run may start where another one has ended. Two zeros within one step cannot be
-    seen: see `max_step`.
+    A zero at the initial time is recorded, as by solve_ivp, if g leaves it in the right direction. It is not counted
+    towards `terminal`, so that a run may start where another one has ended. Two zeros within one step are not noticed:
+    see `max_step`.
 
     Examples
     --------
@@ -45,23 +50,23 @@ class Events:
     1
     """
 
-    def __init__(self, functions: Any) -> None:
+    def __init__(self, functions: EventFunction | Sequence[EventFunction]) -> None:
         if not callable(functions) and not isinstance(functions, list | tuple):
             raise InputError(f"events is {functions!r}, expected a function g(t, y) or a list of functions")
         listed = [functions] if callable(functions) else list(functions)
         for i, g in enumerate(listed):
             if not callable(g):
                 raise InputError(f"events[{i}] is {g!r}, expected a function g(t, y)")
-        self.functions: Sequence[Callable[[Any, Any], Any]] = listed
+        self.functions: Sequence[EventFunction] = listed
         self.directions = [_direction(getattr(g, "direction", 0), i) for i, g in enumerate(listed)]
         self.terminal = [_limit(getattr(g, "terminal", False), i) for i, g in enumerate(listed)]
 
     @property
     def count(self) -> int:
-        """How many events there are."""
+        """Number of event functions."""
         return len(self.functions)
 
-    def value(self, i: int, t: Any, y: Any) -> Any:
+    def value(self, i: int, t: Array, y: Array) -> Array:
         """g_i(t, y), shape (...,)."""
         given = self.functions[i](t if np.ndim(t) else np.asarray(t)[()], y)
         try:
@@ -76,44 +81,61 @@ class Events:
             )
         return value
 
-    def values(self, t: Any, y: Any) -> list[Any]:
-        """All g_i(t, y)."""
+    def values(self, t: Array, y: Array) -> list[Array]:
+        """g_i(t, y) for all i, each of shape (...,)."""
         return [self.value(i, t, y) for i in range(self.count)]
 
-    def crossed(self, i: int, before: Any, after: Any) -> Any:
-        """Where event i occurs between two points, shape (...,)."""
+    def crossed(self, i: int, before: Array, after: Array) -> BooleanArray:
+        """For which trajectories event i occurs between two values of g_i, bool (...,)."""
         return self._directed(i, (before < 0) & (after >= 0), (before > 0) & (after <= 0))
 
-    def left(self, i: int, before: Any, after: Any) -> Any:
-        """Where g_i was 0 and is so no longer."""
+    def left(self, i: int, before: Array, after: Array) -> BooleanArray:
+        """For which trajectories g_i was 0 and is not any more, bool (...,)."""
         return self._directed(i, (before == 0) & (after > 0), (before == 0) & (after < 0))
 
-    def _directed(self, i: int, rises: Any, falls: Any) -> Any:
+    def _directed(self, i: int, rises: BooleanArray, falls: BooleanArray) -> BooleanArray:
         if self.directions[i] > 0:
             return rises
         return falls if self.directions[i] < 0 else rises | falls
 
-    def locate(self, i: int, at: Callable[[Any], tuple[Any, Any]], h: Any, ends: tuple[Any, Any], here: Any) -> Any:
-        """The step sizes s in (0, h] at which event i occurs, where `here`, on the far side of the zero.
+    def locate(
+        self,
+        i: int,
+        at: Callable[[Array], tuple[Array, Array]],
+        h: Array,
+        ends: tuple[Array, Array],
+        here: BooleanArray,
+    ) -> Array:
+        """Step sizes s in (0, h] at which event i occurs, on the far side of the zero, for the trajectories `here`.
 
         Parameters
         ----------
+        i : int
         at : callable
             s (...,) -> (t, y).
         h : array of shape (...,)
         ends : (array, array)
             g_i at s = 0 and at s = h.
+        here : bool array of shape (...,)
         """
 
-        def g(s: Any) -> Any:
+        def g(s: Array) -> Array:
             return self.value(i, *at(s)).astype(s.dtype)
 
         start, end = (np.asarray(x, dtype=h.dtype) for x in ends)
         return bracketed_zero(g, np.where(here, h, 0), start, end, here)
 
 
-def bracketed_zero(g: Callable[[Any], Any], h: Any, start: Any, end: Any, here: Any) -> Any:
-    """The zeros of g between 0 and h, where `here`, by Chandrupatla's method; the end of the bracket away from 0.
+def bracketed_zero(g: Callable[[Array], Array], h: Array, start: Array, end: Array, here: BooleanArray) -> Array:
+    """Zeros of g between 0 and h by Chandrupatla's method, for the trajectories `here`; the end of the bracket at h.
+
+    Parameters
+    ----------
+    g : callable
+        s (...,) -> g(s) (...,).
+    h, start, end : arrays of shape (...,)
+        The far end of the bracket, g(0) and g(h).
+    here : bool array of shape (...,)
 
     Examples
     --------
@@ -122,10 +144,10 @@ def bracketed_zero(g: Callable[[Any], Any], h: Any, start: Any, end: Any, here: 
     >>> round(float(found), 12)
     1.414213562373
     """
-    # a: the newest point; b: the other end; c: the newest of the points that were left
+    # a is the newest point, b the other end of the bracket, c the newest of the points that are not ends any more
     a, b, c = h, np.zeros_like(h), np.zeros_like(h)
     ga, gb, gc = end, start, start
-    share = np.full(np.shape(h), 0.5, dtype=h.dtype)
+    fraction = np.full(np.shape(h), 0.5, dtype=h.dtype)
     least = 2 * np.finfo(h.dtype).eps * np.abs(h)
     busy = here & (end != 0)
     far = h
@@ -133,7 +155,7 @@ def bracketed_zero(g: Callable[[Any], Any], h: Any, start: Any, end: Any, here: 
         busy = busy & (np.abs(b - a) > 2 * least)
         if not bool(np.any(busy)):
             break
-        x = np.where(busy, a + share * (b - a), far)
+        x = np.where(busy, a + fraction * (b - a), far)
         gx = g(x)
         same = (gx > 0) == (ga > 0)
         c, gc = np.where(busy, np.where(same, a, b), c), np.where(busy, np.where(same, ga, gb), gc)
@@ -141,12 +163,12 @@ def bracketed_zero(g: Callable[[Any], Any], h: Any, start: Any, end: Any, here: 
         a, ga = np.where(busy, x, a), np.where(busy, gx, ga)
         far = np.where(busy, np.where(np.abs(a) > np.abs(b), a, b), far)
         far, busy = np.where(busy & (gx == 0), x, far), busy & (gx != 0)
-        share = _share((a, b, c), (ga, gb, gc), least)
+        fraction = _next_fraction((a, b, c), (ga, gb, gc), least)
     return far
 
 
-def _share(points: tuple[Any, Any, Any], values: tuple[Any, Any, Any], least: Any) -> Any:
-    """Where to look next between a and b: the inverse quadratic interpolation where it is monotone, else 1/2."""
+def _next_fraction(points: tuple[Array, Array, Array], values: tuple[Array, Array, Array], least: Array) -> Array:
+    """The next point as a fraction of the way from a to b: by inverse quadratic interpolation if monotone, else 1/2."""
     (a, b, c), (ga, gb, gc) = points, values
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         xi, phi = (a - b) / (c - b), (ga - gb) / (gc - gb)
@@ -154,12 +176,13 @@ def _share(points: tuple[Any, Any, Any], values: tuple[Any, Any, Any], least: An
         fitted = ga / (gb - ga) * (gc / (gb - gc)) + (c - a) / (b - a) * (ga / (gc - ga)) * (gb / (gc - gb))
         margin = np.minimum(least / np.abs(b - a), 0.5)
     margin = np.where(np.isfinite(margin), margin, 0.5)
-    return np.clip(np.where(safe & np.isfinite(fitted), fitted, 0.5), margin, 1 - margin)
+    fraction: Array = np.clip(np.where(safe & np.isfinite(fitted), fitted, 0.5), margin, 1 - margin)
+    return fraction
 
 
-def _direction(direction: Any, i: int) -> float:
+def _direction(direction: object, i: int) -> float:
     try:
-        number = float(direction)
+        number = float(direction)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         number = np.nan
     if np.isnan(number):
@@ -167,8 +190,8 @@ def _direction(direction: Any, i: int) -> float:
     return number
 
 
-def _limit(terminal: Any, i: int) -> float:
-    """The number of occurrences that ends the integration."""
+def _limit(terminal: object, i: int) -> float:
+    """Number of occurrences that ends the integration, inf for none."""
     if isinstance(terminal, bool | np.bool_) or terminal is None:
         return 1.0 if terminal else np.inf
     if isinstance(terminal, int | np.integer | float) and terminal >= 0 and terminal == np.floor(terminal):

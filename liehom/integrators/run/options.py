@@ -1,14 +1,25 @@
-"""Options: what a run is asked for; and how a trajectory can end, with the message that says so."""
+"""Options of a run, and the codes and messages of the ways in which a trajectory can end."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias, final
+from typing import Any, TypeAlias, TypedDict, final
 
 import numpy as np
+import numpy.typing as npt
+
+from liehom.correctors.step import Step
+from liehom.homogeneous import Exponential
+from liehom.integrators.run.events import EventFunction
+from liehom.typing import Array
 
 Span: TypeAlias = tuple[np.floating[Any], np.floating[Any]]
 """Start and end of the time span, in the floating type of the points."""
+
+ExponentialLike: TypeAlias = str | Exponential | type[Exponential] | Callable[[Any, Any], Any]
+"""An exponential as `liehom.homogeneous.exponential_of` reads it."""
 
 END, EVENT, NOT_FINITE, PSI, CLOCK, TOO_SMALL, IMPLICIT, LINEAR, TOO_MANY = 0, 1, -1, -2, -3, -4, -5, -6, -7
 MESSAGES = {
@@ -24,26 +35,58 @@ MESSAGES = {
 }
 
 
+class RunOptions(TypedDict, total=False):
+    """Keyword arguments of `integrate` that ensembles and lattices of spins hand on to it."""
+
+    rtol: float
+    atol: float
+    t_eval: npt.ArrayLike | None
+    events: EventFunction | Sequence[EventFunction] | None
+    exponential: ExponentialLike
+    clock: str
+    max_step: float
+    first_step: float | None
+    max_steps: int
+    compile: str | None
+
+
+class EnsembleOptions(RunOptions, total=False):
+    """Keyword arguments of `integrate` that `integrate_ensemble` hands on to it."""
+
+    step: Step | None
+    dt: npt.ArrayLike | None
+
+
+class SingleRunOptions(RunOptions, total=False):
+    """All keyword arguments of `integrate` but `step` and `dt`."""
+
+    dense_output: bool
+    progress: bool | Callable[[float], object]
+    checkpoint: str | os.PathLike[str] | None
+    checkpoint_every: float
+
+
 @final
 @dataclass(frozen=True, slots=True)
 class Options:
-    """The options of a run, checked: see `integrate`.
+    """Checked options of a run: see `integrate`.
 
     Attributes
     ----------
     dt : array of shape (...,) or None
+        Fixed step sizes; None for adaptive ones.
     t_eval : array of shape (k,) or None
         In the direction of integration.
     nominal : bool
-        Whether time advances by the parameter of the step rather than by its clock.
+        Whether time advances by the parameter of the step rather than by its time reparametrization τ.
     """
 
-    dt: Any
+    dt: Array | None
     rtol: float
     atol: float
-    t_eval: Any
+    t_eval: Array | None
     dense_output: bool
-    events: Any
+    events: EventFunction | Sequence[EventFunction] | None
     nominal: bool
     max_step: float
     first_step: float | None

@@ -9,21 +9,22 @@ from typing import Any, final
 from liehom.errors import InputError
 
 INTERVAL = 0.1
+"""Seconds between two reports."""
 
 
 @final
 class Progress:
-    """Calls back at most every tenth of a second, and at the end.
+    """Reports of the fraction done, at most every tenth of a second and at the end.
 
     Parameters
     ----------
     show : bool or callable
-        True: a bar on standard error; a function: called with the fraction done, from 0 to 1.
+        True: a bar on standard error. A function is called with the fraction done, from 0 to 1.
 
     Raises
     ------
     InputError
-        If it is neither.
+        If it is neither a bool nor a function.
 
     Examples
     --------
@@ -35,7 +36,7 @@ class Progress:
     1.0
     """
 
-    def __init__(self, show: bool | Callable[[float], Any]) -> None:
+    def __init__(self, show: bool | Callable[[float], object]) -> None:
         if not callable(show) and show not in (True, False, None):
             raise InputError(f"progress is {show!r}, expected True, False or a function of the fraction done")
         self._callback = show if callable(show) else None
@@ -55,7 +56,7 @@ class Progress:
         return self
 
     def update(self, fraction: Callable[[], float], *, last: bool = False) -> None:
-        """Report the fraction done, which is asked for only when it is shown."""
+        """Report the fraction done; `fraction` is called only if it is shown."""
         if self._silent:
             return
         now = time.monotonic()

@@ -1,14 +1,15 @@
-"""What a run records: its path, points at requested times, events, and statistics of the corrector.
+"""Records of a run: its path, the points at requested times, the events, and statistics of the corrections.
 
-Each record has its state as named arrays, for checkpoints.
+Each record gives its state as named arrays, for checkpoints.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
@@ -17,18 +18,21 @@ from liehom.correctors.step import LocalStep, Step
 from liehom.homogeneous import Action
 from liehom.integrators.run.conservation_statistics import NO_RANK, ConservationStatistics
 from liehom.integrators.run.solution import Report
+from liehom.typing import Array, BooleanArray, IntegerArray
 
 PATH_NAMES = ("times", "points", "sizes", "moved")
 
 
 @final
 class Path:
-    """The points after every step, of one trajectory or an ensemble of which not all move in every step.
+    """Times, points and sizes of all steps; in an ensemble, some trajectories may not move in a step.
 
     Parameters
     ----------
     t : array of shape (...,)
+        Initial times.
     m : array of shape (..., N)
+        Initial points.
 
     Examples
     --------
@@ -39,20 +43,20 @@ class Path:
     ([[0.0, 0.0], [nan, 0.5]], (2, 2, 3), [[0.0, 0.5]])
     """
 
-    def __init__(self, t: Any, m: Any) -> None:
-        # blocks (k, ...) of times, points, sizes, and of where a step was made
-        self._blocks: list[tuple[Any, ...]] = []
+    def __init__(self, t: Array, m: Array) -> None:
+        # blocks (k, ...) of times, points, sizes, and of booleans: whether the trajectory moved
+        self._blocks: list[tuple[npt.NDArray[Any], ...]] = []
         self.add(t, m, np.zeros_like(t), np.ones(t.shape, dtype=bool))
 
     def __len__(self) -> int:
         return sum(len(block[0]) for block in self._blocks)
 
-    def add(self, t: Any, m: Any, h: Any, moved: Any) -> None:
-        """A step of sizes h to (t, m), where trajectories moved."""
+    def add(self, t: Array, m: Array, h: Array, moved: BooleanArray) -> None:
+        """Append a step of sizes h to (t, m), for the trajectories that moved."""
         self.extend(np.asarray(t)[None], np.asarray(m)[None], np.asarray(h)[None], np.asarray(moved)[None])
 
-    def extend(self, t: Any, m: Any, h: Any, moved: Any) -> None:
-        """Steps one after the other, along a first axis.
+    def extend(self, t: Array, m: Array, h: Array, moved: BooleanArray) -> None:
+        """Append several steps, along a first axis.
 
         Examples
         --------
@@ -64,7 +68,7 @@ class Path:
         self._blocks.append((t, m, h, moved))
 
     def cut(self, length: int) -> None:
-        """Forget what was added after the first `length` entries."""
+        """Remove all but the first `length` entries."""
         excess = len(self) - length
         while excess > 0:
             block = self._blocks.pop()
@@ -72,15 +76,15 @@ class Path:
                 self._blocks.append(tuple(x[:-excess] for x in block))
             excess -= len(block[0])
 
-    def _whole(self) -> tuple[Any, ...]:
+    def _whole(self) -> tuple[npt.NDArray[Any], ...]:
         made = tuple(np.concatenate(parts) for parts in zip(*self._blocks, strict=True))
         self._blocks = [made]
         return made
 
-    def compact(self) -> tuple[Any, Any, Any]:
-        """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...), each trajectory from its start without gaps.
+    def compact(self) -> tuple[Array, Array, Array]:
+        """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...), of each trajectory without gaps.
 
-        Filled up with NaN (sizes with 0) to the largest number of steps.
+        They are filled up with NaN (sizes with 0) to the largest number of steps.
         """
         times, points, sizes, moved = self._whole()
         if not bool(moved.all()):
@@ -91,18 +95,18 @@ class Path:
             points = np.where(moved[..., None], np.take_along_axis(points, order[..., None], axis=0), np.nan)
         return times, points, sizes[1:]
 
-    def arrays(self) -> dict[str, Any]:
-        """The state, for a checkpoint."""
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """The state as named arrays, for a checkpoint."""
         return dict(zip(PATH_NAMES, self._whole(), strict=True))
 
-    def restore(self, arrays: dict[str, Any]) -> None:
-        """Take a state back."""
+    def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Replace the state by one that `arrays` returned."""
         self._blocks = [tuple(arrays[name] for name in PATH_NAMES)]
 
 
 @final
 class CorrectionStatistics:
-    """The extremes of what the corrector reported, over all steps.
+    """Extremes and counts over all steps of what the corrector reported, for each trajectory.
 
     Examples
     --------
@@ -118,7 +122,7 @@ class CorrectionStatistics:
         inner = step.step if isinstance(step, Conserving) else step
         self._base = inner.step.order if isinstance(inner, Corrected) else step.order
         self._conservation = ConservationStatistics(step, shape)
-        self._seen = {
+        self._seen: dict[str, npt.NDArray[Any]] = {
             "reached": np.full(shape, step.order),
             "residual": np.zeros(shape),
             "singular": np.full(shape, np.inf),
@@ -128,18 +132,18 @@ class CorrectionStatistics:
         }
         self._where: tuple[float, tuple[float, ...]] | None = None
 
-    def take(self, local: LocalStep, h: Any, t: Any, m: Any, active: Any) -> None:
-        """Take in what a step of size h (...,) reports where trajectories are active."""
+    def take(self, local: LocalStep, h: Array, t: Array, m: Array, active: BooleanArray) -> None:
+        """Record what a step of size h (...,) at (t, m) reports, for the active trajectories."""
         if isinstance(local, ConservingStep):
             self._conservation.add(local, h, t, m, active)
             local = local.base
         if isinstance(local, CorrectedStep):
             self.add(local.correction, t, m, active)
 
-    def add(self, found: Correction, t: Any, m: Any, active: Any) -> None:
-        """Take in the correction of one step where trajectories are active."""
+    def add(self, found: Correction, t: Array, m: Array, active: BooleanArray) -> None:
+        """Record the correction of one step at (t, m), for the active trajectories."""
         seen = dict(self._seen)  # the arrays are replaced, never written into: older states stay whole
-        moving = active & (found.leading > 0)
+        moving: BooleanArray = active & (found.leading > 0)
         if not bool(moving.all()):
             seen["equilibria"] = seen["equilibria"] + (active & ~moving)
         short = active & (found.reached < self._wanted)
@@ -159,15 +163,16 @@ class CorrectionStatistics:
             seen["singular"] = np.where(lower, singular, seen["singular"])
         self._seen = seen
 
-    def add_compiled(self, lanes: Any, extra: Any) -> None:
-        """Take in what compiled steps summed up, for some lanes of the flattened ensemble.
+    def add_compiled(self, lanes: IntegerArray, extra: Mapping[str, Array]) -> None:
+        """Record the totals of compiled steps, for some trajectories of the flattened ensemble.
 
         Parameters
         ----------
-        lanes : array of int
+        lanes : array of int of shape (L,)
+            Indices of the trajectories.
         extra : dict of arrays of shape (L,)
-            The largest residual and number of orders missed ("short"), how many steps missed the order or were at
-            equilibria, and what a `ConservationStatistics` takes.
+            The largest residual, the largest number of orders missed ("short"), the numbers of steps that missed the
+            order ("failed") or were at equilibria, and the totals that `ConservationStatistics` records.
         """
         seen = {name: np.array(x).reshape(-1) for name, x in self._seen.items()}
         if "short" in extra:
@@ -180,14 +185,14 @@ class CorrectionStatistics:
         if "usual" in extra:
             self._conservation.add_compiled(lanes, extra)
 
-    def _note_where(self, lowest: Any, t: Any, m: Any) -> None:
-        """Where the smallest singular value of all trajectories was met."""
+    def _note_where(self, lowest: Array, t: Array, m: Array) -> None:
+        """Record where the smallest singular value of all trajectories was met, if it is in `lowest`."""
         if float(lowest.min()) < float(self._seen["singular"].min()):
             index = np.unravel_index(int(np.argmin(lowest)), np.shape(lowest))
             self._where = (float(t[index]), tuple(float(x) for x in m[index]))
 
-    def report(self, action: Action, clock: str, orbit_dimension: Any) -> Report:
-        """The account as a report."""
+    def report(self, action: Action, clock: str, orbit_dimension: int | IntegerArray) -> Report:
+        """The statistics as a `Report`."""
         seen = self._seen
         rank = int(np.min(seen["rank"], initial=NO_RANK))
         return Report(
@@ -208,14 +213,14 @@ class CorrectionStatistics:
             conservation=self._conservation.report(),
         )
 
-    def arrays(self) -> dict[str, Any]:
-        """The state, for a checkpoint."""
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """The state as named arrays, for a checkpoint."""
         where = [] if self._where is None else [self._where[0], *self._where[1]]
         kept = {f"conservation_{name}": x for name, x in self._conservation.arrays().items()}
         return {**self._seen, "where": np.array(where), **kept}
 
-    def restore(self, arrays: dict[str, Any]) -> None:
-        """Take a state back."""
+    def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Replace the state by one that `arrays` returned."""
         self._seen = {name: arrays[name] for name in self._seen}
         where = [float(x) for x in arrays["where"]]
         self._where = (where[0], tuple(where[1:])) if where else None
@@ -225,17 +230,17 @@ class CorrectionStatistics:
 
 @final
 class Samples:
-    """The points at requested times, filled in as steps pass them.
+    """Points at requested times, filled in when a step passes them.
 
     Parameters
     ----------
     times : array of shape (k,)
         In the direction of integration.
     shape : tuple of int
-        (..., N)
+        Shape (..., N) of the points at one time.
     dtype : dtype
     direction : float
-        1 or -1.
+        1, or -1 if time decreases.
 
     Examples
     --------
@@ -245,21 +250,21 @@ class Samples:
     [0.5, -0.5]
     """
 
-    def __init__(self, times: Any, shape: tuple[int, ...], dtype: Any, direction: float) -> None:
+    def __init__(self, times: Array, shape: tuple[int, ...], dtype: npt.DTypeLike, direction: float) -> None:
         self.times = times
-        self.points = np.full((*shape, len(times)), np.nan, dtype=dtype)
-        self.done = np.zeros(shape[:-1], dtype=int)
+        self.points: Array = np.full((*shape, len(times)), np.nan, dtype=dtype)
+        self.done: IntegerArray = np.zeros(shape[:-1], dtype=int)
         self._direction = direction
         self._ascending = direction * times
 
-    def start(self, t: Any, m: Any) -> None:
-        """The requested times that are the starting time."""
+    def start(self, t: np.floating[Any], m: Array) -> None:
+        """Fill in the initial points if the first requested time is the initial time."""
         if len(self.times) and self.times[0] == t:
             self.points[..., 0] = m
             self.done = self.done + 1
 
-    def fill(self, at: Callable[[Any, Any], Any], after: Any, moves: Any) -> None:
-        """Take the times up to `after` from at(time, here), where trajectories move."""
+    def fill(self, at: Callable[[Array, BooleanArray], Array], after: Array, moves: BooleanArray) -> None:
+        """Fill in the times up to `after` by at(time, here), for the trajectories that move."""
         upto = np.searchsorted(self._ascending, self._direction * after, side="right")
         new = moves & (upto > self.done)
         if not bool(np.any(new)):
@@ -271,18 +276,27 @@ class Samples:
                 self.points[..., k] = np.where(here[..., None], at(self.times[k], here), self.points[..., k])
         self.done = np.where(new, upto, self.done)
 
-    def arrays(self) -> dict[str, Any]:
-        """The state, for a checkpoint."""
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """The state as named arrays, for a checkpoint."""
         return {"points": self.points, "done": self.done}
 
-    def restore(self, arrays: dict[str, Any]) -> None:
-        """Take a state back."""
+    def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Replace the state by one that `arrays` returned."""
         self.points, self.done = arrays["points"], arrays["done"]
 
 
 @final
 class EventLog:
-    """The events that occurred: (event, trajectory, time, point), for each trajectory in the order of time.
+    """Log of the events that occurred: rows (event, trajectory, time, point), for each trajectory in order of time.
+
+    Parameters
+    ----------
+    count : int
+        Number of event functions.
+    shape : tuple of int
+        Shape of the ensemble.
+    size : int
+        Number of coordinates of a point.
 
     Examples
     --------
@@ -294,11 +308,11 @@ class EventLog:
 
     def __init__(self, count: int, shape: tuple[int, ...], size: int) -> None:
         self._count, self._shape, self._size = count, shape, size
-        self.occurrences = np.zeros((count, *shape), dtype=int)
-        self.rows: list[tuple[int, int, Any, Any]] = []
+        self.occurrences: IntegerArray = np.zeros((count, *shape), dtype=int)
+        self.rows: list[tuple[int, int, np.floating[Any], Array]] = []
 
-    def add(self, i: int, here: Any, t: Any, y: Any, *, counted: bool = True) -> None:
-        """Event i at times t where `here`; `counted` towards the number that ends the integration."""
+    def add(self, i: int, here: BooleanArray, t: Array, y: Array, *, counted: bool = True) -> None:
+        """Record event i at (t, y) for the trajectories `here`, `counted` towards the number that ends them."""
         if counted:
             more = np.zeros_like(self.occurrences)
             more[i] = here
@@ -306,10 +320,11 @@ class EventLog:
         times, points = np.reshape(t, -1), np.reshape(y, (-1, self._size))
         self.rows += [(i, int(b), times[b], points[b]) for b in np.flatnonzero(here)]
 
-    def lists(self) -> tuple[list[Any], list[Any]]:
-        """t_events, y_events as a `Solution` has them."""
+    def lists(self) -> tuple[list[npt.NDArray[Any]], list[npt.NDArray[Any]]]:
+        """(t_events, y_events) of a `Solution`."""
         size = int(np.prod(self._shape, dtype=int))
-        groups: list[list[list[tuple[Any, Any]]]] = [[[] for _ in range(size)] for _ in range(self._count)]
+        groups: list[list[list[tuple[np.floating[Any], Array]]]]
+        groups = [[[] for _ in range(size)] for _ in range(self._count)]
         for i, b, t, y in self.rows:
             groups[i][b].append((t, y))
         times, points = [], []
@@ -322,8 +337,8 @@ class EventLog:
             points.append(y_row[0] if self._shape == () else y_row.reshape(self._shape))
         return times, points
 
-    def arrays(self) -> dict[str, Any]:
-        """The state, for a checkpoint."""
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
+        """The state as named arrays, for a checkpoint."""
         return {
             "occurrences": self.occurrences,
             "index": np.array([row[:2] for row in self.rows], dtype=int).reshape(-1, 2),
@@ -331,8 +346,8 @@ class EventLog:
             "y": np.array([row[3] for row in self.rows]),
         }
 
-    def restore(self, arrays: dict[str, Any]) -> None:
-        """Take a state back."""
+    def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Replace the state by one that `arrays` returned."""
         self.occurrences = arrays["occurrences"]
         rows = zip(arrays["index"], arrays["t"], arrays["y"], strict=True)
         self.rows = [(int(i), int(b), t, y) for (i, b), t, y in rows]

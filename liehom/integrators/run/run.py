@@ -297,13 +297,14 @@ class Run:
                 h, passed = np.where(now.active, h, 0), np.where(now.active, passed, 0)
             after, last = now.t + passed, last & now.active
             return h, np.where(last, self.end, after) if last.any() else after, last
-        if self.total is None:
+        dt = self.options.dt
+        if dt is None or self.total is None:
             last = now.active & (self.direction * (left - h) <= SLACK * np.abs(h))
             after = now.t + h
         else:  # by counting, so that round-off does not add up
             count = now.taken + 1
             last = now.active & (count >= self.total)
-            after = self.span[0] + count * (self.direction * self.options.dt)
+            after = self.span[0] + count * (self.direction * dt)
         if last.any():
             h, after = np.where(last, left, h), np.where(last, self.end, after)
         return h, after, last

@@ -1,4 +1,4 @@
-"""Solution: what `integrate` returns, shaped as scipy's solve_ivp shapes it; and Report, what the corrector says."""
+"""Solution, the result of `integrate` in the form of scipy's solve_ivp, and Report, the summary of the corrections."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ from dataclasses import dataclass, field
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
-from liehom.integrators.run.conservation_statistics import ConservationReport
+from liehom.integrators.run.conservation_statistics import ConservationReport, shown_point
+from liehom.integrators.run.dense import DenseSolution
+from liehom.typing import Array, IntegerArray
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What was reached along the trajectories, and at what cost to the linear algebra.
+    """Orders that were reached along the trajectories, and singular values and residuals of the corrections.
 
     Attributes
     ----------
@@ -26,24 +29,24 @@ class Report:
     wanted_order : int
         The order that was asked for.
     worst_residual : float
-        The largest relative residual of the linear systems of Theorem 5; 0 for plain steps.
+        The largest relative residual of the linear systems of Theorem 5; 0 for steps without correction.
     singular_value : float
-        The smallest singular value that decided the range condition (6.2); inf for plain steps.
+        The smallest singular value that decided the range condition (6.2); inf for steps without correction.
     singular_at : tuple or None
-        (t, point) where it was met. Compiled steps take no singular values: with ``compile`` it is that of the steps
-        between them, and so is the rank.
+        (t, point) where that singular value was met. Compiled steps compute no singular values: with ``compile``, this
+        entry and `rank` are those of the steps between them.
     rank, orbit_dimension : int
-        The least rank met in the range condition, and the dimension of the orbits that it should have.
+        The smallest rank met in the range condition, and the dimension of the orbits, which it should have.
     failed_steps : int
-        At how many steps (of all trajectories) the order asked for was not reached.
+        Number of steps (of all trajectories) at which the order asked for was not reached.
     equilibria : int
-        At how many steps the point was an equilibrium.
+        Number of steps at which the point was an equilibrium.
     inner_product : str
-        The inner product in which corrections are least.
+        The inner product in which the norm of corrections is minimal.
     conservation : ConservationReport or None
-        How first integrals were kept by a `Conserving` step.
+        How well a `Conserving` step conserved its first integrals.
     range_condition : bool or None
-        Whether the correction could be solved everywhere; None for plain steps.
+        Whether every correction could be solved; None for steps without correction.
 
     Examples
     --------
@@ -99,8 +102,7 @@ class Report:
             lines.append(f"range condition: {state}, rank {self.rank} of {self.orbit_dimension}")
             if not self.range_condition:
                 time, point = self.singular_at
-                shown = ", ".join(f"{x:.4g}" for x in point[:8]) + (", ..." if len(point) > 8 else "")
-                lines.append(f"    smallest at t = {time:.6g}, m = ({shown})")
+                lines.append(f"    smallest at t = {time:.6g}, m = ({shown_point(point)})")
         if self.equilibria:
             lines.append(f"equilibria met at {self.equilibria} steps: left as they are")
         if self.conservation is not None:
@@ -116,26 +118,26 @@ class Solution:
 
     Attributes
     ----------
-    t : array (n,), or (..., n) for an ensemble
-        Times; NaN where a trajectory took fewer steps than others. With `t_eval`: these times, (k,).
-    y : array (N, n), or (..., N, n)
+    t : array of shape (n,), or (..., n) for an ensemble
+        Times; filled up with NaN for a trajectory with fewer steps than others. With `t_eval`: these times, (k,).
+    y : array of shape (N, n), or (..., N, n)
         Points. With `t_eval`: (..., N, k), for an ensemble NaN at times that a trajectory has not reached.
     sol : DenseSolution or None
         The solution as a function of t, if dense output was asked for.
     t_events, y_events : list or None
-        For each event the times (k,) and points (k, N) at which it occurred; for an ensemble object arrays of such.
+        For each event the times (k,) and points (k, N) at which it occurred; for an ensemble, object arrays of these.
     nfev : int
-        How often psi was called (on points or on series; a call for a whole ensemble counts once).
+        Number of calls of psi (on points or on series; a call for a whole ensemble counts once).
     njev, nlu : int
-        0; as solve_ivp has them.
+        0; solve_ivp has these entries too.
     status : int
         0: the end was reached; 1: a terminal event occurred; -1: a step failed. For an ensemble -1 if any
-        trajectory failed, else 1 if any was ended by an event.
+        trajectory failed, else 1 if an event ended any trajectory.
     message : str
     success : bool
         Whether status >= 0.
     n_steps : int or array of shape (...,)
-        Steps taken.
+        Number of steps.
     report : Report
     statuses : int or array of shape (...,)
         The status of each trajectory.
@@ -152,17 +154,17 @@ class Solution:
       message: The solver successfully reached the end of the integrat
     """
 
-    t: Any
-    y: Any
-    sol: Any
-    t_events: list[Any] | None
-    y_events: list[Any] | None
+    t: Array
+    y: Array
+    sol: DenseSolution | None
+    t_events: list[npt.NDArray[Any]] | None
+    y_events: list[npt.NDArray[Any]] | None
     nfev: int
     status: int
     message: str
-    n_steps: Any
+    n_steps: int | IntegerArray
     report: Report
-    statuses: Any
+    statuses: int | IntegerArray
     njev: int = field(default=0)
     nlu: int = field(default=0)
 
@@ -172,11 +174,11 @@ class Solution:
         return self.status >= 0
 
     def keys(self) -> tuple[str, ...]:
-        """The names of the entries."""
+        """Names of the entries, a tuple of strings."""
         return NAMES
 
     def __getitem__(self, name: str) -> Any:
-        """The entry of a name, as of a dictionary."""
+        """The entry with a name, as in a dictionary."""
         if name not in NAMES:
             raise KeyError(name)
         return getattr(self, name)
@@ -191,14 +193,14 @@ class Solution:
         return len(NAMES)
 
     def __repr__(self) -> str:
-        shown = [n for n in CARD if n != "statuses" or np.ndim(self.statuses)]
+        shown = [n for n in SUMMARY if n != "statuses" or np.ndim(self.statuses)]
         width = max(map(len, shown)) + 1
-        return "\n".join(f"{name:>{width}}: {_card_entry(self[name], width + 2)}" for name in shown)
+        return "\n".join(f"{name:>{width}}: {_summary_entry(self[name], width + 2)}" for name in shown)
 
 
 _OF_SOLVE_IVP = ("t", "y", "sol", "t_events", "y_events", "nfev", "njev", "nlu", "status", "message", "success")
 NAMES = (*_OF_SOLVE_IVP, "n_steps", "report", "statuses")
-CARD = (
+SUMMARY = (
     "message",
     "success",
     "status",
@@ -214,8 +216,8 @@ CARD = (
 )
 
 
-def _card_entry(value: Any, indent: int) -> str:
-    """A value in a few lines, of which those after the first are indented."""
+def _summary_entry(value: object, indent: int) -> str:
+    """String of an entry in a few lines; lines after the first are indented."""
     if isinstance(value, list):
         text = f"{len(value)} event{'' if len(value) == 1 else 's'}: " + "; ".join(_occurrences(x) for x in value)
         text = textwrap.shorten(text, 100, placeholder=" ...")
@@ -227,7 +229,7 @@ def _card_entry(value: Any, indent: int) -> str:
     return text.replace("\n", "\n" + " " * indent)
 
 
-def _occurrences(found: Any) -> str:
-    """How often an event occurred."""
+def _occurrences(found: npt.NDArray[Any]) -> str:
+    """String of the number of occurrences of an event."""
     count = len(found) if found.dtype != object else sum(len(times) for times in found.reshape(-1))
     return f"{count} time{'' if count == 1 else 's'}"

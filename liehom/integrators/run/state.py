@@ -1,5 +1,6 @@
-"""RunState: the part of a run that changes from step to step; saved in checkpoints, rolled back after an interruption.
+"""RunState, the part of a run that changes from step to step.
 
+Checkpoints save it, and after an interruption it is rolled back to the last whole step.
 Steps replace the arrays of the state and never write into them, so a snapshot needs no copies.
 """
 
@@ -9,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples
 from liehom.typing import Array, BooleanArray, IntegerArray
@@ -22,7 +24,7 @@ class Snapshot(NamedTuple):
 
     arrays: dict[str, Any]
     path_length: int
-    statistics: dict[str, Any]
+    statistics: dict[str, npt.NDArray[Any]]
     occurrences: IntegerArray
     event_rows: int
     samples_done: IntegerArray | None
@@ -104,7 +106,7 @@ class RunState:
             self.samples.done = snapshot.samples_done
 
     # -- checkpoints -------------------------------------------------------------------------------------
-    def arrays(self) -> dict[str, Any]:
+    def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """All that `restore` needs, as named arrays: the content of a checkpoint."""
         made = {name: np.asarray(getattr(self, name)) for name in (*ARRAYS, "calls")}
         made |= {f"before_{i}": g for i, g in enumerate(self.event_values)}
@@ -112,8 +114,8 @@ class RunState:
             made |= {f"{part}_{name}": value for name, value in record.arrays().items()}
         return made
 
-    def restore(self, made: dict[str, Any]) -> None:
-        """Replace the state by that of a checkpoint, bit for bit."""
+    def restore(self, made: dict[str, npt.NDArray[Any]]) -> None:
+        """Replace the state by the content of a checkpoint, bit for bit."""
         for name in ARRAYS:
             setattr(self, name, made[name])
         self.calls = int(made["calls"])

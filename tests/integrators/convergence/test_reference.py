@@ -307,5 +307,5 @@ def test_what_the_distance_refuses() -> None:
         orbit_distance(ref, np.full((4, 3), np.nan), 1.0)
     with pytest.raises(InputError, match="window"):
         orbit_distance(ref, sphere(4), 1.0, window=-1.0)
-    with pytest.raises(InputError, match="no number"):
+    with pytest.raises(InputError, match="not a number"):
         orbit_distance(ref, sphere(4), "soon")
