@@ -162,7 +162,7 @@ def point_in(representation: Representation, text: str) -> tuple[Representation,
     raw = vector(row_values(text, "point"), "point", floats=True)
     if representation.field.exact and any(type(x) is float for x in raw.values):
         return representation.over(RR), raw.numbers(RR)
-    needed = common_field(sorted(raw.texts())) if representation.field.degree == 1 else None
+    needed = common_field(sorted(raw.radicals())) if representation.field.degree == 1 else None
     if representation.field.exact and needed is not None and needed.degree > 1:
         representation = representation.over(needed)
     return representation, raw.numbers(representation.field)

@@ -1,20 +1,12 @@
-"""Files: algebras, pairs, representations and certificates in JSON, read strictly; solutions as arrays.
+"""Files and formats: algebras, pairs, representations and certificates in JSON, solutions as .npz, other tools.
 
-json_text            a text to a JSON object: no duplicate keys, no NaN, unknown keys named
-values               lists of JSON values to numbers of a field, quickly
-algebra_file         {"dimension", "structure_constants", ...} to a LieAlgebra
-pair_file            {"dimension", "structure_constants", "subalgebra", ...} to a Pair
-problem              `Problem`: the field, the start and the options of an integration
-gap_format           `to_gap`, `from_gap`: the structure constant tables of GAP
-sage_format          `to_sage`, `from_sage`: the dictionaries of brackets of Sage
-latex_text           `latex` of brackets, matrices, subalgebras, numbers
-sympy_format         `to_sympy`
-representation_file  {"matrices", "point", "generator", ...} to a Representation and a Problem
-solution_file        a solution as an .npz archive: t, y and the report
-files                `load`, `load_pair`, `load_problem`, `loads`, `from_json`, `to_json`, `dump`
+`load`, `loads`, `from_json`, `to_json` and `dump` read and write JSON (`files`, with one module for each format);
+`json_reader` and `number_lists` read JSON strictly and convert numbers. `problem_file` is the `Problem` that a
+representation file states for an integration. `gap_format`, `sage_format`, `sympy_format` and `latex_format` write, and
+partly read, the formats of other programs.
 
-Whatever is refused raises `FormatError` or a more specific child of `InputError` that names the key or the
-index; values are parsed by the whitelist grammar of `liehom.scalars`, never executed.
+Input that is malformed raises `FormatError`, or a more specific `InputError`, that names the key or the index. Values
+are parsed by the grammar of `liehom.scalars` and never executed. docs/formats.md describes the formats.
 """
 
 from liehom.io.files import dump as dump

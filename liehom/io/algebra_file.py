@@ -1,12 +1,12 @@
-"""The format of an algebra: dimension and structure constants [i, j, k, value] with i < j.
+"""Format of an algebra file: dimension and structure constants [i, j, k, value] with i < j.
 
-The pair file has the same keys for its algebra, and its reader is built from the pieces here.
+A pair file has the same keys for its algebra, and its reader uses the functions below.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -15,24 +15,26 @@ from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FormatError
 from liehom.io.json_reader import as_list, check_header, check_keys, is_float64, kind_of, shown
 from liehom.io.number_lists import RawList, field_for, write_field, write_number
-from liehom.scalars import Field
+from liehom.scalars import ExactField, Field
+from liehom.typing import IntegerArray
 
 FORMAT = "liehom-algebra"
 REQUIRED = ("dimension", "structure_constants")
 OPTIONAL = ("format", "version", "name", "basis", "field", "arithmetic")
 MAX_DIMENSION = 4096
 MAX_NAME = 100
+"""Characters of the longest name."""
 
 
 def read_algebra(data: Mapping[str, Any]) -> LieAlgebra:
-    """The Lie algebra that a parsed JSON object describes; the axioms are proved.
+    """Lie algebra that a parsed JSON object describes, after a proof of the axioms.
 
     Raises
     ------
     FormatError, ParseError
-        Naming the key and the index.
+        If the object is malformed; names the key and the index.
     JacobiError
-        If it is not a Lie algebra.
+        If the brackets are not those of a Lie algebra.
 
     Examples
     --------
@@ -51,7 +53,7 @@ def read_algebra(data: Mapping[str, Any]) -> LieAlgebra:
 
 
 def write_algebra(algebra: LieAlgebra) -> dict[str, Any]:
-    """The JSON object of an algebra; a name that is too long for a file is left out.
+    """JSON object of an algebra; a name of more than 100 characters is left out.
 
     Examples
     --------
@@ -66,7 +68,7 @@ def write_algebra(algebra: LieAlgebra) -> dict[str, Any]:
 
 
 def algebra_keys(algebra: LieAlgebra) -> dict[str, Any]:
-    """The keys that an algebra has in every file: its field, dimension, basis names and structure constants."""
+    """Keys of an algebra in every file: its field, dimension, basis names and structure constants."""
     out: dict[str, Any] = {**write_field(algebra.field), "dimension": algebra.dimension}
     if algebra.basis_names != tuple(f"e{i}" for i in range(algebra.dimension)):
         out["basis"] = list(algebra.basis_names)
@@ -75,9 +77,9 @@ def algebra_keys(algebra: LieAlgebra) -> dict[str, Any]:
     return out
 
 
-# -- pieces ----------------------------------------------------------------------------------------------
-def read_dimension(value: Any) -> int:
-    """A dimension from 0 to `MAX_DIMENSION`, or a `FormatError`."""
+# -- parts of a file ----------------------------------------------------------------------------------------------
+def read_dimension(value: object) -> int:
+    """Dimension from 0 to `MAX_DIMENSION`; `FormatError` if the value is not one."""
     if type(value) is not int or value < 0:
         raise FormatError(f"dimension is {shown(value)}, expected an integer from 0")
     if value > MAX_DIMENSION:
@@ -85,8 +87,8 @@ def read_dimension(value: Any) -> int:
     return value
 
 
-def read_names(value: Any, n: int) -> tuple[str, ...]:
-    """Distinct printable names of the n basis elements, or a `FormatError`."""
+def read_names(value: object, n: int) -> tuple[str, ...]:
+    """Distinct printable names of the n basis elements; `FormatError` if the value is not such a list."""
     names = as_list(value, "basis")
     for i, name in enumerate(names):
         read_name(name, f"basis[{i}]")
@@ -98,18 +100,19 @@ def read_names(value: Any, n: int) -> tuple[str, ...]:
     return tuple(names)
 
 
-def read_name(value: Any, what: str) -> str:
-    """A printable name, or a `FormatError` that says which key has none."""
+def read_name(value: object, what: str) -> str:
+    """Printable name; `FormatError` names the key `what` if the value is not one."""
     if not isinstance(value, str) or not value or not value.isprintable() or len(value) > MAX_NAME:
         raise FormatError(f"{what} is {shown(value)}, expected a printable name of 1 to {MAX_NAME} characters")
     return value
 
 
-Index = tuple[Any, Any, Any]
+Index: TypeAlias = tuple[IntegerArray, IntegerArray, IntegerArray]
+"""The columns i, j, k of structure constants."""
 
 
-def read_entries(value: Any, n: int, floats: bool) -> tuple[Index, RawList]:
-    """The columns i, j, k as arrays, and the values."""
+def read_entries(value: object, n: int, floats: bool) -> tuple[Index, RawList]:
+    """Columns i, j, k of the structure constants as arrays, and their values."""
     entries = as_list(value, "structure_constants")
     if not entries:
         empty = np.zeros(0, dtype=np.int64)
@@ -127,10 +130,10 @@ def read_entries(value: Any, n: int, floats: bool) -> tuple[Index, RawList]:
     flat = (index[0] * n + index[1]) * n + index[2]
     if len(np.unique(flat)) < len(flat):
         _refuse_duplicate(entries)
-    return index, RawList.checked(values, lambda x: _place(entries, x), floats=floats)
+    return index, RawList.checked(values, lambda x: _position(entries, x), floats=floats)
 
 
-def _place(entries: list[Any], x: int) -> str:
+def _position(entries: list[Any], x: int) -> str:
     i, j, k = entries[x][:3]
     return f"the value of structure_constants[{x}] (i, j, k = {i}, {j}, {k})"
 
@@ -138,19 +141,21 @@ def _place(entries: list[Any], x: int) -> str:
 def _refuse_entry(entries: list[Any], n: int) -> None:
     """Raise for the first entry that is not [i, j, k, value] with 0 <= i < j < n and 0 <= k < n."""
     for x, entry in enumerate(entries):
-        place = f"structure_constants[{x}]"
+        position = f"structure_constants[{x}]"
         if not isinstance(entry, (list, tuple)):
-            raise FormatError(f"{place} is {kind_of(entry)}, expected [i, j, k, value]")
+            raise FormatError(f"{position} is {kind_of(entry)}, expected [i, j, k, value]")
         if len(entry) != 4:
-            raise FormatError(f"{place} has {len(entry)} items, expected [i, j, k, value]")
+            raise FormatError(f"{position} has {len(entry)} items, expected [i, j, k, value]")
         for name, index in zip("ijk", entry[:3], strict=True):
             if type(index) is not int:
-                raise FormatError(f"{place}: the index {name} is {shown(index)}, expected an integer")
+                raise FormatError(f"{position}: the index {name} is {shown(index)}, expected an integer")
             if not 0 <= index < n:
-                raise FormatError(f"{place}: the index {name} = {shown(index)} is out of range, expected 0 to {n - 1}")
+                raise FormatError(
+                    f"{position}: the index {name} = {shown(index)} is out of range, expected 0 to {n - 1}"
+                )
         if entry[0] >= entry[1]:
             raise FormatError(
-                f"{place} has i = {entry[0]} and j = {entry[1]}: only i < j is listed, "
+                f"{position} has i = {entry[0]} and j = {entry[1]}: only i < j is listed, "
                 "[e_j, e_i] = -[e_i, e_j] is understood"
             )
 
@@ -166,8 +171,8 @@ def _refuse_duplicate(entries: list[Any]) -> None:
 
 
 def made_table(field: Field, n: int, index: Index, values: RawList) -> StructureConstants:
-    """The bracket table of entries read; zero values are dropped."""
-    if field.exact:
+    """Structure constants from indices and values; zero values are dropped."""
+    if isinstance(field, ExactField):
         integers = values.integers()
         if integers is not None:
             return StructureConstants.from_integers(field, n, *index, integers)

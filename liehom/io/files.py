@@ -1,4 +1,4 @@
-"""The verbs: load, load_pair, load_problem, loads, from_json, to_json, dump."""
+"""Reading and writing of JSON files: load, load_pair, load_problem, loads, from_json, to_json, dump."""
 
 from __future__ import annotations
 
@@ -15,30 +15,32 @@ from liehom.io.json_reader import kind_of, parse_object, read_object, shown
 from liehom.io.problem_file import Problem
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
+from liehom.typing import VectorLike
 
 FORMATS = (algebra_file.FORMAT, pair_file.FORMAT, representation_file.FORMAT)
 
 
 def load(path: str | os.PathLike[str]) -> LieAlgebra | Pair | Representation:
-    """Read a file: a LieAlgebra from an algebra file, a Pair or a Representation from theirs.
+    """LieAlgebra, Pair or Representation in a file.
 
-    A representation file with a point determines a Pair.
+    A representation file with a point gives the Pair that the point determines.
 
     Parameters
     ----------
     path : path_like
-        A JSON file as described in the chapter on file formats.
+        A JSON file of a format in docs/formats.md.
 
     Raises
     ------
     FormatError, ParseError, ShapeError
-        If it is not of the documented form; names the key and the index.
+        If the file is not of the documented form; names the key and the index.
     JacobiError, NotASubalgebraError, DependentRowsError, NotClosedError
-        If it does not describe what it should.
+        If the data are not a Lie algebra, a pair or a representation.
 
     Notes
     -----
-    An algebra file says so, ``"format": "liehom-algebra"``: without `format` a file has matrices or is a pair.
+    An algebra file must state ``"format": "liehom-algebra"``. A file without `format` is a representation file if it
+    has `matrices`, else a pair file.
 
     Examples
     --------
@@ -52,12 +54,12 @@ def load(path: str | os.PathLike[str]) -> LieAlgebra | Pair | Representation:
 
 
 def load_pair(path: str | os.PathLike[str]) -> Pair:
-    """Read a pair; a representation file must have a point.
+    """Pair in a pair file, or in a representation file with a point.
 
     Raises
     ------
     FormatError
-        As `load`, and for an algebra file or a representation file without a point.
+        As `load`, and if the file is an algebra file, or a representation file without a point.
 
     Examples
     --------
@@ -77,12 +79,12 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
 
 
 def load_problem(path: str | os.PathLike[str]) -> Problem:
-    """Read a representation file with its point, generator and options; the point may have floats.
+    """Problem in a representation file: its point, generator and options; the point may have floats.
 
     Raises
     ------
     FormatError, ParseError, ShapeError, DependentRowsError, NotClosedError
-        As `load`, and for a pair file.
+        As `load`, and if the file is a pair or an algebra file.
 
     Examples
     --------
@@ -106,7 +108,7 @@ def loads(text: str, *, problem: Literal[True]) -> Problem: ...
 
 
 def loads(text: str, *, problem: bool = False) -> LieAlgebra | Pair | Representation | Problem:
-    """As `load` (or `load_problem`), from a text.
+    """LieAlgebra, Pair or Representation in a JSON string, as `load` reads a file; with `problem`, the Problem.
 
     Examples
     --------
@@ -118,7 +120,7 @@ def loads(text: str, *, problem: bool = False) -> LieAlgebra | Pair | Representa
 
 
 def from_json(data: Mapping[str, Any]) -> LieAlgebra | Pair | Representation:
-    """As `load`, from a parsed JSON object.
+    """LieAlgebra, Pair or Representation in a parsed JSON object, as `load` reads a file.
 
     Examples
     --------
@@ -141,8 +143,8 @@ def _problem(data: Mapping[str, Any]) -> Problem:
     return representation_file.read_problem(data)
 
 
-def _format(data: Any) -> str:
-    """The stated format, or the one whose keys are there."""
+def _format(data: object) -> str:
+    """The format that the object states; else the representation format if it has matrices, else the pair format."""
     if not isinstance(data, Mapping):
         raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
     stated = data.get("format")
@@ -155,15 +157,15 @@ def _format(data: Any) -> str:
     return str(stated)
 
 
-def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
-    """The JSON object of an algebra, a pair, a representation (with a point, if given), a certificate or a verdict.
+def to_json(obj: object, *, point: VectorLike | None = None) -> dict[str, Any]:
+    """JSON object of an algebra, a pair, a representation (with a point, if given), a certificate or a verdict.
 
-    A mapping is taken to be a JSON object already.
+    A mapping is returned as it is, as a dict.
 
     Raises
     ------
     FormatError
-        For anything else.
+        If `obj` is of another type.
 
     Examples
     --------
@@ -171,28 +173,29 @@ def to_json(thing: Any, *, point: Any = None) -> dict[str, Any]:
     >>> to_json(lh.Pair(lh.LieAlgebra({(0, 1): {1: "1/2"}}), [[1, 0]]))["structure_constants"]
     [[0, 1, 1, '1/2']]
     """
-    if isinstance(thing, LieAlgebra):
-        return algebra_file.write_algebra(thing)
-    if isinstance(thing, Pair):
-        return pair_file.write_pair(thing)
-    if isinstance(thing, Representation):
-        return representation_file.write_representation(thing, point)
-    if isinstance(thing, Mapping):
-        return dict(thing)
-    if callable(getattr(thing, "to_json", None)):
-        return dict(thing.to_json())
+    if isinstance(obj, LieAlgebra):
+        return algebra_file.write_algebra(obj)
+    if isinstance(obj, Pair):
+        return pair_file.write_pair(obj)
+    if isinstance(obj, Representation):
+        return representation_file.write_representation(obj, point)
+    if isinstance(obj, Mapping):
+        return dict(obj)
+    made = getattr(obj, "to_json", None)
+    if callable(made):
+        return dict(made())
     raise FormatError(
-        f"a {type(thing).__name__} has no file format; expected an algebra, pair, representation or certificate"
+        f"a {type(obj).__name__} has no file format; expected an algebra, pair, representation or certificate"
     )
 
 
-def dump(thing: Any, path: str | os.PathLike[str], *, point: Any = None) -> None:
-    """Write `to_json` of a thing to a file, one line per entry or row.
+def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None = None) -> None:
+    """Write the JSON object `to_json(obj)` to a file, with one line per entry or row.
 
     Raises
     ------
     FormatError
-        If the thing has no format, or the file cannot be written.
+        If `obj` has no file format, or the file cannot be written.
 
     Examples
     --------
@@ -210,7 +213,7 @@ def dump(thing: Any, path: str | os.PathLike[str], *, point: Any = None) -> None
       ["1", "0"]
      ]}
     """
-    text = _laid_out(to_json(thing, point=point))
+    text = _laid_out(to_json(obj, point=point))
     try:
         Path(path).write_text(text, encoding="utf-8")
     except OSError as error:

@@ -1,17 +1,17 @@
-"""Structure constants as GAP writes and reads them; indices count from 1 there.
+"""Structure constant tables of GAP, where indices count from 1.
 
     T := EmptySCTable( 3, 0, "antisymmetric" );;
     SetEntrySCTable( T, 1, 2, [ 1, 3 ] );;                     [e_1, e_2] = 1 e_3
     L := LieAlgebraByStructureConstants( Rationals, T );;
 
-What GAP prints for a table is a list of n rows of n entries [ [ indices ], [ coefficients ] ], then the flag -1
-(antisymmetric) and the zero 0.  Both are read, by a parser that executes nothing.
+GAP prints a table as a list of n rows of n entries [ [ indices ], [ coefficients ] ], followed by the flag -1
+(antisymmetric) and the zero 0. `from_gap` reads statements and printed tables with a parser that executes nothing.
 """
 
 from __future__ import annotations
 
 import re
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import FormatError
@@ -20,6 +20,7 @@ from liehom.io.json_reader import shown
 from liehom.scalars import QQ, Scalar
 
 MAX_DEPTH = 8
+"""Nesting of the deepest list that is read."""
 IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z_0-9]*", re.ASCII)
 _TOKEN = re.compile(
     r"""\s*(?:(?P<text>"(?:[^"\\]|\\.)*")|(?P<number>[+-]?[0-9]+(?:/[0-9]+)?)|(?P<name>[A-Za-z_][A-Za-z_0-9.]*)"""
@@ -28,28 +29,30 @@ _TOKEN = re.compile(
 )
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
 
-Table = dict[tuple[int, int], dict[int, Scalar]]
+Table: TypeAlias = dict[tuple[int, int], dict[int, Scalar]]
+Value: TypeAlias = Any
+"""Value of an expression of GAP: a number of QQ, a string, a list, a field or a table."""
 
 
 def to_gap(algebra: LieAlgebra, name: str = "L") -> str:
-    """The algebra as GAP code that defines a variable with it.
+    """GAP code that defines an algebra as a variable.
 
     Parameters
     ----------
     algebra : LieAlgebra
         Over QQ.
     name : str
-        The variable to define; the table is kept in the variable `name` + "_T".
+        Name of the variable; the table gets the name `name` + "_T".
 
     Returns
     -------
     str
-        Statements that GAP runs as they are. The basis elements have the names of `algebra.basis_names`.
+        Statements of GAP. The basis elements have the names `algebra.basis_names`.
 
     Raises
     ------
     FormatError
-        If the algebra is over a number field or float64, or the name is no identifier.
+        If the algebra is over a number field or float64, or the name is not an identifier.
 
     Examples
     --------
@@ -74,7 +77,7 @@ def to_gap(algebra: LieAlgebra, name: str = "L") -> str:
 
 
 def from_gap(text: str, *, name: str | None = None) -> LieAlgebra:
-    """The Lie algebra of a structure constant table of GAP; the axioms are proved, which GAP does not do.
+    """Lie algebra of a structure constant table of GAP, after a proof of the axioms (GAP does not check them).
 
     Parameters
     ----------
@@ -82,14 +85,14 @@ def from_gap(text: str, *, name: str | None = None) -> LieAlgebra:
         The nested list that GAP prints for ``StructureConstantsTable( Basis( L ) )``, or statements with
         ``EmptySCTable``, ``SetEntrySCTable`` and ``LieAlgebraByStructureConstants`` such as `to_gap` writes.
     name : str, optional
-        A name for the algebra.
+        Name of the algebra.
 
     Raises
     ------
     FormatError
-        If the text is neither; names the place.
+        If the string is neither of these; shows the part that could not be read.
     StructureError, JacobiError
-        If the table is not antisymmetric or not that of a Lie algebra.
+        If the table is not antisymmetric, or the Jacobi identity fails.
 
     Examples
     --------
@@ -99,16 +102,16 @@ def from_gap(text: str, *, name: str | None = None) -> LieAlgebra:
       [e0, e1] = 1/2*e1
     """
     if not isinstance(text, str):
-        raise FormatError(f"a table of GAP is a text, got {shown(text)}")
+        raise FormatError(f"a table of GAP is a string, got {shown(text)}")
     n, table, names = _Script(text).result()
     return LieAlgebra(table, QQ, dimension=n, basis=names, name=name)
 
 
 def require_rational(algebra: LieAlgebra, tool: str) -> None:
-    """Refuse an algebra that is not over QQ: the texts of other tools carry rational numbers."""
+    """Raise `FormatError` if an algebra is not over QQ: the formats of other tools have rational numbers only."""
     if algebra.field != QQ:
         raise FormatError(
-            f"the text for {tool} carries rational structure constants, these are over {algebra.field.name}: "
+            f"the format of {tool} has rational structure constants, these are over {algebra.field.name}: "
             "write an algebra file with dump, or find a basis over QQ"
         )
 
@@ -119,14 +122,14 @@ def _quoted(text: str) -> str:
 
 
 class _Script:
-    """Statements `name := value;`, `Function( ... );` or one value, with three functions and no loops."""
+    """Parser of statements `name := value;` and `Function( ... );`, or of one value, for three functions."""
 
     def __init__(self, text: str) -> None:
         # GAP breaks long lines inside numbers, with a backslash
         joined = _COMMENT.sub(lambda found: found[1] or "", text.replace("\\\r\n", "").replace("\\\n", ""))
         self.tokens: list[tuple[str, str]] = []
         self.at = 0
-        self.variables: dict[str, Any] = {}
+        self.variables: dict[str, Value] = {}
         self.names: tuple[str, ...] | None = None
         position, end = 0, len(joined.rstrip())
         while position < end:
@@ -137,8 +140,8 @@ class _Script:
             position = match.end()
 
     def result(self) -> tuple[int, Table, tuple[str, ...] | None]:
-        """Dimension, brackets and names of the last table that the text mentions."""
-        last: Any = None
+        """Dimension, brackets and names of the last table in the string."""
+        last: Value = None
         while self.at < len(self.tokens):
             if self.peek(1) == ":=":
                 key = self.take("name")
@@ -156,10 +159,12 @@ class _Script:
 
     # -- tokens ------------------------------------------------------------------------------------------
     def peek(self, ahead: int = 0) -> str:
-        place = self.at + ahead
-        return self.tokens[place][1] if place < len(self.tokens) else ""
+        """Token `ahead` positions after the current one, or "" after the end."""
+        position = self.at + ahead
+        return self.tokens[position][1] if position < len(self.tokens) else ""
 
     def take(self, kind: str) -> str:
+        """Current token, which must be of this kind or this string; moves to the next one."""
         found = self.tokens[self.at] if self.at < len(self.tokens) else ("", "the end")
         if found[0] != kind and found[1] != kind:
             raise FormatError(f"not a table of GAP: expected {kind}, found {shown(found[1])}")
@@ -167,8 +172,8 @@ class _Script:
         return found[1]
 
     # -- values ------------------------------------------------------------------------------------------
-    def value(self, depth: int = 0) -> Any:
-        """A list, number, text, variable, or the value of a call."""
+    def value(self, depth: int = 0) -> Value:
+        """List, number, string, value of a variable, or value of a call."""
         if depth > MAX_DEPTH:
             raise FormatError("not a table of GAP: its lists are nested too deeply")
         kind, token = self.tokens[self.at] if self.at < len(self.tokens) else ("", "the end")
@@ -189,8 +194,8 @@ class _Script:
             raise FormatError(f"not a table of GAP: {shown(name)} is not read; expected rational numbers and lists")
         return self.variables[name]
 
-    def list(self, depth: int) -> list[Any]:
-        """A list, or a range [ a .. b ]."""
+    def list(self, depth: int) -> list[Value]:
+        """List, in which a range [ a .. b ] stands for its integers."""
         self.take("[")
         found: list[Any] = []
         while self.peek() != "]":
@@ -203,8 +208,8 @@ class _Script:
         self.at += 1
         return found
 
-    def call(self, name: str, depth: int) -> Any:
-        """One of the three functions of a table."""
+    def call(self, name: str, depth: int) -> Value:
+        """Value of a call of one of the three functions."""
         self.take("(")
         found: list[Any] = []
         while self.peek() != ")":
@@ -230,7 +235,7 @@ class _Script:
 
 
 class _Table:
-    """Brackets of a table in the making; one that is antisymmetric sets [e_j, e_i] with [e_i, e_j]."""
+    """Brackets of an incomplete table; in an antisymmetric table, setting [e_i, e_j] sets [e_j, e_i] too."""
 
     def __init__(self, dimension: int, *, antisymmetric: bool = False) -> None:
         self.dimension = dimension
@@ -238,37 +243,37 @@ class _Table:
         self.brackets: Table = {}
 
     def complete(self) -> Table:
-        """The brackets, those that are not set being 0 where they do not follow by antisymmetry."""
+        """All brackets; a bracket that was not set is 0, or follows by antisymmetry."""
         if not self.antisymmetric:
             for i, j in list(self.brackets):
                 self.brackets.setdefault((j, i), {})
         return self.brackets
 
-    def set(self, i: Any, j: Any, indices: Any, coefficients: Any, paired: bool = True) -> _Table:
-        """Set [e_i, e_j], given with indices from 1."""
-        place = f"entry ({shown(i)}, {shown(j)})"
+    def set(self, i: Value, j: Value, indices: Value, coefficients: Value, paired: bool = True) -> _Table:
+        """Set [e_i, e_j], with indices from 1; returns the table."""
+        where = f"entry ({shown(i)}, {shown(j)})"
         if not (paired and isinstance(indices, list) and isinstance(coefficients, list)):
-            raise FormatError(f"{place} of the table is not coefficients with indices")
+            raise FormatError(f"{where} of the table is not coefficients with indices")
         if len(indices) != len(coefficients) or len({str(k) for k in indices}) < len(indices):
-            raise FormatError(f"{place} of the table has {len(indices)} indices, {len(coefficients)} coefficients")
-        x, y, *where = (self.index(k, place) for k in (i, j, *indices))
+            raise FormatError(f"{where} of the table has {len(indices)} indices, {len(coefficients)} coefficients")
+        x, y, *columns = (self.index(k, where) for k in (i, j, *indices))
         for value in coefficients:
             if not isinstance(value, type(QQ.one)):
-                raise FormatError(f"{place} of the table has the coefficient {shown(value)}, expected a number")
+                raise FormatError(f"{where} of the table has the coefficient {shown(value)}, expected a number")
         if self.antisymmetric:
             self.brackets.pop((y, x), None)
-        self.brackets[x, y] = dict(zip(where, coefficients, strict=True))
+        self.brackets[x, y] = dict(zip(columns, coefficients, strict=True))
         return self
 
-    def index(self, k: Any, place: str) -> int:
-        """An index from 0, of one from 1."""
+    def index(self, k: Value, where: str) -> int:
+        """Index from 0 for an index from 1."""
         if not isinstance(k, type(QQ.one)) or k.q != 1 or not 1 <= k <= self.dimension:
-            raise FormatError(f"{place} of the table: the index {k} is out of range, expected 1 to {self.dimension}")
+            raise FormatError(f"{where} of the table: the index {k} is out of range, expected 1 to {self.dimension}")
         return int(k.p) - 1
 
 
-def _from_lists(rows: list[Any]) -> _Table:
-    """The nested list: n rows, the flag of symmetry, zero."""
+def _from_lists(rows: list[Value]) -> _Table:
+    """Table from the nested list: n rows, the flag of symmetry, zero."""
     n = len(rows) - 2
     if n < 0 or isinstance(rows[-2], list) or isinstance(rows[-1], list):
         raise FormatError("a table of GAP ends with the flag -1 and the zero 0 after its rows")
@@ -285,7 +290,7 @@ def _from_lists(rows: list[Any]) -> _Table:
     return table
 
 
-def _dimension(n: Any) -> int:
+def _dimension(n: Value) -> int:
     if not isinstance(n, type(QQ.one)) or n.q != 1 or not 0 <= n <= MAX_DIMENSION:
         raise FormatError(f"the dimension of the table is {shown(n)}, expected an integer up to {MAX_DIMENSION}")
     return int(n.p)
@@ -298,14 +303,14 @@ def _number(token: str) -> Scalar:
     return QQ.convert(token.lstrip("+"))
 
 
-def _range(first: Any, last: Any) -> list[Any]:
+def _range(first: Value, last: Value) -> list[Value]:
     if any(not isinstance(x, type(QQ.one)) or x.q != 1 for x in (first, last)) or last - first > MAX_DIMENSION:
         _refuse("a range [ a .. b ] needs two integers")
     return [QQ.convert(k) for k in range(int(first.p), int(last.p) + 1)]
 
 
-def _names(given: list[Any], table: Any) -> tuple[str, ...] | None:
-    """The names of basis elements: one list, or one text each; a single text is a prefix."""
+def _names(given: list[Value], table: Value) -> tuple[str, ...] | None:
+    """Names of basis elements from a list or from separate strings; a single string is a prefix."""
     if not isinstance(table, _Table):
         _refuse("LieAlgebraByStructureConstants needs a table")
     names = given[0] if len(given) == 1 and isinstance(given[0], list) else given
@@ -314,7 +319,7 @@ def _names(given: list[Any], table: Any) -> tuple[str, ...] | None:
     if not names:
         return None
     if len(names) != table.dimension or not all(isinstance(x, str) for x in names):
-        _refuse(f"the names {shown(names)} are not texts, one for each of {table.dimension} basis elements")
+        _refuse(f"the names {shown(names)} are not strings, one for each of {table.dimension} basis elements")
     return tuple(names)
 
 

@@ -1,4 +1,4 @@
-"""From a text to a JSON object, strictly: one object, no key twice, no NaN, no infinity."""
+"""Strict JSON: a string or file holds one object, without repeated keys, NaN or infinities."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from typing import Any, NoReturn
 from liehom.errors import FormatError
 
 MAX_SHOWN = 60
+"""Characters of a value that a message shows."""
 OTHER_TOOLS = (
     "`liehom describe` reads a file of GAP if it ends in .g or .gap, one of Sage if it ends in .sage; "
-    "liehom.io.from_gap and from_sage read their text"
+    "liehom.io.from_gap and from_sage read strings"
 )
 MAX_INTEGER_DIGITS = 4000
-"""Integers of more digits are kept as texts: Python refuses to read them, the grammar of values does not."""
+"""Longer integers stay strings: Python refuses to convert them, the grammar of values does not."""
 
 
 def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The JSON object that a file holds.
+    """JSON object in a file, as a dict.
 
     Raises
     ------
@@ -38,7 +39,7 @@ def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
     try:
         text = Path(path).read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise FormatError(f"{str(path)!r} is not a text in UTF-8 (byte {error.start}), so not a JSON file") from None
+        raise FormatError(f"{str(path)!r} is not text in UTF-8 (byte {error.start}), so not a JSON file") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise FormatError(f"{str(path)!r} cannot be read: {reason}") from None
@@ -51,12 +52,12 @@ def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def parse_object(text: str) -> dict[str, Any]:
-    """The JSON object that a text holds.
+    """JSON object in a string, as a dict.
 
     Raises
     ------
     FormatError
-        Where the text is not JSON, is not an object, gives a key twice, or holds NaN or an infinity.
+        If the string is not JSON, is not an object, repeats a key, or holds NaN or an infinity.
 
     Examples
     --------
@@ -76,7 +77,7 @@ def parse_object(text: str) -> dict[str, Any]:
     return data
 
 
-def _decoded(text: str) -> Any:
+def _decoded(text: str) -> object:
     options: dict[str, Any] = {"object_pairs_hook": _distinct, "parse_constant": _no_constant}
     try:
         return json.loads(text, **options)
@@ -107,7 +108,7 @@ def _no_constant(name: str) -> NoReturn:
 
 # -- what the readers of the formats share ---------------------------------------------------------------
 def check_keys(data: Mapping[str, Any], required: Collection[str], optional: Collection[str], what: str) -> None:
-    """Refuse unknown and missing keys, naming them."""
+    """Raise `FormatError` if a key is unknown or missing; the message names it."""
     unknown = [key for key in data if key not in required and key not in optional]
     if unknown:
         named = ", ".join(shown(key) for key in unknown[:5])
@@ -119,7 +120,7 @@ def check_keys(data: Mapping[str, Any], required: Collection[str], optional: Col
 
 
 def check_header(data: Mapping[str, Any], expected: str) -> None:
-    """Refuse another `format` than the expected one, and another `version` than 1; both may be absent."""
+    """Raise `FormatError` if `format` is not the expected one, or `version` is not 1; both may be absent."""
     if "format" in data and data["format"] != expected:
         raise FormatError(f"format is {shown(data['format'])}, expected {expected!r}")
     if "version" in data and (type(data["version"]) is not int or data["version"] != 1):
@@ -127,7 +128,7 @@ def check_header(data: Mapping[str, Any], expected: str) -> None:
 
 
 def is_float64(data: Mapping[str, Any]) -> bool:
-    """Whether the file asks for numerical arithmetic."""
+    """Whether the file states "arithmetic": "float64"."""
     if "arithmetic" not in data:
         return False
     value = data["arithmetic"]
@@ -138,33 +139,33 @@ def is_float64(data: Mapping[str, Any]) -> bool:
     return bool(value == "float64")
 
 
-def as_list(value: Any, what: str) -> list[Any]:
-    """A JSON list (from Python: also a tuple), or a `FormatError`."""
+def as_list(value: object, what: str) -> list[Any]:
+    """List in a JSON value (from Python also a tuple); `FormatError` names `what` if the value is not a list."""
     if not isinstance(value, (list, tuple)):
         raise FormatError(f"{what} must be a list, not {kind_of(value)}")
     return list(value) if isinstance(value, tuple) else value
 
 
-def kind_of(value: Any) -> str:
-    """What a JSON value is, in words."""
+def kind_of(value: object) -> str:
+    """Kind of a JSON value in words, with its article."""
     match value:
         case None:
             return "null"
         case bool():
-            return "a truth value"
+            return "a boolean"
         case dict():
             return "an object"
         case list() | tuple():
             return "a list"
         case str():
-            return "a text"
+            return "a string"
         case int() | float():
             return "a number"
     return f"a {type(value).__name__}"
 
 
-def shown(value: Any) -> str:
-    """A short repr for messages, safe for huge integers and odd characters."""
+def shown(value: object) -> str:
+    """Short ASCII repr for messages; it works for huge integers and deep nesting too."""
     try:
         text = ascii(value)
     except (ValueError, RecursionError):  # an integer of too many digits for Python to print
@@ -173,7 +174,7 @@ def shown(value: Any) -> str:
 
 
 def fraction_for(value: float) -> str:
-    """The fraction that a float was probably meant to be, as a text.
+    """Fraction that a decimal float was probably meant to be, as a string; "p/q" if it is very large or small.
 
     Examples
     --------

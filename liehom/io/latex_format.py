@@ -1,18 +1,18 @@
-""" "LaTeX of brackets, matrices, subalgebras and numbers, for use inside mathematics.
+r"""LaTeX of brackets, matrices, subalgebras and numbers, for use in math mode.
 
-\begin{aligned} [e_0, e_1] &= e_2 \\ ... \\end{aligned},      \begin{pmatrix} -2 & 0 \\ 0 & \frac{1}{2} \\end{pmatrix}
+\begin{aligned} [e_0, e_1] &= e_2 \\ ... \end{aligned},      \begin{pmatrix} -2 & 0 \\ 0 & \frac{1}{2} \end{pmatrix}
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, NumberField
+from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, Matrix, NumberField, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.floating import FloatMatrix
 
@@ -21,34 +21,33 @@ GREEK = re.compile(
     "omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Upsilon|Phi|Psi|Omega"
 )
 SIGNIFICANT_DIGITS = 6
+"""Digits of floats."""
 MAX_PMATRIX_COLUMNS = 10
-"""Matrices of amsmath have no more columns, unless a counter of LaTeX is raised."""
+"""A matrix of amsmath has at most this many columns, unless a counter of LaTeX is raised."""
 
 _SPECIAL = {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
-Name = Callable[[int], str]
 
-
-def latex(thing: Any, *, table: bool = False) -> str:
-    r"""LaTeX of an algebra's brackets, a matrix, a subalgebra, a representation or a number.
+def latex(obj: object, *, table: bool = False) -> str:
+    r"""LaTeX of an algebra's brackets, a matrix, a subalgebra, a representation or a number, as a string.
 
     Parameters
     ----------
-    thing : LieAlgebra, Subalgebra, Representation, Matrix or number
+    obj : LieAlgebra, Subalgebra, Representation, Matrix or number
         A Killing form, for example, is a matrix: ``latex(g.killing_form())``.
     table : bool
-        Of an algebra: the square table of all brackets, instead of the list of those that do not vanish.
+        For an algebra: the square table of all brackets, instead of the list of nonzero brackets.
 
     Returns
     -------
     str
-        For use inside of mathematics; environments are those of amsmath. Basis elements carry their names:
-        ``e12`` becomes ``e_{12}``, ``alpha`` the Greek letter. Floats have six digits.
+        LaTeX for math mode, with environments of amsmath. Basis elements have their names: ``e12`` becomes ``e_{12}``,
+        ``alpha`` the Greek letter. Floats have six digits.
 
     Raises
     ------
     InputError
-        If it is something else.
+        If `obj` is of another type.
 
     Examples
     --------
@@ -62,22 +61,22 @@ def latex(thing: Any, *, table: bool = False) -> str:
     -\frac{1}{2} & 1
     \end{pmatrix}
     """
-    if isinstance(thing, LieAlgebra):
-        return _bracket_table(thing) if table else _bracket_list(thing)
-    if isinstance(thing, ExactMatrix | FloatMatrix):
-        return _matrix(thing)
-    if isinstance(thing, Subalgebra):
-        names = [_symbol(x) for x in thing.algebra.basis_names]
-        rows = (_combination(thing.algebra.field, row, names) for row in thing.rows())
-        return rf"\left\langle {', '.join(rows)} \right\rangle" if thing.dimension else r"\{0\}"
-    if isinstance(thing, Representation):
-        names = [_symbol(x) for x in thing.algebra.basis_names]
-        lines = [rf"\rho({x}) &= {_matrix(a)}" for x, a in zip(names, thing.matrices, strict=True)]
+    if isinstance(obj, LieAlgebra):
+        return _bracket_table(obj) if table else _bracket_list(obj)
+    if isinstance(obj, ExactMatrix | FloatMatrix):
+        return _matrix(obj)
+    if isinstance(obj, Subalgebra):
+        names = [_symbol(x) for x in obj.algebra.basis_names]
+        rows = (_combination(obj.algebra.field, row, names) for row in obj.rows())
+        return rf"\left\langle {', '.join(rows)} \right\rangle" if obj.dimension else r"\{0\}"
+    if isinstance(obj, Representation):
+        names = [_symbol(x) for x in obj.algebra.basis_names]
+        lines = [rf"\rho({x}) &= {_matrix(a)}" for x, a in zip(names, obj.matrices, strict=True)]
         return _aligned(lines) if lines else r"\rho = 0"
-    return _number(*_with_field(thing))
+    return _number(*_with_field(obj))
 
 
-def _with_field(value: Any) -> tuple[Field, Any]:
+def _with_field(value: object) -> tuple[Field, Scalar]:
     if isinstance(value, AlgebraicNumber):
         return value.field, value
     if isinstance(value, float):
@@ -105,13 +104,13 @@ def _bracket_table(algebra: LieAlgebra) -> str:
 
 
 def _brackets(algebra: LieAlgebra, names: Sequence[str], sign: int = 1) -> dict[tuple[int, int], str]:
-    rows: dict[tuple[int, int], list[tuple[Any, str]]] = {}
+    rows: dict[tuple[int, int], list[tuple[Scalar, str]]] = {}
     for i, j, k, v in algebra.structure_constants():
         rows.setdefault((i, j), []).append((v if sign == 1 else -v, names[k]))
     return {pair: _sum(algebra.field, terms) for pair, terms in rows.items()}
 
 
-def _matrix(matrix: Any) -> str:
+def _matrix(matrix: Matrix) -> str:
     rows = [" & ".join(_number(matrix.field, x) for x in row) for row in matrix.to_rows()]
     if matrix.ncols <= MAX_PMATRIX_COLUMNS:
         return _environment("pmatrix", rows)
@@ -129,12 +128,12 @@ def _environment(name: str, lines: Iterable[str]) -> str:
 
 
 # -- sums and numbers ----------------------------------------------------------------------------------------
-def _combination(field: Field, row: Sequence[Any], names: Sequence[str]) -> str:
+def _combination(field: Field, row: Sequence[Scalar], names: Sequence[str]) -> str:
     return _sum(field, [(v, x) for v, x in zip(row, names, strict=True) if v != 0])
 
 
-def _sum(field: Field, terms: Sequence[tuple[Any, str]]) -> str:
-    """The sum of numbers times names; a number with several terms in parentheses."""
+def _sum(field: Field, terms: Sequence[tuple[Scalar, str]]) -> str:
+    """LaTeX of a sum of numbers times names; a number with several terms is in parentheses."""
     out = ""
     for value, name in terms:
         text = _number(field, value)
@@ -148,7 +147,7 @@ def _sum(field: Field, terms: Sequence[tuple[Any, str]]) -> str:
     return out or "0"
 
 
-def _number(field: Field, value: Any) -> str:
+def _number(field: Field, value: Scalar) -> str:
     if isinstance(field, FloatField):
         digits, _, exponent = f"{value:.{SIGNIFICANT_DIGITS}g}".partition("e")
         return rf"{digits}\cdot10^{{{int(exponent)}}}" if exponent else digits
@@ -175,7 +174,7 @@ def _fraction(value: Any) -> str:
 
 
 def _symbol(name: str) -> str:
-    r"""The name of a basis element or a generator.
+    r"""LaTeX of the name of a basis element or of a generator.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """Lists of JSON values as numbers of a field, with a fast path for integers.
 
-A value is a JSON integer or a text in the grammar of values; in a float64 file also a JSON float.  Equal
-texts are parsed once, and a list of plain integers is converted in one go.
+A value is a JSON integer or a string in the grammar of values; in a float64 file also a JSON float. Equal strings are
+parsed once, and a list of plain integers is converted at once.
 """
 
 from __future__ import annotations
@@ -10,40 +10,42 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 from liehom.errors import FieldError, FormatError, InputError, ParseError, ShapeError
 from liehom.io.json_reader import as_list, check_keys, fraction_for, kind_of, shown
-from liehom.scalars import QQ, RR, Field, FloatField, NumberField, Scalar, common_field
+from liehom.scalars import QQ, RR, ExactField, Field, FloatField, Matrix, NumberField, Scalar, common_field
 
 DIGITS = b"0123456789-,"
 FIELD_NAME = re.compile(r"(?!sqrt$)[A-Za-z][A-Za-z_0-9]{0,40}|sqrt\([0-9]{1,40}\)", re.ASCII)
 MAX_DEGREE = 64
 
-Where = Callable[[int], str]
+Where: TypeAlias = Callable[[int], str]
+"""Name of the x-th value of a list in messages, such as "point[2]"."""
+JsonNumber: TypeAlias = int | str | float
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class RawList:
-    """JSON values in a row, each known to be an integer or a text (or a float where `floats`).
+    """List of JSON values that are integers or strings, or floats if these are allowed.
 
     Attributes
     ----------
-    values : sequence
+    values : sequence of int, str or float
     where : callable
-        Names the place of the x-th value in the file.
+        ``where(x)`` names the position of the x-th value in the file, for messages.
     distinct : set
-        The different values (1 and 1.0 count as one).
+        The distinct values (1 and 1.0 count as one).
     """
 
-    values: Sequence[Any]
+    values: Sequence[JsonNumber]
     where: Where
-    distinct: Set[Any]
+    distinct: Set[JsonNumber]
 
     @classmethod
     def checked(cls, values: Sequence[Any], where: Where, *, floats: bool = False) -> RawList:
-        """The list, after a check of the types; `FormatError` names the first value that is no number."""
+        """List of checked values; `FormatError` names the first value that is not a number."""
         allowed = {int, str, float} if floats else {int, str}
         types = set(map(type, values))
         if not types <= allowed:
@@ -56,35 +58,35 @@ class RawList:
                     raise FormatError(f"{where(x)} is {value!r}, expected a finite number")
         return cls(values, where, set(values))
 
-    def texts(self) -> set[str]:
-        """The distinct texts with a radical in them, on which the field depends."""
+    def radicals(self) -> set[str]:
+        """Distinct strings with an "s" in them, hence all with a square root, on which the field depends."""
         return {v for v in self.distinct if type(v) is str and "s" in v}
 
     def integers(self) -> list[int] | None:
-        """The values as Python integers if all are plain integers of moderate length, else None."""
-        texts = [v for v in self.distinct if type(v) is str]
-        joined = ",".join(texts)
-        if joined.count(",") >= max(len(texts), 1) or not joined.isascii():
+        """Values as Python integers if all are plain integers of moderate length, else None."""
+        strings = [v for v in self.distinct if type(v) is str]
+        joined = ",".join(strings)
+        if joined.count(",") >= max(len(strings), 1) or not joined.isascii():
             return None
         if joined.encode().translate(None, DIGITS):
             return None
         try:
-            table: dict[Any, int] = dict(zip(texts, map(int, texts), strict=True))
+            table: dict[Any, int] = dict(zip(strings, map(int, strings), strict=True))
         except ValueError:  # '' or '1-2' or thousands of digits: the grammar of values decides
             return None
-        if len(texts) < len(self.distinct):
+        if len(strings) < len(self.distinct):
             table.update((v, v) for v in self.distinct if type(v) is int)
         return list(map(table.__getitem__, self.values))
 
     def numbers(self, field: Field) -> list[Scalar]:
-        """The values as elements of a field; each distinct one is converted once.
+        """Values as elements of a field; each distinct value is converted once.
 
         Raises
         ------
         ParseError
-            If a text is not of the grammar; names the place.
+            If a string is not in the grammar; names its position.
         FormatError
-            If a number is not in the field; names the place.
+            If a number is not in the field; names its position.
         """
         table: dict[Any, Scalar] = {}
         for x, value in enumerate(self.values):
@@ -92,7 +94,7 @@ class RawList:
                 table[value] = self._number(field, x, value)
         return list(map(table.__getitem__, self.values))
 
-    def _number(self, field: Field, x: int, value: Any) -> Scalar:
+    def _number(self, field: Field, x: int, value: JsonNumber) -> Scalar:
         try:
             return field.convert(value)
         except ParseError as error:
@@ -100,16 +102,17 @@ class RawList:
         except (FieldError, OverflowError) as error:
             raise FormatError(f"{self.where(x)}: {error}") from None
 
-    def matrix(self, field: Any, nrows: int, ncols: int) -> Any:
-        """The values, row after row, as a matrix."""
-        if field.exact:
+    def matrix(self, field: Field, nrows: int, ncols: int) -> Matrix:
+        """Matrix (nrows, ncols) of the values, row after row."""
+        if isinstance(field, ExactField):
             integers = self.integers()
             if integers is not None:
                 return field.from_integers(integers, nrows, ncols)
-        return field.from_entries(self.numbers(field), nrows, ncols)
+        matrix: Matrix = field.from_entries(self.numbers(field), nrows, ncols)
+        return matrix
 
 
-def _not_a_value(value: Any, place: str) -> str:
+def _not_a_value(value: object, place: str) -> str:
     if type(value) is float:
         if not math.isfinite(value):
             return f"{place} is {value!r}, expected a finite number"
@@ -117,11 +120,13 @@ def _not_a_value(value: Any, place: str) -> str:
             f"{place} is the float {value!r}, and this file is exact: write the fraction "
             f'"{fraction_for(value)}", or add "arithmetic": "float64"'
         )
-    return f"{place} must be an integer or a text such as '3/4', not {kind_of(value)}"
+    return f"{place} must be an integer or a string such as '3/4', not {kind_of(value)}"
 
 
-def table_of_rows(value: Any, what: str, width: int | None = None, *, floats: bool = False) -> tuple[RawList, int, int]:
-    """A list of rows of equal length as (its values row after row, number of rows, number of columns).
+def table_of_rows(
+    value: object, what: str, width: int | None = None, *, floats: bool = False
+) -> tuple[RawList, int, int]:
+    """Triple (values row after row, number of rows, number of columns) of a list of rows of equal length.
 
     Raises
     ------
@@ -140,31 +145,31 @@ def table_of_rows(value: Any, what: str, width: int | None = None, *, floats: bo
     return raw, len(rows), ncols
 
 
-def vector(value: Any, what: str, *, floats: bool = False) -> RawList:
-    """A list of numbers, or a `FormatError`."""
+def vector(value: object, what: str, *, floats: bool = False) -> RawList:
+    """Checked list of numbers; `FormatError` if the value is not one."""
     return RawList.checked(as_list(value, what), lambda x: f"{what}[{x}]", floats=floats)
 
 
 # -- fields ----------------------------------------------------------------------------------------------
 def field_for(data: Mapping[str, Any], lists: Sequence[RawList], numerical: bool) -> Field:
-    """The field of a file: float64, the one it states, or the smallest that holds its values.
+    """Field of a file: float64, the number field that it states, or the smallest field of its values.
 
     Raises
     ------
     FormatError
-        If the stated field is malformed, or the values call for one that must be stated.
+        If the stated field is malformed, or the values need a number field that must be stated.
     ParseError
-        If a value is not of the grammar; names its place.
+        If a value is not in the grammar; names its position.
     """
     if numerical:
         return RR
     if "field" in data:
         return read_field(data["field"])
-    texts = set().union(*(raw.texts() for raw in lists))
+    radicals: set[str] = set().union(*(raw.radicals() for raw in lists))
     try:
-        return common_field(sorted(texts))
+        return common_field(sorted(radicals))
     except InputError:
-        for raw in lists:  # again one by one, to name the place
+        for raw in lists:  # one by one, to name the position
             for x, value in enumerate(raw.values):
                 if type(value) is str:
                     _own_field(value, raw.where(x))
@@ -182,12 +187,13 @@ def _own_field(text: str, place: str) -> None:
         raise FormatError(f"{place}: {error}") from None
 
 
-def read_field(data: Any) -> NumberField:
-    """The number field of {"name", "minpoly", "interval"}.
+def read_field(data: object) -> NumberField:
+    """Number field of a JSON object {"name", "minpoly", "interval"}.
 
     Raises
     ------
     FormatError
+        If the object is malformed, or does not determine one real root of an irreducible polynomial.
 
     Examples
     --------
@@ -216,7 +222,7 @@ def read_field(data: Any) -> NumberField:
 
 
 def write_field(field: Field) -> dict[str, Any]:
-    """The keys of a file that state a field: none for QQ, `arithmetic` for float64, else `field`."""
+    """Keys of a file that state a field: none for QQ, `arithmetic` for float64, else `field`."""
     if isinstance(field, FloatField):
         return {"arithmetic": "float64"}
     if not isinstance(field, NumberField):
@@ -227,6 +233,6 @@ def write_field(field: Field) -> dict[str, Any]:
     }
 
 
-def write_number(field: Field, value: Scalar) -> Any:
-    """A number as a file has it: a float in a float64 file, else a text."""
+def write_number(field: Field, value: Scalar) -> float | str:
+    """JSON value of a number: a float in a float64 file, else a string."""
     return float(value) if isinstance(field, FloatField) else field.format(value)

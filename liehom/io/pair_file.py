@@ -1,4 +1,4 @@
-"""The format of a pair: dimension, structure constants [i, j, k, value] with i < j, rows of the subalgebra."""
+"""Format of a pair file: dimension, structure constants [i, j, k, value] with i < j, rows of the subalgebra."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ OPTIONAL = ("format", "version", "basis", "field", "arithmetic")
 
 
 def read_pair(data: Mapping[str, Any]) -> Pair:
-    """The pair that a parsed JSON object describes; the axioms are proved.
+    """Pair that a parsed JSON object describes, after a proof of the axioms.
 
     Raises
     ------
     FormatError, ParseError, ShapeError
-        Naming the key and the index.
+        If the object is malformed; names the key and the index.
     JacobiError, NotASubalgebraError, DependentRowsError
-        If it is not a Lie algebra with a subalgebra.
+        If the object does not describe a Lie algebra with a subalgebra.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def read_pair(data: Mapping[str, Any]) -> Pair:
 
 
 def write_pair(pair: Pair) -> dict[str, Any]:
-    """The JSON object of a pair.
+    """JSON object of a pair.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Problem: a representation, a start, a field and the options of an integration, as a file states them.
+"""Problem of a file: a representation, an initial point, a vector field and the options of an integration.
 
-The field is X(m, t) = rho(psi(m, t)) m with psi from "generator", or X itself from "vector_field".  The options are
-checked when they are read, the names among them (base, exponential, clock) when they are used.
+The vector field is X(m, t) = rho(psi(m, t)) m with psi from "generator", or X itself from "vector_field". Options are
+checked when the file is read; the names among them (base, exponential, clock) are looked up at the integration.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from liehom.io.json_reader import as_list, shown
 from liehom.io.number_lists import vector
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
-from liehom.scalars import RR
+from liehom.scalars import RR, Scalar
 from liehom.scalars.fields.grammar import Node, parse
+from liehom.typing import Array
 
 if TYPE_CHECKING:
     from liehom.correctors import Step
@@ -27,27 +28,28 @@ OPTIONS = ("t_span", "t_eval", "dt", "rtol", "atol", "base", "order", "exponenti
 NUMERICAL = ("generator", "vector_field", *OPTIONS)
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh")
 MAX_ORDER = 100
+"""Largest order that a file may ask for."""
 BASE = "lietaylor"
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What a representation file states: the representation, the start, the field and the options.
+    """Problem of a representation file: the representation, the initial point, the vector field and the options.
 
     Attributes
     ----------
     representation : Representation
     point : tuple or None
-        The point in the field of the representation, if it is given and lies there.
+        The point as numbers of the representation's field; None if the file has no point or its numbers are not there.
     start : tuple of float or None
-        The point rounded to float64.
+        The initial point: the point rounded to float64.
     generator : tuple of Node or None
         psi: one parsed coefficient per given matrix, in the names m0, m1, ..., t (`liehom.scalars.fields.grammar`).
     options : mapping
-        Those of t_span, t_eval, dt, rtol, atol, base, order, exponential, clock that the file states.
+        The options of the file, from t_span, t_eval, dt, rtol, atol, base, order, exponential and clock.
     vector_field : tuple of Node or None
-        X: one parsed component per coordinate of m, instead of a generator.
+        X: one parsed component per coordinate of m, if the file has a vector field instead of a generator.
 
     Examples
     --------
@@ -59,21 +61,21 @@ class Problem:
     """
 
     representation: Representation
-    point: tuple[Any, ...] | None
+    point: tuple[Scalar, ...] | None
     start: tuple[float, ...] | None
     generator: tuple[Node, ...] | None
     options: Mapping[str, Any]
     vector_field: tuple[Node, ...] | None = None
 
     def pair(self) -> Pair:
-        """The pair (algebra, isotropy subalgebra of the point); `FormatError` without a point in the field."""
+        """Pair (algebra, isotropy subalgebra of the point); `FormatError` if no point of the field is given."""
         if self.point is None:
             why = "the file has no 'point'" if self.start is None else "the point has floats, the matrices are exact"
             raise FormatError(f"{why}, so it describes no pair")
         return self.representation.pair(self.point)
 
     def field(self) -> GeneratorField:
-        """The vector field, by its generator (of least norm where the file has a vector field).
+        """Vector field as a GeneratorField; a file's vector field gets the generator of minimal norm.
 
         Raises
         ------
@@ -96,7 +98,7 @@ class Problem:
         raise FormatError("the file has neither 'generator' nor 'vector_field', so there is no field to integrate")
 
     def step(self, base: str | None = None, order: int | None = None) -> Step:
-        """The step that `base` and `order` name: arguments before options before "lietaylor".
+        """Step with the given base and order; without them the options of the file, else "lietaylor".
 
         Raises
         ------
@@ -117,21 +119,21 @@ class Problem:
         return step_named(named, self.options.get("order") if order is None else order)
 
     def integrate(self, *, base: str | None = None, order: int | None = None, **overrides: Any) -> Solution:
-        """The solution from the start over t_span, with the options of the file.
+        """Solution from the initial point over t_span, with the options of the file.
 
         Parameters
         ----------
         base, order : optional
             As for `step`.
         **overrides
-            Any argument of `liehom.integrate`; each takes the place of the option of that name.
+            Arguments of `liehom.integrate`; each overrides the option of the same name.
 
         Raises
         ------
         FormatError
-            If the field, the point or t_span is missing.
+            If the vector field, the point or t_span is missing.
         InputError
-            If the field is not finite at the start, and as `liehom.integrate`.
+            If the vector field is not finite at the initial point, and as `liehom.integrate`.
 
         Examples
         --------
@@ -154,15 +156,15 @@ class Problem:
             start = self.checked_start(float(t_span[0]))
         return integrate(field, t_span, start, step=step, **options)
 
-    def checked_start(self, t: float) -> Any:
-        """The start as an array of shape (N,), after a check that the field is finite there at time t.
+    def checked_start(self, t: float) -> Array:
+        """Initial point as an array of shape (N,), after a check that the vector field is finite there at time t.
 
         Raises
         ------
         FormatError
             If the file has no point.
         InputError
-            If a component of the generator or vector field is not finite at the start.
+            If a component of the generator or vector field is not finite at the initial point.
 
         Examples
         --------
@@ -188,8 +190,8 @@ class Problem:
         return np.array(self.start)
 
 
-def _value(tree: Node, m: Any, t: float, what: str) -> float:
-    """One component at one point."""
+def _value(tree: Node, m: Array, t: float, what: str) -> float:
+    """Value of one component at a point."""
     import numpy as np
 
     from liehom.homogeneous.fields.components import Components
@@ -204,29 +206,29 @@ def _value(tree: Node, m: Any, t: float, what: str) -> float:
 
 
 def shown_point(point: tuple[float, ...], most: int = 8) -> str:
-    """A point for messages, its first coordinates where it is long."""
+    """String of a point for messages: all coordinates, or the first `most`."""
     return str(point) if len(point) <= most else f"({', '.join(map(repr, point[:most]))}, ...)"
 
 
 # -- from JSON -------------------------------------------------------------------------------------------
 def read_fields(data: Mapping[str, Any], count: int, size: int) -> dict[str, tuple[Node, ...]]:
-    """The parsed "generator" (one text per given matrix) or "vector_field" (one per coordinate)."""
+    """Parsed "generator" (one string per given matrix) or "vector_field" (one string per coordinate)."""
     found = {key: data[key] for key in ("generator", "vector_field") if key in data}
     if len(found) == 2:
         raise FormatError("the file has a 'generator' and a 'vector_field', expected one of them")
     wanted = {"generator": (count, "given matrix"), "vector_field": (size, "coordinate")}
-    return {key: _read_texts(key, value, *wanted[key], size) for key, value in found.items()}
+    return {key: _read_expressions(key, value, *wanted[key], size) for key, value in found.items()}
 
 
-def _read_texts(key: str, value: Any, count: int, per: str, size: int) -> tuple[Node, ...]:
-    texts = as_list(value, key)
-    if len(texts) != count:
-        raise FormatError(f"{key} has {len(texts)} entries, expected one per {per}, {count}")
+def _read_expressions(key: str, value: object, count: int, per: str, size: int) -> tuple[Node, ...]:
+    expressions = as_list(value, key)
+    if len(expressions) != count:
+        raise FormatError(f"{key} has {len(expressions)} entries, expected one per {per}, {count}")
     names = frozenset([*(f"m{i}" for i in range(size)), "t"])
     trees = []
-    for a, text in enumerate(texts):
+    for a, text in enumerate(expressions):
         if not isinstance(text, str):
-            raise FormatError(f"{key}[{a}] is {shown(text)}, expected a text such as '1 + m0**2'")
+            raise FormatError(f"{key}[{a}] is {shown(text)}, expected a string such as '1 + m0**2'")
         try:
             trees.append(parse(text, names, FUNCTIONS))
         except ParseError as error:
@@ -235,12 +237,12 @@ def _read_texts(key: str, value: Any, count: int, per: str, size: int) -> tuple[
 
 
 def read_options(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of `OPTIONS` that a JSON object has, checked.
+    """Checked options of a JSON object, from those in `OPTIONS`.
 
     Raises
     ------
     FormatError, ParseError
-        Names the option.
+        If an option is not of its type; names the option.
 
     Examples
     --------

@@ -1,12 +1,11 @@
-"""The format of a representation: matrices, optionally a point and the options of a numerical problem.
+"""Format of a representation file: matrices, optionally a point and the options of a numerical problem.
 
-The matrices are the first basis elements of the algebra; missing brackets are appended in lexicographic
-order.
+The matrices are the first basis elements of the algebra; missing brackets are appended in lexicographic order.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
@@ -18,18 +17,22 @@ from liehom.io.number_lists import RawList, field_for, table_of_rows, vector, wr
 from liehom.io.problem_file import NUMERICAL, Problem, read_fields, read_options
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
-from liehom.scalars import RR
+from liehom.scalars import RR, Field, Matrix
+from liehom.typing import VectorLike
 
 FORMAT = "liehom-representation"
 OPTIONAL = ("format", "version", "field", "arithmetic", "dimension", "point", *NUMERICAL)
 
 
 def read_problem(data: Mapping[str, Any]) -> Problem:
-    """What a parsed JSON object of a representation file states; everything in it is checked.
+    """Problem that the parsed JSON object of a representation file states, after a check of all keys.
 
     Raises
     ------
-    FormatError, ParseError, ShapeError, DependentRowsError, NotClosedError
+    FormatError, ParseError, ShapeError
+        If the object is malformed; names the key and the index.
+    DependentRowsError, NotClosedError
+        If the matrices are dependent, or generate another dimension than the file states.
     """
     check_header(data, FORMAT)
     check_keys(data, ("matrices",), OPTIONAL, "a representation file")
@@ -39,7 +42,7 @@ def read_problem(data: Mapping[str, Any]) -> Problem:
     if point is not None and len(point.values) != size:
         raise ShapeError(f"point has {len(point.values)} coordinates, the matrices act on {size}")
     in_field = point is not None and (numerical or float not in set(map(type, point.values)))
-    field: Any = field_for(data, [*tables, point] if point is not None and in_field else tables, numerical)
+    field: Field = field_for(data, [*tables, point] if point is not None and in_field else tables, numerical)
     fields = read_fields(data, len(tables), size)
     options = read_options(data)
     matrices = [raw.matrix(field, size, size) for raw in tables]
@@ -60,7 +63,7 @@ def read_problem(data: Mapping[str, Any]) -> Problem:
 
 
 def read_representation(data: Mapping[str, Any]) -> Pair | Representation:
-    """The representation of a file, or the pair that it determines where the file has a point.
+    """Representation of a file, or the pair that its point determines.
 
     Examples
     --------
@@ -75,7 +78,7 @@ def read_representation(data: Mapping[str, Any]) -> Pair | Representation:
     return problem.pair()
 
 
-def _read_matrices(value: Any, floats: bool) -> tuple[list[RawList], int]:
+def _read_matrices(value: object, floats: bool) -> tuple[list[RawList], int]:
     tables = as_list(value, "matrices")
     if not tables:
         raise FormatError("matrices is empty, so the space that they act on is not known")
@@ -89,8 +92,8 @@ def _read_matrices(value: Any, floats: bool) -> tuple[list[RawList], int]:
     return found, size
 
 
-def _closed(matrices: list[Any], data: Mapping[str, Any]) -> Representation:
-    """The representation; with a declared dimension, the matrices must generate just that."""
+def _closed(matrices: Sequence[Matrix], data: Mapping[str, Any]) -> Representation:
+    """Representation that the matrices generate; a dimension that the file states must be right."""
     if "dimension" in data:
         dimension = read_dimension(data["dimension"])
         made = lie_closure(matrices, close=dimension > len(matrices), limit=dimension)
@@ -99,8 +102,8 @@ def _closed(matrices: list[Any], data: Mapping[str, Any]) -> Representation:
     return Representation.from_matrices(matrices)
 
 
-def write_representation(representation: Representation, point: Any = None) -> dict[str, Any]:
-    """The JSON object of a representation by matrices, with a point where one is given.
+def write_representation(representation: Representation, point: VectorLike | None = None) -> dict[str, Any]:
+    """JSON object of a representation by matrices, with a point if one is given.
 
     Examples
     --------

@@ -1,9 +1,9 @@
-"""Structure constants as Sage reads and prints them: a dictionary of brackets, indexed by names.
+"""Structure constants in the notation of Sage: dictionaries of brackets, indexed by names.
 
     L = LieAlgebra(QQ, {('x', 'y'): {'z': 1}}, names=('x', 'y', 'z'))            [x, y] = z
 
-Read are such dictionaries and calls, and what Sage prints for ``L.structure_coefficients()``, by a parser that
-executes nothing.
+`from_sage` reads such dictionaries and calls, and the output of ``L.structure_coefficients()`` in Sage, with a parser
+that executes nothing.
 """
 
 from __future__ import annotations
@@ -11,41 +11,43 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NoReturn
+from typing import NoReturn, TypeAlias
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, FormatError, ParseError
 from liehom.io.gap_format import require_rational
 from liehom.io.json_reader import shown
 from liehom.scalars import QQ, Scalar
+from liehom.typing import ScalarLike
 
 VARIABLE = re.compile(r"[A-Za-z][A-Za-z_0-9]*", re.ASCII)
 _GENERATORS = re.compile(r"\s*([A-Za-z_]\w*)\s*\.<([^<>=]*)>\s*=(.*)", re.ASCII | re.DOTALL)
 _FAMILY = re.compile(r"\s*Finite family\s+(\{.*)", re.ASCII | re.DOTALL)
 MAX_LENGTH = 50_000_000
+"""Characters of the longest string that is read."""
 
-Brackets = dict[tuple[str, str], dict[str, Scalar]]
+Brackets: TypeAlias = dict[tuple[str, str], dict[str, Scalar]]
 
 
 def to_sage(algebra: LieAlgebra, name: str = "L") -> str:
-    """The algebra as a Sage statement that defines a variable with it.
+    """Sage statement that defines an algebra as a variable.
 
     Parameters
     ----------
     algebra : LieAlgebra
         Over QQ.
     name : str
-        The variable to define.
+        Name of the variable.
 
     Returns
     -------
     str
-        Basis elements are named as in `algebra.basis_names` if Sage can take all of these names, else e0, e1, ....
+        Basis elements have the names `algebra.basis_names` if Sage accepts all of them, else e0, e1, ....
 
     Raises
     ------
     FormatError
-        If the algebra is over a number field or float64, or the name is no identifier.
+        If the algebra is over a number field or float64, or the name is not an identifier.
 
     Examples
     --------
@@ -71,27 +73,27 @@ def to_sage(algebra: LieAlgebra, name: str = "L") -> str:
 
 
 def from_sage(
-    text: str | Mapping[Any, Any], names: Sequence[str] | str | None = None, *, name: str | None = None
+    text: str | Mapping[object, object], names: Sequence[str] | str | None = None, *, name: str | None = None
 ) -> LieAlgebra:
-    """The Lie algebra of a dictionary of brackets as in Sage; the axioms are proved, which Sage does not do.
+    """Lie algebra of a dictionary of brackets in Sage, after a proof of the axioms (Sage does not check them).
 
     Parameters
     ----------
     text : str or mapping
-        ``{('x', 'y'): {'z': 1}}``, a call of ``LieAlgebra(QQ, ...)`` with such a dictionary, or what Sage prints
-        for ``L.structure_coefficients()``.
-    names : sequence of str, or text with commas, optional
-        The basis in order; by default the names of the call, else those of the dictionary as they come.
-        Elements in no bracket must be named here.
+        ``{('x', 'y'): {'z': 1}}``, a call of ``LieAlgebra(QQ, ...)`` with such a dictionary, or the output of
+        ``L.structure_coefficients()`` in Sage.
+    names : sequence of str, or str with commas, optional
+        The basis in order; by default the names of the call, else the names in the dictionary in their order there.
+        A basis element that occurs in no bracket must be named here.
     name : str, optional
-        A name for the algebra.
+        Name of the algebra.
 
     Raises
     ------
     FormatError
-        If the text is none of these, or a coefficient is not rational.
+        If the input is none of these, or a coefficient is not rational.
     StructureError, JacobiError
-        If it is not antisymmetric or not a Lie algebra.
+        If the brackets are not antisymmetric, or the Jacobi identity fails.
 
     Examples
     --------
@@ -107,15 +109,15 @@ def from_sage(
     elif isinstance(text, Mapping):
         brackets, stated = _of_mapping(text), None
     else:
-        raise FormatError(f"brackets of Sage are a text or a mapping, got {shown(text)}")
+        raise FormatError(f"brackets of Sage are a string or a mapping, got {shown(text)}")
     basis = _split(names) if names is not None else stated or _in_order(brackets)
-    place = {x: i for i, x in enumerate(basis)}
-    if len(place) < len(basis):
+    index = {x: i for i, x in enumerate(basis)}
+    if len(index) < len(basis):
         raise FormatError(f"the names {shown(basis)} are not distinct")
-    missing = [x for x in _in_order(brackets) if x not in place]
+    missing = [x for x in _in_order(brackets) if x not in index]
     if missing:
         raise FormatError(f"the brackets mention {shown(missing[0])}, which is none of the names {shown(basis)}")
-    table = {(place[x], place[y]): {place[z]: v for z, v in row.items()} for (x, y), row in brackets.items()}
+    table = {(index[x], index[y]): {index[z]: v for z, v in row.items()} for (x, y), row in brackets.items()}
     return LieAlgebra(table, QQ, dimension=len(basis), basis=basis, name=name)
 
 
@@ -125,12 +127,12 @@ def _split(names: Sequence[str] | str) -> tuple[str, ...]:
 
 
 def _in_order(brackets: Brackets) -> tuple[str, ...]:
-    """The names as they come, first those in the pairs."""
+    """Names in the order of their first occurrence, names in pairs first."""
     pairs = (x for pair in brackets for x in pair)
     return tuple(dict.fromkeys([*pairs, *(z for row in brackets.values() for z in row)]))
 
 
-def _of_mapping(brackets: Mapping[Any, Any]) -> Brackets:
+def _of_mapping(brackets: Mapping[object, object]) -> Brackets:
     made: Brackets = {}
     for pair, row in brackets.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
@@ -139,7 +141,7 @@ def _of_mapping(brackets: Mapping[Any, Any]) -> Brackets:
     return made
 
 
-def _rational(value: Any) -> Scalar:
+def _rational(value: ScalarLike) -> Scalar:
     if isinstance(value, float):
         _refuse(f"the coefficient {value!r} is a float; write a fraction")
     try:
@@ -148,12 +150,12 @@ def _rational(value: Any) -> Scalar:
         _refuse(f"the coefficient {shown(value)} is not rational: {error}")
 
 
-# -- texts -----------------------------------------------------------------------------------------------
+# -- strings ---------------------------------------------------------------------------------------------
 def _parsed(text: str) -> tuple[Brackets, tuple[str, ...] | None]:
-    """Brackets and names of a text."""
+    """Brackets and names in a string."""
     stated: tuple[str, ...] | None = None
     if len(text) > MAX_LENGTH:
-        _refuse("the text is too long")
+        _refuse("the string is too long")
     if match := _GENERATORS.fullmatch(text):
         stated, text = _split(match[2]), match[3]
     if match := _FAMILY.fullmatch(text):
@@ -161,7 +163,7 @@ def _parsed(text: str) -> tuple[Brackets, tuple[str, ...] | None]:
     try:
         body = ast.parse(text.strip()).body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        _refuse(f"the text does not parse ({type(error).__name__}: {str(error)[:60]})")
+        _refuse(f"the string does not parse ({type(error).__name__}: {str(error)[:60]})")
     node = body[0].value if len(body) == 1 and isinstance(body[0], ast.Assign | ast.Expr) else None
     try:
         if isinstance(node, ast.Call):
@@ -169,12 +171,12 @@ def _parsed(text: str) -> tuple[Brackets, tuple[str, ...] | None]:
         if isinstance(node, ast.Dict):
             return _brackets(node), stated
     except RecursionError:
-        _refuse("the text is nested too deeply")
+        _refuse("the string is nested too deeply")
     _refuse("expected a dictionary {('x', 'y'): {'z': 1}} or LieAlgebra(QQ, {...}, names=...)")
 
 
 def _call(node: ast.Call, stated: tuple[str, ...] | None) -> tuple[Brackets, tuple[str, ...] | None]:
-    """LieAlgebra(QQ, {...}, names='x,y,z'), with the names as second argument, or abelian."""
+    """Brackets and names of LieAlgebra(QQ, {...}, names='x,y,z'); the names may be the second argument."""
     if not (isinstance(node.func, ast.Name) and node.func.id == "LieAlgebra" and node.args):
         _refuse(f"{ast.unparse(node.func)[:40]} is not read, expected LieAlgebra(QQ, ...)")
     field, *arguments = node.args
@@ -222,7 +224,7 @@ def _brackets(node: ast.Dict) -> Brackets:
 
 
 def _row(node: ast.expr) -> dict[str, Scalar]:
-    """{'z': 1}, [('z', 1)], or 2*x - 1/2*z."""
+    """Coefficients of {'z': 1}, [('z', 1)] or 2*x - 1/2*z."""
     if isinstance(node, ast.Dict):
         return {_name(k or v): _number(v) for k, v in zip(node.keys, node.values, strict=True)}
     if isinstance(node, ast.List | ast.Tuple):
@@ -233,7 +235,7 @@ def _row(node: ast.expr) -> dict[str, Scalar]:
 
 
 def _linear(node: ast.expr) -> dict[str, Scalar]:
-    """A linear combination of names."""
+    """Coefficients of a linear combination of names."""
     match node:
         case ast.Name(id=z):
             return {z: QQ.one}
@@ -244,7 +246,7 @@ def _linear(node: ast.expr) -> dict[str, Scalar]:
         case ast.BinOp(left=x, op=ast.Add() | ast.Sub() as op, right=y):
             first, second = _linear(x), _linear(y)
             sign = 1 if isinstance(op, ast.Add) else -1
-            zero: Any = QQ.zero
+            zero = QQ.zero
             return {z: first.get(z, zero) + sign * second.get(z, zero) for z in {**first, **second}}
         case ast.BinOp(left=x, op=ast.Mult(), right=y):
             factor = _number(x)
@@ -256,7 +258,7 @@ def _linear(node: ast.expr) -> dict[str, Scalar]:
 
 
 def _number(node: ast.expr) -> Scalar:
-    """An integer or a fraction."""
+    """Value of an integer or a fraction."""
     match node:
         case ast.Constant(value=int() as n) if type(n) is int:
             return QQ.convert(n)

@@ -1,6 +1,6 @@
-"""A solution as a file: an .npz archive with the arrays t, y and a JSON text of the report; never a pickle.
+"""Solutions as .npz archives: the arrays t and y, and the report as a JSON string. An archive holds no pickles.
 
-It is written under a temporary name and moved, so that nobody ever finds half of it.
+The archive is written under a temporary name and then renamed, so a reader never sees a partial file.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FORMAT = "liehom-solution"
 
 
 def report_json(report: Report) -> dict[str, Any]:
-    """The JSON object of a report; what is not finite is null.
+    """JSON object of a report; a number that is not finite is null.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def report_json(report: Report) -> dict[str, Any]:
 
 
 def summary_json(solution: Solution) -> dict[str, Any]:
-    """What became of a run, as a JSON object: status, message, counts and the report.
+    """JSON object of a run's outcome: status, message, counts and the report.
 
     Examples
     --------
@@ -64,14 +64,14 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     ----------
     solution : Solution
     path : path_like
-        Taken as it is; no suffix is added.
+        Name of the file; no suffix is added.
     force : bool
-        Whether a file that is there may be replaced.
+        Whether an existing file may be replaced.
 
     Raises
     ------
     FormatError
-        If the file is there already and `force` is not given, or it cannot be written.
+        If the file exists and `force` is False, or the file cannot be written.
 
     Examples
     --------
@@ -107,12 +107,12 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
 
 
 def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Whether a file can be written there, asked before the work.
+    """Raise `FormatError` if a file cannot be written; called before the work.
 
     Raises
     ------
     FormatError
-        If the folder does not exist or is not writable, or the file is there and `force` is not given.
+        If the folder does not exist or is not writable, or the file exists and `force` is False.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
 
 
 def plain(value: Any) -> Any:
-    """The value as JSON has it: numpy scalars and arrays as numbers and lists, what is not finite as null.
+    """JSON value of Python data: numpy scalars and arrays become numbers and lists, numbers that are not finite null.
 
     Examples
     --------

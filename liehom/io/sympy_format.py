@@ -1,38 +1,45 @@
-"""Exact objects as sympy has them: numbers, matrices, and arrays of structure constants.
+"""Exact objects as objects of sympy: numbers, matrices, and arrays of structure constants.
 
-Into liehom, sympy's matrices, arrays and numbers go as they are.
+In the other direction nothing is needed: liehom accepts matrices, arrays and numbers of sympy as input.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import QQ, AlgebraicNumber, Field, FloatField, NumberField
+from liehom.scalars import QQ, AlgebraicNumber, Field, FloatField, Matrix, NumberField, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.floating import FloatMatrix
 
+SympyObject: TypeAlias = Any
+"""An object of sympy, which has no types."""
 
-def to_sympy(thing: Any) -> Any:
-    """The same in sympy.
+
+def to_sympy(obj: object) -> SympyObject:
+    """Object of sympy with the same entries: an array, a matrix, a list of matrices or a number.
 
     Parameters
     ----------
-    thing : LieAlgebra, Subalgebra, Representation, Matrix or number
+    obj : LieAlgebra, Subalgebra, Representation, Matrix or number
 
     Returns
     -------
     sympy object
-        Of an algebra the sparse array ``c[i, j, k]`` of shape (n, n, n); of a subalgebra the matrix of its rows
-        (k, n); of a representation the list of its matrices; of a matrix a matrix; of a number a number. Elements
-        of a number field become expressions in square roots, or in ``CRootOf`` where the generator is no square root.
+        * for an algebra, the sparse array ``c[i, j, k]`` of shape (n, n, n);
+        * for a subalgebra, the matrix of its rows, of shape (k, n);
+        * for a representation, the list of its matrices;
+        * for a matrix, a matrix; for a number, a number.
+
+        Elements of a number field become expressions in square roots, or in ``CRootOf`` if the generator is not a
+        square root.
 
     Raises
     ------
     InputError
-        If it is something else.
+        If `obj` is of another type.
 
     Examples
     --------
@@ -45,33 +52,33 @@ def to_sympy(thing: Any) -> Any:
     >>> to_sympy(lh.number_field("sqrt(2)").convert("1/2 - sqrt(2)"))
     1/2 - sqrt(2)
     """
-    if isinstance(thing, LieAlgebra):
-        return _array(thing)
-    if isinstance(thing, ExactMatrix | FloatMatrix):
-        return _matrix(thing)
-    if isinstance(thing, Subalgebra):
-        return _matrix(thing.basis)
-    if isinstance(thing, Representation):
-        return [_matrix(a) for a in thing.matrices]
-    if isinstance(thing, AlgebraicNumber):
-        return _number(thing.field, thing)
-    if isinstance(thing, int | float) or type(thing) is type(QQ.one):
+    if isinstance(obj, LieAlgebra):
+        return _array(obj)
+    if isinstance(obj, ExactMatrix | FloatMatrix):
+        return _matrix(obj)
+    if isinstance(obj, Subalgebra):
+        return _matrix(obj.basis)
+    if isinstance(obj, Representation):
+        return [_matrix(a) for a in obj.matrices]
+    if isinstance(obj, AlgebraicNumber):
+        return _number(obj.field, obj)
+    if isinstance(obj, int | float) or type(obj) is type(QQ.one):
         import sympy
 
-        return sympy.Float(thing) if isinstance(thing, float) else _number(QQ, QQ.convert(thing))
+        return sympy.Float(obj) if isinstance(obj, float) else _number(QQ, QQ.convert(obj))
     raise InputError(
-        f"a {type(thing).__name__} has no form in sympy; "
+        f"a {type(obj).__name__} has no form in sympy; "
         "expected an algebra, subalgebra, representation, matrix or number"
     )
 
 
-def _matrix(matrix: Any) -> Any:
+def _matrix(matrix: Matrix) -> SympyObject:
     import sympy
 
     return sympy.Matrix(*matrix.shape, [_number(matrix.field, x) for row in matrix.to_rows() for x in row])
 
 
-def _array(algebra: LieAlgebra) -> Any:
+def _array(algebra: LieAlgebra) -> SympyObject:
     import sympy
 
     n, entries = algebra.dimension, {}
@@ -82,13 +89,14 @@ def _array(algebra: LieAlgebra) -> Any:
     return sympy.ImmutableSparseNDimArray(entries, (n, n, n))
 
 
-def _number(field: Field, value: Any) -> Any:
+def _number(field: Field, value: Scalar) -> SympyObject:
     import sympy
 
     if isinstance(field, FloatField):
         return sympy.Float(value)
     if not isinstance(field, NumberField):
-        return sympy.Rational(int(value.p), int(value.q))
+        rational: Any = value
+        return sympy.Rational(int(rational.p), int(rational.q))
     if field.symbol.startswith("sqrt("):
         root = sympy.sqrt(int(field.symbol[5:-1]))
     else:

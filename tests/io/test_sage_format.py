@@ -115,7 +115,7 @@ def test_coefficients_of_a_mapping_are_rational(value: Any) -> None:
 
 @pytest.mark.parametrize("brackets", [7, None, ["x"]])
 def test_neither_text_nor_mapping(brackets: Any) -> None:
-    with pytest.raises(errors.FormatError, match="text or a mapping"):
+    with pytest.raises(errors.FormatError, match="string or a mapping"):
         io.from_sage(brackets)
 
 
