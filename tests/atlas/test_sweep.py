@@ -37,7 +37,7 @@ def test_executors_give_what_serial_gives(executor: Any) -> None:
     assert lh.atlas.sweep(pairs, executor=executor) == lh.atlas.sweep(pairs)
 
 
-def test_what_is_kept_is_not_decided_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stored_entries_are_not_decided_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     decided: list[str] = []
     whole = lh.atlas.sweep(NAMES)
     first = lh.atlas.sweep(NAMES[:3], store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name))
@@ -50,7 +50,7 @@ def test_what_is_kept_is_not_decided_again(tmp_path: Path, monkeypatch: pytest.M
         lh.atlas.sweep(NAMES, store=tmp_path / "atlas", seed=1)
 
 
-def test_pairs_that_differ_only_in_their_numbers_are_told_apart(tmp_path: Path) -> None:
+def test_pairs_that_differ_only_in_their_numbers_have_different_keys(tmp_path: Path) -> None:
     affine = lh.LieAlgebra({(0, 1): {1: 1}})
     pairs = [lh.Pair(affine, rows) for rows in ([[1, 0]], [[0, 1]], [])]
     atlas = lh.atlas.sweep(pairs, store=tmp_path / "atlas")
@@ -59,14 +59,14 @@ def test_pairs_that_differ_only_in_their_numbers_are_told_apart(tmp_path: Path) 
     assert all(entry.verify(pair) for entry, pair in zip(atlas, pairs, strict=True))
 
 
-def test_a_pair_that_is_given_twice_is_decided_once() -> None:
+def test_pair_given_twice_is_decided_once() -> None:
     decided: list[str] = []
     atlas = lh.atlas.sweep(["so(4)/so(3)", "so(4) / so(3)"], progress=lambda entry: decided.append(entry.name))
     assert len(decided) == 1
     assert atlas[0] == atlas[1]
 
 
-def test_what_the_library_refuses_is_said_and_not_kept(tmp_path: Path) -> None:
+def test_rejected_pairs_have_a_reason_and_are_not_stored(tmp_path: Path) -> None:
     atlas = lh.atlas.sweep(["so(4)/so(3)", "so(4)/so(5)"], store=tmp_path / "atlas")
     assert [entry.full for entry in atlas] == [True, None]
     assert "CatalogError" in atlas.failures[0].reason
@@ -83,7 +83,7 @@ def test_numerical_verdicts_are_labelled() -> None:
     assert "numerical" in str(entry)
 
 
-def test_tables() -> None:
+def test_table_as_string_markdown_and_json() -> None:
     atlas = lh.atlas.sweep(NAMES[:2])
     assert len(str(atlas).splitlines()) == 3
     assert len(atlas.to_markdown().splitlines()) == 4
@@ -92,12 +92,12 @@ def test_tables() -> None:
     assert lh.verify_certificate(lh.pair(NAMES[0]), data["pairs"][0]["certificate"])
 
 
-def test_without_verification() -> None:
+def test_unverified_entries_are_marked() -> None:
     with ThreadPoolExecutor(1) as pool:
         assert not lh.atlas.sweep(NAMES[:1], executor=pool, verify=False)[0].verified
 
 
-def test_what_is_refused() -> None:
+def test_invalid_arguments_raise_errors() -> None:
     with pytest.raises(InputError, match="got one"):
         lh.atlas.sweep("so(4)/so(3)")
     with pytest.raises(InputError, match="expected a Pair"):

@@ -55,7 +55,7 @@ def test_listed_names_round_trip(name: str) -> None:
         ("f4(-20)", "f4(-20)"),
     ],
 )
-def test_canonical_forms(written: str, printed: str) -> None:
+def test_names_print_in_canonical_form(written: str, printed: str) -> None:
     assert str(parse(written)) == printed
 
 
@@ -67,7 +67,7 @@ def test_canonical_forms(written: str, printed: str) -> None:
         *("__import__('os')", "é(3)"),
     ],
 )
-def test_what_does_not_follow_the_grammar_is_refused(text: str) -> None:
+def test_name_outside_the_grammar_raises_catalog_error(text: str) -> None:
     with pytest.raises(CatalogError):
         parse(text)
 
@@ -77,13 +77,13 @@ def test_the_message_says_where() -> None:
         parse("so(3)]")
 
 
-def test_a_name_is_a_text() -> None:
+def test_name_that_is_not_a_string_raises_catalog_error() -> None:
     with pytest.raises(CatalogError):
         lh.pair(3)  # type: ignore[arg-type]
 
 
 @given(st.text(max_size=30))
-def test_no_text_does_anything_but_parse_or_be_refused(text: str) -> None:
+def test_every_string_parses_or_raises_catalog_error(text: str) -> None:
     try:
         tree = parse(text)
     except CatalogError:
@@ -92,14 +92,14 @@ def test_no_text_does_anything_but_parse_or_be_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_listed_algebras(name: str) -> None:
+def test_listed_algebras_keep_their_names(name: str) -> None:
     assert lh.catalog.algebra(name).name == name
 
 
 @pytest.mark.parametrize(
     "name", ["so(3)/so(2)", "quux(3)", "so(0)", "so(2,X)", "sl(2,3,4)", "g2(7)", "e6", "R(3)", "e(3;1)"]
 )
-def test_names_that_are_no_algebra(name: str) -> None:
+def test_name_that_is_not_an_algebra_raises_catalog_error(name: str) -> None:
     with pytest.raises(lh.errors.InputError):
         lh.catalog.algebra(name)
 
@@ -145,6 +145,6 @@ def test_representations(name: str, dimension: int, size: int) -> None:
         *("sl(2,Q(-1,3))+sp(1)", "so(1000)", "spin(30)", "upper(100)"),
     ],
 )
-def test_names_that_are_no_representation(name: str) -> None:
+def test_name_that_is_not_a_representation_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError):
         lh.catalog.representation(name)

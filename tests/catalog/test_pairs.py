@@ -102,7 +102,7 @@ def test_spheres_are_orbits_of_points(n: int) -> None:
     assert rho.pair([0] * (n - 1) + [1]) == lh.pair(f"so({n})/so({n - 1})")
 
 
-def test_the_same_space_by_two_names() -> None:
+def test_two_names_of_one_space_give_equal_pairs() -> None:
     rows = lh.pair("e(4)/so(4)")
     assert rows == lh.pair("affine(so(4))")
     assert lh.pair("spin(7)/g2") == lh.catalog.representation("spin(7)").pair([1] + [0] * 7)
@@ -148,7 +148,7 @@ def test_the_subalgebra_is_the_real_form_that_its_name_says(name: str, signature
         *("sp(4,R)/u(3)", "sp(6,R)/sp(2,R)+sp(2,R)", "so(5)/so(4)+so(2)", "heisenberg(1)/R^2", "so(1000)/so(999)"),
     ],
 )
-def test_names_that_are_no_pair(name: str) -> None:
+def test_name_that_is_not_a_pair_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError):
         lh.pair(name)
 

@@ -31,7 +31,7 @@ def client() -> Iterator[Any]:
         yield made
 
 
-def test_an_ensemble(client: Any, tmp_path: Path) -> None:
+def test_ensemble_on_dask_equals_the_serial_one(client: Any, tmp_path: Path) -> None:
     options: dict[str, Any] = {"step": lh.Corrected(lh.Euler(), 3), "dt": 0.1, "t_eval": [0.5, 1.0]}
     serial = lh.integrate_ensemble(TOP, (0, 1), starts(), chunk=4, **options)
     with client.get_executor() as executor:
@@ -53,20 +53,20 @@ def test_functions_without_a_name(client: Any) -> None:
     same(made, lh.integrate_ensemble(field, (0, 1), starts(), **call))
 
 
-def test_measured_orders(client: Any) -> None:
+def test_measured_orders_on_dask_equal_the_serial_ones(client: Any) -> None:
     arguments = TOP, starts(2), lh.Heun(), [0.2, 0.1, 0.05]
     with client.get_executor() as executor:
         made = lh.observed_order(*arguments, executor=executor)
     assert made.to_csv() == lh.observed_order(*arguments).to_csv()
 
 
-def test_a_sweep(client: Any) -> None:
+def test_sweep_on_dask_equals_the_serial_one(client: Any) -> None:
     names = ["so(4)/so(3)", "so(3,1)/so(2,1)", "sl(3)/P1"]
     with client.get_executor() as executor:
         assert lh.atlas.sweep(names, executor=executor) == lh.atlas.sweep(names)
 
 
-def test_a_killed_worker(client: Any, tmp_path: Path) -> None:
+def test_killed_dask_worker_is_survived(client: Any, tmp_path: Path) -> None:
     """The scheduler starts another, and gives it what the first had."""
     with client.get_executor() as executor:
         tasks = [(str(tmp_path), x) for x in range(6)]

@@ -22,7 +22,7 @@ def path(request: Any, tmp_path: Path) -> str:
     return str(tmp_path / "deeper" / request.param)
 
 
-def test_what_is_written_is_read(path: str) -> None:
+def test_saved_shards_load_unchanged(path: str) -> None:
     arrays = {"y": np.arange(6.0).reshape(2, 3) / 7, "n": np.array([3, 4]), "none": np.zeros((0, 2))}
     facts = {"status": -1, "value": 0.1, "far": float("inf"), "text": "ψ"}
     store = open_store(path, "abc")
@@ -44,14 +44,14 @@ def test_a_shard_is_replaced(path: str) -> None:
     assert store.load("part")[0]["y"].tolist() == [2.0]
 
 
-def test_another_problem_is_refused(path: str) -> None:
+def test_store_of_another_problem_raises_input_error(path: str) -> None:
     open_store(path, "abc").save("part", {"y": np.zeros(1)}, {})
     with pytest.raises(InputError, match="another problem"):
         open_store(path, "abd")
     assert open_store(path).names() == {"part"}
 
 
-def test_none_there(path: str) -> None:
+def test_missing_store_and_missing_shard_raise_format_error(path: str) -> None:
     with pytest.raises(FormatError, match="there is no store"):
         open_store(path)
     with pytest.raises(FormatError, match="is missing or damaged"):
@@ -67,13 +67,13 @@ def test_a_damaged_shard_is_named(tmp_path: Path) -> None:
         store.load("part")
 
 
-def test_what_was_not_finished_is_not_there(tmp_path: Path) -> None:
+def test_unfinished_files_are_not_listed(tmp_path: Path) -> None:
     store = open_store(tmp_path / "runs", "abc")
     (tmp_path / "runs" / ".part.npz.123.part").write_bytes(b"half of it")
     assert store.names() == frozenset()
 
 
-def test_a_zarr_shard_without_its_mark_is_not_there(tmp_path: Path) -> None:
+def test_zarr_shard_without_facts_is_not_listed(tmp_path: Path) -> None:
     zarr = pytest.importorskip("zarr")
     path = str(tmp_path / "runs.zarr")
     store = open_store(path, "abc")
@@ -82,13 +82,13 @@ def test_a_zarr_shard_without_its_mark_is_not_there(tmp_path: Path) -> None:
     assert open_store(path, "abc").names() == {"whole"}
 
 
-def test_without_zarr_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_zarr_raises_with_the_extra_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zarr", None)
     with pytest.raises(InputError, match=r"install liehom\[distributed\]"):
         open_store(tmp_path / "runs.zarr", "abc")
 
 
-def test_something_else_is_left_alone(tmp_path: Path) -> None:
+def test_other_content_at_the_path_raises_format_error(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("data")
     with pytest.raises(FormatError, match="is not a store of liehom"):
         open_store(tmp_path, "abc")
@@ -103,6 +103,6 @@ def test_something_else_is_left_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", [3, None, ["a"]])
-def test_no_path(path: Any) -> None:
+def test_invalid_path_raises_input_error(path: Any) -> None:
     with pytest.raises(InputError, match="expected the path"):
         open_store(path, "abc")

@@ -49,11 +49,11 @@ class KilledWorker(Exception):
     """As dask's is called."""
 
 
-def test_without_executor_in_order() -> None:
+def test_results_without_executor_are_in_order() -> None:
     assert list(completed(work.square, [3, 1, 2])) == [(0, 9), (1, 1), (2, 4)]
 
 
-def test_no_tasks() -> None:
+def test_empty_list_of_tasks_has_no_results() -> None:
     assert list(completed(work.square, [], threads)) == []
 
 
@@ -63,11 +63,11 @@ def test_an_executor_is_used_and_left_open() -> None:
     assert (pool.calls, pool.ended) == (4, False)
 
 
-def test_a_class_makes_executors() -> None:
+def test_executor_class_is_a_function_that_makes_executors() -> None:
     assert sorted(completed(work.square, [2, 3], Immediate)) == [(0, 4), (1, 9)]
 
 
-def test_one_that_was_made_is_shut_down() -> None:
+def test_executor_made_by_the_function_is_shut_down() -> None:
     made: list[Immediate] = []
 
     def make() -> Immediate:
@@ -112,31 +112,31 @@ def test_a_task_that_is_lost_too_often() -> None:
     assert pool.calls == 3
 
 
-def test_breaks_in_succession_are_counted_anew_after_progress() -> None:
+def test_count_of_breaks_restarts_after_progress() -> None:
     moods = [[None, BrokenExecutor("a")]] * 4  # each executor does one task and breaks
     made = iter([Immediate(*mood) for mood in moods] + [Immediate()])
     assert len(list(completed(work.square, range(6), lambda: next(made), retries=1))) == 6
 
 
 @pytest.mark.parametrize("executor", [None, threads, processes], ids=["none", "threads", "processes"])
-def test_what_a_task_raises_passes_through(executor: Any) -> None:
+def test_exception_of_a_task_is_raised(executor: Any) -> None:
     with pytest.raises(DependentRowsError) as caught:
         list(completed(work.fails_at_three, range(5), executor))
     assert caught.value.dependent == [3]
 
 
-def test_what_cannot_be_pickled_is_said() -> None:
+def test_task_that_cannot_be_pickled_raises_input_error() -> None:
     with pytest.raises(InputError, match="no lambda"):
         list(completed(lambda x: x, [1], processes))
 
 
 @pytest.mark.parametrize("executor", [3, "dask", [1]])
-def test_what_is_no_executor(executor: Any) -> None:
+def test_invalid_executor_raises_input_error(executor: Any) -> None:
     with pytest.raises(InputError, match=r"expected a concurrent.futures.Executor"):
         list(completed(work.square, [1], executor))
 
 
 @pytest.mark.parametrize("retries", [-1, 1.5, True])
-def test_retries_is_a_number(retries: Any) -> None:
+def test_invalid_retries_raise_input_error(retries: Any) -> None:
     with pytest.raises(InputError, match="retries"):
         list(completed(work.square, [1], retries=retries))

@@ -74,7 +74,7 @@ def test_the_differential_of_two_forms_is_its_formula(values: list[int]) -> None
 
 # -- known groups --------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("n", [0, 1, 3, 4])
-def test_abelian(n: int) -> None:
+def test_betti_numbers_of_abelian_algebras_are_binomials(n: int) -> None:
     assert betti(lh.abelian(n)) == [comb(n, k) for k in range(n + 1)]
 
 
@@ -101,7 +101,7 @@ def test_betti_numbers(name: str, numbers: list[int]) -> None:
 
 
 @pytest.mark.parametrize("n", [3, 4, 6, 9])
-def test_filiform(n: int) -> None:
+def test_second_betti_number_of_filiform_algebras(n: int) -> None:
     """b_2 of the standard filiform algebra of dimension n is [(n + 1) / 2]."""
     assert betti(lh.filiform(n), 2) == [1, 2, (n + 1) // 2]
 
@@ -134,7 +134,7 @@ def test_central_extensions_by_representatives() -> None:
 
 
 @pytest.mark.parametrize("name", ["so(3)", "sl(2)", "so(2,2)", "sl(2,C)", "su(3)"])
-def test_whitehead(name: str) -> None:
+def test_whitehead_lemmas_for_semisimple_algebras(name: str) -> None:
     g = lh.catalog.algebra(name)
     for matrices in (None, adjoint(g)):
         assert cohomology(g, 1, matrices).dimension == 0
@@ -171,7 +171,7 @@ def test_h1_of_the_adjoint_module_is_outer_derivations(name: str) -> None:
     assert cohomology(g, 0, adjoint(g)).dimension == g.center().dimension
 
 
-def test_invariants_are_h0() -> None:
+def test_h0_is_the_space_of_invariants() -> None:
     matrices = [[[0, -1, 0], [1, 0, 0], [0, 0, 0]]]
     made = cohomology(lh.so(2), 0, matrices)
     assert made.values(made.representatives) == {(): [0, 0, 1]}
@@ -195,7 +195,7 @@ def test_the_dimensions_do_not_depend_on_the_basis(name: str, numbers: list[int]
 
 @settings(max_examples=examples(10))
 @given(st.lists(st.integers(-2, 2), min_size=4, max_size=4), st.integers(0, 4))
-def test_kuenneth(numbers: list[int], k: int) -> None:
+def test_betti_numbers_of_sums_satisfy_kuenneth(numbers: list[int], k: int) -> None:
     """b_k of a direct sum is the convolution of the Betti numbers."""
     first = lh.almost_abelian([numbers[:2], numbers[2:]])
     second = lh.heisenberg(1)
@@ -233,7 +233,7 @@ def test_coordinates_of_classes(numbers: list[int]) -> None:
     assert made.is_coboundary(row) == (not any(classes))
 
 
-def test_a_cochain_that_is_no_cocycle() -> None:
+def test_coordinates_of_a_cochain_that_is_not_a_cocycle_raise_input_error() -> None:
     made = cohomology(lh.heisenberg(2), 2)
     row = made.cochain({(0, 4): 1})
     assert not made.is_cocycle(row)
@@ -242,7 +242,7 @@ def test_a_cochain_that_is_no_cocycle() -> None:
 
 
 @pytest.mark.parametrize("key", [(0, 0), (0, 5), (0,), 1, "01", (0, 1, 2), ("a", "b")])
-def test_indices_that_are_none(key: Any) -> None:
+def test_invalid_indices_raise_input_error(key: Any) -> None:
     with pytest.raises(InputError, match="different indices"):
         cohomology(lh.heisenberg(1), 2).cochain({key: 1})
 
@@ -277,7 +277,7 @@ def test_h2_of_a_large_semisimple_algebra_needs_no_matrix() -> None:
         cohomology(lh.so(12), 3)
 
 
-def test_what_is_refused() -> None:
+def test_invalid_modules_and_degrees_raise_errors() -> None:
     for degree in (-1, 1.5, True, "2"):
         with pytest.raises(InputError, match="degree"):
             cohomology(lh.so(3), degree)  # type: ignore[arg-type]

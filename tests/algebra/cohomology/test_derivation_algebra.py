@@ -79,7 +79,7 @@ def span(made: Derivations) -> lh.Subspace:
 
 
 @pytest.mark.parametrize("name", KNOWN)
-def test_known_dimensions(name: str) -> None:
+def test_dimensions_of_known_derivation_algebras(name: str) -> None:
     build, dimension, outer = KNOWN[name]
     g = build()
     made = derivations(g)
@@ -111,7 +111,7 @@ def test_derivations_in_another_basis_are_the_conjugates(name: str, data: st.Dat
 
 
 @pytest.mark.parametrize("name", ["e(2)", "galilei(3)", "filiform(7)", "gl(3)", "free_nilpotent(2,4)"])
-def test_both_ways_to_outer_derivations_agree(name: str) -> None:
+def test_lifted_and_exact_outer_derivations_span_the_same_space(name: str) -> None:
     g = KNOWN[name][0]()
     n = g.dimension
     made = derivations(g)
@@ -124,7 +124,7 @@ def test_both_ways_to_outer_derivations_agree(name: str) -> None:
     assert spans[0] == spans[1] == span(made)
 
 
-def test_large_numbers_take_the_exact_way() -> None:
+def test_large_entries_are_solved_exactly() -> None:
     g = lh.filiform(5).change_of_basis(lh.QQ.matrix(random_change(5, [977, -3001, 4441])))
     found = modular_derivations(next(word_bases(g)))
     assert small_outer(g, found, 4) is None
@@ -157,7 +157,7 @@ def test_the_algebra_of_derivations() -> None:
 
 
 @pytest.mark.parametrize("name", ["e(2)", "oscillator(1)", "aff(1)", "R^3"])
-def test_coordinates(name: str) -> None:
+def test_coordinates_reproduce_the_derivation(name: str) -> None:
     g = KNOWN[name][0]()
     made = derivations(g)
     n = g.dimension
@@ -170,7 +170,7 @@ def test_coordinates(name: str) -> None:
     assert made.coordinates(bracket).row(0) == list(expected)
 
 
-def test_what_is_no_derivation() -> None:
+def test_matrix_that_is_not_a_derivation_raises_input_error() -> None:
     made = derivations(lh.so(3))
     with pytest.raises(InputError, match="not a derivation"):
         made.coordinates(lh.QQ.identity(3))

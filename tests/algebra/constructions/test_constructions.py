@@ -23,7 +23,7 @@ def compact_dimension(g: lh.LieAlgebra) -> int:
 
 
 @pytest.mark.parametrize(("p", "q"), [(1, 0), (2, 0), (5, 0), (2, 1), (2, 2), (3, 2), (0, 3)])
-def test_so(p: int, q: int) -> None:
+def test_so_has_its_dimension_and_killing_signature(p: int, q: int) -> None:
     g, n = lh.so(p, q), p + q
     assert g.dimension == n * (n - 1) // 2
     if n > 2:
@@ -32,7 +32,7 @@ def test_so(p: int, q: int) -> None:
 
 
 @pytest.mark.parametrize(("p", "q"), [(1, 0), (2, 0), (3, 0), (1, 1), (2, 1), (2, 2)])
-def test_su_and_u(p: int, q: int) -> None:
+def test_su_and_u_have_their_dimensions_and_killing_signatures(p: int, q: int) -> None:
     n = p + q
     assert lh.su(p, q).killing_signature() == (2 * p * q, n * n - 1 - 2 * p * q, 0)
     assert lh.u(p, q).dimension == n * n
@@ -78,7 +78,7 @@ def test_names_print_without_silent_parameters() -> None:
         lambda: lh.direct_sum(lh.so(3), lh.so(3).over(lh.number_field("sqrt(2)"))),
     ],
 )
-def test_bad_parameters_are_refused(call: object) -> None:
+def test_invalid_parameters_raise_input_error(call: object) -> None:
     with pytest.raises(InputError):
         call()  # type: ignore[operator]
 
@@ -104,7 +104,7 @@ def test_the_axioms_that_were_not_proved_hold(g: lh.LieAlgebra) -> None:
     prove_jacobi(g.table, g.basis_names)
 
 
-def test_abelian_and_heisenberg() -> None:
+def test_abelian_and_heisenberg_algebras_have_their_brackets() -> None:
     assert lh.abelian(0).dimension == 0
     assert [lh.abelian(n).name for n in range(3)] == ["0", "R", "R^2"]
     h = lh.heisenberg(2)
@@ -123,7 +123,7 @@ def test_semidirect_sums() -> None:
     assert lh.semidirect_sum(lh.abelian(0), [], size=2).dimension == 2
 
 
-def test_a_semidirect_sum_proves_that_it_is_one() -> None:
+def test_semidirect_sum_proves_that_the_matrices_are_a_representation() -> None:
     with pytest.raises(JacobiError):  # no representation
         lh.semidirect_sum(lh.so(3), [[[1]], [[1]], [[1]]])
     with pytest.raises(JacobiError):  # no derivation
@@ -164,7 +164,7 @@ COMPACT_PARTS = {
 
 
 @pytest.mark.parametrize("type_name", ["A1", "A3", "B2", "C2", "D3", "G2", "F4", "E6"])
-def test_real_forms(type_name: str) -> None:
+def test_simple_constructs_the_named_real_form(type_name: str) -> None:
     dimension = {"A1": 3, "A3": 15, "B2": 10, "C2": 10, "D3": 15, "G2": 14, "F4": 52, "E6": 78}[type_name]
     for name in real_form_builders(type_name):
         g = lh.simple(type_name, name)
@@ -173,13 +173,13 @@ def test_real_forms(type_name: str) -> None:
 
 
 @pytest.mark.parametrize("arguments", [("E7", "e7(3)"), ("E6", "e7"), ("B2", "so(9)"), ("A3", "so(2)"), ("G2", "")])
-def test_a_form_that_there_is_not_is_refused_with_those_that_there_are(arguments: tuple[str, str]) -> None:
+def test_unknown_real_form_raises_catalog_error_with_the_known_forms(arguments: tuple[str, str]) -> None:
     with pytest.raises(CatalogError, match=f"{arguments[0]} has no real form .*known: .*C\\)"):
         lh.simple(*arguments)
 
 
 @pytest.mark.parametrize("name", ["D2", "X1", "A0", "E9", "A1 + A1"])
-def test_what_is_no_simple_type_is_refused(name: str) -> None:
+def test_type_that_is_not_simple_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError, match="not the type of a simple Lie algebra"):
         lh.simple(name)
 

@@ -115,7 +115,7 @@ def test_extensions_over_other_fields() -> None:
         central_extension(lh.abelian(2), [[0, 0.5], [-0.5, 0]])
 
 
-def test_a_form_that_is_no_cocycle_names_the_triple_and_the_value() -> None:
+def test_form_that_is_not_a_cocycle_raises_with_the_triple_and_the_value() -> None:
     g = lh.heisenberg(2)  # x1, x2, y1, y2, z
     with pytest.raises(CocycleError, match=r"\(0, 1, 3\).*x1, x2, y2.*= 3/2, expected 0") as caught:
         central_extension(g, form(5, (0, 4, lh.QQ.convert("-3/2"))))
@@ -123,7 +123,7 @@ def test_a_form_that_is_no_cocycle_names_the_triple_and_the_value() -> None:
     assert isinstance(caught.value, StructureError)
 
 
-def test_a_form_that_is_not_antisymmetric() -> None:
+def test_form_that_is_not_antisymmetric_raises_structure_error() -> None:
     with pytest.raises(StructureError, match=r"w\[0, 1\] = 1 and w\[1, 0\] = 1"):
         central_extension(lh.abelian(2), [[0, 1], [1, 0]])
     with pytest.raises(StructureError, match=r"w\[1, 1\]"):
@@ -202,7 +202,7 @@ def test_complex_structures_are_checked() -> None:
 
 
 @pytest.mark.parametrize("build", [lambda: lh.so(3), lambda: lh.so(12)], ids=["dense", "sparse"])
-def test_a_complex_structure_with_one_sign_changed_is_none(build: Any) -> None:
+def test_complex_structure_with_one_sign_changed_raises_input_error(build: Any) -> None:
     made = complexification(build())
     n = made.complex_dimension
     rows = made.complex_structure.to_rows()
@@ -244,7 +244,7 @@ def test_realification_over_a_number_field() -> None:
     assert made.algebra.field.name == "QQ(sqrt(2))"
 
 
-def test_what_is_no_complex_algebra() -> None:
+def test_invalid_complex_constants_raise_structure_errors() -> None:
     with pytest.raises(JacobiError):
         realification({(0, 1): {0: (0, 1)}, (0, 2): {1: (1, 0)}}, dimension=3)
     with pytest.raises(StructureError, match="antisymmetric"):

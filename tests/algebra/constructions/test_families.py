@@ -76,7 +76,7 @@ CLAIMS: list[tuple[str, Build, int, list[int], list[int], tuple[int, int, int]]]
 
 
 @pytest.mark.parametrize(("name", "build", "centre", "derived", "lower", "killing"), CLAIMS, ids=[c[0] for c in CLAIMS])
-def test_claims(
+def test_families_have_their_names_series_and_killing_signatures(
     name: str, build: Build, centre: int, derived: list[int], lower: list[int], killing: tuple[int, int, int]
 ) -> None:
     g = build()
@@ -228,7 +228,7 @@ def test_forms_over_other_numbers() -> None:
 
 
 @pytest.mark.parametrize("build", [so_form, sp_form])
-def test_what_is_no_form(build: Callable[..., lh.LieAlgebra]) -> None:
+def test_matrix_of_wrong_symmetry_or_shape_raises_errors(build: Callable[..., lh.LieAlgebra]) -> None:
     with pytest.raises(ShapeError):
         build([[1, 2]])
     with pytest.raises(ShapeError):
@@ -370,13 +370,13 @@ def test_free_nilpotent_algebras_are_free(coefficients: list[int]) -> None:
         lambda: so_star(0),
     ],
 )
-def test_bad_parameters_are_refused(call: Callable[[], object]) -> None:
+def test_invalid_parameters_raise_errors(call: Callable[[], object]) -> None:
     with pytest.raises(InputError):
         call()
 
 
 @pytest.mark.parametrize("name", [c[0] for c in CLAIMS])
-def test_the_catalogue_reads_the_names(name: str) -> None:
+def test_catalogue_constructs_the_algebra_of_each_name(name: str) -> None:
     build = next(c[1] for c in CLAIMS if c[0] == name)
     assert lh.catalog.algebra(name) == build()
 
@@ -388,6 +388,6 @@ def test_the_catalogue_reads_the_names(name: str) -> None:
         *("free_nilpotent(2,40)", "free_nilpotent(2)", "bianchi(X)", "bianchi(3)", "bianchi(I;1)", "aff(1;2)"),
     ],
 )
-def test_the_catalogue_refuses_parameters_that_are_none(name: str) -> None:
+def test_catalogue_name_with_invalid_parameters_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError):
         lh.catalog.algebra(name)

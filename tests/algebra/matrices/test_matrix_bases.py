@@ -151,7 +151,7 @@ def test_is_a_lie_algebra_of_the_right_dimension_and_real_form(name):
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_entries_are_small(name):
+def test_entries_have_small_absolute_value(name):
     bound = {"so(-2,-4,6,1)": 6, "gl(2) on quartics": 4, "g2 over other octonions": 6}.get(name, 3)
     assert np.abs(FAMILIES[name][0]).max(initial=0) <= bound
 
@@ -379,7 +379,7 @@ def test_null_space_agrees_with_the_modular_rank():
         (lambda: mf.tensor_sum([[[0.5]]], mf.sl(2)), "integer matrices"),
     ],
 )
-def test_bad_parameters_are_refused(call, message):
+def test_invalid_parameters_raise_errors(call, message):
     with pytest.raises(InputError, match=re.escape(message)) as caught:
         call()
     assert isinstance(caught.value, LiehomError)

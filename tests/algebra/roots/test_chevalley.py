@@ -70,7 +70,7 @@ def test_any_numbering_of_the_simple_roots_will_do(name, randomness):
     assert made.den == 1
 
 
-def test_a_false_sign_is_seen_by_the_jacobi_identity():
+def test_jacobi_identity_detects_a_wrong_sign():
     table = chevalley_constants(root_system("F4"))
     place = next(x for x in range(len(table)) if table.i[x] >= 4)
     table.parts[0][place] *= -1
@@ -92,6 +92,6 @@ def test_e8_is_quick():
     assert min(times) < 0.2
 
 
-def test_types_that_there_are_not():
+def test_unknown_type_raises_catalog_error():
     with pytest.raises(lh.errors.CatalogError, match="known: A1"):
         lh.chevalley("E9")

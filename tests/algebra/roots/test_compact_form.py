@@ -113,7 +113,7 @@ def test_complex_algebras_are_realifications():
     ("painted", "automorphism"),
     [((5,), ()), ((0,), (2, 1, 0)), ((), (1, 0, 2)), ((), (1, 2, 0)), ((), (0, 1)), ((-1,), ())],
 )
-def test_what_is_no_vogan_diagram(painted, automorphism):
+def test_invalid_vogan_diagram_raises_input_error(painted, automorphism):
     with pytest.raises(lh.errors.InputError):
         VoganDiagram("A3", painted, automorphism)
 

@@ -87,7 +87,7 @@ def expected_satake(form):
 
 
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.name)
-def test_table_of_helgason(form):
+def test_satake_diagrams_agree_with_the_table_of_helgason(form):
     satake = form.satake
     black, arrows = tuple(i + 1 for i in satake.black), tuple((i + 1, j + 1) for i, j in satake.arrows)
     found = (form.restricted_type, tuple(form.multiplicities.values()))
@@ -107,7 +107,7 @@ def test_table_of_helgason(form):
     FORMS + [complex_form(name) for name in CLASSICAL_TYPES[::3] + EXCEPTIONAL_TYPES],
     ids=lambda form: form.name,
 )
-def test_dimensions_agree(form):
+def test_vogan_and_satake_diagrams_give_equal_dimensions(form):
     satake = form.satake
     multiplicities = satake.restricted_roots()
     assert form.dimension == satake.anisotropic_dimension + form.real_rank + sum(multiplicities.values())
@@ -183,7 +183,7 @@ def test_every_involution_gives_a_form_of_the_list():
         assert found == listed
 
 
-def test_several_forms_of_one_character():
+def test_character_of_several_forms_raises_catalog_error():
     assert [form.name for form in real_forms_with("A13", -15)] == ["su(9,5)", "sl(7,H)"]
     assert real_forms_with("A13", -15)[0].real_rank == 5
     assert real_forms_with("A13", -15)[1].real_rank == 6
@@ -195,7 +195,7 @@ def test_several_forms_of_one_character():
     assert real_forms_with("E8", 1) == []
 
 
-def test_complex_algebras():
+def test_complex_simple_algebras_as_real_forms():
     form = complex_form("E8")
     assert (form.name, form.type, form.is_complex, form.dimension) == ("e8(C)", "E8", True, 496)
     assert (form.maximal_compact, form.compact_dimension, form.real_rank, form.rank) == ("e8", 248, 8, 16)
@@ -217,18 +217,18 @@ def test_satake_diagram_as_a_graph():
     ("black", "arrows"),
     [((), ((0, 1),)), ((1,), ((0, 1),)), ((7,), ()), ((), ((0, 2), (2, 1))), ((), ((0, 4),))],
 )
-def test_what_is_no_satake_diagram(black, arrows):
+def test_invalid_satake_diagram_raises_input_error(black, arrows):
     with pytest.raises(lh.errors.InputError):
         SatakeDiagram("A3", black, arrows)
 
 
 @pytest.mark.parametrize("name", ["D2", "A1 + A1", "X4", "E9", "0"])
-def test_types_that_are_not_simple(name):
+def test_type_that_is_not_simple_raises_catalog_error(name):
     for function in (lh.real_forms, complex_form):
         with pytest.raises(lh.errors.CatalogError):
             function(name)
 
 
-def test_a_sum_is_no_simple_form():
+def test_name_of_a_sum_raises_catalog_error():
     with pytest.raises(lh.errors.CatalogError, match=r"sl\(2,R\) \+ sl\(2,R\)"):
         RealForm.of_name("so(2,2)")

@@ -44,7 +44,7 @@ COINCIDENCES = {
 @pytest.mark.parametrize(
     ("canonical", "name"), [(c, n) for c, names in COINCIDENCES.items() for n in names.split(" | ")]
 )
-def test_coincidences(canonical, name):
+def test_low_dimensional_isomorphisms_have_one_name(canonical, name):
     assert canonical_real_form(name) == canonical
 
 
@@ -115,7 +115,7 @@ def test_other_names_keep_dimension_character_and_rank(p, q):
         "R",
     ],
 )
-def test_names_of_algebras_that_are_not_semisimple(name):
+def test_name_of_an_algebra_that_is_not_semisimple_raises_catalog_error(name):
     with pytest.raises(lh.errors.CatalogError, match="known"):
         canonical_real_form(name)
 
@@ -127,7 +127,7 @@ NO_NAMES = (
 
 
 @pytest.mark.parametrize("name", NO_NAMES.split("|"))
-def test_what_is_no_name(name):
+def test_invalid_name_raises_catalog_error(name):
     with pytest.raises(lh.errors.CatalogError, match=r"known: sl\(n,R\)"):
         canonical_real_form(name)
 

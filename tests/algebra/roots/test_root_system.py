@@ -48,7 +48,7 @@ def test_counts_and_orders(name):
 
 
 @pytest.mark.parametrize("name", ["A4", "B4", "C4", "D5", "E6", "F4", "G2", "A1 + B2"])
-def test_axioms(name):
+def test_roots_satisfy_the_axioms_of_a_root_system(name):
     """Reflections permute the roots, pairings are integers, and the norms are those of the reflections."""
     system = root_system(name)
     roots = set(system.roots)
@@ -119,11 +119,11 @@ def test_the_type_does_not_depend_on_the_numbering(names, randomness):
         ("G2+A10+A9", "A9 + A10 + G2"),
     ],
 )
-def test_coincidences(alias, name):
+def test_low_rank_types_have_one_name(alias, name):
     assert root_system(alias).type == name
 
 
-def test_b_and_c_are_told_apart():
+def test_b_and_c_are_distinguished():
     b, c = cartan_matrix("B4"), cartan_matrix("C4")
     assert b == tuple(zip(*c, strict=True))
     assert type_name(b) == "B4"
@@ -171,18 +171,18 @@ def test_the_diagram_is_a_graph_with_weights():
         [[2, -0.5], [-1, 2]],
     ],
 )
-def test_matrices_that_are_no_cartan_matrices(matrix):
+def test_invalid_cartan_matrix_raises_input_error(matrix):
     with pytest.raises(lh.errors.InputError):
         RootSystem(matrix)
 
 
 @pytest.mark.parametrize("name", ["E9", "H3", "A0", "D1", "F5", "", "A", "a2", "A2 - A1", "G3"])
-def test_types_that_there_are_not(name):
+def test_unknown_type_raises_catalog_error(name):
     with pytest.raises(lh.errors.CatalogError, match="known: A1"):
         root_system(name)
 
 
-def test_vectors_that_do_not_fit():
+def test_vector_of_wrong_length_raises_shape_error():
     system = root_system("B2")
     with pytest.raises(lh.errors.ShapeError):
         system.norm((1, 0, 0))
@@ -190,7 +190,7 @@ def test_vectors_that_do_not_fit():
         system.pairing((1, 0), (5, 1))
 
 
-def test_an_empty_system_is_legal():
+def test_empty_root_system_has_rank_0():
     empty = RootSystem(())
     assert (empty.rank, empty.type, empty.roots, empty.weyl_group_order()) == (0, "0", (), 1)
 
