@@ -9,14 +9,28 @@ and are handled by numpy's own functions.
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from types import ModuleType
+from typing import Any, TypeAlias, TypeGuard, TypeVar
 
 import flint
 import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
 
 from liehom.errors import FieldError, SeriesError, SingularError
 from liehom.tracing.array import Traced
+from liehom.typing import Number, ObjectArray, Values
+
+ExactNumber: TypeAlias = Any
+"""An entry of an array of objects: a number of sympy, mpmath or flint, a Fraction, an element of a field."""
+
+NumbersLike: TypeAlias = ArrayLike | Number | Sequence[Number]
+"""Whatever becomes an array of numbers: arrays, numbers and nested sequences, also of exact numbers."""
+
+T = TypeVar("T")
+V = TypeVar("V", bound=Values)
 
 # the values at 0 that stay in every field; at other arguments these functions leave QQ
 _AT_ZERO = {
@@ -28,7 +42,7 @@ _SYMPY = {
 }  # fmt: skip
 
 
-def is_jax(x: Any) -> bool:
+def is_jax(x: object) -> TypeGuard[Any]:
     """Whether x is a JAX array or tracer.
 
     Examples
@@ -41,7 +55,7 @@ def is_jax(x: Any) -> bool:
     return module.startswith(("jax", "jaxlib"))
 
 
-def is_lazy(x: Any) -> bool:
+def is_lazy(x: object) -> TypeGuard[Any]:
     """Whether x is an array whose values may not be looked at: of JAX, or traced to be compiled.
 
     Examples
@@ -53,7 +67,7 @@ def is_lazy(x: Any) -> bool:
     return type(x) is Traced or is_jax(x)
 
 
-def is_traced(x: Any) -> bool:
+def is_traced(x: object) -> bool:
     """Whether x stands for a value that is not known yet, inside ``jax.jit``, ``jax.grad`` or a trace of our own.
 
     Examples
@@ -65,7 +79,7 @@ def is_traced(x: Any) -> bool:
     return type(x) is Traced or (is_jax(x) and isinstance(x, sys.modules["jax"].core.Tracer))
 
 
-def is_exact(x: Any) -> bool:
+def is_exact(x: object) -> bool:
     """Whether x is an array of objects: exact scalars or symbols, not machine numbers.
 
     Examples
@@ -78,7 +92,7 @@ def is_exact(x: Any) -> bool:
     return kind is not None and kind == np.dtype(object)
 
 
-def namespace(*arrays: Any) -> Any:
+def namespace(*arrays: object) -> ModuleType:
     """``jax.numpy`` if one of the arrays is a JAX array, else ``numpy``.
 
     Examples
@@ -90,7 +104,7 @@ def namespace(*arrays: Any) -> Any:
     return sys.modules["jax.numpy"] if any(is_jax(x) for x in arrays) else np
 
 
-def as_values(x: Any) -> Any:
+def as_values(x: NumbersLike) -> npt.NDArray[Any]:
     """x as an array whose arithmetic is a field's: integers become floats, exact integers become fractions.
 
     Raises
@@ -105,7 +119,8 @@ def as_values(x: Any) -> Any:
     (dtype('float64'), Fraction(3, 1))
     """
     if is_lazy(x):
-        return x if x.dtype.kind not in "iub" else x.astype(float)
+        found: npt.NDArray[Any] = x if x.dtype.kind not in "iub" else x.astype(float)
+        return found
     array = np.asarray(x)
     if array.dtype.kind in "fc":
         return array
@@ -117,7 +132,7 @@ def as_values(x: Any) -> Any:
     return _alike(array, 0 * kinds[0] if kinds and _is_number(kinds[0]) else Fraction(0))
 
 
-def _alike(array: Any, zero: Any) -> Any:
+def _alike(array: npt.NDArray[Any], zero: Number) -> ObjectArray:
     """An array of objects in which integers and rational numbers are of the kind of `zero`."""
     out = np.empty(array.shape, dtype=object)
     rational = isinstance(zero, Fraction | flint.fmpq)
@@ -138,13 +153,13 @@ def _alike(array: Any, zero: Any) -> Any:
     return out
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> bool:
     if isinstance(value, str | bytes | bool | np.bool_ | list | tuple) or bool(getattr(value, "ndim", False)):
         return False
     return hasattr(value, "__mul__")
 
 
-def constant_like(like: Any, value: Any) -> Any:
+def constant_like(like: Values, value: NumbersLike) -> npt.NDArray[Any]:
     """A constant as an array that can stand in one formula with arrays like `like`; the caller's array is copied.
 
     A number takes the type of `like`, as in numpy; next to exact scalars it must be exact.
@@ -174,7 +189,7 @@ def constant_like(like: Any, value: Any) -> Any:
     return owned(as_values(value))
 
 
-def owned(x: Any) -> Any:
+def owned(x: T) -> T:
     """x, copied if it is an array that its owner may change; None stays.
 
     Examples
@@ -187,7 +202,7 @@ def owned(x: Any) -> Any:
     return x.copy(order="K") if isinstance(x, np.ndarray) else x
 
 
-def zeros(like: Any, shape: tuple[int, ...]) -> Any:
+def zeros(like: Values, shape: tuple[int, ...]) -> npt.NDArray[Any]:
     """An array of zeros of the kind of `like`; over exact scalars they are the zero of their kind.
 
     Examples
@@ -197,7 +212,8 @@ def zeros(like: Any, shape: tuple[int, ...]) -> Any:
     dtype('float32')
     """
     if is_lazy(like):
-        return namespace(like).zeros(shape, dtype=like.dtype)
+        found: npt.NDArray[Any] = namespace(like).zeros(shape, dtype=like.dtype)
+        return found
     dtype = np.asarray(like).dtype
     if dtype.kind != "O":
         if len(shape) > 1:  # see `in_lanes`
@@ -209,7 +225,7 @@ def zeros(like: Any, shape: tuple[int, ...]) -> Any:
     return out
 
 
-def in_lanes(x: Any) -> Any:
+def in_lanes(x: V) -> V:
     """x (..., N), copied if need be so that each component lies contiguous in memory, the last axis outermost.
 
     Values and shape are those of x. Arithmetic of numpy keeps the layout, and with few components is several times
@@ -223,13 +239,16 @@ def in_lanes(x: Any) -> Any:
     """
     if type(x) is not np.ndarray or x.ndim < 2:
         return x
-    components = x.T if x.ndim == 2 else np.moveaxis(x, -1, 0)
+    whole: Any = x
+    components = whole.T if x.ndim == 2 else np.moveaxis(whole, -1, 0)
     if components.flags.c_contiguous:
         return x
-    return np.moveaxis(np.ascontiguousarray(components), 0, -1)
+    moved: Any = np.ascontiguousarray(components)
+    back: V = np.moveaxis(moved, 0, -1)
+    return back
 
 
-def across_lanes(x: Any, matrix: Any) -> Any:
+def across_lanes(x: Values, matrix: Values) -> Values:
     """x @ matrix for x (..., n) and a matrix (n, k) that all share, in the layout of x.
 
     Examples
@@ -246,10 +265,11 @@ def across_lanes(x: Any, matrix: Any) -> Any:
     if x.ndim == 2:
         return (matrix.T @ components).T
     made = matrix.T @ components.reshape(len(components), -1)
-    return np.moveaxis(made.reshape(-1, *components.shape[1:]), 0, -1)
+    found: Values = np.moveaxis(made.reshape(-1, *components.shape[1:]), 0, -1)
+    return found
 
 
-def elementary(name: str, x: Any) -> Any:
+def elementary(name: str, x: Values) -> npt.NDArray[Any]:
     """The numpy function of this name on the values of an array.
 
     Raises
@@ -264,17 +284,19 @@ def elementary(name: str, x: Any) -> Any:
     array([1., 1.])
     """
     if is_lazy(x):
-        return getattr(namespace(x), name)(x)
+        found: npt.NDArray[Any] = getattr(namespace(x), name)(x)
+        return found
     array = np.asarray(x)
     if array.dtype.kind != "O":
-        return getattr(np, name)(array)
+        found = getattr(np, name)(array)
+        return found
     out = np.empty(array.shape, dtype=object)
     for index, value in np.ndenumerate(array):
         out[index] = _elementary_scalar(name, value)
     return out if array.ndim else out[()]
 
 
-def _elementary_scalar(name: str, x: Any) -> Any:
+def _elementary_scalar(name: str, x: ExactNumber) -> ExactNumber:
     kind = type(x).__module__
     if kind.startswith("sympy"):
         import sympy
@@ -297,7 +319,7 @@ def _elementary_scalar(name: str, x: Any) -> Any:
     raise FieldError(f"{name}({x}) is not known to be in the field of the exact numbers; use floats or sympy symbols")
 
 
-def _symbolic(library: Any, name: str, x: Any) -> Any:
+def _symbolic(library: ModuleType, name: str, x: ExactNumber) -> ExactNumber:
     """The function of sympy or mpmath with the numpy name."""
     if name in ("expm1", "log1p"):
         return library.exp(x) - 1 if name == "expm1" else library.log(x + 1)
@@ -308,7 +330,7 @@ def _symbolic(library: Any, name: str, x: Any) -> Any:
     return getattr(library, _SYMPY.get(name, name))(x)
 
 
-def power(x: Any, exponent: Fraction) -> Any:
+def power(x: Values, exponent: Fraction) -> npt.NDArray[Any]:
     """x ** exponent for arrays of exact scalars: roots of squares, and of whatever sympy and mpmath can do.
 
     Examples
@@ -324,7 +346,7 @@ def power(x: Any, exponent: Fraction) -> Any:
     return out if array.ndim else out[()]
 
 
-def _power_scalar(x: Any, exponent: Fraction) -> Any:
+def _power_scalar(x: ExactNumber, exponent: Fraction) -> ExactNumber:
     kind = type(x).__module__
     if kind.startswith("sympy"):
         import sympy
@@ -339,7 +361,7 @@ def _power_scalar(x: Any, exponent: Fraction) -> Any:
     raise FieldError(f"({x}) ** ({exponent}) is not known to be in the field of the exact numbers; use floats")
 
 
-def solve(a: Any, b: Any) -> Any:
+def solve(a: Values, b: Values) -> npt.NDArray[Any]:
     """The solution of a x = b for matrices a (..., n, n), b (..., n, k): also of long doubles and exact scalars.
 
     Raises
@@ -354,7 +376,8 @@ def solve(a: Any, b: Any) -> Any:
     array([[Fraction(1, 2)]], dtype=object)
     """
     if is_lazy(a) or is_lazy(b):
-        return namespace(a, b).linalg.solve(a, b)
+        found: npt.NDArray[Any] = namespace(a, b).linalg.solve(a, b)
+        return found
     dtype = np.result_type(a, b)
     if dtype.char not in "gGO":
         return np.linalg.solve(a, b)
@@ -366,7 +389,7 @@ def solve(a: Any, b: Any) -> Any:
     return right
 
 
-def _eliminate(a: Any, b: Any) -> None:
+def _eliminate(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> None:
     """Gauss-Jordan elimination in place: b becomes the solution."""
     n = a.shape[0]
     for i in range(n):
@@ -383,7 +406,7 @@ def _eliminate(a: Any, b: Any) -> None:
                 a[j] = a[j] - a[j, i] * a[i]
 
 
-def _rational_root(x: Any) -> Any:
+def _rational_root(x: ExactNumber) -> ExactNumber:
     """The square root of an exact rational square, of the kind of x, else None."""
     kind = type(x)
     if not isinstance(x, flint.fmpq | Fraction) or x < 0:

@@ -6,19 +6,23 @@ numpy makes ``np.array([m[0] * m[1], 0.0])`` an array of objects; `as_jet` makes
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import recurrences
 from liehom.series.arrays import constant_like, is_exact, is_lazy, namespace
 from liehom.series.jet import Jet
-from liehom.series.jet_dispatch import dispatch
+from liehom.series.jet_dispatch import Operand, dispatch
 from liehom.series.node import Node
+from liehom.typing import Values
+
+T = TypeVar("T")
 
 
-def holds_jets(x: Any) -> bool:
+def holds_jets(x: object) -> bool:
     """Whether x is a Jet, or a nested list or array of objects with a Jet in it.
 
     Examples
@@ -35,7 +39,7 @@ def holds_jets(x: Any) -> bool:
     return isinstance(x, list | tuple) and any(holds_jets(entry) for entry in x)
 
 
-def as_jet(x: Any, order: int | None = None) -> Jet:
+def as_jet(x: Operand, order: int | None = None) -> Jet:
     """x as one Jet.
 
     Parameters
@@ -78,17 +82,18 @@ def as_jet(x: Any, order: int | None = None) -> Jet:
         if np.shape(entry) not in ((), inner):
             raise ShapeError(f"entries of shapes {inner} and {np.shape(entry)} do not make one array; see np.stack")
 
-    def stacked(*parts: Any) -> Any:
+    def stacked(*parts: Values) -> Values:
         xp = namespace(*parts)
         full = [part if np.shape(part) == inner else xp.broadcast_to(part, inner) for part in parts]
         if xp is np and not inner:
             return _array(full, shape)
-        return xp.stack(full).reshape((*shape, *inner))
+        found: Values = xp.stack(full).reshape((*shape, *inner))
+        return found
 
     return Jet.from_node(recurrences.linear(stacked, nodes(*entries, like=first)), writable=True)
 
 
-def _array(parts: list[Any], shape: tuple[int, ...]) -> Any:
+def _array(parts: list[Values], shape: tuple[int, ...]) -> npt.NDArray[Any]:
     """Numbers as an array of this shape, which numpy must not look into."""
     dtype = np.result_type(*[getattr(part, "dtype", np.dtype(object)) for part in parts])
     out = np.empty(len(parts), dtype=dtype)
@@ -97,14 +102,14 @@ def _array(parts: list[Any], shape: tuple[int, ...]) -> Any:
     return out.reshape(shape)
 
 
-def _plain(x: Any) -> Any:
+def _plain(x: Operand) -> Operand:
     """An array; numpy must not look into the values of JAX arrays in a list."""
     if isinstance(x, list | tuple) and any(is_lazy(entry) for entry in x):
         return namespace(*x).stack([namespace(*x).asarray(entry) for entry in x])
     return x
 
 
-def _flattened(x: Any) -> tuple[tuple[int, ...], list[Any]]:
+def _flattened(x: Operand) -> tuple[tuple[int, ...], list[Operand]]:
     """The outer shape and the entries in order."""
     if isinstance(x, np.ndarray):
         return x.shape, list(x.flat)
@@ -116,7 +121,7 @@ def _flattened(x: Any) -> tuple[tuple[int, ...], list[Any]]:
     return (len(parts), *parts[0][0]), [entry for _, entries in parts for entry in entries]
 
 
-def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
+def nodes(*values: Operand, like: Jet | None = None) -> list[Node]:
     """The nodes of Jets and constants, at the lowest order among the Jets; a constant becomes of the kind of `like`.
 
     Examples
@@ -134,7 +139,7 @@ def nodes(*values: Any, like: Jet | None = None) -> list[Node]:
     return [x.node if type(x) is Jet else recurrences.constant(constant_like(kind, x), order) for x in made]
 
 
-def on_series(function: Callable[..., Any], *arguments: Any) -> Any:
+def on_series(function: Callable[..., T], *arguments: object) -> T:
     """``function(*arguments)``, with numpy's own complaint about a Jet in a float array replaced by the reason.
 
     Writing a Jet into an entry of a float array ends in numpy's "setting an array element with a sequence".

@@ -7,16 +7,17 @@ It runs on numpy arrays, JAX arrays and exact scalars with any leading axes, and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from fractions import Fraction
 from typing import Any, final
 
 import flint
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import as_values, constant_like, is_jax, namespace, owned, zeros
+from liehom.series.arrays import NumbersLike, as_values, constant_like, is_jax, namespace, owned, zeros
 from liehom.series.jet import Jet
 
 DENSE_UP_TO_ENTRIES = 4096
@@ -60,9 +61,9 @@ class Bilinear:
         self._starts = np.flatnonzero(np.r_[True, self._k[1:] != self._k[:-1]]) if rows else np.zeros(0, dtype=int)
         size = shape[0] * shape[1] * shape[2]
         self._dense = size <= DENSE_UP_TO_ENTRIES or len(rows) > DENSE_FROM_FRACTION * size
-        self._cache: dict[Any, Any] = {}
+        self._cache: dict[Hashable, npt.NDArray[Any]] = {}
 
-    def tensor(self) -> Any:
+    def tensor(self) -> npt.NDArray[Any]:
         """The coefficients as an array of shape (a, b, c): floats, or objects if one of them is no float or integer.
 
         Examples
@@ -73,7 +74,7 @@ class Bilinear:
         plain = all(isinstance(v, int | float | np.floating) for v in self._values)
         return self._filled(self._values.astype(np.float64) if plain else self._values)
 
-    def __call__(self, x: Any, y: Any) -> Any:
+    def __call__(self, x: NumbersLike, y: NumbersLike) -> Any:
         """B(x, y) for x (..., a) and y (..., b): shape (..., c); Jets give a Jet.
 
         Raises
@@ -81,21 +82,21 @@ class Bilinear:
         ShapeError
             If the last axis of an argument does not have the right length.
         """
-        x, y = (v if isinstance(v, Jet) else _values_of(v) for v in (x, y))
-        for v, length in zip((x, y), self.shape, strict=False):
+        a, b = (v if isinstance(v, Jet) else _values_of(v) for v in (x, y))
+        for v, length in zip((a, b), self.shape, strict=False):
             if not v.shape or v.shape[-1] != length:
                 raise ShapeError(f"an argument of shape {v.shape}, expected (..., {length}) for a map of {self.shape}")
-        if not isinstance(x, Jet) and not isinstance(y, Jet):
-            return self._apply(x, y)
-        if not isinstance(x, Jet):
-            x = owned(x)
-            return Jet.from_node(recurrences.linear(lambda b: self._apply(x, b), [y.node]))
-        if not isinstance(y, Jet):
-            y = owned(y)
-            return Jet.from_node(recurrences.linear(lambda a: self._apply(a, y), [x.node]))
-        return Jet.from_node(recurrences.multilinear(self._apply, [x.node, y.node]))
+        if isinstance(a, Jet):
+            if isinstance(b, Jet):
+                return Jet.from_node(recurrences.multilinear(self._apply, [a.node, b.node]))
+            right = owned(b)
+            return Jet.from_node(recurrences.linear(lambda left: self._apply(left, right), [a.node]))
+        if isinstance(b, Jet):
+            left = owned(a)
+            return Jet.from_node(recurrences.linear(lambda right: self._apply(left, right), [b.node]))
+        return self._apply(a, b)
 
-    def left(self, x: Any) -> Any:
+    def left(self, x: NumbersLike) -> npt.NDArray[Any]:
         """The matrix of y -> B(x, y), shape (..., c, b).
 
         Examples
@@ -105,25 +106,26 @@ class Bilinear:
         """
         return self._contracted("...i,ijk->...kj", x)
 
-    def right(self, y: Any) -> Any:
+    def right(self, y: NumbersLike) -> npt.NDArray[Any]:
         """The matrix of x -> B(x, y), shape (..., c, a)."""
         return self._contracted("...j,ijk->...ki", y)
 
-    def _contracted(self, subscripts: str, x: Any) -> Any:
-        x = x if isinstance(x, Jet) else _values_of(x)
-        xp = np if isinstance(x, Jet) else namespace(x)
-        return xp.einsum(subscripts, x, self._tensor_for(x))
+    def _contracted(self, subscripts: str, x: NumbersLike) -> npt.NDArray[Any]:
+        factor = x if isinstance(x, Jet) else _values_of(x)
+        xp = np if isinstance(factor, Jet) else namespace(factor)
+        found: npt.NDArray[Any] = xp.einsum(subscripts, factor, self._tensor_for(factor))
+        return found
 
-    def _tensor_for(self, x: Any) -> Any:
+    def _tensor_for(self, x: Jet | npt.NDArray[Any]) -> npt.NDArray[Any]:
         value = x.value if isinstance(x, Jet) else x
         return self._cached("tensor", value, lambda: self._filled(self._coefficients(value)))
 
-    def _filled(self, values: Any) -> Any:
+    def _filled(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         out = np.zeros(self.shape, dtype=values.dtype)
         np.add.at(out, (self._i, self._j, self._k), values)
         return out
 
-    def _apply(self, x: Any, y: Any) -> Any:
+    def _apply(self, x: npt.NDArray[Any], y: npt.NDArray[Any]) -> npt.NDArray[Any]:
         a, b, c = self.shape
         kind = x if x.dtype == y.dtype else np.broadcast_to(np.zeros((), np.result_type(x.dtype, y.dtype)), (1,))
         if kind.dtype == object:
@@ -133,21 +135,25 @@ class Bilinear:
             if matrix.dtype != object:
                 pairs = x[..., :, None] * y[..., None, :]
                 xp = namespace(pairs)
-                return pairs.reshape(*pairs.shape[:-2], a * b) @ (matrix if xp is np else xp.asarray(matrix))
+                flat: npt.NDArray[Any] = pairs.reshape(*pairs.shape[:-2], a * b)
+                found: npt.NDArray[Any] = flat @ (matrix if xp is np else xp.asarray(matrix))
+                return found
         products = x[..., self._i] * y[..., self._j] * self._cached("values", kind, lambda: self._coefficients(kind))
         return self._collected(products, kind)
 
-    def _collected(self, products: Any, kind: Any) -> Any:
+    def _collected(self, products: npt.NDArray[Any], kind: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """The sums of the products that belong to one component."""
         shape = (*products.shape[:-1], self.shape[2])
         if is_jax(products):
-            return zeros(products, shape).at[..., self._k].add(products)
+            whole: Any = zeros(products, shape)
+            found: npt.NDArray[Any] = whole.at[..., self._k].add(products)
+            return found
         out = zeros(products if products.size else kind, shape)
         if len(self._starts):
             out[..., self._k[self._starts]] = np.add.reduceat(products, self._starts, axis=-1)
         return out
 
-    def _coefficients(self, like: Any) -> Any:
+    def _coefficients(self, like: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """The coefficients in the kind of numbers of an array."""
         if like.dtype == object:
             return constant_like(like, self._values)
@@ -157,18 +163,19 @@ class Bilinear:
         except TypeError:  # symbols
             return self._values
 
-    def _cached(self, name: str, like: Any, make: Callable[[], Any]) -> Any:
+    def _cached(self, name: str, like: npt.NDArray[Any], make: Callable[[], npt.NDArray[Any]]) -> npt.NDArray[Any]:
         """What depends on the kind of numbers alone."""
         if like.dtype != object:
-            key = (name, np.dtype(like.dtype))
+            key: Hashable = (name, np.dtype(like.dtype))
         else:
-            key = (name, type(like.flat[0]) if like.size else None)
-            if key[1] is None or not issubclass(key[1], Fraction | flint.fmpq):
+            kind = type(like.flat[0]) if like.size else None
+            if kind is None or not issubclass(kind, Fraction | flint.fmpq):
                 return make()
+            key = (name, kind)
         if key not in self._cache:
             self._cache[key] = make()
         return self._cache[key]
 
 
-def _values_of(x: Any) -> Any:
+def _values_of(x: NumbersLike) -> npt.NDArray[Any]:
     return x if type(x) is np.ndarray and x.dtype.kind in "fcO" else as_values(x)

@@ -8,8 +8,8 @@ factorials) and are computed on demand, so that a solution of a differential equ
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, final
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Never, final
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,11 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import jet_views, recurrences
-from liehom.series.arrays import as_values, namespace, owned, zeros
-from liehom.series.jet_dispatch import dispatch
+from liehom.series.arrays import NumbersLike, as_values, namespace, owned, zeros
+from liehom.series.jet_dispatch import Operand, dispatch
 from liehom.series.jet_views import View, ViewOperation
-from liehom.series.node import Node, rewind
+from liehom.series.node import Coefficient, Node, rewind
+from liehom.typing import Key, Real
 
 
 @final
@@ -59,7 +60,7 @@ class Jet(NDArrayOperatorsMixin):
 
     __slots__ = ("_node", "_view", "_writable")
 
-    def __init__(self, coefficients: Any) -> None:
+    def __init__(self, coefficients: NumbersLike) -> None:
         values = owned(as_values(coefficients))
         if values.ndim == 0:
             raise ShapeError("a Jet needs Taylor coefficients along a first axis, got a single number")
@@ -89,7 +90,7 @@ class Jet(NDArrayOperatorsMixin):
         return made
 
     @classmethod
-    def variable(cls, value: Any, order: int, direction: Any = None) -> Jet:
+    def variable(cls, value: NumbersLike, order: int, direction: NumbersLike | None = None) -> Jet:
         """value + direction t (direction 1 by default).
 
         Examples
@@ -104,7 +105,7 @@ class Jet(NDArrayOperatorsMixin):
         return cls.from_node(Node(order, first, [first, slope, *[None] * (order - 1)][: _checked(order) + 1]))
 
     @classmethod
-    def constant(cls, value: Any, order: int) -> Jet:
+    def constant(cls, value: NumbersLike, order: int) -> Jet:
         """A series without t.
 
         Examples
@@ -115,7 +116,7 @@ class Jet(NDArrayOperatorsMixin):
         return cls.from_node(recurrences.constant(owned(as_values(value)), _checked(order)))
 
     @classmethod
-    def growing(cls, value: Any, order: int, *, zero: bool = False) -> Jet:
+    def growing(cls, value: NumbersLike, order: int, *, zero: bool = False) -> Jet:
         """A series of which only the value at 0 is given; `extend` gives the next coefficients.
 
         Functions of it can be asked for the coefficients that are determined so far.
@@ -143,7 +144,7 @@ class Jet(NDArrayOperatorsMixin):
             return cls.from_node(Node(_checked(order), zeros(first, first.shape), [None]))
         return cls.from_node(Node(_checked(order), first, [first]))
 
-    def extend(self, coefficient: Any) -> None:
+    def extend(self, coefficient: Coefficient) -> None:
         """Give the next coefficient of a growing series; None is zero.
 
         Raises
@@ -156,12 +157,12 @@ class Jet(NDArrayOperatorsMixin):
             raise SeriesError("only a growing series that is not complete can be extended")
         node.known.append(self._given(coefficient))
 
-    def _given(self, coefficient: Any) -> Any:
+    def _given(self, coefficient: Coefficient) -> Coefficient:
         if coefficient is not None and np.shape(coefficient) != self.shape:
             raise ShapeError(f"a coefficient of shape {np.shape(coefficient)} for a series of values {self.shape}")
         return owned(coefficient)
 
-    def replace(self, k: int, coefficient: Any, *results: Jet) -> None:
+    def replace(self, k: int, coefficient: Coefficient, *results: Jet) -> None:
         """Replace coefficient k >= 1 of a growing series, and let `results` forget what depended on it.
 
         Raises
@@ -214,23 +215,25 @@ class Jet(NDArrayOperatorsMixin):
         return int(np.prod(self.shape, dtype=int))
 
     @property
-    def dtype(self) -> Any:
+    def dtype(self) -> np.dtype[Any]:
         """The dtype of the values."""
         value = self.node.value
         return value.dtype if hasattr(value, "dtype") else np.dtype(type(value))
 
     @property
-    def value(self) -> Any:
+    def value(self) -> npt.NDArray[Any]:
         """The value at t = 0."""
-        return _read_only(self.node.value)
+        found: npt.NDArray[Any] = _read_only(self.node.value)
+        return found
 
     @property
-    def coefficients(self) -> Any:
+    def coefficients(self) -> npt.NDArray[Any]:
         """All Taylor coefficients, shape (order + 1, ...)."""
         if self.dtype == object and not self.shape:
             return np.array([self.coefficient(k)[()] for k in range(self.order + 1)], dtype=object)
         xp = namespace(self.node.value)
-        return xp.stack([self.coefficient(k) for k in range(self.order + 1)])
+        found: npt.NDArray[Any] = xp.stack([self.coefficient(k) for k in range(self.order + 1)])
+        return found
 
     @property
     def T(self) -> Jet:
@@ -247,14 +250,15 @@ class Jet(NDArrayOperatorsMixin):
         """The imaginary part, for real t."""
         return self.part(lambda x: x.imag)
 
-    def coefficient(self, k: int) -> Any:
+    def coefficient(self, k: int) -> npt.NDArray[Any]:
         """Taylor coefficient k, an array of the shape of the values (a structural zero as an array of zeros)."""
         found = self.node.coefficient(k)
         if found is None:
             return zeros(self.node.value, self.shape)
-        return _read_only(np.asarray(found) if not hasattr(found, "shape") else found)
+        made: npt.NDArray[Any] = _read_only(np.asarray(found) if not hasattr(found, "shape") else found)
+        return made
 
-    def __call__(self, t: Any) -> Any:
+    def __call__(self, t: Real) -> npt.NDArray[Any]:
         """The polynomial at t, by Horner's rule; t broadcasts against the values."""
         total = self.coefficient(self.order)
         for k in range(self.order - 1, -1, -1):
@@ -275,10 +279,12 @@ class Jet(NDArrayOperatorsMixin):
         any: Callable[..., Jet]
         all: Callable[..., Jet]
 
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: object) -> Any:
         return dispatch.apply_ufunc(ufunc, method, inputs, options)
 
-    def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> Any:
+    def __array_function__(
+        self, function: Callable[..., Any], types: Iterable[type], args: tuple[Any, ...], options: dict[str, Any]
+    ) -> Any:
         return dispatch.apply_function(function, args, options)
 
     # -- what branches on values -------------------------------------------------------------------------
@@ -293,13 +299,13 @@ class Jet(NDArrayOperatorsMixin):
     __int__ = __index__ = __complex__ = __trunc__ = __floor__ = __ceil__ = __float__
     __hash__ = object.__hash__
 
-    def _sympy_(self) -> Any:
+    def _sympy_(self) -> Never:
         """Tells sympy that this is no expression, so that ``symbol * jet`` comes here."""
         from sympy import SympifyError
 
         raise SympifyError(self)
 
-    def __round__(self, digits: int | None = None) -> Any:
+    def __round__(self, digits: int | None = None) -> Never:
         raise _branch("rounding a series")
 
     # -- as a container ----------------------------------------------------------------------------------
@@ -314,7 +320,7 @@ class Jet(NDArrayOperatorsMixin):
     def __contains__(self, value: object) -> bool:
         raise _branch("membership in a series")
 
-    def __getitem__(self, key: Any) -> Jet:
+    def __getitem__(self, key: Key) -> Jet:
         if isinstance(key, Jet):
             raise _branch("an index that is a series")
         key = jet_views.checked_index(key, self.node.value)
@@ -323,7 +329,7 @@ class Jet(NDArrayOperatorsMixin):
             return self.part(lambda x: x[key], key=key, writable=True)
         return Jet.from_node(recurrences.linear(lambda x: x[key], [self.node]), writable=kind == "copy")
 
-    def __setitem__(self, key: Any, value: Any) -> None:
+    def __setitem__(self, key: Key, value: Operand) -> None:
         key = jet_views.checked_index(key, self.node.value)
         if not self.shares():
             raise SeriesError(
@@ -339,7 +345,7 @@ class Jet(NDArrayOperatorsMixin):
         """Whether entries of this Jet, or of the one that it is a view of, may be assigned."""
         return self._writable or self._view is not None
 
-    def part(self, function: Any, *, key: Any = None, writable: bool = False) -> Jet:
+    def part(self, function: Callable[[Any], Any], *, key: Key = None, writable: bool = False) -> Jet:
         """A linear function of the values that shares entries with this Jet, such as a slice or a transpose.
 
         Parameters
@@ -374,10 +380,10 @@ class Jet(NDArrayOperatorsMixin):
 
     __copy__ = copy
 
-    def __deepcopy__(self, memo: Any) -> Jet:
+    def __deepcopy__(self, memo: object) -> Jet:
         return self.copy()
 
-    def __reduce__(self) -> Any:
+    def __reduce__(self) -> tuple[type[Jet], tuple[npt.NDArray[Any]]]:
         return Jet, (self.coefficients,)
 
     def __getattr__(self, name: str) -> Any:
@@ -388,7 +394,7 @@ class Jet(NDArrayOperatorsMixin):
         return f"<series of order {self.order} with values of shape {self.shape}>"
 
 
-def _read_only(x: Any) -> Any:
+def _read_only(x: Coefficient) -> Any:
     """An array of coefficients as it is handed out: writing into it would change the series."""
     if isinstance(x, np.ndarray):
         x.flags.writeable = False

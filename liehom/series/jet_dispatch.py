@@ -7,9 +7,12 @@ themselves here when `liehom.series` is loaded.  The class imports this module o
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 from liehom.series.node import Node
+
+Operand: TypeAlias = Any
+"""A Jet, an array, a number, or a nested list or array of objects that holds Jets."""
 
 
 @final

@@ -7,20 +7,25 @@ is not in a table.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Never, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
+from numpy.typing import DTypeLike
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
 from liehom.series.arrays import is_lazy, namespace, solve, zeros
 from liehom.series.assembly import as_jet, holds_jets, nodes
 from liehom.series.jet import Jet
-from liehom.series.jet_dispatch import dispatch
+from liehom.series.jet_dispatch import Operand, dispatch
 from liehom.series.jet_ufuncs import bilinear, fresh, jax_counterpart, refused
 from liehom.series.jet_views import frozen
+from liehom.typing import Values
+
+Axis: TypeAlias = int | tuple[int, ...] | None
 
 # name -> how many positional arguments are understood, the array included
 LINEAR: dict[str, int] = {
@@ -53,7 +58,9 @@ REFUSED_METHODS = [
 ]  # fmt: skip
 
 
-def apply_function(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Any:
+def apply_function(
+    function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]
+) -> Jet | list[Jet] | Any:
     """What a numpy function returns for Jets among its arguments.
 
     Raises
@@ -84,7 +91,7 @@ def apply_function(function: Any, args: tuple[Any, ...], options: dict[str, Any]
     raise refused(f"np.{full}")
 
 
-def method(jet: Jet, name: str) -> Any:
+def method(jet: Jet, name: str) -> Callable[..., Any]:
     """The method of arrays with this name, for a Jet."""
     if name in recurrences.FUNCTIONS or name in ("arctan2", "hypot", "logaddexp"):
         return partial(getattr(np, name), jet)
@@ -97,7 +104,7 @@ def method(jet: Jet, name: str) -> Any:
     raise AttributeError(f"a series has no attribute {name!r}")
 
 
-def _method(jet: Jet, name: str, *args: Any, **options: Any) -> Any:
+def _method(jet: Jet, name: str, *args: object, **options: object) -> Any:
     if name in ("reshape", "transpose") and len(args) > 1:
         args = (args,)
     elif name == "transpose" and args == (None,):
@@ -105,11 +112,11 @@ def _method(jet: Jet, name: str, *args: Any, **options: Any) -> Any:
     return getattr(np, name)(jet, *args, **options)
 
 
-def _refuse(name: str, *args: Any, **options: Any) -> Any:
+def _refuse(name: str, *args: object, **options: object) -> Never:
     raise refused(name)
 
 
-def _astype(jet: Jet, dtype: Any, **options: Any) -> Jet:
+def _astype(jet: Jet, dtype: DTypeLike | None, **options: object) -> Jet:
     if np.dtype(dtype).kind not in "fcO":
         raise refused(f"astype({dtype!r})")
     if np.dtype(dtype).kind == "f" and jet.dtype.kind == "c":
@@ -124,7 +131,7 @@ def _listed(jet: Jet) -> Any:
 
 
 # -- the kinds of functions --------------------------------------------------------------------------------
-def _linear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Jet:
+def _linear(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> Jet:
     """A function that is linear in its first argument."""
     name = function.__name__
     if not args:
@@ -144,15 +151,16 @@ def _linear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Je
         raise refused(f"np.{name} with {', '.join(odd) or 'so many arguments'}")
     rest, options = frozen(tuple(rest)), {key: frozen(value) for key, value in options.items() if value is not None}
 
-    def applied(x: Any) -> Any:
-        return jax_counterpart(function, x)(x, *rest, **options)
+    def applied(x: Values) -> Values:
+        found: Values = jax_counterpart(function, x)(x, *rest, **options)
+        return found
 
     if name in VIEWS:
         return first.part(applied)
     return fresh(recurrences.linear(applied, [first.node]))
 
 
-def _bilinear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Jet:
+def _bilinear(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> Jet:
     """A function that is linear in each of its first two arguments; the constant one may come as an option."""
     names = {"dot": ("a", "b"), "cross": ("a", "b"), "tensordot": ("a", "b"), "inner": ("a", "b"), "outer": ("a", "b")}
     options = dict(options)
@@ -170,7 +178,7 @@ def _bilinear(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> 
     return bilinear(function, args[0], args[1], **rest)
 
 
-def _joined(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Jet:
+def _joined(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> Jet:
     """A function of a sequence of arrays that is linear in all of them together."""
     options = {key: value for key, value in options.items() if value is not None}
     members = options.pop("arrays", None) or options.pop("tup", None) or args[0]
@@ -179,29 +187,31 @@ def _joined(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> Je
 
     last = function is np.stack and not args[1:] and options == {"axis": -1}
 
-    def joined(*parts: Any) -> Any:
+    def joined(*parts: Values) -> Values:
         if last and all(type(x) is np.ndarray and x.ndim for x in parts):
             return np.moveaxis(np.stack(parts), 0, -1)  # in the layout of `in_lanes`
-        return jax_counterpart(function, *parts)(list(parts), *args[1:], **options)
+        found: Values = jax_counterpart(function, *parts)(list(parts), *args[1:], **options)
+        return found
 
     return fresh(recurrences.linear(joined, nodes(*members)))
 
 
-def _parted(function: Any, args: tuple[Any, ...], options: dict[str, Any]) -> list[Jet]:
+def _parted(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> list[Jet]:
     """A function that cuts an array into a list of parts."""
     first, rest = args[0], frozen(args[1:])
     if not isinstance(first, Jet) or holds_jets(rest):
         raise refused(f"np.{function.__name__} with a series as an option")
 
-    def part(i: int, x: Any) -> Any:
-        return jax_counterpart(function, x)(x, *rest, **options)[i]
+    def part(i: int, x: Values) -> Values:
+        found: Values = jax_counterpart(function, x)(x, *rest, **options)[i]
+        return found
 
     count = len(jax_counterpart(function, first.value)(first.value, *rest, **options))
     return [first.part(partial(part, i)) for i in range(count)]
 
 
 # -- special functions ---------------------------------------------------------------------------------------
-def _einsum(*args: Any, **options: Any) -> Jet:
+def _einsum(*args: Operand, **options: object) -> Jet:
     subscripts, factors = args[0], args[1:]
     if not isinstance(subscripts, str):
         raise refused("np.einsum without a string of subscripts")
@@ -212,26 +222,27 @@ def _einsum(*args: Any, **options: Any) -> Jet:
     places = [i for i, factor in enumerate(factors) if holds_jets(factor)]
     constants = [node.value for node in made]
 
-    def contract(*values: Any) -> Any:
+    def contract(*values: Values) -> Values:
         filled = list(constants)
         for i, value in zip(places, values, strict=True):
             filled[i] = value
-        return jax_counterpart(np.einsum, *filled)(subscripts, *filled, **options)
+        found: Values = jax_counterpart(np.einsum, *filled)(subscripts, *filled, **options)
+        return found
 
     return fresh(recurrences.multilinear(contract, [made[i] for i in places]))
 
 
-def _block(arrays: Any) -> Any:
+def _block(arrays: Sequence[Operand]) -> Any:
     """Nested lists of arrays: rebuilt from the list of all of them."""
     members: list[Any] = []
 
-    def places(x: Any) -> Any:
+    def places(x: Operand) -> Any:
         if isinstance(x, list):
             return [places(entry) for entry in x]
         members.append(x)
         return len(members) - 1
 
-    def filled(x: Any, parts: Any) -> Any:
+    def filled(x: Operand, parts: Sequence[Values]) -> Any:
         return [filled(entry, parts) for entry in x] if isinstance(x, list) else parts[x]
 
     shape = places(arrays)
@@ -240,49 +251,53 @@ def _block(arrays: Any) -> Any:
     )
 
 
-def _append(arr: Any, values: Any, axis: int | None = None) -> Any:
+def _append(arr: Operand, values: Operand, axis: int | None = None) -> Operand:
     if axis is None:
         return np.concatenate([np.ravel(part) for part in (arr, values)])
     return np.concatenate([arr, values], axis=axis)
 
 
-def _norm(x: Any, ord: Any = None, axis: Any = None, keepdims: bool = False) -> Jet:
+def _norm(x: Jet, ord: float | str | None = None, axis: Axis = None, keepdims: bool = False) -> Jet:
     axes = x.ndim if axis is None else np.size(axis)
     known = ord is None or (ord == 2 and axes == 1) or (ord == "fro" and axes == 2)
     if not known:
         raise refused(f"np.linalg.norm with ord={ord!r}")
     square = x * np.conjugate(x) if x.dtype.kind == "c" else x * x
     total = np.sum(square, axis=axis, keepdims=keepdims)
-    return np.sqrt(total.real if x.dtype.kind == "c" else total)  # type: ignore[no-any-return]
+    found: Jet = np.sqrt(total.real if x.dtype.kind == "c" else total)
+    return found
 
 
-def _solve(a: Any, b: Any) -> Jet:
+def _solve(a: Operand, b: Operand) -> Jet:
     """The solution of a x = b; b is a vector if it has one axis, as in numpy."""
     left, right = (Jet.from_node(node) for node in nodes(a, b))
     vector = right.ndim == 1
     columns = right[..., None] if vector else right
 
-    def divide(y: Any, x: Any) -> Any:
+    def divide(y: Values, x: Values) -> Values:
         return solve(x, y)
 
     made = fresh(recurrences.solution(columns.node, left.node, _matmul, divide))
     return made[..., 0] if vector else made
 
 
-def _matmul(x: Any, y: Any) -> Any:
+def _matmul(x: Values, y: Values) -> Values:
     return x @ y
 
 
-def _identity(a: Jet) -> Any:
+def _identity(a: Jet) -> npt.NDArray[Any]:
     eye = np.eye(a.shape[-1], dtype=int)
-    return zeros(a.value, a.shape) + (eye.astype(object) if a.dtype == object else eye.astype(a.dtype))
+    found: npt.NDArray[Any] = zeros(a.value, a.shape) + (
+        eye.astype(object) if a.dtype == object else eye.astype(a.dtype)
+    )
+    return found
 
 
-def _inverse(a: Any) -> Jet:
+def _inverse(a: Jet) -> Jet:
     return _solve(a, Jet.constant(_identity(a), a.order))
 
 
-def _matrix_power(a: Any, n: int) -> Any:
+def _matrix_power(a: Jet, n: int) -> Jet:
     if n < 0:
         return _matrix_power(_inverse(a), -n)
     made = Jet.constant(_identity(a), a.order)
@@ -292,7 +307,7 @@ def _matrix_power(a: Any, n: int) -> Any:
     return made
 
 
-def _determinant(a: Any) -> Any:
+def _determinant(a: Jet) -> Operand:
     """By the recursion of the characteristic polynomial, which divides by integers only."""
     n, one = a.shape[-1], _identity(a)
     power, coefficient = Jet.constant(zeros(a.value, a.shape), a.order), zeros(a.value, a.shape[:-2]) + 1
@@ -302,11 +317,14 @@ def _determinant(a: Any) -> Any:
     return coefficient if n % 2 == 0 else -coefficient
 
 
-def _prod(a: Any, axis: Any = None, dtype: Any = None, out: Any = None, keepdims: Any = False) -> Any:
+def _prod(
+    a: Jet, axis: Axis = None, dtype: DTypeLike | None = None, out: object = None, keepdims: bool = False
+) -> Operand:
     """The product of entries, in halves."""
     if dtype is not None or out is not None or isinstance(axis, tuple):
         raise refused("np.prod with these options")
-    first = np.moveaxis(a.reshape(-1) if axis is None else a, 0 if axis is None else axis, 0)
+    array: Any = a
+    first: Any = np.moveaxis(array.reshape(-1) if axis is None else array, 0 if axis is None else axis, 0)
     while len(first) > 1:
         half = len(first) // 2
         pairs = first[:half] * first[half : 2 * half]
@@ -317,15 +335,23 @@ def _prod(a: Any, axis: Any = None, dtype: Any = None, out: Any = None, keepdims
     return made
 
 
-def _polyval(p: Any, x: Any) -> Any:
+def _polyval(p: Operand, x: Operand) -> Jet:
     total: Any = 0 * x
     for coefficient in p:
         total = total * x + coefficient
-    return total
+    found: Jet = total
+    return found
 
 
 def _blank(fill: int) -> Callable[..., Jet]:
-    def make(a: Any, dtype: Any = None, order: str = "K", subok: bool = True, shape: Any = None, **options: Any) -> Jet:
+    def make(
+        a: Jet,
+        dtype: DTypeLike | None = None,
+        order: str = "K",
+        subok: bool = True,
+        shape: int | Sequence[int] | None = None,
+        **options: object,
+    ) -> Jet:
         size = a.shape if shape is None else tuple(int(n) for n in np.atleast_1d(shape))
         value = zeros(a.value, size) if dtype is None else np.zeros(size, dtype=dtype)
         if value.dtype.kind not in "fcO":
@@ -335,31 +361,32 @@ def _blank(fill: int) -> Callable[..., Jet]:
     return make
 
 
-def _full_like(a: Any, fill_value: Any, dtype: Any = None, **options: Any) -> Jet:
+def _full_like(a: Operand, fill_value: Operand, dtype: DTypeLike | None = None, **options: object) -> Jet:
     made = _blank(0)(a if isinstance(a, Jet) else Jet.constant(a, fill_value.order), dtype, **options)
     made[...] = fill_value
     return made
 
 
-def _where(condition: Any, x: Any = None, y: Any = None) -> Jet:
+def _where(condition: Operand, x: Operand = None, y: Operand = None) -> Jet:
     if holds_jets(condition):
         raise refused("np.where with a condition on a series")
     mask = condition if is_lazy(condition) else np.array(condition)
     return fresh(recurrences.linear(lambda a, b: namespace(mask, a, b).where(mask, a, b), nodes(x, y)))
 
 
-def _dot_all(arrays: Any) -> Any:
+def _dot_all(arrays: Sequence[Operand]) -> Jet:
     total, *others = arrays
     for a in others:
         total = np.dot(total, a)
-    return total
+    found: Jet = total
+    return found
 
 
-def _size(a: Any, axis: int | None = None) -> int:
-    return a.size if axis is None else a.shape[axis]  # type: ignore[no-any-return]
+def _size(a: Jet, axis: int | None = None) -> int:
+    return a.size if axis is None else a.shape[axis]
 
 
-def _broadcast_arrays(*args: Any, subok: bool = False) -> tuple[Any, ...]:
+def _broadcast_arrays(*args: Operand, subok: bool = False) -> tuple[Any, ...]:
     shape = np.broadcast_shapes(*[np.shape(a) for a in args])
     return tuple(np.broadcast_to(a, shape) for a in args)
 

@@ -12,14 +12,16 @@ from typing import Any
 
 import flint
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import SeriesError
 from liehom.series import recurrences
 from liehom.series.arrays import across_lanes, constant_like, elementary, is_jax, namespace
 from liehom.series.assembly import holds_jets, nodes
 from liehom.series.jet import Jet
-from liehom.series.jet_dispatch import dispatch
+from liehom.series.jet_dispatch import Operand, dispatch
 from liehom.series.node import Node
+from liehom.typing import Values
 
 # ufuncs that are linear
 LINEAR_UFUNCS = ["conjugate", "deg2rad", "radians", "rad2deg", "degrees"]
@@ -27,7 +29,7 @@ LINEAR_UFUNCS = ["conjugate", "deg2rad", "radians", "rad2deg", "degrees"]
 PRODUCTS = ["matmul", "vecdot", "matvec", "vecmat"]
 
 
-def apply_ufunc(ufunc: Any, method: str, inputs: tuple[Any, ...], options: dict[str, Any]) -> Any:
+def apply_ufunc(ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...], options: dict[str, Any]) -> Any:
     """What a numpy ufunc returns for Jets among its inputs.
 
     Raises
@@ -57,11 +59,12 @@ def apply_ufunc(ufunc: Any, method: str, inputs: tuple[Any, ...], options: dict[
     return _called(ufunc, name, inputs)
 
 
-def _called(ufunc: Any, name: str, inputs: tuple[Any, ...]) -> Any:
+def _called(ufunc: np.ufunc, name: str, inputs: tuple[Operand, ...]) -> Jet:
     if name in recurrences.FUNCTIONS:
         return fresh(recurrences.FUNCTIONS[name](inputs[0].node))
     if name == "positive":
-        return inputs[0].copy()
+        found: Jet = inputs[0].copy()
+        return found
     if name in ("add", "subtract"):
         left, right = nodes(*inputs)
         return fresh(recurrences.add(left, right, 1 if name == "add" else -1))
@@ -74,7 +77,9 @@ def _called(ufunc: Any, name: str, inputs: tuple[Any, ...]) -> Any:
     raise refused(f"np.{name}")
 
 
-def _in_place(ufunc: Any, method: str, inputs: Any, options: Any, out: tuple[Any, ...]) -> Any:
+def _in_place(
+    ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...], options: dict[str, Any], out: tuple[Any, ...]
+) -> Any:
     """x += y: for a Jet the entries are replaced; a number is not changed, x then names another one."""
     target = out[0]
     if not isinstance(target, Jet) or len(out) != 1:
@@ -101,16 +106,17 @@ def fresh(node: Node) -> Jet:
     return Jet.from_node(node, writable=bool(np.ndim(node.value)))
 
 
-def jax_counterpart(function: Any, *values: Any) -> Any:
+def jax_counterpart(function: Callable[..., Any], *values: object) -> Callable[..., Any]:
     """The same function of jax.numpy where a value is a JAX array."""
     if not any(is_jax(v) for v in values):
         return function
     xp = namespace(*values)
     home = xp.linalg if "linalg" in (getattr(function, "__module__", "") or "") else xp
-    return getattr(home, function.__name__)
+    found: Callable[..., Any] = getattr(home, function.__name__)
+    return found
 
 
-def _product(ufunc: Any, x: Any, y: Any) -> Jet:
+def _product(ufunc: np.ufunc, x: Operand, y: Operand) -> Jet:
     """matmul and its kind; the constant factor on the right may be a sparse matrix."""
     if hasattr(y, "tocsr"):
         if ufunc is not np.matmul:
@@ -119,31 +125,32 @@ def _product(ufunc: Any, x: Any, y: Any) -> Jet:
     return bilinear(ufunc, x, y)
 
 
-def bilinear(function: Callable[..., Any], x: Any, y: Any, **options: Any) -> Jet:
+def bilinear(function: Callable[..., Any], x: Operand, y: Operand, **options: object) -> Jet:
     """A function that is linear in each of two arguments, one or both of them Jets."""
     factors = nodes(x, y)
     shared = function is np.matmul and not options and len(np.shape(factors[1].value)) == 2
 
-    def at(a: Any, b: Any) -> Any:
+    def at(a: Values, b: Values) -> Values:
         if shared and type(b) is np.ndarray:
             return across_lanes(a, b)
-        return jax_counterpart(function, a, b)(a, b, **options)
+        found: Values = jax_counterpart(function, a, b)(a, b, **options)
+        return found
 
     return fresh(recurrences.multilinear(at, factors))
 
 
-def _multiply(x: Any, y: Any) -> Node:
+def _multiply(x: Operand, y: Operand) -> Node:
     return recurrences.product(*nodes(x, y))
 
 
-def _divide(x: Any, y: Any) -> Node:
+def _divide(x: Operand, y: Operand) -> Node:
     if not holds_jets(y):
         divisor = constant_like(x.value, y)
         return recurrences.linear(lambda a: a / divisor, [x.node])
     return recurrences.quotient(*nodes(x, y))
 
 
-def _power(x: Any, y: Any) -> Node:
+def _power(x: Operand, y: Operand) -> Node:
     if holds_jets(y):
         base, exponent = nodes(x, y)
         logarithm = recurrences.FUNCTIONS["log"](base)
@@ -162,7 +169,7 @@ def _power(x: Any, y: Any) -> Node:
     return recurrences.FUNCTIONS["sqrt"](x.node) if y == 0.5 else recurrences.real_power(x.node, y)
 
 
-def _powers(x: Jet, exponents: Any) -> Jet:
+def _powers(x: Jet, exponents: npt.NDArray[Any]) -> Jet:
     """x ** array: one power of the entries with that exponent for each different exponent."""
     shape = np.broadcast_shapes(x.shape, exponents.shape)
     base: Any = np.broadcast_to(x, shape)
@@ -173,7 +180,7 @@ def _powers(x: Jet, exponents: Any) -> Jet:
     return made  # type: ignore[no-any-return]
 
 
-def _arctan2(y: Any, x: Any) -> Node:
+def _arctan2(y: Operand, x: Operand) -> Node:
     """The angle of (x, y): its derivative is (x y' - y x') / (x^2 + y^2)."""
     above, right = (Jet.from_node(node) for node in nodes(y, x))
     if object in (above.dtype, right.dtype):
@@ -186,12 +193,12 @@ def _arctan2(y: Any, x: Any) -> Node:
     return recurrences.add(np.arctan(across / turned).node, recurrences.constant(value, above.order))
 
 
-def _hypot(x: Any, y: Any) -> Node:
+def _hypot(x: Operand, y: Operand) -> Node:
     a, b = nodes(x, y)
     return recurrences.FUNCTIONS["sqrt"](recurrences.add(recurrences.product(a, a), recurrences.product(b, b)))
 
 
-def _logaddexp(x: Any, y: Any) -> Node:
+def _logaddexp(x: Operand, y: Operand) -> Node:
     a, b = (Jet.from_node(node) for node in nodes(x, y))
     larger = namespace(a.value, b.value).maximum(a.value, b.value)  # a shift against overflow, any constant would do
     return (larger + np.log(np.exp(a - larger) + np.exp(b - larger))).node  # type: ignore[no-any-return]

@@ -15,13 +15,14 @@ from liehom.errors import SeriesError
 from liehom.series import recurrences
 from liehom.series.arrays import is_jax, is_lazy, namespace
 from liehom.series.node import Node
+from liehom.typing import Key, Values
 
 
 class ViewOperation(NamedTuple):
     """How a view is made of the array: a linear function, and its index if it is one."""
 
-    function: Callable[[Any], Any]
-    key: Any
+    function: Callable[[Any], Values]
+    key: Key
     writable: bool
 
 
@@ -33,7 +34,7 @@ class View(NamedTuple):
     seen: Node
 
 
-def frozen(x: Any) -> Any:
+def frozen(x: Key) -> Key:
     """An index or option, copied so that the caller may change it later.
 
     Examples
@@ -49,7 +50,7 @@ def frozen(x: Any) -> Any:
     return tuple(frozen(entry) for entry in x) if type(x) is tuple else x
 
 
-def checked_index(key: Any, x: Any) -> Any:
+def checked_index(key: Key, x: Values) -> Key:
     """An index of the array x, copied; lists become arrays, and JAX, which clips, gets no index out of range.
 
     Raises
@@ -72,13 +73,13 @@ def checked_index(key: Any, x: Any) -> Any:
     return key
 
 
-def _copied_index(part: Any) -> Any:
+def _copied_index(part: Key) -> Key:
     if isinstance(part, list):
         return np.array(part, dtype=None if part else int)
     return part.copy() if isinstance(part, np.ndarray) else part
 
 
-def kind_of_index(key: Any, ndim: int) -> str:
+def kind_of_index(key: Key, ndim: int) -> str:
     """What numpy's indexing of an array with `ndim` axes gives: a "number", a "view" or a "copy".
 
     Examples
@@ -102,7 +103,7 @@ def followed(view: View) -> list[Node]:
     return nodes
 
 
-def written(view: View, key: Any, value: Node) -> Node:
+def written(view: View, key: Key, value: Node) -> Node:
     """The owner's new node after value was written into a view at `key`."""
     nodes = followed(view)
     new = replaced(nodes[-1], key, value)
@@ -113,19 +114,21 @@ def written(view: View, key: Any, value: Node) -> Node:
     return new
 
 
-def replaced(whole: Node, key: Any, part: Node) -> Node:
+def replaced(whole: Node, key: Key, part: Node) -> Node:
     """The series with the entries at `key` replaced."""
     return recurrences.linear(lambda x, y: _replaced(x, key, y), [whole, part])
 
 
-def _replaced(whole: Any, key: Any, part: Any) -> Any:
+def _replaced(whole: Values, key: Key, part: Values) -> Values:
     if is_jax(whole) or is_jax(part):
         xp = namespace(whole, part)
-        return xp.asarray(whole, dtype=xp.result_type(whole, part)).at[key].set(part)
+        found: Values = xp.asarray(whole, dtype=xp.result_type(whole, part)).at[key].set(part)
+        return found
     if is_lazy(whole) or is_lazy(part):
         made = (whole + 0.0 * part if is_lazy(part) and not is_lazy(whole) else whole).copy()
         made[key] = part
-        return made
+        found = made
+        return found
     out = np.array(whole, dtype=np.result_type(whole, part))
     out[key] = part
     return out

@@ -16,21 +16,24 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import factorial
-from typing import Any
+from typing import Any, TypeAlias
 
 import flint
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import recurrences
-from liehom.series.arrays import as_values, is_jax, is_traced, namespace, zeros
+from liehom.series.arrays import NumbersLike, as_values, is_jax, is_traced, namespace, zeros
 from liehom.series.jet import Jet
-from liehom.series.node import Node
+from liehom.series.node import Coefficient, Node
+from liehom.typing import Values
 
-Bracket = Callable[[Any, Any], Any]
+Bracket: TypeAlias = Callable[[Any, Any], Any]
+"""A bilinear map on arrays and Jets: a `Bilinear` on coefficient vectors (..., dim), `commutator` on matrices."""
 
 
-def commutator(a: Any, b: Any) -> Any:
+def commutator(a: Values, b: Values) -> Values:
     """a b - b a for matrices (..., n, n); the bracket of a matrix Lie algebra.
 
     Examples
@@ -55,7 +58,7 @@ def bernoulli(n: int) -> list[Fraction]:
 
 
 # -- the derivative of the exponential -----------------------------------------------------------------------
-def dexp(bracket: Bracket, x: Any, y: Any, terms: int | None = None) -> Any:
+def dexp(bracket: Bracket, x: NumbersLike, y: NumbersLike, terms: int | None = None) -> Values:
     """dexp_x y = sum_(k < terms) ad_x^k y / (k + 1)!, where (exp x(t))' = dexp_x(x') exp(x).
 
     Parameters
@@ -85,7 +88,7 @@ def dexp(bracket: Bracket, x: Any, y: Any, terms: int | None = None) -> Any:
     return _series_in_ad(bracket, x, y, [Fraction(1, factorial(k + 1)) for k in range(terms)])
 
 
-def dexp_inverse(bracket: Bracket, x: Any, y: Any, terms: int | None = None) -> Any:
+def dexp_inverse(bracket: Bracket, x: NumbersLike, y: NumbersLike, terms: int | None = None) -> Values:
     """dexp_x^-1 y = sum_(k < terms) B_k ad_x^k y / k!; see `dexp` for the arguments.
 
     Examples
@@ -99,7 +102,7 @@ def dexp_inverse(bracket: Bracket, x: Any, y: Any, terms: int | None = None) -> 
     return _series_in_ad(bracket, x, y, [numbers[k] / factorial(k) for k in range(terms)])
 
 
-def _count(x: Any, y: Any, terms: int | None) -> int:
+def _count(x: NumbersLike, y: NumbersLike, terms: int | None) -> int:
     """How many terms: ad_x^k y begins at t^k if x does at t."""
     if terms is not None:
         if terms < 1:
@@ -113,7 +116,7 @@ def _count(x: Any, y: Any, terms: int | None) -> int:
     return max(1, order if isinstance(y, Jet) and y.node.known[0] is None else order + 1)
 
 
-def _series_in_ad(bracket: Bracket, x: Any, y: Any, weights: list[Fraction]) -> Any:
+def _series_in_ad(bracket: Bracket, x: NumbersLike, y: NumbersLike, weights: list[Fraction]) -> Values:
     """sum_k weights[k] ad_x^k y."""
     while len(weights) > 1 and not weights[-1]:
         weights = weights[:-1]
@@ -124,20 +127,20 @@ def _series_in_ad(bracket: Bracket, x: Any, y: Any, weights: list[Fraction]) -> 
         for _ in weights[1:]:
             powers.append(recurrences.multilinear(bracket, [above, powers[-1]]))
         return Jet.from_node(_weighted(powers, weights))
-    x, term = as_values(x), as_values(y)
-    total = _scaled(term, weights[0])
+    element, power = as_values(x), as_values(y)
+    total = _scaled(power, weights[0])
     for weight in weights[1:]:
-        term = bracket(x, term)
+        power = bracket(element, power)
         if weight:
-            total = total + _scaled(term, weight)
+            total = total + _scaled(power, weight)
     return total
 
 
-def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Any = None) -> Node:
+def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Values | None = None) -> Node:
     """sum_i weights[i] nodes[i], with coefficient 0 replaced by `first` if that is given."""
     used = [(node, weight) for node, weight in zip(nodes, weights, strict=True) if weight]
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = None
         for node, weight in used:
             if node.known[k] is not None:
@@ -154,7 +157,7 @@ def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Any = N
     return Node(min(node.order for node, _ in used), value, [first], tuple((node, 0) for node, _ in used), rule)
 
 
-def _scaled(x: Any, weight: Fraction) -> Any:
+def _scaled(x: Values, weight: Fraction) -> Values:
     """weight x, exact or rounded once in the type of x."""
     if weight == 1:
         return x
@@ -169,7 +172,7 @@ def _scaled(x: Any, weight: Fraction) -> Any:
 
 
 # -- the Cayley transform ------------------------------------------------------------------------------------
-def dcayley_inverse(x: Any, y: Any) -> Any:
+def dcayley_inverse(x: Values, y: Values) -> Values:
     """(1 - x/2) y (1 + x/2) for matrices or Jets of matrices, where (cay x)' = a cay(x) gives x' with y = a.
 
     Examples
@@ -202,15 +205,17 @@ def cayley_series(x: Jet) -> Jet:
     one = _identity(node.value)
     made = Node(node.order, one, [one])
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = None
         for i in range(1, k):
             if node.known[i] is not None and made.known[k - i] is not None:
                 term = node.known[i] @ made.known[k - i]
                 total = term if total is None else total + term
         if total is None:
-            return node.known[k]
-        return total / 2 if node.known[k] is None else node.known[k] + total / 2
+            found: Coefficient = node.known[k]
+            return found
+        found = total / 2 if node.known[k] is None else node.known[k] + total / 2
+        return found
 
     made.depends((node, 0), (made, 1), rule=rule)
     return Jet.from_node(made)
@@ -313,12 +318,12 @@ def magnus(bracket: Bracket, a: Jet) -> Jet:
     return _integral(a, lambda x: dexp_inverse(bracket, x, a, a.order + 1))
 
 
-def _integral(a: Jet, slope: Callable[[Jet], Jet]) -> Jet:
+def _integral(a: Jet, slope: Callable[[Jet], Any]) -> Jet:
     """x with x(0) = 0 and x' = slope(x), shaped as a."""
     made = Node(a.order + 1, zeros(a.value, a.shape), [None])
     derivative = slope(Jet.from_node(made)).node
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         found = derivative.known[k - 1]
         return None if found is None else found / k
 
@@ -326,7 +331,7 @@ def _integral(a: Jet, slope: Callable[[Jet], Jet]) -> Jet:
     return Jet.from_node(made)
 
 
-def bch(bracket: Bracket, x: Any, y: Any, order: int | None = None) -> Jet:
+def bch(bracket: Bracket, x: NumbersLike, y: NumbersLike, order: int | None = None) -> Jet:
     """z = log(exp x exp y) as a series.
 
     Parameters
@@ -370,10 +375,12 @@ def bch(bracket: Bracket, x: Any, y: Any, order: int | None = None) -> Jet:
     made = Node(degree, zeros(both.value, tuple(np.shape(both.value))), [None])
     z = Jet.from_node(made)
     even = [b / factorial(k) if k % 2 == 0 else Fraction(0) for k, b in enumerate(bernoulli(max(degree - 1, 0)))]
-    symmetric = _series_in_ad(bracket, z, Jet.from_node(both), even).node
-    slope = _weighted([symmetric, recurrences.multilinear(bracket, [made, difference])], [Fraction(1), Fraction(1, 2)])
+    symmetric: Any = _series_in_ad(bracket, z, Jet.from_node(both), even)
+    slope = _weighted(
+        [symmetric.node, recurrences.multilinear(bracket, [made, difference])], [Fraction(1), Fraction(1, 2)]
+    )
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         found = slope.known[k]
         return None if found is None else found / k
 
@@ -382,7 +389,7 @@ def bch(bracket: Bracket, x: Any, y: Any, order: int | None = None) -> Jet:
     return z
 
 
-def _velocity(bracket: Bracket, x: Any, order: int, sign: int) -> Node:
+def _velocity(bracket: Bracket, x: NumbersLike, order: int, sign: int) -> Node:
     """dexp_(sign x)(t x'); for an element that stands for t x it is t x."""
     if not isinstance(x, Jet):
         value = as_values(x)
@@ -390,11 +397,12 @@ def _velocity(bracket: Bracket, x: Any, order: int, sign: int) -> Node:
     node = without_constant(x, check=True).node
     moving = Node(node.order, node.value, [None], ((node, 0),), lambda k: _times(k, node.known[k]))
     weights = [Fraction(sign**k, factorial(k + 1)) for k in range(order)]
-    made: Node = _series_in_ad(bracket, Jet.from_node(node), Jet.from_node(moving), weights).node
-    return made
+    made: Any = _series_in_ad(bracket, Jet.from_node(node), Jet.from_node(moving), weights)
+    rate: Node = made.node
+    return rate
 
 
-def _times(k: int, x: Any) -> Any:
+def _times(k: int, x: Values) -> Coefficient:
     return None if x is None else k * x
 
 
@@ -432,8 +440,9 @@ def _square_matrices(x: Jet) -> Jet:
     return x
 
 
-def _identity(like: Any) -> Any:
+def _identity(like: Values) -> npt.NDArray[Any]:
     """The identity matrix of the kind of `like`, broadcast to its shape."""
     shape = tuple(like.shape)
     eye = namespace(like).eye(shape[-1])
-    return zeros(like, shape) + eye.astype(int if like.dtype == object else like.dtype)
+    found: npt.NDArray[Any] = zeros(like, shape) + eye.astype(int if like.dtype == object else like.dtype)
+    return found

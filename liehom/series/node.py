@@ -11,11 +11,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 from liehom.errors import SeriesError
+from liehom.typing import Values
 
-Rule = Callable[[int], Any]
+Coefficient: TypeAlias = Values | None
+"""A Taylor coefficient; None is a structural zero."""
+
+Rule: TypeAlias = Callable[[int], Coefficient]
 
 
 @final
@@ -48,7 +52,7 @@ class Node:
     def __init__(
         self,
         order: int,
-        value: Any,
+        value: Values,
         known: list[Any],
         operands: tuple[tuple[Node, int], ...] = (),
         rule: Rule | None = None,
@@ -63,10 +67,11 @@ class Node:
         """Set operands and rule after construction, for a series that depends on itself."""
         self.operands, self.rule = operands, rule
 
-    def coefficient(self, k: int) -> Any:
+    def coefficient(self, k: int) -> Coefficient:
         """Coefficient k, None if it is a structural zero; operands are advanced without recursion."""
         if 0 <= k < len(self.known):
-            return self.known[k]
+            found: Coefficient = self.known[k]
+            return found
         if k < 0:
             raise SeriesError(f"the coefficients of a series begin with 0, got {k}")
         if k > self.order:
@@ -85,7 +90,8 @@ class Node:
                 raise SeriesError(f"coefficient {have} of a growing series is asked for before it is given")
             else:
                 node.known.append(node.rule(have))
-        return self.known[k]
+        found = self.known[k]
+        return found
 
 
 def rewind(root: Node, source: Node, k: int) -> None:

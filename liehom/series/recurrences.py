@@ -14,10 +14,11 @@ import numpy as np
 
 from liehom.errors import SeriesError
 from liehom.series.arrays import constant_like, elementary, namespace, power, zeros
-from liehom.series.node import Node
+from liehom.series.node import Coefficient, Node
+from liehom.typing import Number, Values
 
 
-def constant(value: Any, order: int) -> Node:
+def constant(value: Values, order: int) -> Node:
     """A series without t."""
     return Node(order, value, [value], (), _nothing)
 
@@ -26,11 +27,11 @@ def _nothing(k: int) -> None:
     return None
 
 
-def linear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
+def linear(function: Callable[..., Values], operands: Sequence[Node]) -> Node:
     """function(a, b, ...) jointly linear in the operands, such as a sum, a stack, a transpose, an index."""
     order = min(o.order for o in operands)
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         if all(o.known[k] is None for o in operands):
             return None
         return function(*[zeros(o.value, _shape(o.value)) if o.known[k] is None else o.known[k] for o in operands])
@@ -45,30 +46,31 @@ def add(a: Node, b: Node, sign: int = 1) -> Node:
     value = a.value + b.value if sign > 0 else a.value - b.value
     shape = _shape(value)
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         x, y = a.known[k], b.known[k]
         if y is None:
             return None if x is None else _spread(x, shape)
         if x is None:
             return _spread(y if sign > 0 else -y, shape)
-        return x + y if sign > 0 else x - y
+        found: Coefficient = x + y if sign > 0 else x - y
+        return found
 
     first = None if a.known[0] is None and b.known[0] is None else value
     return Node(min(a.order, b.order), value, [first], ((a, 0), (b, 0)), rule)
 
 
-def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
+def multilinear(function: Callable[..., Values], operands: Sequence[Node]) -> Node:
     """function(a, b, ...) linear in each operand: (...)_k = sum over i + j + ... = k of function(a_i, b_j, ...).
 
     Where another operand begins with a structural zero, coefficient k needs an operand only up to k - 1.
     """
     if len(operands) == 2:
-        return bilinear(function, *operands)
+        return bilinear(function, operands[0], operands[1])
     order = min(o.order for o in operands)
     starts = [1 if o.known[0] is None else 0 for o in operands]
     known = [o.known for o in operands]
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = None
         for parts in _parts(known, starts, k):
             term = function(*parts)
@@ -81,12 +83,12 @@ def multilinear(function: Callable[..., Any], operands: Sequence[Node]) -> Node:
     return Node(order, value, [first], lags, rule)
 
 
-def bilinear(function: Callable[[Any, Any], Any], a: Node, b: Node, value: Any = None) -> Node:
+def bilinear(function: Callable[[Any, Any], Values], a: Node, b: Node, value: Values | None = None) -> Node:
     """The case of two operands, in which most of the work is done; `value`, at 0, where it is known."""
     first, second = a.known, b.known
     start, end = (1 if first[0] is None else 0), (0 if second[0] is None else 1)
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = None
         for i in range(start, k + end):
             x, y = first[i], second[k - i]
@@ -101,7 +103,7 @@ def bilinear(function: Callable[[Any, Any], Any], a: Node, b: Node, value: Any =
     return Node(min(a.order, b.order), value, known, ((a, 1 - end), (b, start)), rule)
 
 
-def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[Any, ...]]:
+def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[Values, ...]]:
     """All tuples of non-zero coefficients whose indices add up to k."""
     if len(known) == 1:
         if k >= starts[0] and known[0][k] is not None:
@@ -118,13 +120,13 @@ def quotient(a: Node, b: Node) -> Node:
     return solution(a, b, _times, lambda y, x: y / x)
 
 
-def solution(a: Node, b: Node, product: Callable[[Any, Any], Any], divide: Callable[[Any, Any], Any]) -> Node:
+def solution(a: Node, b: Node, product: Callable[[Any, Any], Values], divide: Callable[[Any, Any], Values]) -> Node:
     """q with product(b, q) = a, where divide(y, b_0) solves product(b_0, q) = y."""
     value = divide(a.value, b.value)
     shape = _shape(value)
     node = Node(min(a.order, b.order), value, [None if a.known[0] is None else value])
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = a.known[k]
         for i in range(1, k + 1):
             if b.known[i] is not None and node.known[k - i] is not None:
@@ -136,7 +138,7 @@ def solution(a: Node, b: Node, product: Callable[[Any, Any], Any], divide: Calla
     return node
 
 
-def chain(u: Node, value: Any, derivative: Callable[[Node], Node]) -> Node:
+def chain(u: Node, value: Values, derivative: Callable[[Node], Node]) -> Node:
     """F(u) with F(u_0) = value and F' = derivative(node of F(u))."""
     node = Node(u.order, value, [value])
     slope = derivative(node)
@@ -144,10 +146,10 @@ def chain(u: Node, value: Any, derivative: Callable[[Node], Node]) -> Node:
     return node
 
 
-def _chain_rule(u: Node, slope: Node, sign: int = 1) -> Callable[[int], Any]:
+def _chain_rule(u: Node, slope: Node, sign: int = 1) -> Callable[[int], Coefficient]:
     """k -> (sign / k) sum_i i u_i slope_(k-i)."""
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = None
         for i in range(1, k + 1):
             if u.known[i] is not None and slope.known[k - i] is not None:
@@ -164,7 +166,7 @@ def product(a: Node, b: Node) -> Node:
     return multilinear(_times, [a, b])
 
 
-def _times(x: Any, y: Any) -> Any:
+def _times(x: Values, y: Values) -> Values:
     return x * y
 
 
@@ -182,7 +184,7 @@ def integer_power(u: Node, n: int) -> Node:
         u = product(u, u)
 
 
-def real_power(u: Node, exponent: Any, value: Any = None) -> Node:
+def real_power(u: Node, exponent: Fraction | Number | float, value: Values | None = None) -> Node:
     """u ** (p / q) for u_0 != 0: q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i).
 
     Parameters
@@ -193,7 +195,8 @@ def real_power(u: Node, exponent: Any, value: Any = None) -> Node:
     value : array, optional
         u_0 ** exponent, where it has been computed better.
     """
-    p, q = exponent, 1
+    p: Any = exponent
+    q = 1
     if isinstance(exponent, Fraction):
         if getattr(u.value, "dtype", np.dtype(object)).kind == "O":
             p, q = exponent.as_integer_ratio()
@@ -207,7 +210,7 @@ def real_power(u: Node, exponent: Any, value: Any = None) -> Node:
         value = u.value**p
     node = Node(u.order, value, [value])
 
-    def rule(k: int) -> Any:
+    def rule(k: int) -> Coefficient:
         total = None
         for i in range(1, k + 1):
             if u.known[i] is not None and node.known[k - i] is not None:
@@ -239,7 +242,7 @@ def _plus(node: Node, number: int) -> Node:
     return add(node, constant(_one(node.value) * number, node.order))
 
 
-def _one(value: Any) -> Any:
+def _one(value: Values) -> Values:
     return zeros(value, ()) + 1
 
 
@@ -301,9 +304,9 @@ FUNCTIONS: dict[str, Callable[[Node], Node]] = {
 }
 
 
-def _shape(value: Any) -> tuple[int, ...]:
+def _shape(value: Values) -> tuple[int, ...]:
     return tuple(np.shape(value))
 
 
-def _spread(x: Any, shape: tuple[int, ...]) -> Any:
+def _spread(x: Values, shape: tuple[int, ...]) -> Values:
     return x if _shape(x) == shape else namespace(x).broadcast_to(x, shape)

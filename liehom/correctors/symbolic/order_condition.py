@@ -274,7 +274,8 @@ class _Expansion:
 
     def difference(self, n: int) -> npt.NDArray[Any]:
         """[t^n] (F_tau - step)."""
-        found: npt.NDArray[Any] = self.clock.point(n) - self.step.coefficient(n)
+        point: Any = self.clock.point(n)
+        found: npt.NDArray[Any] = point - self.step.coefficient(n)
         return found
 
     def require_agreement(self, n: int) -> None:
@@ -344,6 +345,6 @@ def _numerically(
 def _at_equilibrium(
     expansion: _Expansion, n: int, right: npt.NDArray[Any], derivative: npt.NDArray[Any]
 ) -> OrderCondition:
-    zeta, c = zeros(expansion.point, (expansion.action.dimension,)), zeros(expansion.point, ())[()]
+    zeta, c = zeros(expansion.point, (expansion.action.dimension,)), zeros(expansion.point, (1,))[0]
     dimension = int(expansion.orbit_dimension)
     return OrderCondition(n, 0, derivative, expansion.vanishes(right, n), zeta, c, right, False, 0, dimension)
