@@ -89,13 +89,15 @@ class ExactField(Field["ExactMatrix"]):
         den: int = lcm(*(int(d) for _, d in split))
         return ExactMatrix(self, tuple(a * (den // int(d)) for a, d in split), den)
 
-    def from_integers(self, entries: Sequence[Any], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
+    def from_integers(self, entries: Sequence[int | flint.fmpz], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
         """The matrix with these integers over a common denominator, row after row."""
         first = flint.fmpz_mat(nrows, ncols, entries if isinstance(entries, list) else list(entries))
         rest = tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree - 1))
         return ExactMatrix(self, (first, *rest), den).normalized()
 
-    def from_parts(self, parts: Sequence[Sequence[int]], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
+    def from_parts(
+        self, parts: Sequence[Sequence[int | flint.fmpz]], nrows: int, ncols: int, den: int = 1
+    ) -> ExactMatrix:
         """The matrix with these integer coordinates (one list per power of the generator) over a denominator."""
         made = tuple(flint.fmpz_mat(nrows, ncols, p if isinstance(p, list) else list(p)) for p in parts)
         return ExactMatrix(self, made, den).normalized()
@@ -133,7 +135,7 @@ class ExactMatrix(Matrix):
 
     __slots__ = ("_field", "den", "parts")
 
-    def __init__(self, field: ExactField, parts: tuple[Any, ...], den: int) -> None:
+    def __init__(self, field: ExactField, parts: tuple[flint.fmpz_mat, ...], den: int) -> None:
         self._field = field
         self.parts = parts
         self.den = den
@@ -270,7 +272,7 @@ class ExactMatrix(Matrix):
                 powers[s + t] = a * b if powers[s + t] is None else powers[s + t] + a * b
         return ExactMatrix(self._field, self._reduced(powers), den).normalized()
 
-    def _reduced(self, powers: list[Any]) -> tuple[Any, ...]:
+    def _reduced(self, powers: list[flint.fmpz_mat]) -> tuple[flint.fmpz_mat, ...]:
         """Coefficient matrices of b^0 .. b^(2m-2), rewritten in b^0 .. b^(m-1)."""
         m = self._field.degree
         parts = powers[:m]
@@ -305,7 +307,7 @@ class ExactMatrix(Matrix):
         return self._field.from_coordinates([flint.fmpq(x, self.den) for x in total])
 
     # -- linear algebra ----------------------------------------------------------------------------------
-    def modulo(self, attempt: int = 0) -> Any:
+    def modulo(self, attempt: int = 0) -> flint.nmod_mat:
         """The numerators modulo a prime (``flint.nmod_mat``); its rank is at most the true rank."""
         p, root = self._field.residue(attempt)
         image = flint.nmod_mat(self.parts[0], p)

@@ -44,7 +44,7 @@ class Scalar(Protocol):
     def __float__(self) -> float: ...
 
 
-def rows_of(rows: Any) -> list[list[Any]]:
+def rows_of(rows: MatrixLike) -> list[list[Any]]:
     """Rows of numbers as lists: from nested sequences, from arrays and matrices of numpy, scipy and sympy.
 
     Raises
@@ -58,12 +58,13 @@ def rows_of(rows: Any) -> list[list[Any]]:
     >>> rows_of(np.eye(2, dtype=int)), rows_of([(1, "1/2")])
     ([[1, 0], [0, 1]], [[1, '1/2']])
     """
+    given: Any = rows
     for convert in ("toarray", "to_Matrix", "tolist"):  # scipy's sparse arrays, sympy's DomainMatrix, then all arrays
-        rows = getattr(rows, convert)() if hasattr(rows, convert) else rows
-    if isinstance(rows, str) or not hasattr(rows, "__iter__"):
-        raise ShapeError(f"a matrix is given by its rows, got {rows!r}")
+        given = getattr(given, convert)() if hasattr(given, convert) else given
+    if isinstance(given, str) or not hasattr(given, "__iter__"):
+        raise ShapeError(f"a matrix is given by its rows, got {given!r}")
     table = []
-    for i, row in enumerate(rows):
+    for i, row in enumerate(given):
         if isinstance(row, str) or not (hasattr(row, "__iter__") or hasattr(row, "__len__")):  # sympy's have a length
             raise ShapeError(f"row {i} is {row!r}, expected a sequence of numbers")
         table.append(list(row))
@@ -270,7 +271,7 @@ class Field(ABC, Generic[M]):
     def to_float(self, value: Scalar) -> float:
         """The nearest float (to a few units in the last place)."""
 
-    def sqrt(self, value: Any) -> Scalar:
+    def sqrt(self, value: ScalarLike) -> Scalar:
         """The non-negative square root of an element; `FieldError` if it is not in the field, or the field is RR."""
         raise FieldError(f"square roots of {self.name} are not exact; use numpy.sqrt for {value}")
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import FieldError, ShapeError, SingularError
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
@@ -179,8 +180,8 @@ class FloatMatrix(Matrix):
     def split_rows(self, nrows: int, ncols: int) -> list[FloatMatrix]:
         return [self._made(row.reshape(nrows, ncols)) for row in self.array]
 
-    def _made(self, array: Any) -> FloatMatrix:
-        return FloatMatrix(self._field, array)
+    def _made(self, array: npt.NDArray[np.floating[Any]]) -> FloatMatrix:
+        return FloatMatrix(self._field, np.asarray(array, dtype=np.float64))
 
     def __repr__(self) -> str:
         return f"<matrix {self.nrows} x {self.ncols} over float64>"

@@ -29,7 +29,7 @@ _TOKEN = re.compile(r"\s*(?:([0-9]+)|([A-Za-z_][A-Za-z_0-9]*)|(\*\*|[-+*/()]))",
 class Number:
     """A non-negative integer."""
 
-    value: Any
+    value: flint.fmpz
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,7 +67,7 @@ class NumberField(ExactField):
         "symbol",
     )
 
-    def __init__(self, symbol: str, minpoly: Sequence[Any], interval: tuple[Any, Any]) -> None:
+    def __init__(self, symbol: str, minpoly: Sequence[ScalarLike], interval: tuple[ScalarLike, ScalarLike]) -> None:
         polynomial = flint.fmpq_poly([QQ.convert(c) for c in minpoly])
         if polynomial.degree() < 2:
             raise FieldError("the minimal polynomial of a number field must have degree at least 2")
@@ -123,7 +123,7 @@ class NumberField(ExactField):
         return AlgebraicNumber(self, flint.fmpq_poly([0, flint.fmpq(1, self.leading)]))
 
     @property
-    def modulus(self) -> Any:
+    def modulus(self) -> flint.fmpz_poly:
         """The monic minimal polynomial of b = c a, as ``flint.fmpz_poly``."""
         return self._modulus
 
@@ -144,7 +144,7 @@ class NumberField(ExactField):
             return self._from_sympy(value)
         raise refused(value, self)
 
-    def _embedded(self, rational: Any) -> AlgebraicNumber:
+    def _embedded(self, rational: flint.fmpq) -> AlgebraicNumber:
         return AlgebraicNumber(self, flint.fmpq_poly([rational]))
 
     def _evaluate(self, text: str) -> AlgebraicNumber:
@@ -168,9 +168,9 @@ class NumberField(ExactField):
             return self.root(self._from_sympy(expression.base), int(exponent.q)) ** int(exponent.p)
         raise refused(expression, self)
 
-    def sqrt(self, value: AlgebraicNumber) -> AlgebraicNumber:
+    def sqrt(self, value: ScalarLike) -> AlgebraicNumber:
         """The non-negative square root; `FieldError` if it is not in the field."""
-        return self.root(value, 2)
+        return self.root(self.convert(value), 2)
 
     def root(self, value: AlgebraicNumber, k: int) -> AlgebraicNumber:
         """The non-negative k-th root of a non-negative element; `FieldError` if it is not in the field."""
@@ -299,7 +299,7 @@ class AlgebraicNumber(ExactNumber):
 
     __slots__ = ("field", "polynomial")
 
-    def __init__(self, field: NumberField, polynomial: Any) -> None:
+    def __init__(self, field: NumberField, polynomial: flint.fmpq_poly) -> None:
         self.field = field
         self.polynomial = polynomial
 
@@ -315,7 +315,7 @@ class AlgebraicNumber(ExactNumber):
         """Whether the number is rational."""
         return self.rational() is not None
 
-    def _operand(self, other: Any) -> Any:
+    def _operand(self, other: Any) -> flint.fmpq_poly | None:
         if isinstance(other, AlgebraicNumber) and other.field is self.field:
             return other.polynomial
         try:
@@ -323,27 +323,27 @@ class AlgebraicNumber(ExactNumber):
         except FieldError:
             return None
 
-    def _made(self, polynomial: Any) -> AlgebraicNumber:
+    def _made(self, polynomial: flint.fmpq_poly) -> AlgebraicNumber:
         return AlgebraicNumber(self.field, polynomial)
 
-    def __add__(self, other: Any) -> AlgebraicNumber:
+    def __add__(self, other: ScalarLike) -> AlgebraicNumber:
         right = self._operand(other)
         return NotImplemented if right is None else self._made(self.polynomial + right)
 
     __radd__ = __add__
 
-    def __sub__(self, other: Any) -> AlgebraicNumber:
+    def __sub__(self, other: ScalarLike) -> AlgebraicNumber:
         right = self._operand(other)
         return NotImplemented if right is None else self._made(self.polynomial - right)
 
-    def __rsub__(self, other: Any) -> AlgebraicNumber:
+    def __rsub__(self, other: ScalarLike) -> AlgebraicNumber:
         right = self._operand(other)
         return NotImplemented if right is None else self._made(right - self.polynomial)
 
     def __neg__(self) -> AlgebraicNumber:
         return self._made(-self.polynomial)
 
-    def __mul__(self, other: Any) -> AlgebraicNumber:
+    def __mul__(self, other: ScalarLike) -> AlgebraicNumber:
         right = self._operand(other)
         if right is None:
             return NotImplemented
@@ -358,11 +358,11 @@ class AlgebraicNumber(ExactNumber):
         common, left, _ = self.polynomial.xgcd(flint.fmpq_poly(self.field.modulus))
         return self._made(left / common[0])
 
-    def __truediv__(self, other: Any) -> AlgebraicNumber:
+    def __truediv__(self, other: ScalarLike) -> AlgebraicNumber:
         right = self._operand(other)
         return NotImplemented if right is None else self * self._made(right).inverse()
 
-    def __rtruediv__(self, other: Any) -> AlgebraicNumber:
+    def __rtruediv__(self, other: ScalarLike) -> AlgebraicNumber:
         right = self._operand(other)
         return NotImplemented if right is None else self.inverse() * self._made(right)
 
@@ -385,16 +385,16 @@ class AlgebraicNumber(ExactNumber):
     def __hash__(self) -> int:
         return hash(tuple((int(c.p), int(c.q)) for c in self.coordinates))
 
-    def __lt__(self, other: Any) -> bool:
+    def __lt__(self, other: ScalarLike) -> bool:
         return self.field.sign(self - other) < 0
 
-    def __le__(self, other: Any) -> bool:
+    def __le__(self, other: ScalarLike) -> bool:
         return self.field.sign(self - other) <= 0
 
-    def __gt__(self, other: Any) -> bool:
+    def __gt__(self, other: ScalarLike) -> bool:
         return self.field.sign(self - other) > 0
 
-    def __ge__(self, other: Any) -> bool:
+    def __ge__(self, other: ScalarLike) -> bool:
         return self.field.sign(self - other) >= 0
 
     def __float__(self) -> float:

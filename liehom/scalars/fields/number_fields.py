@@ -16,13 +16,16 @@ from liehom.scalars.fields.balls import real_root_balls, working_precision
 from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.rational import QQ, RationalField
+from liehom.typing import Number, ScalarLike
 
 MAX_RADICALS = 4
 MAX_RADICAND_BITS = 200
 
 
 def number_field(
-    generator: Any, interval: tuple[Any, Any] | None = None, name: str = "a"
+    generator: str | Sequence[ScalarLike] | Number,
+    interval: tuple[ScalarLike, ScalarLike] | None = None,
+    name: str = "a",
 ) -> RationalField | NumberField:
     """The real number field QQ(a).
 
@@ -119,7 +122,7 @@ def _too_many_radicals() -> FieldError:
     )
 
 
-def _kernel(value: Any) -> int:
+def _kernel(value: flint.fmpq) -> int:
     """The squarefree integer d with sqrt(value) a rational multiple of sqrt(d)."""
     if value < 0:
         raise FieldError(f"sqrt({value}) is not real")

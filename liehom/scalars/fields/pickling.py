@@ -36,11 +36,11 @@ def register() -> None:
     copyreg.pickle(NumberField, _of_number_field)
 
 
-def _of_integer_matrix(matrix: Any) -> Reduced:
+def _of_integer_matrix(matrix: flint.fmpz_mat) -> Reduced:
     return flint.fmpz_mat, (matrix.nrows(), matrix.ncols(), [int(x) for x in matrix.entries()])
 
 
-def _of_rational_matrix(matrix: Any) -> Reduced:
+def _of_rational_matrix(matrix: flint.fmpq_mat) -> Reduced:
     # entries are pickled as themselves: few of these matrices are kept
     return flint.fmpq_mat, (matrix.nrows(), matrix.ncols(), matrix.entries())
 

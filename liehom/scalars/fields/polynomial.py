@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import TypeAlias, final
 
 import flint
 
@@ -17,6 +17,10 @@ from liehom.errors import FieldError, InternalError
 from liehom.scalars.fields.exact_field import ExactField
 from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.rational import QQ
+from liehom.typing import ScalarLike
+
+RootCounter: TypeAlias = Callable[[ScalarLike | None, ScalarLike | None], int]
+"""The number of roots in an interval (low, high], unbounded where an end is None."""
 
 
 @final
@@ -32,7 +36,7 @@ class Polynomial:
 
     __slots__ = ("coefficients", "field")
 
-    def __init__(self, field: ExactField, coefficients: Sequence[Any]) -> None:
+    def __init__(self, field: ExactField, coefficients: Sequence[ScalarLike]) -> None:
         self.field = field
         values = [field.convert(c) for c in coefficients]
         while values and values[-1] == 0:
@@ -49,7 +53,7 @@ class Polynomial:
         """The leading coefficient (zero for the zero polynomial)."""
         return self.coefficients[-1] if self.coefficients else self.field.zero
 
-    def __call__(self, value: Any) -> Any:
+    def __call__(self, value: Scalar | int) -> Scalar:
         total = self.field.zero
         for c in reversed(self.coefficients):
             total = total * value + c
@@ -70,7 +74,7 @@ class Polynomial:
         """The polynomial over QQ as one of flint."""
         return flint.fmpq_poly([QQ.convert(c) for c in self.coefficients])
 
-    def _made(self, coefficients: Sequence[Any]) -> Polynomial:
+    def _made(self, coefficients: Sequence[ScalarLike]) -> Polynomial:
         return Polynomial(self.field, coefficients)
 
     def __add__(self, other: Polynomial) -> Polynomial:
@@ -125,7 +129,7 @@ class Polynomial:
         """The derivative."""
         return self._made([c * i for i, c in enumerate(self.coefficients)][1:])
 
-    def shifted(self, by: Any) -> Polynomial:
+    def shifted(self, by: ScalarLike) -> Polynomial:
         """The polynomial f(t + by)."""
         values, by = list(self.coefficients), self.field.convert(by)
         for start in range(len(values) - 1):
@@ -218,7 +222,7 @@ class Polynomial:
         size = self.leading if self.field.sign(self.leading) > 0 else -self.leading
         return self._made([c / size for c in self.coefficients])
 
-    def _variations(self, chain: list[Polynomial], at: Any) -> int:
+    def _variations(self, chain: list[Polynomial], at: Scalar | str) -> int:
         """Sign changes of a chain at a number, or at +-infinity (at = '+' or '-')."""
         signs = []
         for p in chain:
@@ -230,7 +234,7 @@ class Polynomial:
                 signs.append(sign)
         return sum(1 for a, b in itertools.pairwise(signs) if a != b)
 
-    def root_counter(self) -> Callable[[Any, Any], int]:
+    def root_counter(self) -> RootCounter:
         """The function `count_real_roots` with Sturm's chain computed once.
 
         Examples
@@ -241,20 +245,20 @@ class Polynomial:
         """
         chain = self._signed_remainders(self, self.derivative()) if self.degree > 0 else []
 
-        def count(low: Any, high: Any) -> int:
+        def count(low: ScalarLike | None, high: ScalarLike | None) -> int:
             left = self._variations(chain, "-" if low is None else self.field.convert(low))
             return left - self._variations(chain, "+" if high is None else self.field.convert(high))
 
         return count
 
-    def count_real_roots(self, low: Any = None, high: Any = None) -> int:
+    def count_real_roots(self, low: ScalarLike | None = None, high: ScalarLike | None = None) -> int:
         """Number of distinct real roots in the interval (low, high] (unbounded where None); Sturm's theorem.
 
         The ends must not be roots of multiplicity above one.
         """
         return self.root_counter()(low, high)
 
-    def count_right_of(self, cut: Any) -> int:
+    def count_right_of(self, cut: ScalarLike) -> int:
         """Number of roots with real part above `cut`, with multiplicity.
 
         Raises

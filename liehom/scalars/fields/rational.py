@@ -119,9 +119,10 @@ class RationalField(ExactField):
         value: flint.fmpq = grammar.evaluate(grammar.parse(text), flint.fmpq, {}, {"sqrt": self.sqrt})
         return value
 
-    def sqrt(self, value: flint.fmpq) -> flint.fmpq:
+    def sqrt(self, value: ScalarLike) -> flint.fmpq:
         """The non-negative square root; `FieldError` if it is not rational."""
-        numerator, denominator = flint.fmpz(value.p), flint.fmpz(value.q)
+        number = self.convert(value)
+        numerator, denominator = flint.fmpz(number.p), flint.fmpz(number.q)
         if numerator < 0:
             raise FieldError(f"sqrt({value}) is not real")
         top, bottom = numerator.isqrt(), denominator.isqrt()

@@ -19,6 +19,7 @@ import flint
 
 from liehom.errors import FieldError
 from liehom.scalars.fields.rational import QQ
+from liehom.typing import ScalarLike
 
 # a divisor of more terms is not factorized, and no shorter form of it is sought
 MAX_TERMS_TO_FACTOR = 3000
@@ -62,7 +63,7 @@ class CoordinateRing:
     def __init__(
         self,
         names: Sequence[str],
-        constraints: Iterable[Mapping[tuple[int, ...], Any]] = (),
+        constraints: Iterable[Mapping[tuple[int, ...], ScalarLike]] = (),
         graded: Sequence[str] = (),
     ) -> None:
         self.names = tuple(names)
@@ -75,11 +76,11 @@ class CoordinateRing:
         self.weights = [int(name in graded) for name in self.names]
         self._form = self._homogeneous_form(given)
 
-    def polynomial(self, terms: Mapping[tuple[int, ...], Any]) -> Any:
+    def polynomial(self, terms: Mapping[tuple[int, ...], ScalarLike]) -> flint.fmpq_mpoly:
         """The polynomial with these terms."""
         return self.context.from_dict({e: QQ.convert(c) for e, c in terms.items()})
 
-    def reduce(self, p: Any) -> Any:
+    def reduce(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         """The normal form of a polynomial modulo the constraints."""
         if len(self.basis) == 1:
             return divmod(p, self.basis[0])[1]
@@ -91,7 +92,7 @@ class CoordinateRing:
                 changed = changed or not quotient.is_zero()
         return p
 
-    def _groebner(self, given: list[Any]) -> list[Any]:
+    def _groebner(self, given: list[flint.fmpq_mpoly]) -> list[flint.fmpq_mpoly]:
         import sympy
 
         symbols = sympy.symbols([f"x{i}" for i in range(len(self.names))])
@@ -102,7 +103,7 @@ class CoordinateRing:
         return [self.polynomial(dict(p.terms())) for p in found.polys]
 
     # -- the grading -------------------------------------------------------------------------------------
-    def _homogeneous_form(self, given: list[Any]) -> tuple[Any, int] | None:
+    def _homogeneous_form(self, given: list[flint.fmpq_mpoly]) -> tuple[flint.fmpq_mpoly, int] | None:
         """F/r and its degree if the only constraint is F - r."""
         if len(given) != 1:
             return None
@@ -113,7 +114,7 @@ class CoordinateRing:
         constant = parts[0].leading_coefficient()
         return parts[degrees[1]] / -constant, degrees[1]
 
-    def _parts(self, p: Any) -> dict[int, Any]:
+    def _parts(self, p: flint.fmpq_mpoly) -> dict[int, flint.fmpq_mpoly]:
         """The homogeneous parts of a polynomial by degree."""
         terms: dict[int, dict[Any, Any]] = {}
         for e, c in p.terms():
@@ -121,7 +122,7 @@ class CoordinateRing:
             terms.setdefault(degree, {})[e] = c
         return {degree: self.context.from_dict(part) for degree, part in terms.items()}
 
-    def homogeneous(self, p: Any) -> Any:
+    def homogeneous(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
         """The homogeneous polynomial that equals p on the variety, not divisible by F; None if there is none."""
         if self._form is None:
             return None if self.basis else p
@@ -135,7 +136,7 @@ class CoordinateRing:
             made += part * form ** ((top - degree) // e)
         return self._without_form(made)
 
-    def _without_form(self, p: Any) -> Any:
+    def _without_form(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         form = self._form[0] if self._form is not None else None
         while form is not None and not p.is_zero():
             quotient, rest = divmod(p, form)
@@ -144,7 +145,7 @@ class CoordinateRing:
             p = quotient
         return p
 
-    def divide(self, p: Any, q: Any) -> Any:
+    def divide(self, p: flint.fmpq_mpoly, q: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
         """The polynomial p/q in normal form, or None if q is not seen to divide p on the variety.
 
         Examples
@@ -169,7 +170,7 @@ class CoordinateRing:
         even = self.homogeneous(self.reduce(q * mirrored))
         return None if even is None else self._divide_parts(self.reduce(p * mirrored), even)
 
-    def _divide_by_ansatz(self, p: Any, q: Any) -> Any:
+    def _divide_by_ansatz(self, p: flint.fmpq_mpoly, q: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
         """A quotient of low degree by linear algebra: normal forms of degree have no unique factors."""
         least = max(0, int(p.total_degree()) - int(q.total_degree()))
         for degree in (least, least + 1):
@@ -200,21 +201,24 @@ class CoordinateRing:
             return self.reduce(total)
         return None
 
-    def _divide_parts(self, p: Any, divisor: Any) -> Any:
+    def _divide_parts(self, p: flint.fmpq_mpoly, divisor: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
         """Division by a homogeneous polynomial, separately for each class of degrees."""
         e = self._form[1] if self._form is not None else 1
-        classes: dict[int, Any] = {}
+        classes: dict[int, flint.fmpq_mpoly] = {}
         for degree, part in self._parts(p).items():
             classes[degree % e] = classes.get(degree % e, self.context.constant(0)) + part
         total = self.context.constant(0)
         for part in classes.values():
-            quotient, rest = divmod(self.homogeneous(part), divisor)
+            lifted = self.homogeneous(part)
+            if lifted is None:
+                return None
+            quotient, rest = divmod(lifted, divisor)
             if not rest.is_zero():
                 return None
             total += quotient
         return self.reduce(total)
 
-    def shortest(self, p: Any) -> Any:
+    def shortest(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         """Of the polynomials that equal p on the variety and are seen, one with few terms; p if it is as short.
 
         Examples
@@ -232,7 +236,7 @@ class CoordinateRing:
             found.append(rest.project_to_context(self.context))
         return min(found, key=lambda q: (len(q), len(str(q))))
 
-    def graded_weights(self, polynomials: Iterable[Any], optional: Sequence[str]) -> list[str]:
+    def graded_weights(self, polynomials: Iterable[flint.fmpq_mpoly], optional: Sequence[str]) -> list[str]:
         """The optional variables that need degree 1 for all polynomials to be graded; [] if no choice serves.
 
         Examples
@@ -254,6 +258,6 @@ class CoordinateRing:
         return []
 
 
-def _one_degree(p: Any, weights: list[int], e: int) -> bool:
+def _one_degree(p: flint.fmpq_mpoly, weights: list[int], e: int) -> bool:
     degrees = {sum(int(k) for k, w in zip(m, weights, strict=True) if w) % e for m in p.monoms()}
     return len(degrees) <= 1

@@ -15,6 +15,7 @@ import flint
 from liehom.errors import FieldError, SingularError
 from liehom.scalars.fields.rational import rational_number
 from liehom.scalars.functions.coordinate_ring import MAX_TERMS_TO_FACTOR, CoordinateRing
+from liehom.typing import Number, ScalarLike
 
 Powers = tuple[tuple[int, int], ...]
 
@@ -54,20 +55,20 @@ class FunctionField:
     def __init__(
         self,
         names: Sequence[str],
-        constraints: Iterable[Mapping[tuple[int, ...], Any]] = (),
+        constraints: Iterable[Mapping[tuple[int, ...], ScalarLike]] = (),
         graded: Sequence[str] = (),
     ) -> None:
         self.ring = CoordinateRing(names, constraints, graded)
         constant = self.ring.context.constant
-        self.atoms: list[Any] = []
-        self._reduced: list[Any] = []
+        self.atoms: list[flint.fmpq_mpoly] = []
+        self._reduced: list[flint.fmpq_mpoly] = []
         self.zero = RationalFunction(self, constant(0), ())
         self.one = RationalFunction(self, constant(1), ())
         generators = map(self.ring.reduce, self.ring.context.gens())
         self.variables = tuple(RationalFunction(self, g, ()) for g in generators)
 
     # -- denominators ------------------------------------------------------------------------------------
-    def atom(self, p: Any) -> int:
+    def atom(self, p: flint.fmpq_mpoly) -> int:
         """The number of the atom p, which is made one if it is not yet."""
         for i, known in enumerate(self.atoms):
             if known == p:
@@ -76,11 +77,11 @@ class FunctionField:
         self._reduced.append(self.ring.reduce(p))
         return len(self.atoms) - 1
 
-    def reduced_atom(self, i: int) -> Any:
+    def reduced_atom(self, i: int) -> flint.fmpq_mpoly:
         """Atom i in normal form."""
         return self._reduced[i]
 
-    def denominator(self, powers: Powers) -> Any:
+    def denominator(self, powers: Powers) -> flint.fmpq_mpoly:
         """The product of atoms as a polynomial, in normal form."""
         made = self.ring.context.constant(1)
         for i, k in powers:
@@ -88,7 +89,7 @@ class FunctionField:
                 made = self.ring.reduce(made * self._reduced[i])
         return made
 
-    def inverse(self, p: Any) -> RationalFunction:
+    def inverse(self, p: flint.fmpq_mpoly) -> RationalFunction:
         """1 / p for a polynomial that is not zero on the variety."""
         if p.is_zero():
             raise SingularError("division by a function that is zero")
@@ -130,7 +131,7 @@ class FunctionField:
         return [RationalFunction(self, self.ring.reduce(p / scale), ()) for p in known]
 
     # -- numbers -----------------------------------------------------------------------------------------
-    def convert(self, value: Any) -> RationalFunction:
+    def convert(self, value: RationalFunction | Number | int) -> RationalFunction:
         """A rational number, or an element, as an element.
 
         Raises
@@ -168,7 +169,7 @@ class RationalFunction:
 
     __slots__ = ("field", "numerator", "powers")
 
-    def __init__(self, field: FunctionField, numerator: Any, powers: Powers) -> None:
+    def __init__(self, field: FunctionField, numerator: flint.fmpq_mpoly, powers: Powers) -> None:
         self.field = field
         self.numerator = numerator
         self.powers: Powers = () if numerator.is_zero() else powers
@@ -179,7 +180,7 @@ class RationalFunction:
         number = rational_number(value)
         return None if number is None else RationalFunction(self.field, self.field.ring.context.constant(number), ())
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: RationalFunction | Number | int) -> RationalFunction:
         right = self._other(other)
         if right is None:
             return NotImplemented
@@ -191,7 +192,7 @@ class RationalFunction:
 
     __radd__ = __add__
 
-    def over(self, common: Powers) -> Any:
+    def over(self, common: Powers) -> flint.fmpq_mpoly:
         """The numerator over a multiple of the denominator."""
         if common == self.powers:
             return self.numerator
@@ -202,15 +203,15 @@ class RationalFunction:
     def __neg__(self) -> RationalFunction:
         return RationalFunction(self.field, -self.numerator, self.powers)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: RationalFunction | Number | int) -> RationalFunction:
         right = self._other(other)
         return NotImplemented if right is None else self + (-right)
 
-    def __rsub__(self, other: Any) -> Any:
+    def __rsub__(self, other: RationalFunction | Number | int) -> RationalFunction:
         left = self._other(other)
         return NotImplemented if left is None else left + (-self)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: RationalFunction | Number | int) -> RationalFunction:
         if not isinstance(other, RationalFunction):
             number = rational_number(other)
             if number is None:
@@ -221,7 +222,7 @@ class RationalFunction:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: RationalFunction | Number | int) -> RationalFunction:
         if not isinstance(other, RationalFunction):
             number = rational_number(other)
             if number is None:
@@ -231,7 +232,7 @@ class RationalFunction:
             return RationalFunction(self.field, self.numerator / number, self.powers)
         return self * other.inverse()
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: RationalFunction | Number | int) -> RationalFunction:
         left = self._other(other)
         return NotImplemented if left is None else left * self.inverse()
 
@@ -241,7 +242,7 @@ class RationalFunction:
         made: RationalFunction = self.field.inverse(self.numerator) * below
         return made
 
-    def __pow__(self, exponent: int) -> Any:
+    def __pow__(self, exponent: int) -> RationalFunction:
         if isinstance(exponent, bool) or not isinstance(exponent, int):
             return NotImplemented
         base, made = (self if exponent >= 0 else self.inverse()), self.field.one
@@ -273,7 +274,7 @@ class RationalFunction:
                 kept.append((i, k))
         return RationalFunction(self.field, top, tuple(kept))
 
-    def factors(self) -> tuple[Any, list[tuple[Any, int]]]:
+    def factors(self) -> tuple[flint.fmpq, list[tuple[flint.fmpq_mpoly, int]]]:
         """A number and polynomials with exponents of either sign, whose product equals the function on the variety."""
         lifted = self.field.ring.homogeneous(self.numerator)
         top = self.numerator if lifted is None else lifted
@@ -320,7 +321,7 @@ def times(a: Powers, b: Powers) -> Powers:
     return tuple(sorted(made.items()))
 
 
-def _content(polynomials: Sequence[Any]) -> Any:
+def _content(polynomials: Sequence[flint.fmpq_mpoly]) -> flint.fmpq:
     """The positive rational number by which integer coefficients without common divisor are left."""
     numbers = [c for p in polynomials for c in p.coeffs()]
     top, bottom = flint.fmpz(0), flint.fmpz(1)

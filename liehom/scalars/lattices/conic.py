@@ -8,15 +8,15 @@ form a lattice of index abc on which the form is a multiple of abc; its short ve
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from math import gcd, isqrt, lcm
-from typing import Any
 
 import flint
 
 from liehom.errors import InternalError
 from liehom.scalars.fields.exact_field import ExactMatrix
+from liehom.scalars.fields.rational import QQ
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 Triple = tuple[int, int, int]
@@ -49,8 +49,10 @@ def rational_zero(form: ExactMatrix) -> ExactMatrix | None:
         if value == 0:
             zero: ExactMatrix = row
             return zero
-    den = lcm(*(int(v.q) for v in values))
-    found = legendre_zero(tuple(int(v * den) for v in values))  # type: ignore[arg-type]
+    rationals = [QQ.convert(v) for v in values]
+    den = lcm(*(int(v.q) for v in rationals))
+    a, b, c = (int(v * den) for v in rationals)
+    found = legendre_zero((a, b, c))
     if found is None:
         return None
     total: ExactMatrix = form.field.zeros(1, 3)
@@ -115,10 +117,10 @@ def _reduced_zero(coefficients: Triple) -> Triple | None:
     a, b, c = coefficients
     if (a > 0) == (b > 0) == (c > 0):
         return None
-    roots = (_square_root(-b * c, b, a), _square_root(-c * a, c, b), _square_root(-a * b, a, c))
-    if any(r is None for r in roots):
+    ra, rb, rc = _square_root(-b * c, b, a), _square_root(-c * a, c, b), _square_root(-a * b, a, c)
+    if ra is None or rb is None or rc is None:
         return None
-    for x, y, z in _short_vectors(coefficients, roots):
+    for x, y, z in _short_vectors(coefficients, (ra, rb, rc)):
         value = a * x * x + b * y * y + c * z * z
         if value == 0:
             return x, y, z
@@ -144,7 +146,7 @@ def _square_root(square: int, divisor: int, modulus: int) -> int | None:
     return total
 
 
-def _short_vectors(coefficients: Triple, roots: Any) -> Iterator[Triple]:
+def _short_vectors(coefficients: Triple, roots: Triple) -> Iterator[Triple]:
     """Short vectors of the lattice, for the norm |a| x^2 + |b| y^2 + |c| z^2."""
     a, b, c = (abs(v) for v in coefficients)
     ra, rb, rc = roots
@@ -174,7 +176,7 @@ def _local_bases(ra: int, rb: int, rc: int) -> list[list[Triple]]:
     return found
 
 
-def _crt(values: Any, moduli: Triple) -> int:
+def _crt(values: Sequence[int], moduli: Triple) -> int:
     """The residue modulo abc with the given residues modulo a, b and c."""
     total, seen = 0, 1
     for v, m in zip(values, moduli, strict=True):

@@ -17,11 +17,12 @@ import numpy as np
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.rational import QQ
+from liehom.typing import ScalarLike
 
 STEPS = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 
 
-def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, Any]:
+def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, flint.fmpq]:
     """An integer matrix N over QQ and a rational s with matrix = s N nearly, the largest entry of N near 2^bits.
 
     Examples
@@ -31,14 +32,15 @@ def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, Any]:
     >>> N[0, 0], s
     (362, 1/256)
     """
-    entries = matrix.entries()
     if isinstance(matrix.field, NumberField):
-        entries = [matrix.field.ball(x, 2 * bits + 64).mid().fmpq() for x in entries]
+        entries = [matrix.field.ball(x, 2 * bits + 64).mid().fmpq() for x in matrix.entries()]
+    else:
+        entries = [QQ.convert(x) for x in matrix.entries()]
     scale = power_of_two(max(abs(x) for x in entries)) / flint.fmpq(flint.fmpz(1) << bits)
     return QQ.from_integers([_rounded(x / scale) for x in entries], *matrix.shape), scale
 
 
-def power_of_two(value: Any) -> Any:
+def power_of_two(value: ScalarLike) -> flint.fmpq:
     """A power of two within a factor 2 of a rational that is not negative; 1 for 0.
 
     Examples
@@ -46,12 +48,13 @@ def power_of_two(value: Any) -> Any:
     >>> power_of_two(flint.fmpq(1000)), power_of_two(flint.fmpq(1, 5))
     (512, 1/4)
     """
-    exponent = int(value.p).bit_length() - int(value.q).bit_length() if value else 0
+    rational = QQ.convert(value)
+    exponent = int(rational.p).bit_length() - int(rational.q).bit_length() if rational else 0
     one = flint.fmpz(1)
     return flint.fmpq(one << exponent) if exponent >= 0 else flint.fmpq(1, one << -exponent)
 
 
-def _rounded(value: Any) -> Any:
+def _rounded(value: flint.fmpq) -> flint.fmpz:
     return (2 * value.p + value.q) // (2 * value.q)
 
 
@@ -89,18 +92,18 @@ def balancing_rows(matrices: Sequence[ExactMatrix], bits: int) -> ExactMatrix | 
     return None
 
 
-def _image(pairs: Sequence[tuple[Any, Any]], form: Any) -> Any:
+def _image(pairs: Sequence[tuple[flint.fmpz_mat, flint.fmpz_mat]], form: flint.fmpz_mat) -> flint.fmpz_mat:
     total = 0 * form
     for left, right in pairs:
         total += left * form * right
     return total
 
 
-def _trace(matrix: Any) -> Any:
+def _trace(matrix: flint.fmpz_mat) -> flint.fmpz:
     return sum((matrix[i, i] for i in range(matrix.nrows())), flint.fmpz(0))
 
 
-def _gram_schmidt(form: Any, bits: int) -> ExactMatrix | None:
+def _gram_schmidt(form: flint.fmpz_mat, bits: int) -> ExactMatrix | None:
     """Orthogonal rows for a positive definite form, of length about 2^(bits/2); None if bits are short."""
     d = form.nrows()
     table = [[int(x) for x in row] for row in form.tolist()]
@@ -133,7 +136,8 @@ def lattice_reduction(rows: ExactMatrix, bits: int) -> ExactMatrix:
     [[0.0, 1.024], [1.0, 0.0]]
     """
     integers, _ = fixed_point(rows, bits)
-    reduced, change = integers.parts[0].lll(transform=True)
+    lattice: Any = integers.parts[0]
+    reduced, change = lattice.lll(transform=True)
     (k, n), entries, multipliers = rows.shape, reduced.entries(), change.entries()
     scaled = []
     for i in range(k):

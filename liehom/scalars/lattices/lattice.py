@@ -13,13 +13,14 @@ import numpy as np
 
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.rational import QQ
+from liehom.typing import Array
 
 BITS = 40
 SPARE = 12
 TRIAL_PRIMES = 10_000
 
 
-def reduced_basis(form: Any) -> ExactMatrix:
+def reduced_basis(form: Array) -> ExactMatrix:
     """The rows of a unimodular matrix that are nearly orthogonal and short for a positive definite form.
 
     Parameters
@@ -47,7 +48,7 @@ def reduced_basis(form: Any) -> ExactMatrix:
     return QQ.from_integers(change.entries(), n, n)
 
 
-def reduced_rows(rows: ExactMatrix, factor: Any) -> ExactMatrix:
+def reduced_rows(rows: ExactMatrix, factor: Array) -> ExactMatrix:
     """A basis of the lattice that the rows span, nearly orthogonal and short for the form factor factor^T.
 
     Parameters
@@ -66,7 +67,8 @@ def reduced_rows(rows: ExactMatrix, factor: Any) -> ExactMatrix:
     n = len(factor)
     scale = float(1 << BITS) / float(np.abs(factor).max())
     frame = flint.fmpz_mat(n, n, [round(x) for x in (factor * scale).ravel().tolist()])
-    _, change = (rows.parts[0] * frame).lll(transform=True)
+    lattice: Any = rows.parts[0] * frame
+    _, change = lattice.lll(transform=True)
     return ExactMatrix(rows.field, (change * rows.parts[0],), rows.den).normalized()
 
 

@@ -8,7 +8,6 @@ may be multiples of it): then the exact rank decides.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import flint
 
@@ -121,7 +120,7 @@ def independent_columns(matrix: ExactMatrix) -> list[int]:
     return matrix.echelon()[1]
 
 
-def primitive_residues(rows: Sequence[ExactMatrix], ncols: int) -> Any:
+def primitive_residues(rows: Sequence[ExactMatrix], ncols: int) -> flint.nmod_mat:
     """Rows modulo a prime (``flint.nmod_mat``), each cleared of its denominator and common factor before.
 
     Parameters

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from typing import Any
 
 import flint
 
@@ -21,7 +20,9 @@ LARGEST_KERNEL = 64
 SEED_TRIALS = 12
 
 
-def intertwining_residues(source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], attempt: int = 0) -> Any:
+def intertwining_residues(
+    source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], attempt: int = 0
+) -> flint.nmod_mat | None:
     """The maps T, shape (e, d), with T A_g = B_g T modulo a prime, as the reduced echelon rows of flattened matrices.
 
     Parameters
@@ -43,9 +44,10 @@ def intertwining_residues(source: Sequence[ExactMatrix], target: Sequence[ExactM
     >>> intertwining_residues([J], [J]).nrows()
     2
     """
-    left, right = [_residue(a, attempt).transpose() for a in source], [_residue(b, attempt).transpose() for b in target]
-    if any(m is None for m in (*left, *right)):
+    images = [m for m in (_residue(a, attempt) for a in (*source, *target)) if m is not None]
+    if len(images) < len(source) + len(target):
         return None
+    left, right = [m.transpose() for m in images[: len(source)]], [m.transpose() for m in images[len(source) :]]
     rng = random.Random(left[0].nrows())
     spun = _SpunModule(left, right)
     while spun.rank < spun.d:
@@ -54,17 +56,17 @@ def intertwining_residues(source: Sequence[ExactMatrix], target: Sequence[ExactM
     return spun.solution(rng)
 
 
-def _residue(matrix: ExactMatrix, attempt: int) -> Any:
+def _residue(matrix: ExactMatrix, attempt: int) -> flint.nmod_mat | None:
     image = matrix.modulo(attempt)
     p = int(image.modulus())
     return image * pow(matrix.den, -1, p) if matrix.den % p else None
 
 
-def _matrix(nrows: int, ncols: int, entries: list[Any], modulus: int) -> Any:
+def _matrix(nrows: int, ncols: int, entries: Sequence[int | flint.nmod], modulus: int) -> flint.nmod_mat:
     return flint.nmod_mat(nrows, ncols, [int(x) for x in entries], modulus)
 
 
-def _kernel(matrix: Any) -> Any:
+def _kernel(matrix: flint.nmod_mat) -> flint.nmod_mat:
     """Rows x with x M = 0."""
     vectors, nullity = matrix.transpose().nullspace()
     n = vectors.nrows()
@@ -75,13 +77,13 @@ def _kernel(matrix: Any) -> Any:
 class _SpunModule:
     """Rows v_j that are independent, each with its images T v_j for every unknown of its seed."""
 
-    def __init__(self, left: list[Any], right: list[Any]) -> None:
+    def __init__(self, left: list[flint.nmod_mat], right: list[flint.nmod_mat]) -> None:
         self.left, self.right = left, right
         self.d, self.e = left[0].nrows(), right[0].nrows()
         self.p = int(left[0].modulus())
         self.vectors = _matrix(0, self.d, [], self.p)
         # for each seed: the rows it has made, and for each of its unknowns the images (rows, e)
-        self.seeds: list[tuple[range, list[Any]]] = []
+        self.seeds: list[tuple[range, list[flint.nmod_mat]]] = []
 
     @property
     def rank(self) -> int:
@@ -111,7 +113,7 @@ class _SpunModule:
         self.seeds.append((range(start, self.rank), images))
         return True
 
-    def _kernels(self, rng: random.Random) -> tuple[Any, Any] | None:
+    def _kernels(self, rng: random.Random) -> tuple[flint.nmod_mat, flint.nmod_mat] | None:
         """Kernels (rows) of one polynomial in a random element, in the source and in the target."""
         a, b = self._element(rng)
         polynomial = a.charpoly()
@@ -123,27 +125,27 @@ class _SpunModule:
         own, other = _kernel(_evaluated(f, a)), _kernel(_evaluated(f, b))
         return (own, other) if max(own.nrows(), other.nrows()) <= LARGEST_KERNEL else None
 
-    def _restricted(self, a: Any) -> Any:
+    def _restricted(self, a: flint.nmod_mat) -> flint.nmod_mat:
         """The matrix of an element (acting on rows) on the span of the vectors, which is invariant."""
         places = pivot_columns(self.vectors)
         turned = self.vectors.transpose()
         square, moved = selected_rows(turned, places), selected_rows((self.vectors * a).transpose(), places)
         return square.inv() * moved
 
-    def _element(self, rng: random.Random) -> tuple[Any, Any]:
+    def _element(self, rng: random.Random) -> tuple[flint.nmod_mat, flint.nmod_mat]:
         """A random sum of generators and products of two."""
         words: list[tuple[int, ...]] = [(g,) for g in range(len(self.left))]
         words += [(rng.randrange(len(self.left)), rng.randrange(len(self.left))) for _ in range(2)]
-        a, b = None, None
+        a, b = self.left[0] * 0, self.right[0] * 0
         for word in words:
             factor = rng.randrange(1, self.p)
             x, y = self.left[word[0]] * factor, self.right[word[0]] * factor
             for g in word[1:]:
                 x, y = x * self.left[g], y * self.right[g]
-            a, b = (x, y) if a is None else (a + x, b + y)
+            a, b = a + x, b + y
         return a, b
 
-    def solution(self, rng: random.Random) -> Any:
+    def solution(self, rng: random.Random) -> flint.nmod_mat:
         """The echelon rows of all T, flattened."""
         inverse = self.vectors.inv()
         count = sum(len(images) for _, images in self.seeds)
@@ -166,25 +168,24 @@ class _SpunModule:
             flat += (inverse * self._combined(weights, i)).transpose().entries()
         return row_basis(_matrix(weights.nrows(), self.d * self.e, flat, self.p))
 
-    def _applied(self, coefficients: Any) -> list[Any]:
+    def _applied(self, coefficients: flint.nmod_mat) -> list[flint.nmod_mat]:
         """For each unknown the rows sum_j coefficients[., j] T v_j."""
         turned = coefficients.transpose()
         return [selected_rows(turned, places).transpose() * w for places, images in self.seeds for w in images]
 
-    def _combined(self, weights: Any, i: int) -> Any:
+    def _combined(self, weights: flint.nmod_mat, i: int) -> flint.nmod_mat:
         """The rows T v_j for the i-th solution."""
         blocks, c = [], 0
-        for _, images in self.seeds:
-            total = images[0] * 0 if images else None
+        for rows, images in self.seeds:
+            total = _matrix(len(rows), self.e, [0] * (len(rows) * self.e), self.p)
             for w in images:
                 total = total + w * int(weights[i, c])
                 c += 1
             blocks.append(total)
-        missing = [_matrix(len(places), self.e, [0] * (len(places) * self.e), self.p) for places, _ in self.seeds]
-        return stacked_residues([m if b is None else b for b, m in zip(blocks, missing, strict=True)])
+        return stacked_residues(blocks)
 
 
-def _evaluated(f: Any, a: Any) -> Any:
+def _evaluated(f: flint.nmod_poly, a: flint.nmod_mat) -> flint.nmod_mat:
     """The matrix f(a) modulo p."""
     n, p = a.nrows(), int(a.modulus())
     one = _matrix(n, n, [int(i == j) for i in range(n) for j in range(n)], p)

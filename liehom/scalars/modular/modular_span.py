@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from math import isqrt
-from typing import Any, final
+from typing import final
 
 import flint
 import numpy as np
 import numpy.typing as npt
 
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
+from liehom.scalars.fields.field import Field
 from liehom.scalars.fields.rational import prime
 from liehom.scalars.modular.modular import row_basis, small_residues
 from liehom.typing import Array, IntegerArray
@@ -208,7 +209,7 @@ def flat_echelon(matrices: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
     return row_basis(flint.nmod_mat(len(matrices), width, entries, p))
 
 
-def rational_lifts(make: Callable[[int], Any], field: Any) -> Iterator[ExactMatrix]:
+def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -> Iterator[ExactMatrix]:
     """Proposals for a matrix over QQ that is given modulo primes, from one prime, two, ...; wrong ones among them.
 
     Parameters
@@ -225,6 +226,8 @@ def rational_lifts(make: Callable[[int], Any], field: Any) -> Iterator[ExactMatr
     True
     """
     first = make(0)
+    if first is None:
+        return
     shape, modulus = (first.nrows(), first.ncols()), int(first.modulus())
     values = [int(x) for x in first.entries()]
     for attempt in range(1, PRIMES):
@@ -241,7 +244,7 @@ def rational_lifts(make: Callable[[int], Any], field: Any) -> Iterator[ExactMatr
         modulus *= p
 
 
-def lifted(values: Residues, modulus: int, field: Any) -> ExactMatrix | None:
+def lifted(values: Residues, modulus: int, field: Field) -> ExactMatrix | None:
     """The matrix of small fractions that a matrix modulo one prime proposes, or None if an entry proposes none.
 
     Examples
@@ -255,10 +258,11 @@ def lifted(values: Residues, modulus: int, field: Any) -> ExactMatrix | None:
     if found is None:
         return None
     entries = [field.convert(flint.fmpq(a, b)) for a, b in found]
-    return field.from_entries(entries, *values.shape)  # type: ignore[no-any-return]
+    matrix: ExactMatrix = field.from_entries(entries, *values.shape)
+    return matrix
 
 
-def _residue(matrix: ExactMatrix, attempt: int) -> Any:
+def _residue(matrix: ExactMatrix, attempt: int) -> flint.nmod_mat:
     p = prime(attempt)
     return matrix.modulo(attempt) * pow(matrix.den, -1, p)
 

@@ -60,11 +60,12 @@ def complex_conjugation(f: Polynomial) -> Polynomial | None:
     raise InternalError(f"the conjugates of the roots of {f!r} were not told apart with {bits // 2} bits")
 
 
-def _interpolated(f: Any) -> list[Any]:
+def _interpolated(f: flint.fmpz_poly) -> list[flint.acb]:
     """The coefficients of the sum of conj(r) f / (t - r) / f'(r) over the roots r, as balls."""
     n, derivative = f.degree(), flint.acb_poly(f.derivative())
     total = [flint.acb(0)] * n
-    for r, _ in f.complex_roots():
+    roots: Any = f.complex_roots()  # pairs of a root and its multiplicity
+    for r, _ in roots:
         root = flint.acb(r)
         quotient, carry = [flint.acb(0)] * n, flint.acb(0)
         for i in range(n, 0, -1):
@@ -75,7 +76,7 @@ def _interpolated(f: Any) -> list[Any]:
     return total
 
 
-def _integers(balls: list[Any]) -> list[int] | None:
+def _integers(balls: list[flint.acb]) -> list[int] | None:
     """The integers in the balls; empty if some ball holds none, None if some ball is too wide to tell."""
     found = []
     for ball in balls:

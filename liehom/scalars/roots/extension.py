@@ -23,6 +23,7 @@ from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.number_field import MAX_PRECISION, NumberField
 from liehom.scalars.fields.number_fields import number_field
 from liehom.scalars.fields.polynomial import Polynomial
+from liehom.scalars.fields.rational import QQ
 from liehom.scalars.roots.primitive_element import field_of_root, smaller_generator
 from liehom.scalars.roots.roots import complex_root_balls
 
@@ -139,17 +140,17 @@ def adjoin_root(f: Polynomial, index: int, name: str = "a") -> tuple[Extension, 
     return Extension(base, small, (small.one,)), image / large.leading
 
 
-def _quadratic(discriminant: Any, name: str) -> tuple[Any, Scalar]:
+def _quadratic(discriminant: Scalar, name: str) -> tuple[ExactField, Scalar]:
     """QQ(sqrt(d)) and the positive square root of the discriminant in it."""
     try:
         field: Any = number_field(f"sqrt({discriminant})")
     except FieldError:  # too large to find its squarefree part
-        field = field_of_root([-discriminant, 0, 1], flint.arb(discriminant).sqrt(), name)
+        field = field_of_root([-discriminant, 0, 1], flint.arb(QQ.convert(discriminant)).sqrt(), name)
         return field, field.generator
     return field, field.sqrt(field.convert(discriminant))
 
 
-def _nth(balls: list[Any], index: int, f: Polynomial) -> Any:
+def _nth(balls: list[flint.arb], index: int, f: Polynomial) -> flint.arb:
     if not 0 <= index < len(balls):
         raise FieldError(f"{f} has {len(balls)} real roots, number {index} was asked for")
     return balls[index]
@@ -165,9 +166,9 @@ def _above(base: NumberField, f: Polynomial, index: int, name: str) -> tuple[Ext
         raise InternalError("no shift makes the norm of a polynomial squarefree")
     precision = 64
     while True:
-        root = _nth(real_roots(f, precision), index, f)
+        near = _nth(real_roots(f, precision), index, f)
         with working_precision(precision):
-            value = root + s * base.generator_ball(precision)
+            value = near + s * base.generator_ball(precision)
         if len([r for r in real_roots(norm, precision) if r.overlaps(value)]) == 1:
             break
         precision *= 2
@@ -177,10 +178,10 @@ def _above(base: NumberField, f: Polynomial, index: int, name: str) -> tuple[Ext
     root = c - s * image
     den = lcm(*(int(x.q) for coefficient in f.coefficients for x in base.coordinates(coefficient)))
     # b and den * alpha are integers: so is the ring that they generate
-    integers = [image**i * (root * den) ** j for i in range(base.degree) for j in range(f.degree)]
+    integers = [large.convert(image**i * (root * den) ** j) for i in range(base.degree) for j in range(f.degree)]
     field, up = smaller_generator(large, integers)
-    image, root = (_carried(large.coordinates(x), up) for x in (image, root))
-    return Extension(base, field, tuple(image**i if i else field.one for i in range(base.degree))), root
+    below, above = (_carried(large.coordinates(x), up) for x in (image, root))
+    return Extension(base, field, tuple(below**i if i else field.one for i in range(base.degree))), above
 
 
 def _carried(coordinates: Sequence[flint.fmpq], generator: Scalar) -> Scalar:
@@ -191,7 +192,7 @@ def _carried(coordinates: Sequence[flint.fmpq], generator: Scalar) -> Scalar:
     return total
 
 
-def _image_of_generator(base: NumberField, f: Polynomial, field: Any, c: Scalar, s: int) -> Scalar:
+def _image_of_generator(base: NumberField, f: Polynomial, field: NumberField, c: Scalar, s: int) -> Scalar:
     """The common root in F of the modulus of K and of x -> f^x(c - s x)."""
     line = Polynomial(field, [c, -s])
     total = Polynomial(field, [])
@@ -204,7 +205,7 @@ def _image_of_generator(base: NumberField, f: Polynomial, field: Any, c: Scalar,
 
 
 # -- roots and factors ---------------------------------------------------------------------------------------
-def real_roots(f: Polynomial, precision: int) -> list[Any]:
+def real_roots(f: Polynomial, precision: int) -> list[flint.arb]:
     """Disjoint balls (``flint.arb``) around the real roots of a squarefree polynomial, in increasing order.
 
     Examples
@@ -216,7 +217,7 @@ def real_roots(f: Polynomial, precision: int) -> list[Any]:
     return [r.real for r in _sorted_roots(f, precision)[0]]
 
 
-def _sorted_roots(f: Polynomial, precision: int) -> tuple[list[Any], list[Any]]:
+def _sorted_roots(f: Polynomial, precision: int) -> tuple[list[flint.acb], list[flint.acb]]:
     """The real roots in increasing order, and those in the upper half plane (by real, then imaginary part)."""
     count = f.count_real_roots() if f.degree > 0 else 0
     while precision <= MAX_PRECISION:
@@ -277,7 +278,7 @@ def real_factors(f: Polynomial, name: str = "a") -> list[RealFactor]:
     return found + [_quadratic_factor(f, near, name) for near in upper]
 
 
-def _quadratic_factor(f: Polynomial, near: Any, name: str) -> RealFactor:
+def _quadratic_factor(f: Polynomial, near: flint.acb, name: str) -> RealFactor:
     """The factor of the root in the upper half plane that a ball holds."""
     for shift, resolvent in _resolvents(f):
         factors = [g for part, _ in resolvent.squarefree_parts() for g, _ in part.factor()]
@@ -328,12 +329,14 @@ def _from_power_sums(field: ExactField, sums: list[Scalar]) -> Polynomial:
     return Polynomial(field, e[::-1])
 
 
-def _refined(f: Polynomial, near: Any, precision: int) -> Any:
+def _refined(f: Polynomial, near: flint.acb, precision: int) -> flint.acb:
     """The root of f in the ball, more precisely."""
     return next(r for r in _sorted_roots(f, precision)[1] if r.overlaps(near))
 
 
-def _matching_root(f: Polynomial, near: Any, shift: int | None, factors: list[Polynomial]) -> tuple[Polynomial, int]:
+def _matching_root(
+    f: Polynomial, near: flint.acb, shift: int | None, factors: list[Polynomial]
+) -> tuple[Polynomial, int]:
     """The factor, and the number of its real root, at alpha + conj(alpha) or |alpha + shift|^2."""
     precision = 64
     while precision <= MAX_PRECISION:
@@ -350,7 +353,7 @@ def _matching_root(f: Polynomial, near: Any, shift: int | None, factors: list[Po
     raise FieldError(f"a root of {f} could not be told from the others with {MAX_PRECISION} bits")
 
 
-def _has_root(h: Polynomial, f: Polynomial, near: Any) -> bool:
+def _has_root(h: Polynomial, f: Polynomial, near: flint.acb) -> bool:
     """Whether the quadratic factor h of f (over a larger field) has the given root of f."""
     if h.count_real_roots():
         return False

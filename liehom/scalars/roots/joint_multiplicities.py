@@ -11,7 +11,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import flint
 
@@ -53,7 +53,7 @@ class JointMultiplicities:
 
     blocks: tuple[_Block, ...]
 
-    def values(self, precision: int) -> list[tuple[tuple[Any, ...], int]]:
+    def values(self, precision: int) -> list[tuple[tuple[flint.acb, ...], int]]:
         """Joint eigenvalues as balls (``flint.acb``) with multiplicities; one may occur in several blocks."""
         found = []
         for block in self.blocks:
@@ -161,14 +161,14 @@ def _generating_vectors(x: ExactMatrix, count: int, degree: int) -> tuple[list[E
             return starts, spaces
 
 
-def _ball_coefficients(polynomial: Polynomial, precision: int) -> list[Any]:
+def _ball_coefficients(polynomial: Polynomial, precision: int) -> list[flint.arb]:
     field = polynomial.field
     if isinstance(field, NumberField):
         return [field.ball(c, precision) for c in polynomial.coefficients]
     return [flint.arb(QQ.convert(c)) for c in polynomial.coefficients]
 
 
-def _evaluated(coefficients: list[Any], root: Any) -> Any:
+def _evaluated(coefficients: list[flint.arb], root: flint.acb) -> flint.acb:
     total = flint.acb(0)
     for c in reversed(coefficients):
         total = total * root + c
@@ -176,7 +176,7 @@ def _evaluated(coefficients: list[Any], root: Any) -> Any:
 
 
 def coroot_pairings(
-    values: Sequence[Sequence[Any]], simple: Sequence[Sequence[Any]], form: ExactMatrix, precision: int
+    values: Sequence[Sequence[flint.acb]], simple: Sequence[Sequence[flint.acb]], form: ExactMatrix, precision: int
 ) -> list[tuple[int, ...]] | None:
     """The integers 2 (v, a_i) / (a_i, a_i) of linear forms v on a Cartan subalgebra with simple roots a_i.
 
@@ -207,7 +207,8 @@ def coroot_pairings(
         for value in values:
             pairings = flint.acb_mat(1, r, list(value)) * images
             integers = [(2 * pairings[0, i] / norms[i]).real.unique_fmpz() for i in range(r)]
-            if any(n is None for n in integers):
+            known = tuple(int(n) for n in integers if n is not None)
+            if len(known) < r:
                 return None
-            found.append(tuple(int(n) for n in integers))
+            found.append(known)
         return found

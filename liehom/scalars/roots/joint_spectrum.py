@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import flint
 import numpy as np
@@ -18,7 +18,7 @@ import numpy.typing as npt
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactMatrix
 
-Balls = tuple[Any, ...]
+Balls = tuple[flint.acb, ...]
 
 
 @final
@@ -89,7 +89,7 @@ def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], prec
     >>> found.conjugation
     (1, 0)
     """
-    eigenvalues: list[Any] = []
+    eigenvalues: list[flint.acb] = []
     values: list[Balls] = []
     with working_precision(precision):
         balls = [enclosure(a, precision) for a in matrices]
@@ -106,7 +106,7 @@ def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], prec
     return None if conjugation is None else JointSpectrum(tuple(values), conjugation, precision)
 
 
-def enclosure(matrix: ExactMatrix, precision: int) -> Any:
+def enclosure(matrix: ExactMatrix, precision: int) -> flint.acb_mat:
     """A matrix over an exact field as balls (``flint.acb_mat``), at the present working precision."""
     total = flint.arb_mat(matrix.parts[0])
     if len(matrix.parts) > 1:
@@ -118,7 +118,7 @@ def enclosure(matrix: ExactMatrix, precision: int) -> Any:
     return flint.acb_mat(total * (flint.arb(1) / matrix.den))
 
 
-def _eigenvalues(parts: list[Any], weights: Sequence[int]) -> list[tuple[Any, Balls]]:
+def _eigenvalues(parts: list[flint.acb_mat], weights: Sequence[int]) -> list[tuple[flint.acb, Balls]]:
     """The eigenvalue of the combination and those of each matrix; ValueError if balls do not separate them."""
     size = parts[0].nrows()
     total = sum((p * w for p, w in zip(parts, weights, strict=True)), flint.acb_mat(size, size))
@@ -156,7 +156,7 @@ def _blocks(actions: Sequence[ExactMatrix]) -> list[list[int]]:
     return [np.flatnonzero(labels == c).tolist() for c in range(count)]
 
 
-def _conjugation(eigenvalues: list[Any]) -> tuple[int, ...] | None:
+def _conjugation(eigenvalues: list[flint.acb]) -> tuple[int, ...] | None:
     """The place of the complex conjugate of each ball; None if not all are certain."""
     middle = np.array([complex(x.mid()) for x in eigenvalues])
     order = []

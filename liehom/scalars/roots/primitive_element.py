@@ -17,14 +17,16 @@ import flint
 from liehom.errors import FieldError
 from liehom.scalars.fields.balls import real_root_balls, working_precision
 from liehom.scalars.fields.number_field import MAX_PRECISION, AlgebraicNumber, NumberField
+from liehom.scalars.fields.rational import QQ
 from liehom.scalars.roots.roots import bounds, simplest_between
+from liehom.typing import ScalarLike
 
 LARGEST_REDUCED_DEGREE = 24
 SUMS_TRIED_DEGREE = 8
 SMALL_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31)
 
 
-def field_of_root(f: Any, near: Any, name: str = "a") -> NumberField:
+def field_of_root(f: Sequence[ScalarLike], near: flint.arb, name: str = "a") -> NumberField:
     """The field QQ(alpha) of the real root of an irreducible rational polynomial in a ball.
 
     Parameters
@@ -41,7 +43,7 @@ def field_of_root(f: Any, near: Any, name: str = "a") -> NumberField:
     >>> field_of_root([-2, 0, 0, 1], flint.arb(1.25, 0.1)).minpoly
     (-2, 0, 0, 1)
     """
-    integral = flint.fmpq_poly(list(f)).numer()
+    integral = flint.fmpq_poly([QQ.convert(c) for c in f]).numer()
     precision = 64
     while precision <= MAX_PRECISION:
         interval = _isolating(integral, near, precision)
@@ -90,12 +92,12 @@ def smaller_generator(field: NumberField, integers: Sequence[AlgebraicNumber]) -
     raise FieldError(f"a generator of {field.name} could not be told from its conjugates with {MAX_PRECISION} bits")
 
 
-def _size(polynomial: Any) -> tuple[int, int]:
+def _size(polynomial: flint.fmpz_poly) -> tuple[int, int]:
     coefficients = [int(c) for c in polynomial.coeffs()]
     return max(abs(c) for c in coefficients), sum(c != 0 for c in coefficients)
 
 
-def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[Any]:
+def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[flint.fmpq_poly]:
     """Polynomials in the integral generator with small conjugates."""
     n = field.degree
     rows = [x.coordinates for x in integers]
@@ -103,7 +105,8 @@ def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[Any]
     size = max(int(abs(c)).bit_length() for c in field.modulus.coeffs())
     bits = 64 + 4 * n
     with working_precision(2 * bits + 8 * n * size):
-        roots = [r for r, _ in field.modulus.complex_roots() if r.imag.is_zero() or r.imag > 0]
+        found: Any = field.modulus.complex_roots()  # pairs of a root and its multiplicity
+        roots = [r for r, _ in found if r.imag.is_zero() or r.imag > 0]
         table = [[int(c * den) for c in row] + _embedded(row, roots, bits) for row in rows]
     # the coordinates weigh little beside the scaled embeddings: they record the combination
     reduced = [row[:n] for row in flint.fmpz_mat(table).lll().tolist() if any(row[:n])]
@@ -113,7 +116,7 @@ def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[Any]
     return [flint.fmpq_poly([flint.fmpq(c, den) for c in row]) for row in reduced]
 
 
-def _embedded(coordinates: list[Any], roots: list[Any], bits: int) -> list[int]:
+def _embedded(coordinates: list[flint.fmpq], roots: list[flint.acb], bits: int) -> list[int]:
     """The conjugates, real and imaginary parts, times 2^bits, rounded."""
     found = []
     for root in roots:
@@ -125,7 +128,7 @@ def _embedded(coordinates: list[Any], roots: list[Any], bits: int) -> list[int]:
     return found
 
 
-def _minimal_polynomial(element: Any, whole: Any) -> Any:
+def _minimal_polynomial(element: flint.fmpq_poly, whole: flint.fmpq_poly) -> flint.fmpz_poly:
     """The characteristic polynomial over QQ of an algebraic integer given in powers of the generator."""
     n = whole.degree()
     rows, current = [], element
@@ -135,7 +138,7 @@ def _minimal_polynomial(element: Any, whole: Any) -> Any:
     return flint.fmpq_mat(n, n, rows).charpoly().numer()
 
 
-def _common_scale(coefficients: list[Any]) -> int:
+def _common_scale(coefficients: list[flint.fmpz]) -> int:
     """The largest k made of small primes with k^(n - i) dividing coefficient i for all i."""
     n, k = len(coefficients), 1
     for p in SMALL_PRIMES:
@@ -144,7 +147,7 @@ def _common_scale(coefficients: list[Any]) -> int:
     return k
 
 
-def _isolating(polynomial: Any, near: Any, precision: int) -> tuple[Any, Any] | None:
+def _isolating(polynomial: flint.fmpz_poly, near: flint.arb, precision: int) -> tuple[flint.fmpq, flint.fmpq] | None:
     """Simple rational ends around the one real root in a ball, or None where the precision is not enough."""
     roots = real_root_balls(polynomial, precision)
     close = [i for i, r in enumerate(roots) if r.overlaps(near)]
@@ -157,7 +160,7 @@ def _isolating(polynomial: Any, near: Any, precision: int) -> tuple[Any, Any] | 
     return (simplest_between(floor, low), simplest_between(high, ceiling)) if floor < low and high < ceiling else None
 
 
-def _generator_in_powers(element: Any, whole: Any) -> list[Any]:
+def _generator_in_powers(element: flint.fmpq_poly, whole: flint.fmpq_poly) -> list[flint.fmpq]:
     """The integral generator b in powers of an element that is given in powers of b."""
     n = whole.degree()
     rows, power = [], flint.fmpq_poly([1])

@@ -15,12 +15,13 @@ from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.number_field import MAX_PRECISION, NumberField
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.fields.rational import QQ
+from liehom.typing import ScalarLike
 
 
-def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
+def complex_root_balls(f: Polynomial, precision: int) -> list[flint.acb]:
     """Balls (``flint.acb``) around the complex roots of a squarefree polynomial, disjoint over a number field.
 
-    The precision (bits) is doubled where it is not enough to tell the roots apart.
+    The precision (bits) is doubled until it separates the roots.
 
     Examples
     --------
@@ -39,7 +40,7 @@ def complex_root_balls(f: Polynomial, precision: int) -> list[Any]:
     raise FieldError(f"the roots of {f} could not be isolated with {MAX_PRECISION} bits")
 
 
-def simplest_between(low: Any, high: Any) -> Any:
+def simplest_between(low: ScalarLike, high: ScalarLike) -> flint.fmpq:
     """The rational number of least denominator strictly between two rationals (``flint.fmpq``), low < high.
 
     Examples
@@ -47,6 +48,7 @@ def simplest_between(low: Any, high: Any) -> Any:
     >>> simplest_between(flint.fmpq(1, 3), flint.fmpq(3, 5))
     1/2
     """
+    low, high = QQ.convert(low), QQ.convert(high)
     floor = flint.fmpz(low.p // low.q)
     if floor + 1 < high:
         # 0 is the simplest where it is allowed, else the integer nearest to it
@@ -63,12 +65,12 @@ def simplest_between(low: Any, high: Any) -> Any:
     return floor + 1 / simplest_between(1 / right, 1 / left)
 
 
-def _above(value: Any) -> Any:
+def _above(value: flint.fmpq) -> flint.fmpz:
     """The least integer strictly above a rational."""
     return flint.fmpz(value.p // value.q) + 1
 
 
-def bounds(ball: Any) -> tuple[Any, Any]:
+def bounds(ball: flint.arb) -> tuple[flint.fmpq, flint.fmpq]:
     """The exact rational ends of a real ball (``flint.arb``), whatever the working precision.
 
     Examples
@@ -81,7 +83,7 @@ def bounds(ball: Any) -> tuple[Any, Any]:
     return middle - radius, middle + radius
 
 
-def cuts_between(balls: list[Any]) -> list[Any]:
+def cuts_between(balls: list[flint.arb]) -> list[flint.fmpq]:
     """Simple rationals strictly between consecutive disjoint real balls, those in the widest gaps first."""
     intervals = sorted((bounds(b) for b in balls), key=lambda pair: pair[0])
     gaps = []
@@ -95,8 +97,8 @@ def cuts_between(balls: list[Any]) -> list[Any]:
     return [cut for _, cut in sorted(gaps, key=lambda pair: pair[0], reverse=True)]
 
 
-def largest_real_root_interval(f: Polynomial) -> tuple[Any, Any]:
-    """Rational ends of an interval that holds the largest real root of a squarefree polynomial and no other.
+def largest_real_root_interval(f: Polynomial) -> tuple[flint.fmpq, flint.fmpq]:
+    """Rational ends of an interval that contains the largest real root of a squarefree polynomial and no other.
 
     The polynomial changes sign between the ends.
 
@@ -131,7 +133,7 @@ def largest_real_root_interval(f: Polynomial) -> tuple[Any, Any]:
     return low, high
 
 
-def real_part_cut(f: Polynomial) -> Any:
+def real_part_cut(f: Polynomial) -> flint.fmpq | None:
     """A rational number strictly between two different real parts of roots, or None where none is found.
 
     Exact: 0 < number of roots with larger real part < degree.
@@ -145,7 +147,7 @@ def real_part_cut(f: Polynomial) -> Any:
     return None
 
 
-def count_or_none(f: Polynomial, cut: Any) -> int:
+def count_or_none(f: Polynomial, cut: ScalarLike) -> int:
     """`Polynomial.count_right_of`, or -1 where two roots are symmetric about the cut."""
     try:
         return f.count_right_of(cut)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from liehom.scalars.fields.exact_field import ExactMatrix
+from liehom.scalars.fields.field import Scalar
 
 
-def orthogonal_basis(form: Any) -> tuple[list[Any], list[Any]]:
+def orthogonal_basis(form: ExactMatrix) -> tuple[list[ExactMatrix], list[Scalar]]:
     """Rows u_i and values form(u_i, u_i) with form(u_i, u_j) = 0, by exact Gram-Schmidt; null rows allowed.
 
     Parameters
@@ -26,8 +27,8 @@ def orthogonal_basis(form: Any) -> tuple[list[Any], list[Any]]:
     """
     field, d = form.field, form.nrows
     rest = [field.unit(d, i) for i in range(d)]
-    rows: list[Any] = []
-    values: list[Any] = []
+    rows: list[ExactMatrix] = []
+    values: list[Scalar] = []
     while rest:
         images = [r @ form for r in rest]
         norms = [(m @ r.T)[0, 0] for m, r in zip(images, rest, strict=True)]
@@ -46,7 +47,7 @@ def orthogonal_basis(form: Any) -> tuple[list[Any], list[Any]]:
     return rows, values
 
 
-def _hyperbolic(rest: list[Any], images: list[Any]) -> tuple[int, int] | None:
+def _hyperbolic(rest: list[ExactMatrix], images: list[ExactMatrix]) -> tuple[int, int] | None:
     for i in range(len(rest)):
         for j in range(i):
             if (images[i] @ rest[j].T)[0, 0] != 0:

@@ -46,7 +46,7 @@ def integral_basis(rows: ExactMatrix) -> ExactMatrix:
     return ExactMatrix(rows.field, (integers.lll(),), 1)
 
 
-def _coordinates(table: Any, den: int) -> Any:
+def _coordinates(table: flint.fmpz_mat, den: int) -> flint.fmpz_mat:
     """A basis (k, k) of the x in Z^k with x R = 0 modulo den."""
     k, columns = table.nrows(), table.transpose().tolist()
     lattice: list[Any] = [[den * int(i == j) for j in range(k)] for i in range(k)]

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from typing import Any, final
+from typing import final
 
 import flint
 
 from liehom.errors import FieldError, ShapeError
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
+from liehom.scalars.fields.rational import QQ
+from liehom.typing import ScalarLike
 
 
 @final
@@ -47,13 +49,13 @@ class LinearForms:
             names.append("b")
         self._context = flint.fmpq_mpoly_ctx.get(names, "degrevlex")
         generators = self._context.gens()
-        self._modulus: Any = None
+        self._modulus: flint.fmpq_mpoly | None = None
         if self.field.degree > 1:
-            coefficients = self.field.modulus.coeffs()  # type: ignore[attr-defined]
+            coefficients = self.field.modulus_coefficients()
             self._modulus = sum((generators[-1] ** k * int(c) for k, c in enumerate(coefficients)), 0 * generators[0])
         self._table = self._forms(generators)
 
-    def _forms(self, generators: Any) -> list[list[Any]]:
+    def _forms(self, generators: Sequence[flint.fmpq_mpoly]) -> list[list[flint.fmpq_mpoly]]:
         nrows, ncols = self.shape
         zero = 0 * generators[0]
         table = [[zero] * ncols for _ in range(nrows)]
@@ -71,7 +73,7 @@ class LinearForms:
         """The number of variables x0, x1, ..."""
         return len(self.parts)
 
-    def at(self, values: Sequence[Any]) -> ExactMatrix:
+    def at(self, values: Sequence[ScalarLike]) -> ExactMatrix:
         """The matrix M(x) at field elements x."""
         total = self.field.zeros(*self.shape)
         for value, part in zip(values, self.parts, strict=True):
@@ -83,16 +85,16 @@ class LinearForms:
         return LinearForms([part @ right for part in self.parts])
 
     # -- minors ------------------------------------------------------------------------------------------
-    def minor(self, rows: Sequence[int], columns: Sequence[int]) -> Any:
+    def minor(self, rows: Sequence[int], columns: Sequence[int]) -> flint.fmpq_mpoly:
         """The determinant of the rows and columns, a ``flint.fmpq_mpoly`` (in b too over a number field)."""
         return self._expanded(list(rows), list(columns)).get(tuple(rows), 0 * self._context.gens()[0])
 
-    def _expanded(self, rows: list[int], columns: list[int]) -> dict[tuple[int, ...], Any]:
+    def _expanded(self, rows: list[int], columns: list[int]) -> dict[tuple[int, ...], flint.fmpq_mpoly]:
         """For each choice of len(columns) of the rows, the minor with these columns."""
         one = 0 * self._context.gens()[0] + 1
-        minors: dict[tuple[int, ...], Any] = {(): one}
+        minors: dict[tuple[int, ...], flint.fmpq_mpoly] = {(): one}
         for size, column in enumerate(columns, start=1):
-            grown: dict[tuple[int, ...], Any] = {}
+            grown: dict[tuple[int, ...], flint.fmpq_mpoly] = {}
             for chosen in combinations(rows, size):
                 total = 0 * one
                 for place, row in enumerate(chosen):
@@ -107,7 +109,7 @@ class LinearForms:
             minors = grown
         return minors
 
-    def _reduced(self, polynomial: Any) -> Any:
+    def _reduced(self, polynomial: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         return polynomial if self._modulus is None else divmod(polynomial, self._modulus)[1]
 
     # -- proofs ------------------------------------------------------------------------------------------
@@ -143,7 +145,9 @@ class LinearForms:
                     return False
         return True
 
-    def invariant_factors(self, first: Any, second: Any, fields: Sequence[ExactMatrix]) -> list[Any]:
+    def invariant_factors(
+        self, first: flint.fmpq_mpoly, second: flint.fmpq_mpoly, fields: Sequence[ExactMatrix]
+    ) -> list[flint.fmpq_mpoly]:
         """The irreducible common factors p of two polynomials with grad p . A x a multiple of p for all A.
 
         Parameters
@@ -165,12 +169,15 @@ class LinearForms:
         flows = [self._flow(a) for a in fields]
         return [p for p, _ in common.factor()[1] if all(self._is_semi_invariant(p, flow) for flow in flows)]
 
-    def _flow(self, matrix: ExactMatrix) -> list[Any]:
+    def _flow(self, matrix: ExactMatrix) -> list[flint.fmpq_mpoly]:
         generators = self._context.gens()
         zero = 0 * generators[0]
-        return [sum((x * c for x, c in zip(generators, row, strict=True) if c != 0), zero) for row in matrix.to_rows()]
+        return [
+            sum((x * QQ.convert(c) for x, c in zip(generators, row, strict=True) if c != 0), zero)
+            for row in matrix.to_rows()
+        ]
 
-    def _is_semi_invariant(self, polynomial: Any, flow: list[Any]) -> bool:
+    def _is_semi_invariant(self, polynomial: flint.fmpq_mpoly, flow: list[flint.fmpq_mpoly]) -> bool:
         total = 0 * polynomial
         for i, component in enumerate(flow):
             total = total + polynomial.derivative(i) * component

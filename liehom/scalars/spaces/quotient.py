@@ -8,12 +8,12 @@ are the coordinate functions, the dual basis gives a complement and a basis of U
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Generic, final, overload
 
 import flint
 
 from liehom.scalars.fields.exact_field import ExactMatrix
-from liehom.scalars.fields.field import Matrix
+from liehom.scalars.fields.field import M, Matrix
 from liehom.scalars.fields.floating import FloatMatrix
 
 SMALL_BITS = 5
@@ -22,7 +22,7 @@ LATTICE_DIMENSION = 130
 
 @final
 @dataclass(frozen=True, slots=True)
-class Quotient:
+class Quotient(Generic[M]):
     """A basis of U, a complement of U, and the coordinates of the quotient in it.
 
     Attributes
@@ -35,12 +35,18 @@ class Quotient:
         (n, d), with U Q = 0 and W Q = 1: x Q are the coordinates of x mod U.
     """
 
-    subspace: Any
-    lift: Any
-    projection: Any
+    subspace: M
+    lift: M
+    projection: M
 
 
-def quotient(basis: Matrix) -> Quotient:
+@overload
+def quotient(basis: ExactMatrix) -> Quotient[ExactMatrix]: ...
+@overload
+def quotient(basis: Matrix) -> Quotient[Matrix]: ...
+
+
+def quotient(basis: Matrix) -> Quotient[ExactMatrix] | Quotient[FloatMatrix]:
     """Coordinates for K^n modulo the span of independent rows.
 
     Parameters
@@ -67,7 +73,7 @@ def quotient(basis: Matrix) -> Quotient:
     return _from_echelon(reduced, pivots)
 
 
-def echelon_quotient(basis: ExactMatrix) -> Quotient:
+def echelon_quotient(basis: ExactMatrix) -> Quotient[ExactMatrix]:
     """The same without the search for small numbers, for what is used once: the complement consists of unit vectors.
 
     Examples
@@ -79,7 +85,7 @@ def echelon_quotient(basis: ExactMatrix) -> Quotient:
     return _from_echelon(*basis.echelon())
 
 
-def _from_echelon(reduced: ExactMatrix, pivots: list[int]) -> Quotient:
+def _from_echelon(reduced: ExactMatrix, pivots: list[int]) -> Quotient[ExactMatrix]:
     n, chosen = reduced.ncols, set(pivots)
     free = [j for j in range(n) if j not in chosen]
     lift = reduced.field.identity(n).select(rows=free)
@@ -92,7 +98,7 @@ def _projection(reduced: ExactMatrix, pivots: list[int], free: list[int]) -> Exa
     parts = []
     for s, part in enumerate(reduced.parts):
         entries = part.entries()
-        out = [0] * (n * d)
+        out: list[int | flint.fmpz] = [0] * (n * d)
         for i, pivot in enumerate(pivots):
             for f, j in enumerate(free):
                 out[pivot * d + f] = -entries[i * n + j]
@@ -108,13 +114,13 @@ def _is_small(matrix: ExactMatrix) -> bool:
     return matrix.den < bound and all(-bound < x < bound for x in matrix.parts[0].entries())
 
 
-def _by_lattice(basis: ExactMatrix) -> Quotient:
+def _by_lattice(basis: ExactMatrix) -> Quotient[ExactMatrix]:
     n, k, field = basis.ncols, basis.nrows, basis.field
     rows = basis.parts[0].entries()
     bits = 10
     while True:
         weight = 1 << bits
-        table = []
+        table: list[int | flint.fmpz] = []
         for i in range(n):
             table += [int(i == j) for j in range(n)]
             table += [weight * rows[a * n + i] for a in range(k)]

@@ -6,16 +6,19 @@ integers.  Only what contractions of bracket tables need.
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import TYPE_CHECKING, Any, final
 
 import flint
 import numpy as np
 import numpy.typing as npt
 
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
+from liehom.typing import IntegerArray, ObjectArray
+
+if TYPE_CHECKING:
+    from scipy import sparse
 
 LIMIT = 1 << 62
-IntArray = npt.NDArray[np.int64]
 
 
 @final
@@ -39,10 +42,12 @@ class SparseInteger:
 
     __slots__ = ("columns", "den", "rows", "shape", "values")
 
-    def __init__(self, rows: Any, columns: Any, values: Any, shape: tuple[int, int], den: int = 1) -> None:
+    def __init__(
+        self, rows: npt.ArrayLike, columns: npt.ArrayLike, values: npt.ArrayLike, shape: tuple[int, int], den: int = 1
+    ) -> None:
         self.rows = np.asarray(rows, dtype=np.int64)
         self.columns = np.asarray(columns, dtype=np.int64)
-        self.values: Any = _narrowed(values)
+        self.values = _narrowed(values)
         self.shape = shape
         self.den = den
 
@@ -75,7 +80,7 @@ class SparseInteger:
         np.add.at(sums, self.rows, np.abs(self.values.astype(np.float64)))
         return bool(sums.max() * float(np.abs(other.values.astype(np.float64)).max()) < LIMIT / 2)
 
-    def _csr(self) -> Any:
+    def _csr(self) -> sparse.csr_array:
         from scipy import sparse
 
         data = self.values.astype(np.int64)
@@ -118,11 +123,12 @@ class SparseInteger:
         return [ExactMatrix(field, (flint.fmpz_mat(q, r, t),), self.den).normalized() for t in tables]
 
 
-def _narrowed(values: Any) -> Any:
+def _narrowed(values: Any) -> IntegerArray | ObjectArray:
     """int64 where all values fit, else an object array of Python integers."""
     if isinstance(values, np.ndarray) and values.dtype == np.int64:
         return values
     try:
         return np.array(values, dtype=np.int64)
     except OverflowError:
-        return np.array([int(v) for v in values], dtype=object)
+        wide: ObjectArray = np.array([int(v) for v in values], dtype=np.object_)
+        return wide

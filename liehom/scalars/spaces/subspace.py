@@ -6,11 +6,12 @@ it is orthonormal.  Vectors are rows.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any, final
 
 from liehom.errors import ShapeError
-from liehom.scalars.fields.field import Field, Scalar, rows_of
+from liehom.scalars.fields.exact_field import as_exact
+from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
+from liehom.typing import VectorLike
 
 
 @final
@@ -40,20 +41,20 @@ class Subspace:
 
     __slots__ = ("ambient", "basis", "field")
 
-    def __init__(self, field: Field, rows: Any, ambient: int) -> None:
-        matrix = rows if hasattr(rows, "row_space") else _as_matrix(field, rows, ambient)
+    def __init__(self, field: Field, rows: MatrixLike, ambient: int) -> None:
+        matrix: Matrix = rows if isinstance(rows, Matrix) else _as_matrix(field, rows, ambient)
         if matrix.ncols != ambient:
             raise ShapeError(f"rows of length {matrix.ncols} in a space of dimension {ambient}")
         self.field = field
         self.ambient = ambient
-        self.basis = matrix.row_space()
+        self.basis: Any = matrix.row_space()
 
     @property
     def dimension(self) -> int:
         """The dimension."""
         return int(self.basis.nrows)
 
-    def __contains__(self, vector: Any) -> bool:
+    def __contains__(self, vector: VectorLike) -> bool:
         row = self.field.matrix([vector])
         if row.ncols != self.ambient:
             raise ShapeError(f"a vector of length {row.ncols} in a space of dimension {self.ambient}")
@@ -70,11 +71,11 @@ class Subspace:
         """The intersection of two subspaces."""
         return Subspace(self.field, self.annihilator_rows(other), self.ambient)
 
-    def annihilator_rows(self, other: Subspace) -> Any:
+    def annihilator_rows(self, other: Subspace) -> Matrix:
         """Rows spanning the intersection with `other`: the vectors of this one that its annihilator kills."""
         functionals = other.basis.null_space()
-        coefficients = (functionals @ self.basis.T).null_space()
-        return coefficients @ self.basis
+        rows: Matrix = (functionals @ self.basis.T).null_space() @ self.basis
+        return rows
 
     def annihilator(self) -> Subspace:
         """The covectors (as rows) that vanish on the subspace."""
@@ -83,7 +84,7 @@ class Subspace:
     def complement_indices(self) -> list[int]:
         """Indices of standard basis vectors that span a complement, in increasing order."""
         if self.field.exact:
-            pivots = set(self.basis.echelon()[1])
+            pivots = set(as_exact(self.basis).echelon()[1])
             return [j for j in range(self.ambient) if j not in pivots]
         chosen: list[int] = []
         current = self.basis
@@ -100,7 +101,7 @@ class Subspace:
             self.field, self.field.identity(self.ambient).select(rows=self.complement_indices()), self.ambient
         )
 
-    def quotient_map(self) -> tuple[Any, Any]:
+    def quotient_map(self) -> tuple[Matrix, Matrix]:
         """A complement W, shape (d, n), and a matrix Q, shape (n, d), with x Q the coordinates of x mod U in W.
 
         U Q = 0 and W Q = 1.
@@ -121,15 +122,17 @@ class Subspace:
 
     def rows(self) -> list[list[Scalar]]:
         """The canonical basis as lists of field elements."""
-        return self.basis.to_rows()  # type: ignore[no-any-return]
+        rows: list[list[Scalar]] = self.basis.to_rows()
+        return rows
 
     def __repr__(self) -> str:
         return f"<subspace of dimension {self.dimension} in {self.field.name}^{self.ambient}>"
 
 
-def _as_matrix(field: Field, rows: Iterable[Iterable[Any]], ambient: int) -> Any:
+def _as_matrix(field: Field, rows: MatrixLike, ambient: int) -> Matrix:
     table = rows_of(rows)
     for i, row in enumerate(table):
         if len(row) != ambient:
             raise ShapeError(f"row {i} has length {len(row)}, expected {ambient}")
-    return field.matrix(table, (len(table), ambient))
+    matrix: Matrix = field.matrix(table, (len(table), ambient))
+    return matrix
