@@ -1,11 +1,12 @@
 """From matrices to an abstract Lie algebra: independence, closure under commutators, structure constants.
 
 Coordinates in the span of d matrices are read from d entries that determine them.  Over an exact field the dimension
-and what is to be appended are found modulo a prime; the bracket table is exact, and with it closure is proved.
+and the matrices to append are found modulo a prime.  The bracket table is exact and proves closure.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import lcm
 from typing import Any, Literal, final
@@ -16,12 +17,14 @@ from liehom.algebra.closure.generated_span import GeneratedSpan, commutator_pair
 from liehom.algebra.closure.sparse_commutators import entries_of, exclusive_entries, sparse_commutator_table
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.algebra.core.subalgebra import independent_rows
 from liehom.algebra.core.tables import field_of_values
 from liehom.errors import DependentRowsError, FieldError, InputError, NotClosedError, ShapeError
-from liehom.scalars import QQ, ExactField, Field
-from liehom.scalars.fields.field import rows_of
+from liehom.scalars import QQ, ExactField, ExactMatrix, Field, Matrix
+from liehom.scalars.fields.field import MatrixLike, rows_of
 
-LARGEST_COORDINATES = 3000
+LARGEST_COORDINATES = 3000  # dimension times bits of the largest entry up to which commutators complete a basis
+ROUNDING = 1e-13  # over floats, structure constants up to this size are dropped
 Completion = Literal["auto", "commutators", "reduced"]
 
 
@@ -34,33 +37,33 @@ class Closure:
     ----------
     algebra : LieAlgebra
     matrices : tuple of Matrix
-        Its basis: the given matrices in order, then appended ones.
+        The basis of the algebra: the given matrices in order, then the appended ones.
     kept : tuple of int
         Indices of the given matrices that were kept (all, unless dependent ones were dropped).
     appended : tuple of (int, int)
-        Which commutators [i, j] of basis elements were appended, in order; empty where the basis is completed by
+        The commutators [i, j] of basis elements that were appended, in order; empty if the basis is completed by
         reduced matrices.
     """
 
     algebra: LieAlgebra
-    matrices: tuple[Any, ...]
+    matrices: tuple[Matrix, ...]
     kept: tuple[int, ...]
     appended: tuple[tuple[int, int], ...]
 
 
-def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
-    """A sequence of square arrays of one size as matrices over a common field.
+def square_matrices(matrices: Iterable[MatrixLike], field: Field | None = None) -> list[Any]:
+    """A list of `Matrix` over a common field from square arrays of one size.
 
     Raises
     ------
     ShapeError
-        If they are not square or of unequal shapes; the message gives the index.
+        If an array is not square or has another shape than the first; names its index.
     FieldError
-        If matrices are over another field than the one asked for, or than the first.
+        If a `Matrix` is over another field than `field`, or than the first matrix.
     """
     if not hasattr(matrices, "__iter__") or isinstance(matrices, str):
         raise InputError(f"a list of square matrices was expected, got {matrices!r}")
-    given = list(matrices)
+    given: list[Any] = list(matrices)
     if given and all(hasattr(a, "nrows") for a in given):
         over = field if field is not None else given[0].field
         for i, a in enumerate(given):
@@ -85,12 +88,12 @@ def square_matrices(matrices: Any, field: Field | None = None) -> list[Any]:
     return made
 
 
-def _is_integer_square(a: Any) -> bool:
+def _is_integer_square(a: object) -> bool:
     return isinstance(a, np.ndarray) and a.dtype.kind == "i" and a.ndim == 2 and a.shape[0] == a.shape[1]
 
 
 def lie_closure(
-    matrices: Any,
+    matrices: Iterable[MatrixLike],
     *,
     field: Field | None = None,
     independent: bool = False,
@@ -105,18 +108,19 @@ def lie_closure(
     ----------
     matrices : sequence of (N, N) array_like
     field : Field, optional
-        By default the field that the entries call for.
+        By default the smallest field that contains the entries.
     independent : bool
-        Drop matrices that depend on earlier ones (default: refuse them).
+        Drop matrices that depend on earlier ones. By default they raise `DependentRowsError`.
     close : bool
-        Append missing commutators (default); otherwise refuse with `NotClosedError`.
+        Append missing commutators (default). Otherwise they raise `NotClosedError`.
     limit : int, optional
-        Refuse to grow beyond this dimension (default N*N, which is never exceeded).
+        Largest dimension; `NotClosedError` beyond it (default N*N, which is never exceeded).
     name : str, optional
+        A name to print.
     completion : {'auto', 'commutators', 'reduced'}
-        What is appended to the given matrices: missing commutators in lexicographic order of (i, j), or matrices of
-        the reduced echelon basis of the generated span (over QQ). 'auto' means commutators, unless the coordinates
-        in them would have some thousand digits (dimension times bits of the largest entry above 3000).
+        The matrices that are appended: missing commutators in lexicographic order of (i, j), or matrices of the
+        reduced echelon basis of the generated span (over QQ only). 'auto' means commutators, unless the dimension
+        times the bits of the largest entry exceeds 3000.
 
     Returns
     -------
@@ -124,7 +128,12 @@ def lie_closure(
 
     Raises
     ------
-    DependentRowsError, NotClosedError, ShapeError
+    DependentRowsError
+        If the matrices are dependent.
+    NotClosedError
+        If they do not span a Lie algebra and `close` is False, or generate more than `limit` dimensions.
+    ShapeError
+        If a matrix is not square of the common size.
 
     Examples
     --------
@@ -155,7 +164,7 @@ def lie_closure(
         table = span.commutators()
         if table is not None:
             break
-        a, b = span.leaving
+        a, b = span.outside
         if not close:
             raise NotClosedError((a, b), f"the commutator of matrices {a} and {b} is not in their span")
         if limit is not None and len(basis) >= limit:
@@ -169,9 +178,9 @@ def lie_closure(
 
 
 def _completed(
-    basis: list[Any], completion: Completion, limit: int | None
-) -> tuple[list[Any], list[tuple[int, int]], StructureConstants | None]:
-    """The basis completed modulo a prime, which commutators were appended, and the table where it is cheap."""
+    basis: list[ExactMatrix], completion: Completion, limit: int | None
+) -> tuple[list[ExactMatrix], list[tuple[int, int]], StructureConstants | None]:
+    """The completed basis, the commutators that were appended, and the bracket table if it is a by-product."""
     dimension = len(spanning_commutators(basis))
     if dimension == len(basis):
         return basis, [], None
@@ -187,7 +196,7 @@ def _completed(
     found = None
     if rational and (completion == "reduced" or not small or not _is_sparse(grown)):
         found = generated_span(basis)
-    if found is None or len(found.places) != dimension:
+    if found is None or len(found.pivots) != dimension:
         return grown, pairs, None
     if completion != "reduced" and small:
         return grown, pairs, _proved_table(grown, found)
@@ -200,51 +209,51 @@ def _completed(
     return matrices, [], found.table.changed(change, change.inverse())
 
 
-def _proved_table(basis: list[Any], found: GeneratedSpan) -> StructureConstants:
-    """The bracket table of a basis of a span that is known to be closed: numerators over one determinant."""
+def _proved_table(basis: list[ExactMatrix], found: GeneratedSpan) -> StructureConstants:
+    """The bracket table of a basis of a span that is known to be closed, as numerators over one determinant."""
     span, d, field = _Span(basis), len(basis), basis[0].field
     inverse = found.coordinates(basis).inverse()
     # over one denominator for all rows: the entries are large, and reducing each of them would cost most of the time
     den = lcm(*(a.den for a in basis)) ** 2
-    places: list[tuple[int, int, int]] = []
+    indices: list[tuple[int, int, int]] = []
     numerators: list[int] = []
     for i in range(d - 1):
-        rows = span.products(i).select(columns=found.places)
+        rows = span.products(i).select(columns=found.pivots)
         integers = (rows.scale(den).cleared() @ inverse.cleared()).parts[0].entries()
         kept = [x for x, v in enumerate(integers) if v]
         numerators += [int(integers[x]) for x in kept]
-        places += [(i, i + 1 + x // d, x % d) for x in kept]
-    index = np.array(places, dtype=np.int64).reshape(len(places), 3)
+        indices += [(i, i + 1 + x // d, x % d) for x in kept]
+    index = np.array(indices, dtype=np.int64).reshape(len(indices), 3)
     columns = (index[:, 0], index[:, 1], index[:, 2])
     return StructureConstants.from_integers(field, d, *columns, numerators, den * inverse.den)
 
 
-def _bits(matrices: list[Any]) -> int:
-    """Bits of the largest numerator of matrices over an exact field."""
+def _bits(matrices: list[ExactMatrix]) -> int:
+    """The number of bits of the largest numerator of matrices over an exact field."""
     return max(int(abs(x)).bit_length() for a in matrices for part in a.parts for x in part.entries())
 
 
 def _independent(basis: list[Any], drop: bool) -> tuple[int, ...]:
-    if _private(basis) is not None:
+    """Indices of matrices that are a basis of their span; `DependentRowsError` if `drop` is False and some are not."""
+    if _exclusive_entries(basis) is not None:
         return tuple(range(len(basis)))
     size = basis[0].nrows ** 2
     flat = basis[0].field.stack_rows([a.reshape(1, size) for a in basis], size)
     rank = flat.rank()
     if rank == len(basis):
         return tuple(range(len(basis)))
-    if flat.field.exact:
-        kept = flat.T.echelon()[1]
-    else:
-        ranks = [flat.select(rows=range(i)).rank() for i in range(len(basis) + 1)]
-        kept = [i for i in range(len(basis)) if ranks[i + 1] > ranks[i]]
+    kept = independent_rows(flat)
     if not drop:
         dependent = [i for i in range(len(basis)) if i not in set(kept)]
         raise DependentRowsError(rank, dependent, "matrices")
     return tuple(kept)
 
 
-def _private(basis: list[Any]) -> list[int] | None:
-    """For each matrix over QQ a place where it alone is not zero (so that they are independent), or None."""
+def _exclusive_entries(basis: list[Any]) -> list[int] | None:
+    """For each matrix over QQ the flat index of an entry where it alone is not zero, or None if there is none.
+
+    Matrices with such entries are independent.
+    """
     field = basis[0].field
     if not field.exact or field.degree > 1:
         return None
@@ -252,14 +261,20 @@ def _private(basis: list[Any]) -> list[int] | None:
 
 
 def _is_sparse(basis: list[Any]) -> bool:
-    """Whether matrices over QQ have so few entries that products by dictionaries are quicker."""
+    """Whether matrices over QQ have so few non-zero entries that products by dictionaries are faster."""
     n = basis[0].nrows
     filled = sum(1 for a in basis for x in a.parts[0].entries() if x)
     return bool(filled <= len(basis) * max(2 * n, n * n // 6))
 
 
 class _Span:
-    """The span of independent matrices, with coordinates read from entries that determine them."""
+    """The span of independent matrices, with coordinates read from entries that determine them.
+
+    Attributes
+    ----------
+    outside : (int, int)
+        The first pair of matrices whose commutator is not in the span, once `commutators` has returned None.
+    """
 
     def __init__(self, basis: list[Any]) -> None:
         self.basis = basis
@@ -267,37 +282,38 @@ class _Span:
         size = basis[0].nrows ** 2
         self.size = size
         self._flat: Any = None
-        self.leaving = (0, 0)
-        self._places: list[int] | None = None
+        self.outside = (0, 0)
+        self._positions: list[int] | None = None
         self._inverse: Any = None
 
     @property
     def flat(self) -> Any:
-        """The matrix (d, N*N) with one flattened matrix a row."""
+        """The matrix (d, N*N) whose rows are the flattened matrices."""
         if self._flat is None:
             self._flat = self.field.stack_rows([a.reshape(1, self.size) for a in self.basis], self.size)
         return self._flat
 
     def _determined(self) -> tuple[list[int], Any]:
-        """Flat positions that determine an element of the span, and the inverse of the basis there."""
-        if self._places is None:
-            self._places = self.flat.echelon()[1]
-            self._inverse = self.flat.select(columns=self._places).inverse()
-        return self._places, self._inverse
+        """Flat indices of entries that determine an element of the span, and the inverse of the basis there."""
+        if self._positions is None:
+            self._positions = self.flat.echelon()[1]
+            self._inverse = self.flat.select(columns=self._positions).inverse()
+        return self._positions, self._inverse
 
     def _is_sparse(self) -> bool:
         return bool(self.field.exact and self.field.degree == 1 and _is_sparse(self.basis))
 
     def _coordinates(self, rows: Any) -> Any:
+        """The coordinates (q, d) of elements of the span, given as flattened rows (q, N*N)."""
         if self.field.exact:
-            places, inverse = self._determined()
-            return rows.select(columns=places) @ inverse
+            positions, inverse = self._determined()
+            return rows.select(columns=positions) @ inverse
         return self.field.from_entries(
             (rows.array @ np.linalg.pinv(self.flat.array)).ravel().tolist(), rows.nrows, len(self.basis)
         )
 
     def products(self, i: int) -> Any:
-        """Rows [A_i, A_j] for j > i, flattened."""
+        """The commutators [A_i, A_j] for all j > i, as flattened rows."""
         later = self.basis[i + 1 :]
         n = self.basis[0].nrows
         wide = self.field.stack_columns(later, n)
@@ -310,7 +326,7 @@ class _Span:
         return (moved.select(rows=order) - right_products).reshape(columns, n * n)
 
     def commutators(self) -> StructureConstants | None:
-        """The bracket table, or None (and `leaving`) if a commutator is not in the span."""
+        """The bracket table, or None if a commutator is not in the span; `outside` is then its pair."""
         if self._is_sparse():
             return self._sparse_commutators()
         entries = []
@@ -321,21 +337,20 @@ class _Span:
             defect = rows - coordinates @ self.flat
             if not defect.is_zero():
                 bad = [j for j in range(defect.nrows) if not defect.select(rows=[j]).is_zero()]
-                self.leaving = (i, i + 1 + bad[0])
+                self.outside = (i, i + 1 + bad[0])
                 return None
             d = len(self.basis)
-            for place, v in enumerate(coordinates.entries()):
-                if v != zero and (self.field.exact or abs(v) > 1e-13):
-                    entries.append((i, i + 1 + place // d, place % d, v))
+            for x, v in enumerate(coordinates.entries()):
+                if v != zero and (self.field.exact or abs(v) > ROUNDING):
+                    entries.append((i, i + 1 + x // d, x % d, v))
         return StructureConstants(self.field, len(self.basis), entries)
 
     def _sparse_commutators(self) -> StructureConstants | None:
-        private = _private(self.basis)
-        places, inverse = (None, None) if private is not None else self._determined()
-        found = sparse_commutator_table(self.basis, places, inverse)
+        positions, inverse = (None, None) if _exclusive_entries(self.basis) is not None else self._determined()
+        found = sparse_commutator_table(self.basis, positions, inverse)
         if isinstance(found, StructureConstants):
             return found
-        self.leaving = found
+        self.outside = found
         return None
 
     def appendable(self) -> list[tuple[int, int]]:

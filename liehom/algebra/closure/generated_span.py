@@ -1,20 +1,21 @@
-"""The span of the Lie algebra that matrices generate, by its echelon basis, proved; its bracket table in that basis.
+"""The Lie algebra that matrices generate, by the echelon basis of its span and the bracket table in this basis.
 
-The span of all [a_1, [a_2, ... a_k]] of generators is the generated algebra.  It is found modulo a prime, where its
-dimension is at most the true one, and lifted to the rationals.  If the lift contains the generators and is closed under
-all commutators it contains the algebra, and having at most its dimension it is the algebra.
+The generated algebra is the span of all iterated commutators [a_1, [a_2, ... a_k]] of generators.  It is found modulo a
+prime, where its dimension is at most the true one, and lifted to the rationals.  A lift that contains the generators
+and is closed under commutators contains the algebra; because its dimension is not larger, it is the algebra.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
 from liehom.algebra.closure.sparse_commutators import sparse_commutator_table
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.scalars import ExactMatrix
 from liehom.scalars.modular.modular_span import (
     ModularSpan,
     Residues,
@@ -25,7 +26,7 @@ from liehom.scalars.modular.modular_span import (
     residues,
 )
 
-Words = list[tuple[int, int]]
+Words: TypeAlias = list[tuple[int, int]]
 """A basis of the generated algebra: (g, -1) is generator g, (g, w) the commutator [generator g, word w]."""
 
 
@@ -36,27 +37,29 @@ class GeneratedSpan:
 
     Attributes
     ----------
-    rows : Matrix
-        (d, N*N), reduced echelon form: the flattened basis.
-    places : list of int
-        The pivots: flat positions that are the coordinates of an element.
+    rows : ExactMatrix
+        The flattened basis, (d, N*N), in reduced echelon form.
+    pivots : list of int
+        Flat indices of the entries that are the coordinates of an element.
     table : StructureConstants
-        In this basis.
+        The bracket table in this basis.
     """
 
-    rows: Any
-    places: list[int]
+    rows: ExactMatrix
+    pivots: list[int]
     table: StructureConstants
 
-    def coordinates(self, matrices: Sequence[Any]) -> Any:
-        """The coordinates (k, d) of elements."""
+    def coordinates(self, matrices: Sequence[ExactMatrix]) -> ExactMatrix:
+        """The coordinates (k, d) of k elements of the algebra."""
         size = self.rows.ncols
         flat = self.rows.field.stack_rows([a.reshape(1, size) for a in matrices], size)
-        return flat.select(columns=self.places)
+        return flat.select(columns=self.pivots)
 
 
-def spanning_commutators(generators: Sequence[Any]) -> Words:
-    """Words in the generators that are a basis modulo a prime: independent, and nearly always a basis.
+def spanning_commutators(generators: Sequence[ExactMatrix]) -> Words:
+    """Iterated commutators of the generators that are a basis of the generated algebra modulo a prime.
+
+    They are independent, and a basis for all but finitely many primes.
 
     Examples
     --------
@@ -117,17 +120,17 @@ def left_normed_words(
     return words, levels
 
 
-def commutator_pairs(basis: Sequence[Any], dimension: int) -> list[tuple[int, int]]:
-    """Commutators [i, j] of basis elements to append until a dimension is reached, round after round, lexicographic.
+def commutator_pairs(basis: Sequence[ExactMatrix], dimension: int) -> list[tuple[int, int]]:
+    """Pairs (i, j) of basis elements whose commutators complete the basis, in rounds, each in lexicographic order.
 
-    Each is independent of all earlier elements, proved by residues modulo a prime.
+    Each commutator is independent of all earlier elements, which residues modulo a prime prove.
 
     Parameters
     ----------
     basis : sequence of ExactMatrix
-        Independent.
+        Independent matrices.
     dimension : int
-        That of the generated algebra modulo a prime, `spanning_commutators`.
+        The dimension of the generated algebra modulo a prime (`spanning_commutators`).
 
     Examples
     --------
@@ -156,13 +159,13 @@ def commutator_pairs(basis: Sequence[Any], dimension: int) -> list[tuple[int, in
     return pairs
 
 
-def generated_span(generators: Sequence[Any]) -> GeneratedSpan | None:
-    """The generated Lie algebra in the echelon basis of its span, proved; None where no lift could be proved.
+def generated_span(generators: Sequence[ExactMatrix]) -> GeneratedSpan | None:
+    """The generated Lie algebra in the echelon basis of its span, proved, or None if no lift could be proved.
 
     Parameters
     ----------
     generators : sequence of ExactMatrix
-        Over QQ, (N, N), at least one.
+        At least one matrix (N, N) over QQ.
 
     Examples
     --------
@@ -175,23 +178,23 @@ def generated_span(generators: Sequence[Any]) -> GeneratedSpan | None:
     flat = field.stack_rows([a.reshape(1, n * n) for a in generators], n * n)
     words = spanning_commutators(generators)
     for rows in rational_lifts(lambda attempt: _echelon(generators, words, attempt), field):
-        places = _pivots(rows)
-        if not (flat - flat.select(columns=places) @ rows).is_zero():
+        pivots = _pivots(rows)
+        if not (flat - flat.select(columns=pivots) @ rows).is_zero():
             continue
-        table = sparse_commutator_table(rows.split_rows(n, n), places, field.identity(rows.nrows))
+        table = sparse_commutator_table(rows.split_rows(n, n), pivots, field.identity(rows.nrows))
         if isinstance(table, StructureConstants):
-            return GeneratedSpan(rows, places, table)
+            return GeneratedSpan(rows, pivots, table)
     return None
 
 
-def _pivots(rows: Any) -> list[int]:
-    """The first non-zero places of the rows of an echelon form."""
+def _pivots(rows: ExactMatrix) -> list[int]:
+    """The column of the first non-zero entry of each row of an echelon form."""
     n, entries = rows.ncols, rows.parts[0].entries()
     return [next(j for j in range(n) if entries[i * n + j]) for i in range(rows.nrows)]
 
 
-def _echelon(generators: Sequence[Any], words: Words, attempt: int) -> Any:
-    """The echelon form of the words modulo a prime."""
+def _echelon(generators: Sequence[ExactMatrix], words: Words, attempt: int) -> Any:
+    """The echelon form of the flattened words modulo a prime (``flint.nmod_mat``)."""
     images = [a.modulo(attempt) for a in generators]
     made: list[Any] = []
     for generator, parent in words:

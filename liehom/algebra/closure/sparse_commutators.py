@@ -1,40 +1,42 @@
-"""Structure constants of sparse rational matrices, by dictionaries: cost grows with the non-zero products only."""
+"""Structure constants of sparse rational matrices, by dictionaries, at a cost that grows with the non-zero products."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import lcm
 from typing import Any
 
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.scalars import ExactMatrix, Matrix, as_exact
 
 Entries = dict[tuple[int, int], int]
+ByIndex = dict[int, list[tuple[int, int, int]]]  # row or column -> (matrix, the other index, value)
 
 
 def sparse_commutator_table(
-    basis: list[Any], places: list[int] | None, inverse: Any
+    basis: Sequence[ExactMatrix], positions: list[int] | None, inverse: ExactMatrix | None
 ) -> StructureConstants | tuple[int, int]:
     """The bracket table of independent matrices over QQ, or the first pair whose commutator leaves the span.
 
     Parameters
     ----------
     basis : list of ExactMatrix
-        Independent, over QQ, (N, N).
-    places : list of int, optional
-        Flat positions of d entries that determine an element of the span; None when `exclusive_entries` has them.
+        Independent matrices (N, N) over QQ.
+    positions : list of int, optional
+        Flat indices of d entries that determine an element of the span; None if `exclusive_entries` finds them.
     inverse : ExactMatrix, optional
-        The inverse of the (d, d) matrix of the basis at these places; None where it is diagonal.
+        The inverse of the (d, d) matrix of the basis at these entries; None if this matrix is diagonal.
     """
     n, d, field = basis[0].nrows, len(basis), basis[0].field
     den = lcm(*(a.den for a in basis))
     tables = [entries_of(a, den // a.den) for a in basis]
-    if places is None or inverse is None:
-        places = exclusive_entries(tables, n)
+    if positions is None or inverse is None:
         rows: dict[int, list[tuple[int, Any]]] = {}
-        for k, place in enumerate(places or []):
-            rows[place] = [(k, field.one / field.convert(tables[k][divmod(place, n)]))]
+        for k, x in enumerate(exclusive_entries(tables, n) or []):
+            rows[x] = [(k, field.one / field.convert(tables[k][divmod(x, n)]))]
     else:
         values = inverse.to_rows()
-        rows = {p: [(k, v / den) for k, v in enumerate(values[x]) if v != 0] for x, p in enumerate(places)}
+        rows = {p: [(k, v / den) for k, v in enumerate(values[x]) if v != 0] for x, p in enumerate(positions)}
     entries = []
     by_row, by_column = _by_index(tables)
     for i in range(d):
@@ -51,31 +53,32 @@ def sparse_commutator_table(
     return StructureConstants(field, d, entries)
 
 
-def entries_of(matrix: Any, factor: int = 1) -> Entries:
-    """The non-zero numerators of a matrix over QQ, times a factor, by position."""
+def entries_of(matrix: ExactMatrix, factor: int = 1) -> Entries:
+    """The non-zero numerators of a matrix over QQ times a factor, as {(row, column): value}."""
     n = matrix.ncols
     found = enumerate(matrix.parts[0].entries())
     return {divmod(x, n): int(v) * factor for x, v in found if v}
 
 
 def exclusive_entries(tables: list[Entries], n: int) -> list[int] | None:
-    """For each matrix a flat position where it alone is non-zero, or None if one has no such position."""
+    """For each matrix the flat index of an entry where it alone is non-zero, or None if a matrix has no such entry."""
     count: dict[tuple[int, int], int] = {}
     for table in tables:
-        for place in table:
-            count[place] = count.get(place, 0) + 1
+        for index in table:
+            count[index] = count.get(index, 0) + 1
     found = []
     for table in tables:
-        own = [place for place in table if count[place] == 1]
+        own = [index for index in table if count[index] == 1]
         if not own:
             return None
         found.append(own[0][0] * n + own[0][1])
     return found
 
 
-def _by_index(tables: list[Entries]) -> tuple[dict[int, Any], dict[int, Any]]:
-    by_row: dict[int, list[tuple[int, int, int]]] = {}
-    by_column: dict[int, list[tuple[int, int, int]]] = {}
+def _by_index(tables: list[Entries]) -> tuple[ByIndex, ByIndex]:
+    """The entries of all matrices by row, and by column."""
+    by_row: ByIndex = {}
+    by_column: ByIndex = {}
     for j, table in enumerate(tables):
         for (r, c), v in table.items():
             by_row.setdefault(r, []).append((j, c, v))
@@ -83,10 +86,8 @@ def _by_index(tables: list[Entries]) -> tuple[dict[int, Any], dict[int, Any]]:
     return by_row, by_column
 
 
-def _commutators(
-    i: int, tables: list[Entries], by_row: dict[int, Any], by_column: dict[int, Any]
-) -> dict[int, Entries]:
-    """{j: A_i A_j - A_j A_i} for j > i, non-zero entries only."""
+def _commutators(i: int, tables: list[Entries], by_row: ByIndex, by_column: ByIndex) -> dict[int, Entries]:
+    """The non-zero entries of A_i A_j - A_j A_i for all j > i, by j."""
     out: dict[int, Entries] = {}
     for (r, c), v in tables[i].items():
         for j, column, w in by_row.get(c, ()):
@@ -101,25 +102,27 @@ def _commutators(
 
 
 def _equal(product: Entries, coordinates: dict[int, Any], tables: list[Entries]) -> bool:
+    """Whether a matrix is the combination of matrices with these coordinates."""
     rest: dict[tuple[int, int], Any] = dict(product)
     for k, v in coordinates.items():
-        for place, w in tables[k].items():
-            rest[place] = rest.get(place, 0) - v * w
+        for index, w in tables[k].items():
+            rest[index] = rest.get(index, 0) - v * w
     return all(v == 0 for v in rest.values())
 
 
-def first_difference(basis: list[Any], table: StructureConstants) -> tuple[int, int] | None:
+def first_difference(basis: Sequence[Matrix], table: StructureConstants) -> tuple[int, int] | None:
     """The first pair i < j of matrices over QQ with [A_i, A_j] different from sum_k c[i, j, k] A_k, or None.
 
     Parameters
     ----------
     basis : list of ExactMatrix
-        One per basis element of the table, over QQ, (N, N).
+        One matrix (N, N) over QQ for each basis element of the table.
     table : StructureConstants
-        Over QQ.
+        A bracket table over QQ.
     """
-    den = lcm(*(a.den for a in basis))
-    tables = [entries_of(a, den // a.den) for a in basis]
+    exact = [as_exact(a) for a in basis]
+    den = lcm(*(a.den for a in exact))
+    tables = [entries_of(a, den // a.den) for a in exact]
     by_row, by_column = _by_index(tables)
     brackets: dict[int, dict[int, list[tuple[int, int]]]] = {}
     for (i, j), terms in table.by_pair().items():
@@ -130,10 +133,10 @@ def first_difference(basis: list[Any], table: StructureConstants) -> tuple[int, 
         expected = brackets.get(i, {})
         for j in sorted(products.keys() | expected.keys()):
             # products hold den^2 [A_i, A_j], tables den A_k, and the values of the table are over table.den
-            rest = {place: v * table.den for place, v in products.get(j, {}).items()}
+            rest = {index: v * table.den for index, v in products.get(j, {}).items()}
             for k, v in expected.get(j, ()):
-                for place, w in tables[k].items():
-                    rest[place] = rest.get(place, 0) - den * int(v) * w
+                for index, w in tables[k].items():
+                    rest[index] = rest.get(index, 0) - den * int(v) * w
             if any(rest.values()):
                 return i, j
     return None

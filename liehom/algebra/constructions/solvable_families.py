@@ -11,7 +11,7 @@ from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.constructions.form_algebras import index_name
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.core.tables import field_of_values
+from liehom.algebra.core.tables import ConstantsMapping, field_of_values
 from liehom.algebra.matrices.general_linear import triangular
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.algebra.matrices.named_matrices import linear_lie_algebra
@@ -275,7 +275,7 @@ def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
     if field.sign(value) < 0:
         raise InputError(f"the parameter of Bianchi's type {wanted} is not negative, got {field.format(value)}")
     name = f"bianchi({wanted})" if a is None else f"bianchi({wanted};{field.format(value)})"
-    brackets = {(1, 2): {0: n1}, (0, 2): {1: -n2, 2: value}, (0, 1): {1: value, 2: n3}}
+    brackets: ConstantsMapping = {(1, 2): {0: n1}, (0, 2): {1: -n2, 2: value}, (0, 1): {1: value, 2: n3}}
     return LieAlgebra(brackets, field, dimension=3, basis=["e1", "e2", "e3"], name=name)
 
 

@@ -208,7 +208,8 @@ class LieAlgebra:
         [0, 0]
         [0, 2]
         """
-        return self._constants.adjoint(self.field.read(x) if hasattr(x, "nrows") else self.row(x))
+        given: Any = x
+        return self._constants.adjoint(self.field.read(given) if hasattr(x, "nrows") else self.row(given))
 
     def killing_form(self) -> Matrix:
         """The matrix (n, n) of the Killing form, tr(ad e_i ad e_j).
@@ -227,8 +228,7 @@ class LieAlgebra:
 
     def killing_signature(self) -> tuple[int, int, int]:
         """Numbers of (positive, negative, zero) eigenvalues of the Killing form."""
-        signature: tuple[int, int, int] = self.killing_form().signature()
-        return signature
+        return self.killing_form().signature()
 
     # -- subalgebras and ideals --------------------------------------------------------------------------
     def subalgebra(self, rows: MatrixLike) -> Subalgebra:
@@ -423,7 +423,7 @@ class LieAlgebra:
         >>> lh.so(4).is_semisimple(), lh.gl(2).is_semisimple()
         (True, False)
         """
-        return bool(self.killing_form().rank() == self.dimension)
+        return self.killing_form().rank() == self.dimension
 
     def is_reductive(self) -> bool:
         """Whether the radical is the centre.
@@ -1024,8 +1024,7 @@ class LieAlgebra:
         >>> lh.so(3).cartan_involution() == lh.QQ.identity(3)
         True
         """
-        theta: Matrix = self.cartan_decomposition().theta
-        return theta
+        return self.cartan_decomposition().theta
 
     def maximal_compact_subalgebra(self) -> Subalgebra:
         """The fixed points of a Cartan involution (`cartan_decomposition`).

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
-from typing import Any, TypeVar, final
+from typing import Any, TypeVar, cast, final
 
 import numpy as np
 
@@ -191,13 +191,11 @@ class StructureConstants:
         """The matrix (n, n) of y -> [x, y] on columns, for a row matrix x of shape (1, n)."""
         n = self.dimension
         if self.is_dense():
-            matrix: M = (x @ self.flat()).reshape(n, n).T
-            return matrix
+            return (x @ cast(M, self.flat())).reshape(n, n).T
         if self.field.degree > 1:
-            matrix = self.contract(x, self.field.identity(n), self.field.identity(n))[0].T
-        else:
-            matrix = self._adjoint_sparse(x)
-        return matrix
+            one = cast(M, self.field.identity(n))
+            return self.contract(x, one, one)[0].T
+        return cast(M, self._adjoint_sparse(x))
 
     def _adjoint_sparse(self, x: Any) -> Any:
         n, weights = self.dimension, [int(w) for w in x.parts[0].entries()]
@@ -233,8 +231,8 @@ class StructureConstants:
         if self.is_dense() or self.field.degree > 1:
             if self.field.exact and self.field.degree == 1:
                 return self._contract_rational(left, right, out)
-            one = self.field.identity(n)
-            blocks: list[M] = (self.flat() if left == one else left @ self.flat()).split_rows(n, n)
+            one, flat = self.field.identity(n), cast(M, self.flat())
+            blocks = (flat if left == one else left @ flat).split_rows(n, n)
             if right != one:
                 blocks = [right @ block for block in blocks]
             return blocks if out == one else [block @ out for block in blocks]

@@ -177,8 +177,8 @@ def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Matrix | None:
         if theta is None:
             return None
         blocks.append(ideal.basis.T @ theta)
-    theta = field.stack_columns(blocks, n) @ basis.T.inverse()
-    return theta
+    combined: Matrix = field.stack_columns(blocks, n) @ basis.T.inverse()
+    return combined
 
 
 def _in_a_large_order(algebra: LieAlgebra, rank: int, theta: Array | None) -> Matrix | None:
@@ -204,8 +204,7 @@ def _in_a_large_order(algebra: LieAlgebra, rank: int, theta: Array | None) -> Ma
 
 def _in_first_basis(theta: Matrix, basis: Matrix) -> Matrix:
     """A matrix on columns in the given basis of the algebra, from its form in another basis (rows)."""
-    conjugated: Matrix = basis.T @ theta @ basis.T.inverse()
-    return conjugated
+    return basis.T @ theta @ basis.T.inverse()
 
 
 def _searched(algebra: LieAlgebra, theta: Array, rounds: int) -> Matrix | None:

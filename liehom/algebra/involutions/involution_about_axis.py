@@ -8,13 +8,11 @@ found in floating point may be rounded.  Every matrix that results is a Cartan i
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.structure.real_splitting import CentroidField
-from liehom.scalars import ExactMatrix, Matrix
+from liehom.scalars import ExactMatrix, Matrix, as_exact
 from liehom.scalars.spaces.forms import orthogonal_basis
 from liehom.typing import Array
 
@@ -65,7 +63,7 @@ def involution_about_axis_over_centroid(centroid: CentroidField, theta: Array) -
     """
     algebra, n = centroid.algebra, centroid.algebra.dimension
     field = centroid.generator.field
-    killing: Any = algebra.killing_form()
+    killing = as_exact(algebra.killing_form())
     for digits in range(DIGITS):
         for seed in range(SEEDS):
             x = np.random.default_rng(seed).standard_normal(n) @ (np.eye(n) + theta)
@@ -76,6 +74,5 @@ def involution_about_axis_over_centroid(centroid: CentroidField, theta: Array) -
             line = field.stack_rows(rows, n)
             form = line @ killing @ line.T
             if (-form).is_positive_definite():
-                involution: ExactMatrix = (line.T @ form.inverse() @ line @ killing).scale(2) - field.identity(n)
-                return involution
+                return (line.T @ form.inverse() @ line @ killing).scale(2) - field.identity(n)
     return None

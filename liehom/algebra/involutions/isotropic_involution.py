@@ -14,7 +14,6 @@ the centre are found in floating point.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,7 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import independent_rows
 from liehom.algebra.involutions.nilpotent_element import SL2Triple, eigenspace, generic_nilpotent, positive_eigenvalues
 from liehom.errors import SingularError
-from liehom.scalars import ExactMatrix
+from liehom.scalars import ExactMatrix, as_exact
 from liehom.scalars.lattices.lattice import reduced_rows
 from liehom.scalars.spaces.integral_basis import integral_basis
 from liehom.typing import Array, ComplexArray, ObjectArray
@@ -96,8 +95,8 @@ def _on_levi(algebra: LieAlgebra, triple: SL2Triple) -> tuple[ExactMatrix, Exact
     field, n = triple.h.field, algebra.dimension
     levi = algebra.subalgebra(eigenspace(algebra, triple.h, 0))
     inner = levi.as_algebra()
-    center = integral_basis(inner.center().basis @ levi.basis)
-    derived = integral_basis(inner.derived_subalgebra().basis @ levi.basis)
+    center = integral_basis(as_exact(inner.center().basis @ levi.basis))
+    derived = integral_basis(as_exact(inner.derived_subalgebra().basis @ levi.basis))
     parts = _parts(algebra, center)
     if parts is None:
         return None
@@ -110,8 +109,7 @@ def _on_levi(algebra: LieAlgebra, triple: SL2Triple) -> tuple[ExactMatrix, Exact
 def _parts(algebra: LieAlgebra, center: ExactMatrix) -> tuple[ExactMatrix, ExactMatrix] | None:
     """Bases of the split and the compact part of the centre of l, as rows; None if they are not recognized."""
     field, n, k = center.field, algebra.dimension, center.nrows
-    killing: Any = algebra.killing_form()
-    form = center @ killing @ center.T
+    form = center @ as_exact(algebra.killing_form()) @ center.T
     if form.is_positive_definite():
         return center, field.zeros(0, n)
     values = _roots(algebra, center)

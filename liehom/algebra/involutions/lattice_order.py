@@ -12,13 +12,13 @@ No order is proved to be maximal.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.involutions.ideals_modulo import LARGEST_PRIME, ideals_modulo
-from liehom.scalars import QQ, ExactMatrix
+from liehom.scalars import QQ, ExactMatrix, as_exact
 from liehom.scalars.lattices.lattice import integral_preimage, kernel_modulo, pairwise_coprime, reduced_rows
 from liehom.scalars.modular.modular_span import ModularSpan
 from liehom.typing import Array
@@ -87,14 +87,11 @@ class _Order:
 
     def killing_form(self) -> ExactMatrix:
         """The Killing form in the basis of the lattice."""
-        form: Any = self.inner.killing_form()
-        rational: ExactMatrix = form
-        return rational
+        return as_exact(self.inner.killing_form())
 
     def normalizer(self) -> _Order | None:
         """The normalizer of the lattice, or None if it is the lattice itself."""
-        flat: Any = self.inner.table.flat()
-        rows = integral_preimage(flat)
+        rows = integral_preimage(as_exact(self.inner.table.flat()))
         if abs(rows.determinant()) == 1:
             return None
         return _Order(self.algebra, rows @ self.basis, self.frame)
@@ -136,7 +133,7 @@ class _Order:
     def _enlarged_by_search(self, p: int) -> _Order | None:
         """The largest of the normalizers of some ideals modulo a small prime, or None if none is larger than M."""
         n = self.n
-        dense: Any = self.inner.table.dense()
+        dense = as_exact(self.inner.table.dense())
         constants = np.array([int(x) % p for x in dense.parts[0].entries()], dtype=np.int64)
         best: Rows = ([], [])
         for space in ideals_modulo(constants.reshape(n, n, n), p, TRIES, IDEALS):

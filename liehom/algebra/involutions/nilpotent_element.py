@@ -11,7 +11,7 @@ compact, because then the parabolic subalgebra is minimal.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from liehom.algebra.involutions.approximate_involution import approximate_involu
 from liehom.algebra.involutions.lattice_order import lattice_order
 from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
 from liehom.errors import SingularError
-from liehom.scalars import QQ, ExactMatrix
+from liehom.scalars import QQ, ExactMatrix, as_exact
 from liehom.scalars.lattices.lattice import reduced_rows
 from liehom.scalars.spaces.integral_basis import integral_basis
 from liehom.typing import Array
@@ -178,15 +178,15 @@ def _is_even(algebra: LieAlgebra, triple: SL2Triple) -> bool:
 
 def _is_compact(levi: Subalgebra, derived: ExactMatrix) -> bool:
     """Whether the Killing form is negative definite on these rows."""
-    killing: Any = levi.algebra.killing_form()
-    return bool((-(derived @ killing @ derived.T)).is_positive_definite())
+    killing = as_exact(levi.algebra.killing_form())
+    return (-(derived @ killing @ derived.T)).is_positive_definite()
 
 
 def _nilpotent_inside(levi: Subalgebra) -> tuple[bool, ExactMatrix | None]:
     """Whether [z(h), z(h)] is compact, and if not, a nilpotent element of it, (1, n), or None if none was found."""
     algebra = levi.algebra
     inner = levi.as_algebra()
-    rows: ExactMatrix = inner.derived_subalgebra().basis @ levi.basis
+    rows = as_exact(inner.derived_subalgebra().basis @ levi.basis)
     if rows.nrows == 0 or _is_compact(levi, rows):
         return True, None
     rows = integral_basis(rows)

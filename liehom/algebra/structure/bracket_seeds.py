@@ -8,11 +8,11 @@ the seed vectors.
 from __future__ import annotations
 
 import random
-from typing import Any, final
+from typing import final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.structure.exact_field import exact_field
-from liehom.scalars import ExactMatrix
+from liehom.scalars import ExactMatrix, as_exact
 from liehom.scalars.modular.modular import invariant_hull_rank, pivot_columns
 
 SUPPORT = 16  # non-zero entries of a random element of an algebra with a sparse table
@@ -49,7 +49,7 @@ class BracketSeeds:
         self.n = algebra.dimension
         self.rng = random.Random(self.n)
         table = algebra.table
-        dense: Any = table.dense() if table.is_dense() else None
+        dense = as_exact(table.dense()) if table.is_dense() else None
         # clearing denominators multiplies the bracket by a number, which changes no statement about it
         self._flat: ExactMatrix | None = None if dense is None else dense.cleared().reshape(self.n, self.n**2)
         self.attempt = 0 if self._flat is None else self._best_prime(self._flat)
@@ -84,8 +84,9 @@ class BracketSeeds:
             return self.brackets(left, right)
         if self._narrow is None:
             columns = self.pivots(self.field.stack_rows(self.tables, self.n).T)
-            dense: Any = self.algebra.table.dense()
-            self._narrow = dense.select(columns=columns).reshape(self.n, self.n * len(columns))
+            self._narrow = (
+                as_exact(self.algebra.table.dense()).select(columns=columns).reshape(self.n, self.n * len(columns))
+            )
         return [right @ block for block in (left @ self._narrow).split_rows(self.n, self.spanned)]
 
     def ads(self, left: ExactMatrix) -> list[ExactMatrix]:
@@ -176,5 +177,4 @@ class BracketSeeds:
         wide = self.field.stack_columns(self.generating(), self.n)
         if int(wide.modulo(self.attempt).rank()) == self.n:
             return self.field.zeros(0, self.n)
-        center: ExactMatrix = wide.left_null_space()
-        return center
+        return wide.left_null_space()

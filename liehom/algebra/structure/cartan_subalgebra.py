@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra, lower_central_series
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.errors import InternalError
-from liehom.scalars import ExactMatrix
+from liehom.scalars import ExactMatrix, as_exact
 from liehom.scalars.spaces.quotient import echelon_quotient
 
 Entries = tuple[object, ...]  # the integer coordinates of an element
@@ -53,8 +52,7 @@ def is_self_normalizing(subalgebra: Subalgebra) -> bool:
     >>> is_self_normalizing(lh.sl(2).subalgebra([[0, 0, 1]])), is_self_normalizing(lh.sl(2).subalgebra([[1, 0, 0]]))
     (True, False)
     """
-    algebra = subalgebra.algebra
-    basis: Any = subalgebra.basis
+    algebra, basis = subalgebra.algebra, as_exact(subalgebra.basis)
     if 0 < basis.nrows < algebra.dimension:
         rng = random.Random(basis.nrows)
         x = algebra.field.matrix([[rng.randint(-9, 9) for _ in range(basis.nrows)]]) @ basis
@@ -105,7 +103,7 @@ def _smaller(
 def _null_component(action: ExactMatrix, expected: int) -> ExactMatrix:
     """A basis of the rows that some power of the action annihilates, `expected` many modulo a prime."""
     power = action
-    kernel: ExactMatrix = power.left_null_space()
+    kernel = power.left_null_space()
     while kernel.nrows < expected:
         power = power @ action
         larger = power.left_null_space()

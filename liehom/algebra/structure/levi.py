@@ -12,7 +12,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
@@ -20,7 +20,7 @@ from liehom.algebra.core.subalgebra import Subalgebra, products
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.algebra.structure.radical import radical
 from liehom.errors import InternalError, SingularError
-from liehom.scalars import ExactField, ExactMatrix
+from liehom.scalars import ExactField, ExactMatrix, as_exact
 from liehom.scalars.modular.modular import extending_rows, stacked_residues
 from liehom.scalars.spaces.quotient import echelon_quotient
 
@@ -66,9 +66,9 @@ def levi_decomposition(algebra: LieAlgebra) -> LeviDecomposition:
 def _levi_rows(algebra: LieAlgebra, ideal: Subalgebra) -> ExactMatrix:
     """A basis, as rows, of a Levi factor, for the radical of the algebra."""
     field, n = exact_field(algebra, "Levi factors"), algebra.dimension
-    below: Any = ideal.basis
+    below = as_exact(ideal.basis)
     coordinates = echelon_quotient(below)
-    lift: ExactMatrix = coordinates.lift
+    lift = coordinates.lift
     blocks = algebra.table.contract(lift, lift, coordinates.projection)
     # The bracket descends to the quotient by the radical.
     plan = _plan(LieAlgebra(StructureConstants.from_blocks(field, lift.nrows, blocks), check=False))

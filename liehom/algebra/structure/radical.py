@@ -9,13 +9,12 @@ characteristic 0.
 from __future__ import annotations
 
 import random
-from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra, complement_rows, products
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.errors import InternalError
-from liehom.scalars import ExactMatrix, Polynomial
+from liehom.scalars import ExactMatrix, Polynomial, as_exact
 
 ATTEMPTS = 20  # random elements of the radical
 
@@ -23,8 +22,8 @@ ATTEMPTS = 20  # random elements of the radical
 def radical(algebra: LieAlgebra) -> Subalgebra:
     """Implements `LieAlgebra.radical`."""
     field, n = algebra.field, algebra.dimension
-    killing: Any = algebra.killing_form()
-    if n == 0 or (field.exact and int(killing.modulo().rank()) == n):
+    killing = algebra.killing_form()
+    if n == 0 or (isinstance(killing, ExactMatrix) and int(killing.modulo().rank()) == n):
         return Subalgebra(algebra, field.zeros(0, n), check=False)  # Cartan's criterion: semisimple
     whole = field.identity(n)
     derived = products(algebra, whole, whole)
@@ -36,7 +35,7 @@ def nilradical(algebra: LieAlgebra) -> Subalgebra:
     """Implements `LieAlgebra.nilradical`."""
     field, n = exact_field(algebra, "nilradicals"), algebra.dimension
     solvable = radical(algebra)
-    basis: Any = solvable.basis
+    basis = as_exact(solvable.basis)
     inner = products(algebra, field.identity(n), basis)
     if inner.nrows == solvable.dimension:
         return Subalgebra(algebra, inner, check=False)  # [g, rad g] is a nilpotent ideal

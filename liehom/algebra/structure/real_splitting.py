@@ -15,14 +15,14 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
-from typing import Any, Literal, cast, final
+from typing import Any, Literal, final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.structure.commuting_maps import combinations, minimal_polynomial
 from liehom.errors import FieldError, InputError, InternalError
-from liehom.scalars import QQ, ExactMatrix, Polynomial, Scalar
+from liehom.scalars import QQ, ExactMatrix, Polynomial, Scalar, as_exact
 from liehom.scalars.roots.extension import RealFactor, real_factors
 
 CANDIDATES = 12  # generators of the centroid among which the one with the smallest polynomial is chosen
@@ -174,7 +174,7 @@ def _indices(centroid: CentroidField, intervals: list[Interval]) -> list[int]:
     """The number of positive minus the number of negative squares of the Killing form, at each real root."""
     if not intervals:
         return []
-    killing: Any = centroid.algebra.killing_form()
+    killing = as_exact(centroid.algebra.killing_form())
     twisted = killing @ centroid.generator
     field = centroid.algebra.field
     below = _index(killing)
@@ -288,7 +288,7 @@ def _real_ideal(ideal: Subalgebra, factor: RealFactor, f: Polynomial, krylov: li
     shifts = [[field.zero] * k + cofactor + [field.zero] * (q.degree - 1 - k) for k in range(q.degree)]
     weights = field.matrix(shifts)
     rows = [weights @ up.matrix(block) for block in krylov]
-    smaller, given = ideal.algebra, cast("ExactMatrix", ideal.basis)
+    smaller, given = ideal.algebra, as_exact(ideal.basis)
     entries = [(i, j, k, up.embed(v)) for i, j, k, v in smaller.table]
     table = StructureConstants(field, smaller.dimension, entries)
     larger = LieAlgebra(table, basis=smaller.basis_names, name=smaller.name, check=False)  # same identities

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra, is_self_normalizing
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.errors import InputError, InternalError
-from liehom.scalars import ExactMatrix
+from liehom.scalars import ExactMatrix, as_exact
 from liehom.scalars.roots.joint_spectrum import Balls, JointSpectrum, joint_spectrum
 from liehom.scalars.spaces.quotient import echelon_quotient
 from liehom.typing import IntegerArray
@@ -96,14 +96,15 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
     ('A1', True)
     """
     exact_field(algebra, "roots")
-    killing: Any = algebra.killing_form()
+    killing = as_exact(algebra.killing_form())
     if killing.rank() < algebra.dimension:
         raise InputError("only a semisimple algebra has a root system; take the Levi factor of levi_decomposition()")
     h = cartan_subalgebra(algebra) if cartan is None else cartan
     if algebra.dimension == 0:
         return RootData(algebra, h, RootSystem(()), (), JointSpectrum((), (), 0))
     actions = _actions(algebra, h)
-    form = (h.basis @ killing @ h.basis.T).inverse()
+    basis = as_exact(h.basis)
+    form = (basis @ killing @ basis.T).inverse()
     rng = random.Random(algebra.dimension)
     for precision in _precisions(actions):
         spectrum = joint_spectrum(actions, [rng.randint(-WEIGHT, WEIGHT) for _ in actions], precision)
@@ -124,7 +125,7 @@ def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[ExactMatrix]:
     """The matrices of ad h_j on g/h, acting on rows."""
     if not is_self_normalizing(h) or not h.as_algebra().is_abelian():
         raise InputError("a Cartan subalgebra of a semisimple algebra is abelian and its own normalizer")
-    basis: Any = h.basis
+    basis = as_exact(h.basis)
     coordinates = echelon_quotient(basis)
     return algebra.table.contract(basis, coordinates.lift, coordinates.projection)
 

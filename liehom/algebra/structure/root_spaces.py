@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
@@ -17,7 +17,7 @@ from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra, is_sel
 from liehom.algebra.structure.commuting_maps import evaluate
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.errors import InputError, InternalError
-from liehom.scalars import ExactMatrix, Polynomial, Scalar, Subspace
+from liehom.scalars import ExactMatrix, Polynomial, Scalar, Subspace, as_exact
 
 ATTEMPTS = 12  # random elements of the Cartan subalgebra
 
@@ -75,7 +75,7 @@ def root_space_decomposition(algebra: LieAlgebra, cartan: Subalgebra | None = No
         raise InputError("only a semisimple algebra has root spaces; take the Levi factor of levi_decomposition()")
     if not h.as_algebra().is_abelian() or not is_self_normalizing(h):
         raise InputError(f"{h!r} is not a Cartan subalgebra: it is not abelian or not its own normalizer")
-    basis: Any = h.basis
+    basis = as_exact(h.basis)
     zero = Polynomial(field, [0, 1])
     rng = random.Random(n)
     for attempt in range(ATTEMPTS):
