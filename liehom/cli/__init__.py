@@ -1,15 +1,9 @@
-"""The command line: parses, calls, prints.
+"""The command line: every command parses its options, calls the library, and prints the result.
 
-guard       exit codes: what an exception becomes
-inputs      arguments to files, pairs, points, rows and numbers
-show        readable output on a terminal, plain lines in a pipe, one JSON object with --json
-app         the commands
-numerical   the options of `integrate` and `order`
-problem     what these two share: the problem of a file, options that override it, pictures
-integration, convergence   their work
-demo        the tour over the example files
-
-Only `guard` is imported before a command runs; everything else is loaded when it is needed.
+`app` defines the commands; `describe_command`, `numerical_commands` and `reproduce` hold the larger ones,
+`run_integrate` and `run_order` their work, `demo` the tour. `inputs` reads files, pairs, points and numbers from
+arguments, `problem_options` overrides the problem of a file, `show` prints, `options` are shared options, `guard` maps
+exceptions to exit codes. Only `guard` is imported before a command runs. docs/command-line.md describes the commands.
 """
 
 from __future__ import annotations
@@ -18,7 +12,7 @@ import sys
 
 
 def main() -> None:
-    """The entry point of the command ``liehom``; exits with one of the documented codes."""
+    """Run the command ``liehom``; exits with one of the documented codes."""
     from liehom.cli.guard import INTERRUPTED, close_output
 
     try:

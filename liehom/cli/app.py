@@ -1,18 +1,20 @@
-"""The commands of ``liehom``: each gathers its input, calls one function of the library, and prints."""
+"""Commands of ``liehom``: each reads its input, calls one function of the library, and prints the result."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
 from liehom.cli import describe_command, numerical_commands, reproduce
-from liehom.cli.guard import NO, NUMERICAL, YES, guarded
+from liehom.cli.guard import NO, NUMERICAL, YES
+from liehom.cli.options import JsonOption, run
 
 if TYPE_CHECKING:
+    from liehom.fullness import Verdict
     from liehom.representations import Pair
+    from liehom.scalars import Field
 
 HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces."
 
@@ -25,12 +27,9 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-PairArgument = Annotated[str, typer.Argument(metavar="PAIR", help="A pair file, or a name such as 'so(4)/so(3)'.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object instead.")]
-
-
-def _run(action: Callable[[], int]) -> None:
-    raise typer.Exit(guarded(action))
+PairArgument: TypeAlias = Annotated[
+    str, typer.Argument(metavar="PAIR", help="Pair file, or name such as 'so(4)/so(3)'.")
+]
 
 
 def _version(wanted: bool) -> None:
@@ -52,11 +51,13 @@ def _options(
 @app.command()
 def fullness(
     pair: PairArgument,
-    certificate: Annotated[str | None, typer.Option(metavar="OUT", help="Write the certificate to this file.")] = None,
+    certificate: Annotated[
+        str | None, typer.Option(metavar="OUT", help="File for the certificate (default: none).")
+    ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Is the pair full, and why?  Exit code 0: full, 1: not full, 3: numerical only."""
-    _run(lambda: _fullness(pair, certificate, json))
+    """Decide whether a pair is full, and why.  Exit code 0: full, 1: not full, 3: numerical only."""
+    run(lambda: _fullness(pair, certificate, json))
 
 
 def _fullness(text: str, out: str | None, as_json: bool) -> int:
@@ -87,15 +88,15 @@ def _fullness(text: str, out: str | None, as_json: bool) -> int:
     return code
 
 
-def _evidence(verdict: Any) -> list[tuple[str, str]]:
-    """What the verdict rests on, in lines."""
+def _evidence(verdict: Verdict) -> list[tuple[str, str]]:
+    """Labels and values of the evidence for a verdict."""
     from liehom.cli.show import short_vector
 
     data = verdict.to_json()
     rows = []
     if data.get("eta") is not None:
         rows.append(("eta", short_vector(data["eta"])))
-        definition = _definition(verdict.eta_field)
+        definition = _definition(getattr(verdict, "eta_field", None))
         if definition:
             rows.append(("where", definition))
         rows.append(("rank at eta", f"{data['rank']}, short of dim g/h by {data['rank_defect']}"))
@@ -109,9 +110,11 @@ def _evidence(verdict: Any) -> list[tuple[str, str]]:
     return rows
 
 
-def _definition(field: Any) -> str:
-    """How the generator of a number field is defined, in words; nothing for QQ."""
-    if not hasattr(field, "minpoly"):
+def _definition(field: Field | None) -> str:
+    """Definition of the generator of a number field, in words; an empty string for other fields."""
+    from liehom.scalars import NumberField
+
+    if not isinstance(field, NumberField):
         return ""
     terms = [f"{c} {field.symbol}^{i}" if i else str(c) for i, c in enumerate(field.minpoly) if c]
     low, high = field.interval
@@ -136,11 +139,11 @@ def _described(text: str, pair: Pair) -> str:
 @app.command()
 def verify(
     pair: PairArgument,
-    certificate: Annotated[str, typer.Argument(metavar="CERT", help="A certificate file.")],
+    certificate: Annotated[str, typer.Argument(metavar="CERT", help="Certificate file.")],
     json: JsonOption = False,
 ) -> None:
-    """Does the certificate prove its verdict for the pair?  Exit code 0: yes, 1: a check fails."""
-    _run(lambda: _verify(pair, certificate, json))
+    """Check that a certificate proves its verdict for a pair.  Exit code 0: proved, 1: a check fails."""
+    run(lambda: _verify(pair, certificate, json))
 
 
 def _verify(text: str, file: str, as_json: bool) -> int:
@@ -174,14 +177,14 @@ def _verify(text: str, file: str, as_json: bool) -> int:
 
 @app.command()
 def isotropy(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A representation file.")],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="Representation file.")],
     point: Annotated[
-        str | None, typer.Option(metavar="ROW", help="The point, such as '1,0,-2/3'; default: that of the file.")
+        str | None, typer.Option(metavar="ROW", help="Point, e.g. '1,0,-2/3' (default: the file's point).")
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """The isotropy subalgebra and the orbit dimension of a representation at a point."""
-    _run(lambda: _isotropy(file, point, json))
+    """Compute the isotropy subalgebra and the orbit dimension of a representation at a point."""
+    run(lambda: _isotropy(file, point, json))
 
 
 def _isotropy(file: str, point: str | None, as_json: bool) -> int:
@@ -237,12 +240,12 @@ def _isotropy(file: str, point: str | None, as_json: bool) -> int:
 def range_(
     pair: PairArgument,
     psi: Annotated[
-        str | None, typer.Option(metavar="ROW", help="An element of g, such as '1,0,-2/3'; default: a generic one.")
+        str | None, typer.Option(metavar="ROW", help="Element of g, e.g. '1,0,-2/3' (default: a generic one).")
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Does the range condition hold: for generic eta, or for the one given?"""
-    _run(lambda: _range(pair, psi, json))
+    """Decide whether the range condition holds, for generic eta or for a given element."""
+    run(lambda: _range(pair, psi, json))
 
 
 def _range(text: str, psi: str | None, as_json: bool) -> int:
@@ -280,11 +283,13 @@ app.command()(reproduce.reproduce)
 
 @app.command()
 def catalog(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="A pair to print, as a pair file.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="Pair to print as a pair file (default: list all names).")
+    ] = None,
     json: JsonOption = False,
 ) -> None:
-    """List names that the other commands understand, one of each kind (sizes are free), or print one as a file."""
-    _run(lambda: _catalog(name, json))
+    """List names that other commands accept, one of each kind (sizes are free), or print one pair as a file."""
+    run(lambda: _catalog(name, json))
 
 
 def _catalog(name: str | None, as_json: bool) -> int:
@@ -305,11 +310,11 @@ def _catalog(name: str | None, as_json: bool) -> int:
 
 @app.command()
 def demo(json: JsonOption = False) -> None:
-    """A tour: fullness of several pairs with their certificates verified, isotropy, integration, a picture."""
+    """Show a tour: fullness with verified certificates, isotropy, integration, a plot."""
 
     def action() -> int:
         from liehom.cli.demo import run_demo
 
         return run_demo(json)
 
-    _run(action)
+    run(action)

@@ -1,4 +1,4 @@
-"""``liehom demo``: a tour over the example files."""
+"""Command `demo`: a tour through the example files."""
 
 from __future__ import annotations
 
@@ -6,20 +6,22 @@ import time
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import liehom.io
 from liehom.cli.guard import YES
 from liehom.cli.inputs import examples_folder
-from liehom.cli.problem_options import can_draw
+from liehom.cli.problem_options import can_plot
 from liehom.cli.run_order import measured, table_json
 from liehom.cli.show import show_json, show_table
 from liehom.errors import FormatError
 from liehom.fullness.decide import decide_fullness
+from liehom.fullness.verdict import NotFull
 from liehom.homogeneous.range.range_condition import range_condition
 from liehom.representations import Pair
 
 if TYPE_CHECKING:
+    from liehom.fullness import Verdict
     from liehom.integrators import ConvergenceTable
 
 PAIRS: tuple[tuple[str, str], ...] = (
@@ -33,18 +35,17 @@ PAIRS: tuple[tuple[str, str], ...] = (
     ("so4_so3_float", "the sphere S^3 in floating point"),
 )
 
-# file, order, name in the picture: of these the convergence is measured
 RUNS: tuple[tuple[str, int, str], ...] = (
     ("rigid_body", 1, "Euler, rigid body"),
     ("rigid_body", 4, "Euler corrected to order 4, rigid body"),
     ("sym3_generic", 4, "the same, eigenvalues 1, 2, 3"),
 )
 SPAN, SIZES = (0.0, 2.0), (0.1, 0.05, 0.025, 0.0125)
-PICTURE = "liehom-demo.png"
+PLOT_FILE = "liehom-demo.png"
 
 
 def run_demo(as_json: bool) -> int:
-    """Decide, verify, integrate and report on the example files; draw what has been measured."""
+    """Decide, verify and integrate the example files, print the results and plot the errors; returns the exit code."""
     folder = examples_folder()
     start = time.perf_counter()
     if as_json:
@@ -52,7 +53,7 @@ def run_demo(as_json: bool) -> int:
         tables = _convergence(folder)
         integration = [{"file": f"{name}.json", **table_json(table)} for name, table in tables]
         found = {"examples": str(folder), "verdicts": verdicts, "integration": integration}
-        show_json({**found, "picture": _picture([table for _, table in tables])[0]})
+        show_json({**found, "picture": _plot([table for _, table in tables])[0]})
         return YES
     print(f"Files from {folder}\n")
     _tour_of_verdicts(folder)
@@ -68,7 +69,7 @@ def _pair(folder: Path, name: str) -> Pair:
     return liehom.io.load_pair(folder / f"{name}.json")
 
 
-def _decided(folder: Path, name: str) -> tuple[Pair, Any]:
+def _decided(folder: Path, name: str) -> tuple[Pair, Verdict]:
     pair = _pair(folder, name)
     verdict = decide_fullness(pair)
     if verdict.certificate is not None:
@@ -93,7 +94,7 @@ def _tour_of_a_certificate(folder: Path) -> None:
     for name in ("g2_su3", "so31_so21"):
         pair, verdict = _decided(folder, name)
         print(f"  {name}: {verdict}")
-        if not verdict.full and verdict.eta is not None:
+        if isinstance(verdict, NotFull) and verdict.eta is not None:
             eta = ", ".join(pair.field.format(x) for x in verdict.eta)
             print(f"    eta = ({eta}): the rank is {verdict.rank} of {pair.dimension} there")
 
@@ -116,14 +117,18 @@ def _tour_of_isotropy(folder: Path) -> None:
 def _tour_of_the_range_condition(folder: Path) -> None:
     print("\n4. The range condition in de Sitter space: at a generic psi, on the null cone, inside h\n")
     pair, verdict = _decided(folder, "so31_so21")
-    for text, psi in (("generic", None), ("null", verdict.eta), ("in h", pair.subalgebra.rows()[0])):
+    for text, psi in (
+        ("generic", None),
+        ("null", verdict.eta if isinstance(verdict, NotFull) else None),
+        ("in h", pair.subalgebra.rows()[0]),
+    ):
         found = range_condition(pair, psi)
         state = {True: "holds", False: "fails", None: "not decided"}[found.holds]
         print(f"  {text:<8} {state}: rank {found.rank} of {found.dimension}; {found.message}")
 
 
 def _convergence(folder: Path) -> list[tuple[str, ConvergenceTable]]:
-    """Name of the file and table of orders for each of the runs."""
+    """Pairs (name of the file, table of orders) of all runs."""
     tables = []
     for name, order, _ in RUNS:
         problem = liehom.io.load_problem(folder / f"{name}.json")
@@ -144,21 +149,21 @@ def _tour_of_integration(folder: Path) -> None:
     _print_indented(str(tables[-1][1]))
     problem = liehom.io.load_problem(folder / "sym3_generic.json")
     _print_indented("\n".join(str(problem.integrate(t_span=SPAN).report).splitlines()[1:3]))
-    print(_picture([table for _, table in tables])[1])
+    print(_plot([table for _, table in tables])[1])
 
 
 def _print_indented(text: str) -> None:
     print("".join(f"  {line}\n" for line in text.splitlines()))
 
 
-def _picture(tables: list[ConvergenceTable]) -> tuple[str | None, str]:
-    """Draw the errors; the path of the picture, and what there is to say about it."""
-    if not can_draw():
-        return None, "No picture of this: matplotlib is missing (pip install 'liehom[plot]')"
+def _plot(tables: list[ConvergenceTable]) -> tuple[str | None, str]:
+    """Plot the errors; returns the path, or None if no plot is written, and a sentence for the user."""
+    if not can_plot():
+        return None, "No plot of this: matplotlib is missing (pip install 'liehom[plot]')"
     from liehom.plotting import plot_convergence
 
     try:
-        plot_convergence(tables, PICTURE, labels=[label for _, _, label in RUNS])
+        plot_convergence(tables, PLOT_FILE, labels=[label for _, _, label in RUNS])
     except FormatError as error:
-        return None, f"No picture of this: {error}"
-    return PICTURE, f"Picture of these errors: {PICTURE}"
+        return None, f"No plot of this: {error}"
+    return PLOT_FILE, f"Plot of these errors: {PLOT_FILE}"

@@ -1,56 +1,56 @@
-"""The command `describe`: what a file or a name stands for, as a card or as one JSON object."""
+"""Command `describe`: the structure of the object that a file or a name denotes, as a summary or as JSON."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from liehom.cli.guard import NUMERICAL, YES, guarded
+from liehom.cli.guard import NUMERICAL, YES
+from liehom.cli.options import JsonOption, run
 
 if TYPE_CHECKING:
     from liehom.algebra import LieAlgebra
     from liehom.representations import Pair, Representation
 
-ThingArgument = Annotated[
+ObjectArgument: TypeAlias = Annotated[
     str,
     typer.Argument(
         metavar="FILE|NAME",
-        help="A file (algebra, pair or representation; GAP's .g, Sage's .sage), or a name: 'so(4,1)', 'e(3)/so(3)'.",
+        help="File (algebra, pair or representation, GAP's .g, Sage's .sage), or name such as 'so(4,1)', 'e(3)/so(3)'.",
     ),
 ]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object instead.")]
 
 
-def describe(thing: ThingArgument, json: JsonOption = False) -> None:
-    """The structure of a Lie algebra, a pair or a representation.  Exit code 3: numerical only."""
-    raise typer.Exit(guarded(lambda: run_describe(thing, json)))
+def describe(name: ObjectArgument, json: JsonOption = False) -> None:
+    """Describe the structure of a Lie algebra, a pair or a representation.  Exit code 3: numerical only."""
+    run(lambda: run_describe(name, json))
 
 
 def run_describe(text: str, as_json: bool) -> int:
-    """Print the card; the exit code."""
+    """Print the summary or the JSON object; returns the exit code."""
     from liehom.algebra import LieAlgebra
-    from liehom.cli.inputs import thing_argument
-    from liehom.cli.show import show_card, show_json
+    from liehom.cli.inputs import object_argument
+    from liehom.cli.show import show_json, show_lines
     from liehom.representations import Pair
 
-    thing = thing_argument(text)
-    if isinstance(thing, LieAlgebra):
-        data, lines = ({**algebra_facts(thing)}, []) if as_json else ({}, thing.describe().splitlines())
-    elif isinstance(thing, Pair):
-        data, lines = (pair_facts(thing), []) if as_json else ({}, pair_card(thing))
+    described = object_argument(text)
+    if isinstance(described, LieAlgebra):
+        data, lines = ({**algebra_facts(described)}, []) if as_json else ({}, described.describe().splitlines())
+    elif isinstance(described, Pair):
+        data, lines = (pair_facts(described), []) if as_json else ({}, pair_summary(described))
     else:
-        data, lines = (representation_facts(thing), []) if as_json else ({}, representation_card(thing))
+        data, lines = (representation_facts(described), []) if as_json else ({}, representation_summary(described))
     if as_json:
         show_json({"input": text, **data})
     else:
-        show_card(lines)
-    return YES if thing.field.exact else NUMERICAL
+        show_lines(lines)
+    return YES if described.field.exact else NUMERICAL
 
 
-# -- cards -------------------------------------------------------------------------------------------------
-def pair_card(pair: Pair) -> list[str]:
-    """The lines on a pair: both algebras, and the isotropy representation."""
+# -- summaries -------------------------------------------------------------------------------------------------
+def pair_summary(pair: Pair) -> list[str]:
+    """Lines about a pair: both algebras and the isotropy representation."""
     g, h = pair.algebra, pair.subalgebra
     name = f"pair {pair.name}" if pair.name else "pair"
     lines = [f"{name}: dim g = {g.dimension}, dim h = {h.dimension}, dim g/h = {pair.dimension}, over {g.field.name}"]
@@ -60,8 +60,8 @@ def pair_card(pair: Pair) -> list[str]:
     return lines
 
 
-def representation_card(rho: Representation) -> list[str]:
-    """The lines on a representation: the algebra, and the decomposition of the space."""
+def representation_summary(rho: Representation) -> list[str]:
+    """Lines about a representation: its algebra and the decomposition of its space."""
     title = f"representation {rho.name}" if rho.name else "representation"
     head = f"{title} on {rho.field.name}^{rho.size}"
     found = f": {_decomposed(rho)}" if rho.field.exact and rho.size else ""
@@ -74,7 +74,7 @@ def _part(label: str, algebra: LieAlgebra) -> list[str]:
 
 
 def _decomposed(rho: Representation) -> str:
-    """In words: irreducible, a sum, or not completely reducible."""
+    """Decomposition in words: irreducible, a sum, or not completely reducible."""
     facts = _decomposition(rho)
     if facts is None:
         return f"not completely reducible, with socle of dimension {rho.socle().dimension}"
@@ -89,7 +89,7 @@ def _decomposed(rho: Representation) -> str:
 
 # -- facts -------------------------------------------------------------------------------------------------
 def algebra_facts(g: LieAlgebra) -> dict[str, Any]:
-    """What --json says of an algebra; the entries on structure only where it is exact."""
+    """JSON object of an algebra; entries about its structure only if the algebra is exact."""
     facts: dict[str, Any] = {
         "kind": "algebra",
         "name": g.name,
@@ -136,7 +136,7 @@ def _structure(g: LieAlgebra) -> dict[str, Any]:
 
 
 def pair_facts(pair: Pair) -> dict[str, Any]:
-    """What --json says of a pair."""
+    """JSON object of a pair."""
     facts: dict[str, Any] = {"kind": "pair", "name": pair.name, "dimension": pair.dimension, "proved": pair.field.exact}
     facts |= {"algebra": algebra_facts(pair.algebra), "subalgebra": algebra_facts(pair.subalgebra.as_algebra())}
     if pair.dimension and pair.field.exact:
@@ -145,7 +145,7 @@ def pair_facts(pair: Pair) -> dict[str, Any]:
 
 
 def representation_facts(rho: Representation) -> dict[str, Any]:
-    """What --json says of a representation."""
+    """JSON object of a representation."""
     facts: dict[str, Any] = {"kind": "representation", "name": rho.name, "size": rho.size, "proved": rho.field.exact}
     facts["algebra"] = algebra_facts(rho.algebra)
     if rho.field.exact and rho.size:
@@ -154,7 +154,7 @@ def representation_facts(rho: Representation) -> dict[str, Any]:
 
 
 def _decomposition(rho: Representation) -> list[dict[str, Any]] | None:
-    """Dimension, multiplicity and type of the isotypic components; None if it is not completely reducible."""
+    """Dimension, multiplicity and type of each isotypic component; None if rho is not completely reducible."""
     from liehom.errors import NotCompletelyReducibleError
 
     try:

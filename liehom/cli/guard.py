@@ -1,6 +1,6 @@
-"""Exit codes: every command runs under `guarded`, which turns exceptions into documented codes.
+"""Exit codes: every command runs under `guarded`, which maps exceptions to documented codes.
 
-Messages go to standard error; a command prints to standard output only when it has its whole answer.
+Messages go to standard error. A command prints to standard output only after it has computed its whole answer.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ YES, NO, BAD_INPUT, NUMERICAL, INTERNAL, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 3, 
 
 
 def guarded(action: Callable[[], int]) -> int:
-    """The exit code of an action, whatever it raises.
+    """Exit code of an action, or of the exception that it raises; its message is printed.
 
     Examples
     --------
@@ -37,13 +37,13 @@ def guarded(action: Callable[[], int]) -> int:
         return _said(f"interrupted{interrupt}", INTERRUPTED)
     except BrokenPipeError:
         return close_output()
-    except Exception as error:  # noqa: BLE001  the top of the program: whatever is left is a bug
+    except Exception as error:  # noqa: BLE001  the top of the program: any other exception is a bug
         return _said(_bug_report(error), INTERNAL)
     return code
 
 
 def close_output() -> int:
-    """After the reader of a pipe has gone: keep the interpreter from flushing into it again."""
+    """Exit code after the reader of a pipe has closed it; redirects standard output so that no flush fails again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return BROKEN_PIPE
 

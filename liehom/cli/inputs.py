@@ -1,4 +1,4 @@
-"""From the words of a command to files, algebras, pairs, points, rows and numbers."""
+"""Files, algebras, pairs, points, rows and numbers from the arguments of a command."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from liehom.io import from_gap, from_sage, load, load_pair
 from liehom.io.json_reader import parse_object
 from liehom.io.number_lists import vector
 from liehom.representations import Pair, Representation
-from liehom.scalars import RR, common_field
+from liehom.scalars import RR, Field, Scalar, common_field
 
 EXAMPLES = "examples/"
 _TYPE = re.compile(r"[A-G][0-9]{1,2}", re.ASCII)
@@ -21,22 +21,22 @@ _DECIMAL = re.compile(r"\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*"
 
 
 def examples_folder() -> Path:
-    """Where the example files are: in the installed package, else beside it in a checkout.
+    """Folder of the example files: in the installed package, or next to it in a checkout.
 
     Raises
     ------
     FormatError
-        If they are in neither place.
+        If neither folder has them.
     """
     package = Path(__file__).resolve().parent.parent
     for folder in (package / "examples", package.parent / "examples"):
         if (folder / "so4_so3.json").is_file():
             return folder
-    raise FormatError(f"the example files are neither in {package / 'examples'} nor beside the package")
+    raise FormatError(f"the example files are neither in {package / 'examples'} nor next to the package")
 
 
 def file_argument(text: str) -> str:
-    """The file that an argument names: 'examples/NAME' is found from everywhere, unless there is such a file here.
+    """Path of the file that an argument names; 'examples/NAME' is an installed example if no such file exists here.
 
     Examples
     --------
@@ -56,11 +56,12 @@ def is_file(text: str) -> bool:
 
 
 def pair_argument(text: str) -> Pair:
-    """The pair of a file or of a catalogue name.
+    """Pair in a file, or with a name of the catalogue.
 
     Raises
     ------
     FormatError, CatalogError
+        If the file is malformed, or the name is unknown.
     """
     if is_file(text):
         return load_pair(file_argument(text))
@@ -69,19 +70,21 @@ def pair_argument(text: str) -> Pair:
     return pair(text)
 
 
-def thing_argument(text: str) -> LieAlgebra | Pair | Representation:
-    """What a file or a name stands for.
+def object_argument(text: str) -> LieAlgebra | Pair | Representation:
+    """Algebra, pair or representation that a file or a name denotes.
 
-    A file that ends in .g or .gap is read as GAP's, one in .sage as Sage's. A name is that of an algebra or pair of the
-    catalogue, a real form such as 'e8(-24)', or a type such as 'E8', for the split form in its Chevalley basis.
+    A file that ends in .g or .gap is in the format of GAP, a file that ends in .sage in the format of Sage. A name is
+    an algebra or pair of the catalogue, a real form such as 'e8(-24)', or a type such as 'E8', which denotes the split
+    form in its Chevalley basis.
 
     Raises
     ------
     FormatError, CatalogError
+        If the file is malformed, or the name is unknown.
 
     Examples
     --------
-    >>> thing_argument("so(4)/so(3)"), thing_argument("so(4,1)"), thing_argument("G2")
+    >>> object_argument("so(4)/so(3)"), object_argument("so(4,1)"), object_argument("G2")
     (pair('so(4)/so(3)'), <Lie algebra so(4,1) of dimension 10 over QQ>, <Lie algebra G2 of dimension 14 over QQ>)
     """
     kind = os.path.splitext(text)[1]
@@ -97,7 +100,7 @@ def _text_of(path: str) -> str:
     try:
         return Path(path).read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
-        raise FormatError(f"{path!r} is not a text in UTF-8 (byte {error.start})") from None
+        raise FormatError(f"{path!r} is not text in UTF-8 (byte {error.start})") from None
     except (OSError, ValueError) as error:
         raise FormatError(f"{path!r} cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
@@ -121,7 +124,7 @@ def _named(text: str) -> LieAlgebra | Pair:
 
 
 def row_values(text: str, what: str) -> list[Any]:
-    """The JSON values of a row on the command line: '1, 0, sqrt(2)' or '["1", "0"]'.
+    """JSON values of a row such as '1, 0, sqrt(2)' or '["1", "0"]'.
 
     Examples
     --------
@@ -137,8 +140,8 @@ def row_values(text: str, what: str) -> list[Any]:
     return [part.strip() for part in stripped.split(",")] if stripped else []
 
 
-def number_value(text: str) -> Any:
-    """The JSON value of a number on the command line: a decimal is a float, everything else a text of the grammar.
+def number_value(text: str) -> float | str:
+    """JSON value of a number: a decimal becomes a float, anything else stays a string in the grammar of values.
 
     Examples
     --------
@@ -149,15 +152,15 @@ def number_value(text: str) -> Any:
     return float(stripped) if _DECIMAL.fullmatch(stripped) and not stripped.isdigit() else stripped
 
 
-def row_in(field: Any, text: str, what: str) -> list[Any]:
-    """A row on the command line as elements of a field."""
+def row_in(field: Field, text: str, what: str) -> list[Scalar]:
+    """Elements of a field from a row on the command line."""
     return vector(row_values(text, what), what, floats=not field.exact).numbers(field)
 
 
-def point_in(representation: Representation, text: str) -> tuple[Representation, list[Any]]:
-    """A point on the command line, and the representation over a field that holds it.
+def point_in(representation: Representation, text: str) -> tuple[Representation, list[Scalar]]:
+    """The representation over a field that contains a point on the command line, and the point.
 
-    Floats make the answer numerical; a square root extends QQ.
+    With floats the field is float64; a square root extends QQ.
     """
     raw = vector(row_values(text, "point"), "point", floats=True)
     if representation.field.exact and any(type(x) is float for x in raw.values):

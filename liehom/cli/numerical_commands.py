@@ -1,50 +1,83 @@
-"""The commands `integrate` and `order`: their options; the work is in `integration` and `convergence`."""
+"""Commands `integrate` and `order` with their options; `run_integrate` and `run_order` do the work."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import typer
 
-from liehom.cli.guard import guarded
+from liehom.cli.options import JsonOption, run
 
-FileArgument = Annotated[
-    str, typer.Argument(metavar="FILE", help="A representation file with a point and a generator or vector field.")
+FileArgument: TypeAlias = Annotated[
+    str, typer.Argument(metavar="FILE", help="Representation file with a point and a generator or vector field.")
 ]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object instead.")]
-SpanOption = Annotated[tuple[str, str] | None, typer.Option(metavar="START END", help="The time span.")]
-BaseOption = Annotated[
-    str | None, typer.Option(metavar="NAME", help="The step: euler, heun, rk4, lietaylor, cg3, cf4, gauss2, ...")
+SpanOption: TypeAlias = Annotated[
+    tuple[str, str] | None, typer.Option(metavar="START END", help="Time span (default: the file's).")
 ]
-OrderOption = Annotated[int | None, typer.Option(metavar="N", help="The order to which the step is corrected.")]
-ExponentialOption = Annotated[str | None, typer.Option(metavar="NAME", help="exp, cayley, expm, series or rodrigues.")]
-ClockOption = Annotated[str | None, typer.Option(metavar="NAME", help="corrected or nominal.")]
-PlotOption = Annotated[str | None, typer.Option(metavar="OUT.png", help="Draw a picture (.png, .pdf or .svg).")]
+BaseOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME", help="Base step: euler, heun, rk4, cg3, cf4, gauss2, ... (default: the file's, else lietaylor)."
+    ),
+]
+OrderOption: TypeAlias = Annotated[
+    int | None,
+    typer.Option(metavar="N", help="Order to which the step is corrected (default: the file's, else the base's)."),
+]
+ExponentialOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME", help="Exponential: exp, cayley, expm, series or rodrigues (default: the file's, else exp)."
+    ),
+]
+ClockOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME", help="Time reparametrization: corrected or nominal (default: the file's, else corrected)."
+    ),
+]
+PlotOption: TypeAlias = Annotated[
+    str | None, typer.Option(metavar="OUT.png", help="File for a plot: .png, .pdf or .svg (default: none).")
+]
 
 
 def integrate(
     file: FileArgument,
     out: Annotated[
         str | None,
-        typer.Option(metavar="OUT.npz", help="Where t, y and the report go; default: the name of FILE with .npz."),
+        typer.Option(metavar="OUT.npz", help="File for t, y and the report (default: the name of FILE with .npz)."),
     ] = None,
     plot: PlotOption = None,
     t_span: SpanOption = None,
-    dt: Annotated[str | None, typer.Option(metavar="H", help="A fixed step size; adapted without it.")] = None,
+    dt: Annotated[
+        str | None, typer.Option(metavar="H", help="Fixed step size (default: the file's, else adaptive).")
+    ] = None,
     base: BaseOption = None,
     order: OrderOption = None,
-    rtol: Annotated[str | None, typer.Option(metavar="X", help="Relative tolerance, for adapted steps.")] = None,
-    atol: Annotated[str | None, typer.Option(metavar="X", help="Absolute tolerance, for adapted steps.")] = None,
+    rtol: Annotated[
+        str | None,
+        typer.Option(metavar="X", help="Relative tolerance of adaptive steps (default: the file's, else 1e-6)."),
+    ] = None,
+    atol: Annotated[
+        str | None,
+        typer.Option(metavar="X", help="Absolute tolerance of adaptive steps (default: the file's, else 1e-9)."),
+    ] = None,
     exponential: ExponentialOption = None,
     clock: ClockOption = None,
-    progress: Annotated[bool | None, typer.Option(help="A progress bar; default: on a terminal.")] = None,
+    progress: Annotated[bool | None, typer.Option(help="Progress bar (default: on a terminal only).")] = None,
     checkpoint: Annotated[
-        str | None, typer.Option(metavar="PATH", help="Keep the state in this file; an interrupted run continues.")
+        str | None,
+        typer.Option(
+            metavar="PATH", help="File for the state, from which an interrupted run continues (default: none)."
+        ),
     ] = None,
-    max_steps: Annotated[int | None, typer.Option(metavar="N", help="Stop after so many steps.")] = None,
-    compile: Annotated[str | None, typer.Option(metavar="NAME", help="Compile the step: llvm or jax.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it is there.")] = False,
+    max_steps: Annotated[
+        int | None, typer.Option(metavar="N", help="Maximum number of steps per trajectory (default: 10000000).")
+    ] = None,
+    compile: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Compiler of the step: llvm or jax (default: none).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it exists.")] = False,
     json: JsonOption = False,
 ) -> None:
     """Integrate the problem of a file.  Exit code 0: the end was reached, 1: the run stopped before it."""
@@ -56,13 +89,13 @@ def integrate(
         given = ProblemOptions(t_span, dt, base, order, rtol, atol, exponential, clock)
         return run_integrate(file, given, Output(out, plot, checkpoint, force, json, progress, max_steps, compile))
 
-    _run(action)
+    run(action)
 
 
 def order(
     file: FileArgument,
     dt: Annotated[
-        str | None, typer.Option(metavar="H,H,...", help="Step sizes; default: 0.1,0.05,0.025,0.0125.")
+        str | None, typer.Option(metavar="H,H,...", help="Step sizes (default: 0.1,0.05,0.025,0.0125).")
     ] = None,
     plot: PlotOption = None,
     t_span: SpanOption = None,
@@ -81,8 +114,4 @@ def order(
         given = ProblemOptions(t_span, None, base, order, None, None, exponential, clock)
         return run_order(file, given, dt, plot, json)
 
-    _run(action)
-
-
-def _run(action: Callable[[], int]) -> None:
-    raise typer.Exit(guarded(action))
+    run(action)

@@ -1,4 +1,4 @@
-"""What `integrate` and `order` share: the problem of a file, options that override it, where pictures go."""
+"""Problem of a file with the options that override it, and the check of plot files, for `integrate` and `order`."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from liehom.io import Problem, load_problem
 from liehom.io.problem_file import read_options
 from liehom.io.solution_file import check_target
 
-PICTURES = (".png", ".pdf", ".svg")
+PLOT_SUFFIXES = (".png", ".pdf", ".svg")
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class ProblemOptions:
-    """The options of the command line that change the problem of a file, as they were typed.
+    """Options of the command line that override the problem of a file, as typed.
 
     Examples
     --------
@@ -43,11 +43,12 @@ class ProblemOptions:
     clock: str | None = None
 
     def values(self) -> dict[str, Any]:
-        """The options that were given, checked as those of a file are.
+        """Options that were given, checked in the same way as the options of a file.
 
         Raises
         ------
         FormatError, ParseError
+            If an option is not of its type; names the option.
         """
         given: dict[str, Any] = {
             "t_span": None if self.t_span is None else [number_value(t) for t in self.t_span],
@@ -57,20 +58,20 @@ class ProblemOptions:
         return read_options({key: value for key, value in given.items() if value is not None})
 
 
-def _number(text: str | None) -> Any:
+def _number(text: str | None) -> float | str | None:
     return None if text is None else number_value(text)
 
 
 def problem_of(file: str, given: ProblemOptions) -> Problem:
-    """The problem of a file with the options of the command line in place of those of the file.
+    """Problem of a file, overridden by the options of the command line.
 
-    A tolerance without a step size asks for adapted steps, and another time span for other times of output.
+    A tolerance removes the file's `dt` and so selects adaptive steps; a time span removes its `t_eval`.
 
     Raises
     ------
     FormatError, InputError
-        As `load_problem`; for a step size together with a tolerance; and for a field, point or t_span that is
-        missing, so that nothing has been computed when it is noticed.
+        As `load_problem`; if a step size and a tolerance are both given; and, before any computation, if the vector
+        field, the point or t_span is missing.
     """
     options = given.values()
     problem = load_problem(file_argument(file))
@@ -87,31 +88,31 @@ def problem_of(file: str, given: ProblemOptions) -> Problem:
     return made
 
 
-def check_picture(path: str | None) -> None:
-    """Whether a picture can be drawn and written there, asked before the work.
+def check_plot_file(path: str | None) -> None:
+    """Raise an error if a plot cannot be drawn or written; called before the work.
 
     Raises
     ------
     InputError
-        Without matplotlib; names the extra that installs it.
+        If matplotlib is not installed; names the extra that installs it.
     FormatError
-        If the folder does not exist, or the name has the suffix of no picture.
+        If the folder does not exist, or the name does not end in .png, .pdf or .svg.
     """
     if path is None:
         return
-    if os.path.splitext(path)[1].lower() not in PICTURES:
-        raise FormatError(f"{path!r} is not the name of a picture: it must end in {', '.join(PICTURES)}")
+    if os.path.splitext(path)[1].lower() not in PLOT_SUFFIXES:
+        raise FormatError(f"{path!r} is not the name of a plot: it must end in {', '.join(PLOT_SUFFIXES)}")
     check_target(path, force=True)
-    if not can_draw():
-        raise InputError("pictures need matplotlib: install it with  pip install 'liehom[plot]',  or leave out --plot")
+    if not can_plot():
+        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]',  or leave out --plot")
 
 
-def can_draw() -> bool:
+def can_plot() -> bool:
     """Whether matplotlib is installed.
 
     Examples
     --------
-    >>> isinstance(can_draw(), bool)
+    >>> isinstance(can_plot(), bool)
     True
     """
     return find_spec("matplotlib") is not None

@@ -1,4 +1,4 @@
-"""``liehom integrate``: a trajectory of the problem of a file, as a table, an .npz file and a picture."""
+"""Work of the command `integrate`: a trajectory as a table, an .npz file and a plot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.cli.guard import NO, YES
-from liehom.cli.problem_options import ProblemOptions, check_picture, problem_of
+from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json, show_table
 from liehom.errors import FormatError, InputError
 from liehom.io import save_solution
@@ -18,18 +18,20 @@ from liehom.io.solution_file import check_target, summary_json
 if TYPE_CHECKING:
     from liehom.integrators import Solution
     from liehom.representations import Representation
+    from liehom.typing import Array
 
-ROWS = 11
-COLUMNS = 4
+ROWS, COLUMNS = 11, 4
+"""Largest number of rows and of coordinates in the printed table."""
 ROUND_OFF = 1e-13
+"""Drifts up to this are printed as "< 1e-13"."""
 FORMS_UP_TO = 50
-"""Invariant forms are looked for in representations of at most this dimension."""
+"""Largest dimension of a representation whose invariant forms are computed."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Where the results go, and whether files may be replaced."""
+    """Options for the output: files, whether they may be replaced, progress, and the compiler of the step."""
 
     out: str | None = None
     plot: str | None = None
@@ -41,10 +43,10 @@ class Output:
     compile: str | None = None
 
     def checked(self, file: str) -> Output:
-        """With the default name of the .npz file; refuses what could not be written after the work."""
+        """The options with the name of the .npz file; raises an error if a file could not be written later."""
         out = f"{Path(file).stem}.npz" if self.out is None else self.out
         check_target(out, force=self.force)
-        check_picture(self.plot)
+        check_plot_file(self.plot)
         if self.checkpoint is not None:
             check_target(self.checkpoint, force=True)
         targets = [os.path.abspath(path) for path in (out, self.plot, self.checkpoint) if path is not None]
@@ -56,7 +58,7 @@ class Output:
 
 
 def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
-    """Integrate, write the files, print the table and the report."""
+    """Integrate, write the files, print the table and the report; returns the exit code."""
     import numpy as np
 
     output = wanted.checked(file)
@@ -66,10 +68,10 @@ def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
     options["dense_output"] = output.plot is not None
     options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
     try:
-        with np.errstate(all="ignore"):  # what is not finite ends the run with a message
+        with np.errstate(all="ignore"):  # a number that is not finite ends the run with a message
             solution = problem.integrate(checkpoint=output.checkpoint, **options)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(_where_it_went_on(output.checkpoint)) from None
+        raise KeyboardInterrupt(_how_to_continue(output.checkpoint)) from None
     save_solution(solution, str(output.out), force=output.force)
     if output.plot is not None:
         _draw(solution, output.plot)
@@ -81,7 +83,7 @@ def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
     return YES if solution.success else NO
 
 
-def _where_it_went_on(checkpoint: str | None) -> str:
+def _how_to_continue(checkpoint: str | None) -> str:
     if checkpoint is None or not os.path.exists(checkpoint):
         return ""
     return f"; the state is in {checkpoint}: the same command continues from it"
@@ -93,8 +95,8 @@ def _draw(solution: Solution, path: str) -> None:
     plot_trajectory(solution, path)
 
 
-def invariant_drift(representation: Representation, y: Any) -> Any | None:
-    """How far the invariant quadratic forms have moved from their values at the start, relative to |F| |m|^2.
+def invariant_drift(representation: Representation, y: Array) -> Array | None:
+    """Drift of the invariant quadratic forms from their initial values, relative to |F| |m|^2.
 
     Parameters
     ----------
@@ -104,7 +106,7 @@ def invariant_drift(representation: Representation, y: Any) -> Any | None:
     Returns
     -------
     array of shape (n,) or None
-        The largest over all forms; None if no form is known.
+        Largest drift over all forms; None if no form is known.
 
     Examples
     --------
@@ -126,8 +128,8 @@ def invariant_drift(representation: Representation, y: Any) -> Any | None:
     return worst
 
 
-def _forms(representation: Representation) -> list[Any]:
-    """Symmetric matrices F with rho(x)^T F + F rho(x) = 0, as float arrays."""
+def _forms(representation: Representation) -> list[Array]:
+    """Symmetric matrices F with rho(x)^T F + F rho(x) = 0."""
     import numpy as np
 
     if representation.field.exact:
@@ -142,13 +144,13 @@ def _forms(representation: Representation) -> list[Any]:
 
 # -- printing --------------------------------------------------------------------------------------------
 def _shown_rows(count: int) -> list[int]:
-    """Which points the table shows: the first, the last, and evenly chosen ones between them."""
+    """Indices of the points in the table: the first, the last, and evenly spaced ones between them."""
     if count <= ROWS:
         return list(range(count))
     return [round(i * (count - 1) / (ROWS - 1)) for i in range(ROWS)]
 
 
-def _print_table(solution: Solution, drift: Any, output: Output) -> None:
+def _print_table(solution: Solution, drift: Array | None, output: Output) -> None:
     n = min(solution.y.shape[0], COLUMNS)
     more = [] if n == solution.y.shape[0] else ["..."]
     columns = ["t", *(f"m{i}" for i in range(n)), *more, *([] if drift is None else ["drift of invariants"])]
@@ -162,7 +164,7 @@ def _print_table(solution: Solution, drift: Any, output: Output) -> None:
     print(solution.report)
     print(f"t, y and report: {output.out}")
     if output.plot is not None:
-        print(f"picture: {output.plot}")
+        print(f"plot: {output.plot}")
 
 
 def _shown_drift(x: float) -> str:
@@ -170,12 +172,12 @@ def _shown_drift(x: float) -> str:
 
 
 def _zero_unsigned(x: float) -> float:
-    """The coordinate, without the sign of a zero that eight digits show."""
+    """The coordinate, or 0.0 if eight digits show zero, so that no "-0.00000000" is printed."""
     return 0.0 if abs(x) < 5e-9 else x
 
 
-def _print_json(file: str, solution: Solution, drift: Any, output: Output) -> None:
-    """The whole arrays are in the .npz file; the object has the rows of the table."""
+def _print_json(file: str, solution: Solution, drift: Array | None, output: Output) -> None:
+    """Print the rows of the table and the summary as JSON; the .npz file has the whole arrays."""
     rows = _shown_rows(solution.y.shape[-1])
     show_json(
         {

@@ -1,4 +1,4 @@
-"""``liehom order``: the order of convergence, measured on the problem of a file."""
+"""Work of the command `order`: the order of convergence on the problem of a file."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from liehom.cli.guard import YES
 from liehom.cli.inputs import number_value
-from liehom.cli.problem_options import ProblemOptions, check_picture, problem_of
+from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json
 from liehom.errors import FormatError
 from liehom.io.number_lists import vector
@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from liehom.io import Problem
 
 SIZES = "0.1,0.05,0.025,0.0125"
+"""Default step sizes."""
 
 
 def run_order(file: str, given: ProblemOptions, sizes: str | None, plot: str | None, as_json: bool) -> int:
-    """Measure, draw, print the table."""
+    """Measure the orders, draw the plot and print the table; returns the exit code."""
     import numpy as np
 
-    check_picture(plot)
+    check_plot_file(plot)
     dts = step_sizes(SIZES if sizes is None else sizes)
     problem = problem_of(file, given)
     with np.errstate(all="ignore"):
@@ -39,17 +40,17 @@ def run_order(file: str, given: ProblemOptions, sizes: str | None, plot: str | N
         return YES
     print(table)
     if plot is not None:
-        print(f"picture: {plot}")
+        print(f"plot: {plot}")
     return YES
 
 
 def step_sizes(text: str) -> list[float]:
-    """Step sizes on the command line: '0.1,0.05' or '1/10, 1/20'.
+    """Step sizes in descending order from a string such as '0.1,0.05' or '1/10, 1/20'.
 
     Raises
     ------
     FormatError
-        If there are fewer than two, or they are not positive and different.
+        If there are fewer than two sizes, or they are not positive and distinct.
 
     Examples
     --------
@@ -63,7 +64,7 @@ def step_sizes(text: str) -> list[float]:
 
 
 def measured(problem: Problem, dts: Sequence[float]) -> ConvergenceTable:
-    """The table of `observed_order` for a problem."""
+    """Table of `observed_order` for a problem."""
     from liehom.integrators import observed_order
 
     options = {key: problem.options[key] for key in ("exponential", "clock") if key in problem.options}
@@ -73,7 +74,7 @@ def measured(problem: Problem, dts: Sequence[float]) -> ConvergenceTable:
 
 
 def table_json(table: ConvergenceTable) -> dict[str, Any]:
-    """A table of orders as JSON; what means nothing is null."""
+    """JSON object of a table of orders; a number that is not finite is null."""
     facts = ("step", "exponential", "clock", "order", "t_span", "reference_accuracy")
     rows = [{**row._asdict(), "message": text} for row, text in zip(table.rows, table.messages, strict=True)]
     orbit, trajectory = table.orders

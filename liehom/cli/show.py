@@ -1,4 +1,4 @@
-"""What a command prints: panels on a terminal, plain lines in a pipe, one object with --json."""
+"""Printing of results: panels on a terminal, plain lines in a pipe, one object with --json."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 STYLES = {0: "green", 1: "red", 3: "yellow"}
+"""Colour of a panel for each exit code."""
 
 
 def show_json(data: Mapping[str, Any]) -> None:
-    """One JSON object on standard output."""
+    """Print one JSON object to standard output."""
     print(json.dumps(finite(data), allow_nan=False))
 
 
 def finite(value: Any) -> Any:
-    """The value with infinities as texts, since JSON has none.
+    """The value with infinities and NaN as strings, since JSON has no such numbers.
 
     Examples
     --------
@@ -32,7 +33,7 @@ def finite(value: Any) -> Any:
 
 
 def show_answer(sentence: str, rows: Sequence[tuple[str, str]], code: int = 0) -> None:
-    """A sentence with facts below it."""
+    """Print a sentence and labelled facts below it."""
     if not sys.stdout.isatty():
         width = max((len(name) for name, _ in rows), default=0)
         print(sentence)
@@ -52,8 +53,8 @@ def show_answer(sentence: str, rows: Sequence[tuple[str, str]], code: int = 0) -
     Console().print(Panel(body, border_style=style, expand=False))
 
 
-def show_card(lines: Sequence[str]) -> None:
-    """Lines, the first of which is the title."""
+def show_lines(lines: Sequence[str]) -> None:
+    """Print lines, the first of which is the title."""
     if not sys.stdout.isatty():
         print("\n".join(lines))
         return
@@ -66,7 +67,7 @@ def show_card(lines: Sequence[str]) -> None:
 
 
 def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header: bool = True) -> None:
-    """A table; aligned plain lines in a pipe."""
+    """Print a table; in a pipe, aligned plain lines."""
     if not sys.stdout.isatty():
         shown = [columns, *rows] if header else list(rows)
         widths = [max(len(row[c]) for row in shown) for c in range(len(columns))] if shown else []
@@ -86,7 +87,7 @@ def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header:
 
 
 def short_vector(values: Sequence[str], limit: int = 100) -> str:
-    """A vector as a line: whole where it is short, else its non-zero entries, else its length.
+    """String of a vector: all entries if it is short, else its nonzero entries, else its length.
 
     Examples
     --------

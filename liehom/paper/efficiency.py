@@ -166,7 +166,7 @@ def figure7(quick: bool = False, seed: int = SEED) -> Reproduction:
                 ordered,
             ),
         ),
-        picture=lambda path: draw_costs(panels, path),
+        plot=lambda path: draw_costs(panels, path),
     )
 
 

@@ -39,7 +39,7 @@ def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Rep
     Returns
     -------
     Reproduction
-        With `.tables`, `.checks`, `.holds`, `.markdown()`, `.write(folder)`, `.picture(path)`.
+        With `.tables`, `.checks`, `.holds`, `.markdown()`, `.write(folder)`, `.plot(path)`.
 
     Raises
     ------

@@ -93,7 +93,7 @@ class Reproduction:
         By the end of the file name: "" is the table itself.
     checks : tuple of Check
     notes : tuple of str
-    picture : callable or None
+    plot : callable or None
         Draws into a path, or returns a figure of matplotlib for the path None.
 
     Examples
@@ -109,7 +109,7 @@ class Reproduction:
     tables: dict[str, Table]
     checks: tuple[Check, ...] = ()
     notes: tuple[str, ...] = ()
-    picture: Callable[[Any], Any] | None = None
+    plot: Callable[[Any], Any] | None = None
 
     @property
     def holds(self) -> bool:
@@ -127,7 +127,7 @@ class Reproduction:
             parts.append("## Claims\n\n" + Table("claims", ("claim", "found", "holds"), rows).markdown())
         return "\n\n".join([*parts, *self.notes]) + "\n"
 
-    def write(self, folder: str | os.PathLike[str], picture: bool = True) -> list[Path]:
+    def write(self, folder: str | os.PathLike[str], plot: bool = True) -> list[Path]:
         """Write NAME.md, NAME.csv (one for each table) and NAME.png; the paths.
 
         Files of these names are replaced. Without matplotlib there is no picture.
@@ -149,8 +149,8 @@ class Reproduction:
                 written.append(target / name)
         except OSError as error:
             raise FormatError(f"{os.fspath(folder)!r} cannot be written: {error.strerror or error}") from None
-        if picture and self.picture is not None:
-            self.picture(target / f"{self.name}.png")
+        if plot and self.plot is not None:
+            self.plot(target / f"{self.name}.png")
             written.append(target / f"{self.name}.png")
         return written
 

@@ -58,7 +58,7 @@ def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
             ),
         },
         (Check("all points stay on the sphere", f"| |m|^2 - 1 | at most {off:.0e}", off < ZERO),),
-        picture=lambda path: draw_spheres(curves, path),
+        plot=lambda path: draw_spheres(curves, path),
     )
 
 

@@ -317,12 +317,12 @@ def test_demo_runs_on_the_example_files_and_ends_with_a_picture(elsewhere: Path)
         assert expected in result.stdout
     assert "Corrected(Euler(), order=4)" in result.stdout
     assert "order 4 NOT reached: the order stays 1" in result.stdout
-    assert "Picture of these errors: liehom-demo.png" in result.stdout
+    assert "Plot of these errors: liehom-demo.png" in result.stdout
     assert (elsewhere / "liehom-demo.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_demo_without_matplotlib_says_how_to_get_it(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("liehom.cli.demo.can_draw", lambda: False)
+    monkeypatch.setattr("liehom.cli.demo.can_plot", lambda: False)
     result = liehom("demo")
     assert result.exit_code == 0, result.output
     assert "pip install 'liehom[plot]'" in result.stdout
@@ -333,7 +333,7 @@ def test_demo_where_no_picture_can_be_written(elsewhere: Path) -> None:
     (elsewhere / "liehom-demo.png").mkdir()
     result = liehom("demo")
     assert result.exit_code == 0, result.output
-    assert "No picture of this" in result.stdout
+    assert "No plot of this" in result.stdout
 
 
 def test_demo_json(elsewhere: Path) -> None:

@@ -208,7 +208,7 @@ def test_pictures_are_drawn(suffix: str, begins: bytes) -> None:
     picture = f"picture.{suffix}"
     result = liehom("integrate", RIGID, "--plot", picture)
     assert result.exit_code == 0, result.output
-    assert result.stdout.endswith(f"picture: {picture}\n")
+    assert result.stdout.endswith(f"plot: {picture}\n")
     assert Path(picture).read_bytes().startswith(begins)
     result = liehom("order", RIGID, "--plot", picture, "--t-span", "0", "1", "--dt", "0.1,0.05")
     assert result.exit_code == 0, result.output
