@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
-from liehom.correctors.step import Generator, Step
+from liehom.correctors.step import ExponentialLike, Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
@@ -23,7 +23,7 @@ from liehom.integrators.compiled.jax_integration import integrate_on_jax
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.run.checkpoint import checked_path
 from liehom.integrators.run.events import EventFunction
-from liehom.integrators.run.options import ExponentialLike, Options, Span
+from liehom.integrators.run.options import Options, Span
 from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
@@ -202,7 +202,7 @@ def integrate(
         return run.execute(progress, path)
 
 
-def _with_tight_frame(action: Action, step: Step, start: Any, orbit_dimension: Any) -> Action:
+def _with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: int | IntegerArray) -> Action:
     """The action that knows what a corrected step can use of the orbits, if all are of one dimension."""
     dimensions = np.unique(orbit_dimension)
     if len(dimensions) != 1 or start.dtype != np.float64 or not isinstance(step, Corrected):

@@ -154,7 +154,7 @@ def _clock_coefficients(tape: Tape, clock: Sequence[Any]) -> tuple[tuple[int, Ex
     return tuple((k, _number(tape, c)) for k, c in enumerate(clock) if k > 1 and c is not None)
 
 
-def _clock_is_admissible(tape: Tape, clock: Sequence[Any], h: Any) -> Expr | None:
+def _clock_is_admissible(tape: Tape, clock: Sequence[Any], h: Values) -> Expr | None:
     """Whether |τ' - 1| is small over the step, by the sizes of the coefficients; None if τ(h) = h."""
     size, power, total = abs(h), None, None
     for k, c in enumerate(clock):

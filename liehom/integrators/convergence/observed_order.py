@@ -15,14 +15,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.step import Step
+from liehom.correctors.step import ExponentialLike, Step
 from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.convergence.convergence_table import MARGIN, NAN, ConvergenceTable
 from liehom.integrators.convergence.orbit_error import orbit_distance
 from liehom.integrators.convergence.reference import Reference
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, all_solved
-from liehom.integrators.run.options import ExponentialLike
 from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike

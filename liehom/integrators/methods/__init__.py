@@ -1,7 +1,7 @@
 """Steps of Lie group methods: Euler, Heun, Lie-Taylor, RKMK, Crouch-Grossman, commutator-free.
 
-Each is a `Step` of `liehom.correctors`; `named` finds them by name for files and the command line. How to write
-another is in docs/extending.md.
+Each method is a `Step` of `liehom.correctors`. `step_named` finds methods by name, for files and the command line.
+docs/extending.md explains how to write a custom one.
 """
 
 from liehom.integrators.methods.named import step_named as step_named

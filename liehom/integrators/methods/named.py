@@ -1,6 +1,6 @@
-"""Steps by name, as files and the command line give them: "euler", "heun", "lietaylor", "rk4", "cg3", ...
+"""Steps by name, for files and the command line: "euler", "heun", "lietaylor", "rk4", "cg3", ...
 
-A name with an order above the method's own stands for the corrected step, Corrected(step, order).
+A name with an order above that of the method gives the corrected step, Corrected(step, order).
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ _ALIASES = {"impliciteuler": "backwardeuler", "expliciteuler": "euler", "forward
 
 
 def step_named(base: str, order: int | None = None) -> Step:
-    """The step that a name stands for, corrected where the order is above its own.
+    """The step with a name, corrected if the order is above its own.
 
     Parameters
     ----------
     base : str
         One of `step_names`; case, spaces, hyphens and underscores do not matter. "lietaylor" takes any order
-        itself, 6 by default; "lietaylor4" is `LieTaylor(4)`, which a higher order corrects. Every name of a tableau
-        stands for the Runge-Kutta-Munthe-Kaas step with that tableau.
+        itself, 6 by default. "lietaylor4" is `LieTaylor(4)`, which a higher order corrects. The name of a tableau
+        gives the Runge-Kutta-Munthe-Kaas step with that tableau.
     order : int, optional
-        The order to reach: above that of the base it gives `Corrected(step, order)`, else the base itself.
+        The order to reach. Above that of the base it gives `Corrected(step, order)`, else the base itself.
 
     Raises
     ------
     InputError
-        If the name is unknown (the message lists those that are known), or the order is no integer from 1.
+        If the name is unknown (the message lists the known names), or the order is not an integer from 1.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def step_named(base: str, order: int | None = None) -> Step:
 
 
 def step_names() -> tuple[str, ...]:
-    """The names that `step_named` knows.
+    """Names that `step_named` accepts, a tuple of strings.
 
     Examples
     --------

@@ -4,12 +4,14 @@ Each stage has a point Y_i, reached from an earlier one by exponentials of combi
 
     Y_i = Exp(h sum_j a_i2j F_j) Exp(h sum_j a_i1j F_j) Y_s(i),    c_i = c_s(i) + sum of its coefficients,
 
-from m = Y_1 on, and so has the result.  No differential of Exp enters; the orders hold for the true exponential.
+starting with Y_1 = m. The result is reached in the same way. These methods do not use the differential of Exp; their
+orders hold for the true exponential.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -17,18 +19,20 @@ from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.correctors.step import Generator, Step, apply_factors, step_variable
+from liehom.correctors.step import Factors, Generator, Step, apply_factors, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.homogeneous.exponentials.exponential import TrueExponential
 from liehom.integrators.methods.rkmk import exact_like
 from liehom.series.arrays import is_exact
+from liehom.typing import Values
 
 RTOL = 1e-10
+"""Relative tolerance in the comparison of the series of an exponential with that of exp."""
 
 
 class StagePoint(NamedTuple):
-    """How a point is reached: from which earlier one, by rows of coefficients, first applied first."""
+    """The recipe of a point Y_i: index of the earlier point, and rows of coefficients in the order of application."""
 
     start: int
     rows: tuple[tuple[Fraction, ...], ...]
@@ -37,13 +41,13 @@ class StagePoint(NamedTuple):
 @final
 @dataclass(frozen=True)
 class Scheme:
-    """A method with several exponentials as data.
+    """Coefficients of a method with several exponentials.
 
     Parameters
     ----------
     points : tuple of (int, str)
-        For each point after Y_1 = m the index (from 0) of the point it starts from, and its rows of coefficients,
-        as fractions separated by spaces, rows by ``;``. The last point is the result.
+        For each point after Y_1 = m the index (from 0) of the point it starts from, and its rows of coefficients:
+        fractions separated by spaces, rows separated by ``;``. The last point is the result.
 
     Raises
     ------
@@ -68,12 +72,12 @@ class Scheme:
 
     @property
     def stages(self) -> tuple[StagePoint, ...]:
-        """How Y_1 = m, Y_2, ... are reached."""
+        """Recipes of Y_1 = m, Y_2, ...."""
         return self._read[:-1]
 
     @property
     def result(self) -> StagePoint:
-        """How the result is reached."""
+        """Recipe of the result."""
         return self._read[-1]
 
     @property
@@ -98,7 +102,7 @@ class Scheme:
 
 
 class ProductStep(Step, ABC):
-    """A step given by a `Scheme`; a new one needs `order` and `scheme`.
+    """A step with several exponentials, given by a `Scheme`; a subclass defines `order` and `scheme`.
 
     Examples
     --------
@@ -115,10 +119,10 @@ class ProductStep(Step, ABC):
     @property
     @abstractmethod
     def scheme(self) -> Scheme:
-        """The coefficients."""
+        """The coefficients, a `Scheme`."""
 
-    def factors(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
-        """The generators of the result.
+    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
+        """Generators x_1, ..., x_s of the result.
 
         Raises
         ------
@@ -127,8 +131,8 @@ class ProductStep(Step, ABC):
         """
         check_exponential(action, self.order)
         scheme = self.scheme
-        points: list[Any] = []
-        velocities: list[Any] = []
+        points: list[Values] = []
+        velocities: list[Values] = []
         for (start, rows), c in zip(scheme.stages, scheme.nodes, strict=True):
             points.append(apply_factors(action, _combined(rows, velocities, m), points[start]) if rows else m)
             velocities.append(h * psi(points[-1], t + h * _number(c, m) if c else t))
@@ -141,7 +145,7 @@ class CrouchGrossman3(ProductStep):
     """Three exponentials of single velocities, order 3.
 
     The coefficients are those of B. Owren and A. Marthinsen, Runge-Kutta methods adapted to manifolds and based on
-    rigid frames, BIT 39 (1999).  The conditions for order 3 are more than those of a Runge-Kutta method.
+    rigid frames, BIT 39 (1999).  Order 3 needs more conditions than for a Runge-Kutta method.
 
     Examples
     --------
@@ -169,7 +173,7 @@ class CommutatorFree4(ProductStep):
     """Two exponentials of combinations of four velocities, order 4.
 
     E. Celledoni, A. Marthinsen, B. Owren, Commutator-free Lie group methods, Future Gener. Comput. Syst. 19 (2003):
-    the classical Runge-Kutta method where all velocities commute.
+    the classical Runge-Kutta method if all velocities commute.
 
     Examples
     --------
@@ -199,11 +203,12 @@ COMMUTATOR_FREE_4 = Scheme(
 
 @lru_cache(maxsize=64)
 def check_exponential(action: Action, order: int) -> None:
-    """Refuse an exponential that is not exp through a given order, found on a series at a generic point.
+    """Raise InputError unless an exponential equals exp through a given order, tested by a series at a generic point.
 
     Raises
     ------
     InputError
+        If the exponential differs from exp at a power of h up to `order`.
 
     Examples
     --------
@@ -232,8 +237,8 @@ it: take exponential='exp', or an RKMK or LieTaylor step
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _combined(rows: tuple[tuple[Fraction, ...], ...], velocities: list[Any], m: Any) -> tuple[Any, ...]:
-    """The generators sum_j row[j] velocities[j], one for each row."""
+def _combined(rows: tuple[tuple[Fraction, ...], ...], velocities: Sequence[Values], m: Values) -> Factors:
+    """Generators sum_j row[j] velocities[j], one for each row."""
     made = []
     for row in rows:
         terms = [velocity * _number(x, m) for x, velocity in zip(row, velocities, strict=False) if x]
@@ -241,8 +246,8 @@ def _combined(rows: tuple[tuple[Fraction, ...], ...], velocities: list[Any], m: 
     return tuple(made)
 
 
-def _number(value: Fraction, like: Any) -> Any:
-    """A fraction in the numbers of the array `like`, rounded once."""
+def _number(value: Fraction, like: Values) -> Any:
+    """A fraction as a number of the type of the array `like`, rounded once."""
     if is_exact(like):
         return exact_like(value, like)
     if like.dtype == np.longdouble:

@@ -10,25 +10,27 @@ u(t) in g with Exp(u(t)) m = F_t(m) solves u' = dExp^-1_u psi(Exp(u) m, t), u(0)
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple, final
+from typing import Any, NamedTuple, TypeAlias, final
 
 import numpy as np
 
-from liehom.correctors.step import Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential, solve_implicitly
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.tableaux.tableau import Tableau
 from liehom.integrators.tableaux.tableaux import tableau as tableau_of
 from liehom.scalars import QQ
 from liehom.series.arrays import is_exact, is_jax, namespace, zeros
+from liehom.typing import Values
 
-SparseRow = tuple[tuple[int, Any], ...]
-"""The entries of a row of coefficients that are not zero, with their places."""
+SparseRow: TypeAlias = tuple[tuple[int, Any], ...]
+"""(index, entry) of the nonzero entries of a row of coefficients."""
 
 
 class Coefficients(NamedTuple):
-    """A tableau in the numbers of a computation; `difference` is b - embedded_b."""
+    """Coefficients of a tableau in the numbers of a computation; `difference` is b - embedded_b."""
 
     a: tuple[SparseRow, ...]
     b: SparseRow
@@ -49,22 +51,22 @@ class RKMK(OneExponential):
     Raises
     ------
     InputError
-        If no tableau has this name. When it steps: if the order is above 2 and the inverse differential of the
+        If no tableau has this name. In a step: if the order is above 2 and the inverse differential of the
         exponential is not known, or the point is exact and the coefficients are floats.
     ConvergenceError
-        When an implicit step does not converge: the step size is too large.
+        In an implicit step, if the iteration does not converge because the step size is too large.
 
     Notes
     -----
-    A method of order p uses the terms ad_u^0, ..., ad_u^(p-2) of dexp^-1_u (`terms`).  That is enough: along the
-    solution ad_u psi = O(h^2), as u = h psi + O(h^2), so what is left out changes the equation by
-    ad_u^(p-1) psi = O(h^p).  For order at most 2 the differential is not needed and every Exp will do.
+    A method of order p uses the terms ad_u^0, ..., ad_u^(p-2) of dexp^-1_u (`terms`). That is enough: along the
+    solution ad_u psi = O(h^2), as u = h psi + O(h^2), so the neglected terms change the equation by
+    ad_u^(p-1) psi = O(h^p). For order at most 2 the differential is not needed, and Exp is arbitrary.
 
-    Where the tableau has an embedded method, ``at(...)`` returns an `EmbeddedStep`, whose ``estimate(h)`` is the
-    difference of the two methods as a vector in V, of the order ``estimate_order`` in h; both methods share their
-    stages, and stages with zero weight are computed only for the estimate.
+    If the tableau has an embedded method, ``at(...)`` returns an `EmbeddedStep`. Its ``estimate(h)`` is the difference
+    of the two methods as a vector in V, of the order ``estimate_order`` in h. Both methods share their stages; stages
+    with zero weight are computed only for the estimate.
 
-    Coefficients are rounded once to the type of m. Over exact scalars they are exact, so that expansions in h are.
+    Coefficients are rounded once to the type of m. Over exact scalars they are exact, and so are expansions in h.
 
     Examples
     --------
@@ -92,7 +94,7 @@ class RKMK(OneExponential):
 
     @property
     def terms(self) -> int:
-        """How many terms of the series of dexp^-1 it uses: the order minus 1, at least 1.
+        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1.
 
         Examples
         --------
@@ -101,8 +103,8 @@ class RKMK(OneExponential):
         """
         return max(self.order - 1, 1)
 
-    def coefficients(self, like: Any) -> Coefficients:
-        """The tableau in the numbers of the array `like`, without its zeros.
+    def coefficients(self, like: Values) -> Coefficients:
+        """The nonzero coefficients in the numbers of the array `like`.
 
         Raises
         ------
@@ -126,11 +128,11 @@ class RKMK(OneExponential):
             )
         return self._floating[kind]
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         stages = _Stages(self, action, psi, m, t)
         return stages.combined(stages.numbers.b, h)
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if self.tableau.embedded_b is None:
             return super().at(action, psi, m, t, error_terms=error_terms)
         return EmbeddedStep(_Stages(self, action, psi, m, t))
@@ -138,7 +140,7 @@ class RKMK(OneExponential):
     def __repr__(self) -> str:
         return f"RKMK({self.tableau.name!r})"
 
-    def _exact(self, like: Any) -> Coefficients:
+    def _exact(self, like: Values) -> Coefficients:
         tableau = self.tableau
         if not tableau.exact:
             raise InputError(
@@ -158,7 +160,7 @@ class RKMK(OneExponential):
 class EmbeddedStep(LocalStep):
     """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error.
 
-    Made by `RKMK.at`. Stages for the last h are kept, for `factors` and `estimate` alike.
+    `RKMK.at` returns it. The stages for the last h are cached and shared by `factors` and `estimate`.
 
     Attributes
     ----------
@@ -183,75 +185,79 @@ class EmbeddedStep(LocalStep):
         self.estimate_order = min(tableau.order, tableau.embedded_order or tableau.order) + 1
         self._stages = stages
 
-    def factors(self, h: Any) -> tuple[Any, ...]:
+    def factors(self, h: Values) -> Factors:
         return (self._stages.combined(self._stages.numbers.b, h),)
 
-    def estimate(self, h: Any) -> Any:
+    def estimate(self, h: Values) -> Values:
         """rho(xi - xi_embedded) m for h (..., 1) or a Jet: the error of the step to leading order, shape (..., N)."""
         stages = self._stages
-        return stages.action.infinitesimal(stages.combined(stages.numbers.difference, h), stages.m)
+        estimate: Values = stages.action.infinitesimal(stages.combined(stages.numbers.difference, h), stages.m)
+        return estimate
 
 
 @final
 class _Stages:
-    """The stages k_i of a method at one point, as far as they were asked for, for the last h."""
+    """Stages k_i of a method at one point, computed on demand for the last h."""
 
-    def __init__(self, method: RKMK, action: Action, psi: Generator, m: Any, t: Any) -> None:
+    def __init__(self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values) -> None:
         self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
         self.numbers = method.coefficients(m)
         # a row without entries beyond its diagonal needs no later stage
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
         self._shape = (*np.shape(m)[:-1], action.dimension)
-        self._start: Any = None
-        self._h: Any = None
-        self._kept: Any = None
-        self._known: list[Any] = []
+        self._start: Values | None = None
+        self._h: Values | None = None
+        self._copy: Values | None = None
+        self._known: list[Values] = []
 
-    def combined(self, weights: SparseRow, h: Any) -> Any:
+    def combined(self, weights: SparseRow, h: Values) -> Values:
         """sum_i weights[i] k_i."""
-        return _combined(weights, self._through(h, weights[-1][0] + 1))
+        total: Values = _combined(weights, self._through(h, weights[-1][0] + 1))
+        return total
 
-    def _through(self, h: Any, count: int) -> list[Any]:
-        """The stages before `count`, and no others where the method allows it."""
-        if not self._is_kept(h):
-            self._h, self._kept, self._known = h, h.copy() if isinstance(h, np.ndarray) else None, []
+    def _through(self, h: Values, count: int) -> list[Values]:
+        """The first `count` stages; later ones are computed only if the method is implicit in all of them."""
+        if not self._is_last(h):
+            self._h, self._copy, self._known = h, h.copy() if isinstance(h, np.ndarray) else None, []
         if not self._sequential:
             self._known = self._known or self._solved(h)
         while len(self._known) < count:
             self._known.append(self._next(h))
         return self._known
 
-    def _is_kept(self, h: Any) -> bool:
-        """Arrays are compared by value, as their owner may have changed them."""
-        if isinstance(h, np.ndarray) and isinstance(self._kept, np.ndarray):
-            return h.dtype == self._kept.dtype and np.array_equal(h, self._kept)
-        return h is self._h and self._kept is None
+    def _is_last(self, h: Values) -> bool:
+        """Whether h is the last step size; arrays are compared by value, because their owner may have changed them."""
+        if isinstance(h, np.ndarray) and isinstance(self._copy, np.ndarray):
+            return h.dtype == self._copy.dtype and np.array_equal(h, self._copy)
+        return h is self._h and self._copy is None
 
-    def _next(self, h: Any) -> Any:
-        """The stage after those that are known; alone implicit where a_ii is not zero."""
+    def _next(self, h: Values) -> Values:
+        """The stage after the known ones, by an equation for it alone if a_ii is not zero."""
         i = len(self._known)
         row = self.numbers.a[i]
         if not row or row[-1][0] < i:
             return self._stage(i, _combined(row, self._known), h)
         before, (_, diagonal) = _combined(row[:-1], self._known), row[-1]
 
-        def stage(k: Any) -> Any:
+        def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
 
         return solve_implicitly(stage, zeros(self.m, self._shape), h)
 
-    def _solved(self, h: Any) -> list[Any]:
-        """All stages of an implicit method, as one array with a first axis for the stages."""
+    def _solved(self, h: Values) -> list[Values]:
+        """All stages of an implicit method, from one equation for an array with a first axis for the stages."""
         rows = self.numbers.a
 
-        def stages(k: Any) -> Any:
+        def stages(k: Any) -> Values:
             made = [self._stage(i, _combined(row, k), h) for i, row in enumerate(rows)]
-            return namespace(*made).stack(made)
+            stacked: Values = namespace(*made).stack(made)
+            return stacked
 
         k = solve_implicitly(stages, zeros(self.m, (len(rows), *self._shape)), h, stacked=True)
         return [k[i] for i in range(len(rows))]
 
-    def _stage(self, i: int, u: Any, h: Any) -> Any:
+    def _stage(self, i: int, u: Values | None, h: Values) -> Values:
+        """k_i for the generator u of its point, None for u = 0."""
         c = self.numbers.c[i]
         if u is None and c == 0:
             if self._start is None:
@@ -267,8 +273,8 @@ class _Stages:
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def exact_like(value: Fraction, like: Any) -> Any:
-    """A fraction in the exact numbers of the array `like`.
+def exact_like(value: Fraction, like: Values) -> Any:
+    """A fraction as an exact number of the kind in the array `like`.
 
     Examples
     --------
@@ -281,18 +287,18 @@ def exact_like(value: Fraction, like: Any) -> Any:
     return one * value.numerator / value.denominator
 
 
-def _coefficients(rows: list[list[Any]]) -> Coefficients:
-    """From the rows of a, b, c and the embedded weights."""
+def _coefficients(rows: Sequence[Sequence[Any]]) -> Coefficients:
+    """Coefficients from the rows of a, and b, c and the embedded weights as last rows."""
     *a, b, c, embedded = rows
     difference = [x - y for x, y in zip(b, embedded, strict=True)]
     return Coefficients(tuple(_sparse(row) for row in a), _sparse(b), tuple(c), _sparse(difference))
 
 
-def _sparse(row: list[Any]) -> SparseRow:
+def _sparse(row: Sequence[Any]) -> SparseRow:
     return tuple((j, x) for j, x in enumerate(row) if x != 0)
 
 
-def _combined(row: SparseRow, terms: Any) -> Any:
+def _combined(row: SparseRow, terms: Sequence[Values]) -> Any:
     """sum_j row[j] terms[j]; None if the row has no entries."""
     total = None
     for j, weight in row:

@@ -1,18 +1,20 @@
-"""The simplest steps: Euler, backward Euler, Heun; and LieTaylor, of any order."""
+"""Steps of low order (Euler, backward Euler and Heun), and LieTaylor, of any order."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.correctors.expansion import Flow, flow_series, step_series
-from liehom.correctors.step import Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential, solve_implicitly
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.series.arrays import as_values, zeros
 from liehom.series.jet import Jet
+from liehom.typing import Values
 
 
 @final
@@ -30,11 +32,11 @@ class Euler(OneExponential):
     def order(self) -> int:
         return 1
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         return h * psi(m, t)
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
-        velocity = psi(m, t)  # once, for whatever h
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        velocity = psi(m, t)  # once for all h
         return LocalStep(lambda h: (h * velocity,))
 
 
@@ -53,7 +55,7 @@ class BackwardEuler(OneExponential):
     def order(self) -> int:
         return 1
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         start = zeros(m, (*np.shape(m)[:-1], action.dimension))
         return solve_implicitly(lambda x: h * psi(action.act(x, m), t + h), start, h)
 
@@ -73,7 +75,7 @@ class Heun(OneExponential):
     def order(self) -> int:
         return 2
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         first = psi(m, t)
         return h / 2 * (first + psi(action.act(h * first, m), t + h))
 
@@ -81,7 +83,7 @@ class Heun(OneExponential):
 @final
 @dataclass(frozen=True)
 class LieTaylor(OneExponential):
-    """xi = xi_1 h + ... + xi_n h^n, the series with Exp(xi(h)) m = F_h(m) to order n: any order, any Exp.
+    """xi = xi_1 h + ... + xi_n h^n, the series with Exp(xi(h)) m = F_h(m) to order n, for any n and any Exp.
 
     Parameters
     ----------
@@ -91,8 +93,8 @@ class LieTaylor(OneExponential):
     Notes
     -----
     xi' = dExp^-1_xi (psi(F_t m)): the Magnus series of the generator along the flow; for the Cayley transform on
-    so(3) and n = 4 the paper's xi^sy4. For an Exp whose differential is not known, xi_k = psi_(k-1)/k plus the
-    generator of least norm that makes order k right.
+    so(3) and n = 4 the paper's xi^sy4. For an Exp whose differential is not known, xi_k is psi_(k-1)/k plus the
+    generator of minimal norm for which order k holds.
 
     Raises
     ------
@@ -115,10 +117,10 @@ class LieTaylor(OneExponential):
     def order(self) -> int:
         return int(self.n)
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         return self.at(action, psi, m, t).factors(h)[0]
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         time = t[..., 0] if np.ndim(t) else t
         flow = flow_series(psi.field, m, self.order + error_terms, time)
         velocity = Jet.from_node(flow.generator.node)
@@ -141,20 +143,20 @@ class LieTaylor(OneExponential):
 class _Polynomial(LocalStep):
     """xi(h) = xi_1 h + ... + xi_n h^n."""
 
-    def __init__(self, coefficients: list[Any]) -> None:
+    def __init__(self, coefficients: Sequence[Values]) -> None:
         self.coefficients = coefficients
 
-    def factors(self, h: Any) -> tuple[Any, ...]:
+    def factors(self, h: Values) -> Factors:
         total = self.coefficients[-1] * h
         for x in reversed(self.coefficients[:-1]):
             total = (total + x) * h
         return (total,)
 
 
-def _fitted(action: Action, psi: Generator, flow: Flow, m: Any, order: int) -> list[Any]:
-    """The coefficients for an Exp of which only the action is known."""
+def _fitted(action: Action, psi: Generator, flow: Flow, m: Values, order: int) -> list[Values]:
+    """Coefficients xi_1, ..., xi_n for an Exp of which only the action is known."""
     frame = action.isotropy_frame(as_values(m), psi.orbit_dimension)
-    found: list[Any] = []
+    found: list[Values] = []
     for k in range(1, order + 1):
         guess = flow.psi(k - 1) / k
         step = step_series(action, _Polynomial([*found, guess]), m, k)

@@ -10,16 +10,13 @@ from typing import Any, TypeAlias, TypedDict, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.step import Step
-from liehom.homogeneous import Exponential
+from liehom.correctors.step import ExponentialLike, Step
 from liehom.integrators.run.events import EventFunction
 from liehom.typing import Array
 
 Span: TypeAlias = tuple[np.floating[Any], np.floating[Any]]
 """Start and end of the time span, in the floating type of the points."""
 
-ExponentialLike: TypeAlias = str | Exponential | type[Exponential] | Callable[[Any, Any], Any]
-"""An exponential as `liehom.homogeneous.exponential_of` reads it."""
 
 END, EVENT, NOT_FINITE, PSI, CLOCK, TOO_SMALL, IMPLICIT, LINEAR, TOO_MANY = 0, 1, -1, -2, -3, -4, -5, -6, -7
 MESSAGES = {

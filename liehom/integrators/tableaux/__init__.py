@@ -1,7 +1,7 @@
 """Runge-Kutta coefficients as exact data, with proofs of their order by rooted trees.
 
-`Tableau` proves the order that is claimed for it; `tableaux` and `collocation` provide the classical ones. The
-methods use them; see docs/theory/correctors.md.
+`Tableau` proves the order that is claimed for it. `tableau` finds the classical methods by name, and `collocation`
+computes a method from its nodes. `liehom.integrators.methods` uses them; see docs/theory/correctors.md.
 """
 
 from liehom.integrators.tableaux.collocation import collocation as collocation

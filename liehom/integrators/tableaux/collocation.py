@@ -1,4 +1,4 @@
-"""Collocation methods, made from their nodes alone: Gauss, Radau IIA, the trapezoidal rule.
+"""Collocation methods (Gauss, Radau IIA, the trapezoidal rule), computed from their nodes alone.
 
 The polynomial u of degree s with u(t) = y and u'(t + c_i h) = f(t + c_i h, u(t + c_i h)) for i = 1, ..., s gives
 the Runge-Kutta method with a_ij = int_0^{c_i} l_j and b_j = int_0^1 l_j, l_j the Lagrange polynomials of c
@@ -8,9 +8,9 @@ W_ik = c_i^(k-1): a = (c_i^k / k) W^(-1), b = (1/k) W^(-1).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import comb
-from typing import Any
 
 import numpy as np
 
@@ -18,22 +18,24 @@ from liehom.errors import InputError
 from liehom.integrators.tableaux.rooted_trees import MAX_ORDER
 from liehom.integrators.tableaux.tableau import Tableau
 from liehom.scalars import QQ, RR, Field, Scalar, common_field
+from liehom.typing import ScalarLike
 
 GAUSS_DIGITS = 60
+"""Correct decimal digits of the nodes of Gauss methods with 4 and more stages, before they are rounded to float64."""
 
 
-def collocation(name: str, nodes: Any, order: int, *, field: Field | None = None) -> Tableau:
-    """The collocation method with the given nodes.
+def collocation(name: str, nodes: Sequence[ScalarLike], order: int, *, field: Field | None = None) -> Tableau:
+    """The `Tableau` of the collocation method with given nodes.
 
     Parameters
     ----------
     name : str
-    nodes : sequence (s,)
-        Different numbers: texts, integers, fractions.
+    nodes : sequence of length s
+        Different numbers: strings, integers, fractions.
     order : int
-        The claimed order; s always holds, more where the nodes are a better quadrature formula.
+        The claimed order: s, or more if the nodes are those of a quadrature formula of higher order.
     field : Field, optional
-        An exact field that contains the nodes; the smallest where it is not given.
+        An exact field that contains the nodes (default: the smallest such field).
 
     Raises
     ------
@@ -59,7 +61,7 @@ def collocation(name: str, nodes: Any, order: int, *, field: Field | None = None
 
 
 def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
-    """The rows of a, and b as a last row (the integrals to 1)."""
+    """Rows of a, and b as a last row (the integrals to 1)."""
     powers = field.matrix([[x**k for k in range(len(c))] for x in c])
     ends = [*c, field.one]
     integrals = field.matrix([[x ** (k + 1) / (k + 1) for k in range(len(c))] for x in ends])
@@ -70,8 +72,8 @@ def _coefficients(c: list[Scalar], field: Field) -> list[list[Scalar]]:
 def gauss(stages: int) -> Tableau:
     """The Gauss method with s stages, of order 2 s: collocation at the zeros of the Legendre polynomial.
 
-    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)).  From 4 on the nodes are computed with
-    60 digits, and the coefficients rounded to float64.
+    Up to 3 stages it is exact, over QQ, QQ(sqrt(3)) and QQ(sqrt(15)). For 4 and more stages, the nodes are computed
+    with 60 digits, and the coefficients are rounded to float64.
 
     Parameters
     ----------
@@ -81,6 +83,7 @@ def gauss(stages: int) -> Tableau:
     Raises
     ------
     InputError
+        If the number of stages is not an integer from 1 to 7.
 
     Examples
     --------

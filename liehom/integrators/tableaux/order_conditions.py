@@ -1,4 +1,4 @@
-"""Which order conditions a Runge-Kutta method fulfils: order by order, exactly or with a stated tolerance.
+"""Order conditions of a Runge-Kutta method, checked order by order, exactly or with a stated tolerance.
 
 The condition of a rooted tree t is Phi(t) = 1/gamma(t), see `rooted_trees`.
 """

@@ -1,43 +1,46 @@
 """Rooted trees and the order conditions of Runge-Kutta methods.
 
-A method (a, b) has order p exactly when, for every rooted tree t with at most p vertices (J. C. Butcher,
+A method (a, b) has order p if and only if, for every rooted tree t with at most p vertices (J. C. Butcher,
 Numerical Methods for Ordinary Differential Equations, section 31),
 
     Phi(t) = sum_i b_i s_i(t) = 1/gamma(t),    s(single vertex) = 1,    s([t1, ..., tk]) = prod_j a s(tj),
 
 products entry by entry.  gamma is the density: gamma([t1, ..., tk]) = (number of vertices) prod_j gamma(tj).
-Every tree but the vertex is made in exactly one way by grafting its last subtree v to the root of the rest u,
-so that s(u with v) = s(u) * (a s(v)): one product of whole arrays per number of vertices, over exact scalars as
-over floats.
+Every tree except the vertex arises in exactly one way by grafting its last subtree v to the root of the rest u, so that
+s(u with v) = s(u) * (a s(v)). This is one product of whole arrays per number of vertices, over exact scalars as over
+floats.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import prod
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
 
+MethodArray: TypeAlias = npt.ArrayLike | Sequence[Any]
+"""Coefficients of a method: floats or exact scalars, in lists or arrays."""
+
 MAX_ORDER = 14
-"""The largest number of vertices handled: there are 32973 trees with 14 vertices, 53272 with at most 14."""
+"""The largest number of vertices of a tree: there are 32973 trees with 14 vertices, 53272 with at most 14."""
 
 
 @final
 @dataclass(frozen=True)
 class RootedTree:
-    """A rooted tree, written as the bracket of what hangs from its root; the single vertex is ``RootedTree()``.
+    """A rooted tree, written as the bracket of the subtrees at its root; the single vertex is ``RootedTree()``.
 
     Parameters
     ----------
     children : tuple of RootedTree
-        The subtrees at the root; their order does not matter to the tree, but it does to ``==``:
-        `rooted_trees` makes each tree once.
+        The subtrees at the root. Their order does not matter for the tree, but it does for ``==``; `rooted_trees`
+        returns each tree in one order only.
 
     Examples
     --------
@@ -82,7 +85,7 @@ class _Level:
 
 @cache
 def _level(order: int) -> _Level:
-    """The trees of one order, each once: the grafted tree is not later in the list than those grafted before."""
+    """All trees of one order, each once, because a grafted tree is not later in the list than those grafted before."""
     if order == 1:
         anything_may_follow = np.array([np.iinfo(np.int64).max])
         return _Level(0, np.array([-1]), anything_may_follow, np.array([1]))
@@ -99,7 +102,7 @@ def _level(order: int) -> _Level:
 
 @cache
 def _tree(index: int) -> RootedTree:
-    """The tree at a place in the list of all trees by order."""
+    """The tree at an index in the list of all trees, sorted by order."""
     level, order = _level(1), 1
     while index >= level.start + level.count:
         order += 1
@@ -110,7 +113,7 @@ def _tree(index: int) -> RootedTree:
     return RootedTree((*_tree(left).children, _tree(right)))
 
 
-def checked_order(order: Any, what: str = "order") -> int:
+def checked_order(order: object, what: str = "order") -> int:
     """The order as an int between 1 and `MAX_ORDER`.
 
     Raises
@@ -158,7 +161,7 @@ def densities(order: int) -> npt.NDArray[np.int64]:
     return _level(checked_order(order)).density
 
 
-def _arrays(a: Any, b: Any) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
+def _arrays(a: MethodArray, b: MethodArray) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]]:
     """(a, b, ones) as numpy arrays that can be multiplied; exact scalars stay objects."""
     matrix, weights = np.asarray(a), np.asarray(b)
     stages = weights.shape[0] if weights.ndim == 1 else 0
@@ -168,8 +171,8 @@ def _arrays(a: Any, b: Any) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDA
     return matrix, weights, np.ones(stages, dtype=object if exact else np.result_type(matrix, weights))
 
 
-def elementary_weight(tree: RootedTree, a: Any, b: Any) -> Any:
-    """Phi(t), the weight a method gives to one tree; the exact solution gives it 1/gamma(t).
+def elementary_weight(tree: RootedTree, a: MethodArray, b: MethodArray) -> Any:
+    """Phi(t), the weight of a tree in a method, a number; its weight in the exact solution is 1/gamma(t).
 
     Parameters
     ----------
@@ -180,6 +183,7 @@ def elementary_weight(tree: RootedTree, a: Any, b: Any) -> Any:
     Raises
     ------
     ShapeError
+        If a is not a square matrix or b has another length.
 
     Examples
     --------
@@ -190,7 +194,7 @@ def elementary_weight(tree: RootedTree, a: Any, b: Any) -> Any:
     """
     matrix, weights, ones = _arrays(a, b)
 
-    def stages(t: RootedTree) -> Any:
+    def stages(t: RootedTree) -> npt.NDArray[Any]:
         values = ones
         for child in t.children:
             values = values * (matrix @ stages(child))
@@ -199,8 +203,8 @@ def elementary_weight(tree: RootedTree, a: Any, b: Any) -> Any:
     return weights @ stages(tree)
 
 
-def elementary_weights(a: Any, b: Any) -> Iterator[npt.NDArray[Any]]:
-    """Phi of all trees of order 1, then of order 2, and so on through `MAX_ORDER`.
+def elementary_weights(a: MethodArray, b: MethodArray) -> Iterator[npt.NDArray[Any]]:
+    """Iterator over the arrays of Phi(t) for the trees of order 1, of order 2, and so on through `MAX_ORDER`.
 
     Parameters
     ----------
@@ -210,11 +214,12 @@ def elementary_weights(a: Any, b: Any) -> Iterator[npt.NDArray[Any]]:
     Yields
     ------
     ndarray (count,)
-        The weights of ``rooted_trees(n)``; nothing of order n + 1 is computed before it is asked for.
+        The weights of ``rooted_trees(n)``; those of order n + 1 are computed when they are asked for.
 
     Raises
     ------
     ShapeError
+        If a is not a square matrix or b has another length.
 
     Examples
     --------

@@ -1,18 +1,18 @@
 """Tableau: the coefficients of a Runge-Kutta method, with a proof of the order that is claimed for them.
 
-The method is k_i = f(t + c_i h, y + h sum_j a_ij k_j), y' = y + h sum_i b_i k_i, with c_i = sum_j a_ij.  The
-constructor evaluates the order conditions of all rooted trees up to the claimed order (`rooted_trees`): exactly
-over QQ and real number fields, which is a proof, and in float64 with the largest violation kept as `residual`.
+The method is k_i = f(t + c_i h, y + h sum_j a_ij k_j), y' = y + h sum_i b_i k_i, with c_i = sum_j a_ij. The constructor
+evaluates the order conditions of all rooted trees up to the claimed order (`rooted_trees`). Over QQ and real number
+fields this is exact and proves the order; in float64, `residual` is the largest violation.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import islice, zip_longest
-from typing import Any, final
+from typing import Any, TypeVar, final
 
 import numpy as np
 import numpy.typing as npt
@@ -21,47 +21,50 @@ from liehom.errors import FieldError, InputError, ShapeError
 from liehom.integrators.tableaux.order_conditions import Violation, order_checks
 from liehom.integrators.tableaux.rooted_trees import MAX_ORDER, checked_order
 from liehom.scalars import RR, AlgebraicNumber, Field, NumberField, Scalar, common_field
+from liehom.typing import ScalarLike, VectorLike
 
+Value = TypeVar("Value")
 Row = tuple[Scalar, ...]
 
 TOLERANCE = 1e-13
-"""How far a condition may be off in float64 before it counts as violated, unless the tableau says otherwise."""
+"""Default for the largest defect of a condition in float64 that does not count as a violation."""
 
 
 @final
 @dataclasses.dataclass(frozen=True, slots=True, init=False, repr=False)
 class Tableau:
-    """A Runge-Kutta method as data that proves its order.
+    """The coefficients of a Runge-Kutta method, whose order is proved when they are given.
 
     Parameters
     ----------
     name : str
     a : array-like (s, s)
-        Integers, fractions, texts such as '1/2' or 'sqrt(3)/6', field elements, or floats.  An explicit method
+        Integers, fractions, strings such as '1/2' or 'sqrt(3)/6', field elements, or floats. An explicit method
         may give row i by its i entries below the diagonal.
     b : array-like (s,)
     order : int
         The claimed order, from 1 to `rooted_trees.MAX_ORDER`: every condition up to it must hold.
     c : array-like (s,), optional
-        The row sums of a, which is what c must be; given, they are checked.
+        The row sums of a; they are checked if given.
     embedded_b : array-like (s,), optional
         The weights of a second method with the same stages, for estimates of the error.
     embedded_order : int, optional
-        Its order; where it is not given, the highest that holds.
+        Order of the embedded method (default: the highest order that holds).
     field : Field, optional
-        Where it is not given: float64 if an entry is a float, else the smallest exact field with all entries.
+        Default: float64 if an entry is a float, else the smallest exact field with all entries.
     tolerance : float, optional
-        In float64, the largest violation that is accepted; without meaning over an exact field.
+        In float64, the largest violation that is accepted; not used over an exact field.
 
     Attributes
     ----------
     a, b, c, embedded_b : tuples of numbers of the field
     residual : float
-        The largest violation of a condition (row sums and order conditions of both methods); 0 where exact.
+        The largest violation of a condition (row sums and order conditions of both methods); 0 over an exact field.
 
     Raises
     ------
     ShapeError
+        If the numbers of entries do not fit together.
     FieldError, ParseError
         If an entry is not a number, or not in the field.
     InputError
@@ -96,12 +99,12 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
     def __init__(
         self,
         name: str,
-        a: Any,
-        b: Any,
+        a: Sequence[Sequence[ScalarLike]] | npt.NDArray[Any],
+        b: VectorLike,
         order: int,
         *,
-        c: Any = None,
-        embedded_b: Any = None,
+        c: VectorLike | None = None,
+        embedded_b: VectorLike | None = None,
         embedded_order: int | None = None,
         field: Field | None = None,
         tolerance: float = TOLERANCE,
@@ -115,7 +118,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         if embedded is None and embedded_order is not None:
             raise InputError(f"tableau {name!r} has an embedded_order and no embedded_b: give its weights")
         entries = [x for row in (*rows, weights, nodes or [], embedded or []) for x in row]
-        set_ = object.__setattr__  # the one place where a frozen object is filled
+        set_ = object.__setattr__  # fills the frozen object, here and in `_prove` only
         set_(self, "field", field := _field_of(entries) if field is None else field)
         set_(self, "name", str(name))
         set_(self, "a", tuple(_converted(row, field) for row in rows))
@@ -126,7 +129,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         set_(self, "order", checked_order(order))
         self._prove(embedded_order)
 
-    # -- what it is --------------------------------------------------------------------------------------
+    # -- properties --------------------------------------------------------------------------------------
     @property
     def stages(self) -> int:
         """The number s of stages."""
@@ -134,7 +137,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
 
     @property
     def exact(self) -> bool:
-        """Whether the order is proved, in exact arithmetic; else see `residual`."""
+        """Whether the order is proved in exact arithmetic; if not, see `residual`."""
         return self.field.exact
 
     @property
@@ -144,13 +147,13 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
 
     # -- order conditions --------------------------------------------------------------------------------
     def first_violation(self, through: int = MAX_ORDER, *, embedded: bool = False) -> Violation | None:
-        """The first order condition that fails, None where all hold for trees with at most `through` vertices.
+        """The first order condition that fails, or None if all hold for trees with at most `through` vertices.
 
         Parameters
         ----------
         through : int
         embedded : bool
-            Ask for the embedded method.
+            Whether to test the embedded method.
 
         Examples
         --------
@@ -172,14 +175,14 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         violation = self.first_violation(embedded=embedded)
         return MAX_ORDER if violation is None else violation.order - 1
 
-    # -- its numbers -------------------------------------------------------------------------------------
+    # -- coefficients ------------------------------------------------------------------------------------
     def to_numpy(
         self, dtype: npt.DTypeLike = np.float64
     ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any] | None]:
         """(a, b, c, embedded_b or None) as arrays of a real floating type.
 
-        Exact numbers are rounded to that type once, not through float64; coefficients that are float64 have no
-        more digits in ``longdouble``.
+        Exact numbers are rounded to that type once, not through float64. Coefficients in float64 do not gain digits in
+        ``longdouble``.
 
         Raises
         ------
@@ -204,7 +207,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         return a, array(self.b), array(self.c), None if self.embedded_b is None else array(self.embedded_b)
 
     def to_strings(self) -> dict[str, Any]:
-        """The coefficients in the grammar of values: a, b, c and, where there is one, embedded_b.
+        """The coefficients as strings in the grammar of values: a, b, c and, if it exists, embedded_b.
 
         Examples
         --------
@@ -243,7 +246,7 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
         return "\n".join(lines)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Copies and other processes get the coefficients, and prove the order again."""
+        """Pickles contain the coefficients; the order is proved again when they are read."""
         of_field: Any = self.field
         convert = of_field.format if isinstance(of_field, NumberField) else _same
         if isinstance(of_field, NumberField):
@@ -303,8 +306,14 @@ tree [τ] of order 2: weight 1/3, expected 1/2, defect -1/6; claim order 1, whic
 
 
 def _restored(
-    name: str, rows: list[list[Any]], order: int, embedded_order: int | None, field: Any, tolerance: float
+    name: str,
+    rows: list[list[Any]],
+    order: int,
+    embedded_order: int | None,
+    field: Field | tuple[Any, ...],
+    tolerance: float,
 ) -> Tableau:
+    """The tableau that `Tableau.__reduce__` describes."""
     *a, b, c, embedded = rows
     return Tableau(
         name,
@@ -319,18 +328,18 @@ def _restored(
     )
 
 
-def _same(value: Any) -> Any:
+def _same(value: Value) -> Value:
     return value
 
 
-def _list(values: Any, what: str) -> list[Any]:
+def _list(values: object, what: str) -> list[Any]:
     if isinstance(values, str) or not hasattr(values, "__iter__"):
         raise ShapeError(f"{what} must be a sequence of numbers, got {values!r}")
     return list(values)
 
 
-def _square(name: str, a: Any) -> list[list[Any]]:
-    """The rows of a, filled up with zeros where only the entries below the diagonal are given."""
+def _square(name: str, a: object) -> list[list[Any]]:
+    """Rows of a, filled up with zeros if only the entries below the diagonal are given."""
     rows = [_list(row, f"row {i} of a") for i, row in enumerate(_list(a, "a"))]
     lengths = [len(row) for row in rows]
     if rows and lengths == list(range(len(rows))):
@@ -344,7 +353,7 @@ def _square(name: str, a: Any) -> list[list[Any]]:
 
 
 def _field_of(entries: list[Any]) -> Field:
-    """float64 if there is a float, else the field of the algebraic numbers, else the smallest for the texts."""
+    """float64 if there is a float, else the field of the algebraic numbers, else the smallest for the strings."""
     if any(isinstance(x, float | np.floating) for x in entries):
         return RR
     for x in entries:
@@ -357,7 +366,7 @@ def _converted(values: list[Any], field: Field) -> Row:
     return tuple(field.convert(x) for x in values)
 
 
-def _checked_tolerance(tolerance: Any) -> float:
+def _checked_tolerance(tolerance: float) -> float:
     value = float(tolerance)
     if not 0 < value < 1:
         raise InputError(f"the tolerance of the order conditions lies between 0 and 1, got {tolerance!r}")
@@ -365,7 +374,7 @@ def _checked_tolerance(tolerance: Any) -> float:
 
 
 def _rounded(value: Scalar, field: Field) -> np.longdouble:
-    """The number as the sum of its float64 and what that leaves, often enough for any ``longdouble``."""
+    """The number rounded to ``longdouble``, as a sum of three float64 parts."""
     total, rest = np.longdouble(0), value
     for _ in range(3):
         part = field.to_float(rest)

@@ -1,7 +1,7 @@
-"""Classical Runge-Kutta methods by name; each proves its order when it is first asked for.
+"""Classical Runge-Kutta methods by name; each proves its order at the first request.
 
-The coefficients are in `tableaux_data`, those of collocation methods follow from their nodes (`collocation`),
-and dop853 is read from ``scipy.integrate.DOP853``.
+The coefficients are in `tableaux_data`, except that those of collocation methods are computed from their nodes
+(`collocation`) and dop853 is read from ``scipy.integrate.DOP853``.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ _GAUSS = re.compile(r"gauss([0-9]+)", re.ASCII)
 def tableau(name: str | Tableau) -> Tableau:
     """A classical Runge-Kutta method by name; a `Tableau` is returned as it is.
 
-    Case, spaces, hyphens and underscores do not matter.  ``gauss4`` to ``gauss7`` are in float64, and dop853 too;
-    all others are exact.
+    Case, spaces, hyphens and underscores do not matter. ``gauss4`` to ``gauss7`` and ``dop853`` are in float64; all
+    others are exact.
 
     Parameters
     ----------
-    name : str
+    name : str or Tableau
         One of `tableau_names`.
 
     Raises
@@ -76,7 +76,7 @@ def tableau(name: str | Tableau) -> Tableau:
 
 
 def tableau_names() -> tuple[str, ...]:
-    """The names that `tableau` knows, explicit methods first.
+    """Names that `tableau` accepts, explicit methods first, a tuple of strings.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Coefficients of classical Runge-Kutta methods, as fractions; `tableaux` makes objects of them.
+"""Coefficients of classical Runge-Kutta methods as fractions, from which `tableau` makes each `Tableau`.
 
-Rows of a are separated by ``;``, entries by spaces.  Explicit methods give the entries below the diagonal.
-Nothing here is trusted: each `Tableau` proves its order when it is made.
+Rows of a are separated by ``;``, entries by spaces. Explicit methods give the entries below the diagonal. The data is
+not trusted: each `Tableau` proves its order.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 class ButcherData(NamedTuple):
-    """One method: `embedded` and `embedded_order` where it has a second row of weights; `source` says whence."""
+    """Coefficients of one method, with the weights and order of an embedded method if it has one, and the source."""
 
     order: int
     a: str
