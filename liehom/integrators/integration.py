@@ -28,7 +28,7 @@ from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
 from liehom.series.arrays import is_jax
-from liehom.typing import Array
+from liehom.typing import Array, IntegerArray
 
 CLOCKS = ("corrected", "nominal")
 
@@ -203,7 +203,7 @@ def integrate(
 
 
 def _with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: int | IntegerArray) -> Action:
-    """The action that knows what a corrected step can use of the orbits, if all are of one dimension."""
+    """The action with what a corrected step can use of the orbits, if all orbits are of one dimension."""
     dimensions = np.unique(orbit_dimension)
     if len(dimensions) != 1 or start.dtype != np.float64 or not isinstance(step, Corrected):
         return action
