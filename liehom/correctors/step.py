@@ -289,5 +289,5 @@ def _solved_on_tape(function: Callable[[Any], Values], start: Values, tape: Tape
         return [kept, change, settled], ~settled & np.isfinite(change)
 
     solved, _, settled = while_loop(iteration, [start, np.inf, tape.false], tape, MAX_ITERATIONS)
-    tape.required.append(settled.entries[()])
+    tape.required.append(settled.entry)
     return solved

@@ -6,29 +6,34 @@ run on that array; comparisons, extrema, `np.where` and linear systems are here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, final
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
+import numpy.typing as npt
 from numpy.lib.mixins import NDArrayOperatorsMixin
+from numpy.typing import DTypeLike
 
 from liehom.errors import TraceError
-from liehom.tracing.elements import ELEMENTS, LOGICAL, solve_linear
+from liehom.tracing.elements import (
+    ARITHMETIC,
+    COMPARISONS,
+    ELEMENTS,
+    LOGICAL,
+    METHODS,
+    REDUCTIONS,
+    STRUCTURAL,
+    ExprArray,
+    solve_linear,
+)
 from liehom.tracing.expr import FOLDED, Expr
 from liehom.tracing.graph import Tape
+from liehom.typing import Key
 
-ARITHMETIC = frozenset(["add", "subtract", "multiply", "divide", "true_divide", "negative", "positive", "matmul",
-                        "square", "reciprocal", "conjugate", "vecdot", "matvec", "vecmat"])  # fmt: skip
-REDUCTIONS = {
-    "add": "sum", "multiply": "prod", "maximum": "max", "minimum": "min", "logical_and": "all", "logical_or": "any",
-}  # fmt: skip
-COMPARISONS = {"less": "lt", "less_equal": "le", "equal": "eq", "not_equal": "ne"}
-STRUCTURAL = frozenset(["stack", "concatenate", "reshape", "swapaxes", "transpose", "moveaxis", "broadcast_to",
-    "expand_dims", "squeeze", "ravel", "diagonal", "trace", "dot", "tensordot", "inner", "outer", "cross", "kron",
-    "vdot", "roll", "flip", "take", "repeat", "tile", "cumsum", "diff", "mean", "prod", "hstack", "vstack", "dstack",
-    "column_stack", "split", "array_split", "atleast_1d", "atleast_2d", "copy", "fliplr", "flipud", "rot90", "triu",
-    "tril", "append", "diag", "delete", "insert", "rollaxis", "matrix_transpose", "vecdot", "block", "average",
-    "concat", "permute_dims", "unstack", "einsum"])  # fmt: skip
+Operand: TypeAlias = Any
+"""A traced array, an array of numbers or of `Expr`, a number, or a nested list of these."""
+
+Axis: TypeAlias = int | tuple[int, ...] | None
 
 
 @final
@@ -46,7 +51,7 @@ class Traced(NDArrayOperatorsMixin):
     >>> tape = Tape()
     >>> m = Traced.inputs(tape, 0, 3)
     >>> x = np.cross(m, [0.0, 0.0, 1.0])
-    >>> x.shape, x[0].entries[()] is m[1].entries[()]
+    >>> x.shape, x[0].entry is m[1].entry
     ((3,), True)
     """
 
@@ -62,7 +67,7 @@ class Traced(NDArrayOperatorsMixin):
         all: Callable[..., Traced]
     __array_priority__ = 100.0
 
-    def __init__(self, tape: Tape, entries: Any) -> None:
+    def __init__(self, tape: Tape, entries: Operand) -> None:
         self.tape = tape
         self.entries = _objects(tape, entries)
 
@@ -88,7 +93,7 @@ class Traced(NDArrayOperatorsMixin):
         return int(self.entries.size)
 
     @property
-    def dtype(self) -> Any:
+    def dtype(self) -> np.dtype[Any]:
         """float64, or bool."""
         boolean = self.entries.size and self.entries.flat[0].boolean
         return np.dtype(bool) if boolean else np.dtype(np.float64)
@@ -97,6 +102,12 @@ class Traced(NDArrayOperatorsMixin):
     def T(self) -> Traced:
         """The transpose."""
         return Traced(self.tape, self.entries.T)
+
+    @property
+    def entry(self) -> Expr:
+        """The tracer of an array of shape ()."""
+        found: Expr = self.entries.item()
+        return found
 
     @property
     def real(self) -> Traced:
@@ -108,10 +119,10 @@ class Traced(NDArrayOperatorsMixin):
         """The entries, one after the other."""
         return iter([Traced(self.tape, e) for e in self.entries.flat])
 
-    def __getitem__(self, key: Any) -> Traced:
+    def __getitem__(self, key: Key) -> Traced:
         return Traced(self.tape, self.entries[_checked_key(key)])
 
-    def __setitem__(self, key: Any, value: Any) -> None:
+    def __setitem__(self, key: Key, value: Operand) -> None:
         self.entries[_checked_key(key)] = value.entries if isinstance(value, Traced) else _objects(self.tape, value)
 
     def __len__(self) -> int:
@@ -135,7 +146,7 @@ class Traced(NDArrayOperatorsMixin):
     __int__ = __index__ = __float__
     __hash__ = object.__hash__
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> Callable[..., Any]:
         if name.startswith("__"):
             raise AttributeError(name)
         if name in METHODS:
@@ -148,11 +159,11 @@ class Traced(NDArrayOperatorsMixin):
         return f"<traced array of shape {self.shape}>"
 
     # -- numpy's protocols -------------------------------------------------------------------------------
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         # as an array of objects; numbers that are not known are no floats, which they say themselves
         return self.entries.copy() if dtype is None else self.entries.astype(dtype)
 
-    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: Any) -> Any:
         if any(_is_foreign(x) for x in inputs):
             return NotImplemented  # a Jet of traced values
         options = {k: v for k, v in options.items() if v is not None}
@@ -165,7 +176,9 @@ class Traced(NDArrayOperatorsMixin):
         out[0].entries[...] = made.entries
         return out[0]
 
-    def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> Any:
+    def __array_function__(
+        self, function: Callable[..., Any], types: Iterable[type], args: tuple[Any, ...], options: dict[str, Any]
+    ) -> Any:
         if not all(issubclass(t, Traced | np.ndarray) for t in types):
             return NotImplemented
         name = function.__name__
@@ -178,11 +191,11 @@ class Traced(NDArrayOperatorsMixin):
         raise TraceError(f"np.{name} cannot be compiled: it needs the values of its arguments, or is not known here")
 
 
-def _is_foreign(x: Any) -> bool:
+def _is_foreign(x: object) -> bool:
     return not isinstance(x, Traced | np.ndarray | np.generic) and hasattr(type(x), "__array_ufunc__")
 
 
-def _method(x: Traced, name: str, *args: Any, **options: Any) -> Any:
+def _method(x: Traced, name: str, *args: Operand, **options: Operand) -> Operand:
     if name == "astype":
         return _converted(x, *args, **options)
     if name == "copy":
@@ -194,7 +207,7 @@ def _method(x: Traced, name: str, *args: Any, **options: Any) -> Any:
     return getattr(np, name)(x, *args, **options)
 
 
-def _converted(x: Traced, dtype: Any, **_: Any) -> Traced:
+def _converted(x: Traced, dtype: DTypeLike, **_: object) -> Traced:
     """A copy with another type, where that changes no number."""
     kind = np.dtype(dtype)
     if kind.kind == "b":
@@ -204,12 +217,7 @@ def _converted(x: Traced, dtype: Any, **_: Any) -> Traced:
     raise TraceError(f"compiled code computes in float64: numbers are not made {kind}")
 
 
-METHODS = frozenset(["astype", "copy", "item", "reshape", "transpose", "sum", "max", "min", "all", "any", "mean", "dot",
-    "swapaxes", "ravel", "squeeze", "clip", "prod", "trace", "diagonal", "take", "repeat", "cumsum", "conj",
-    "conjugate"])  # fmt: skip
-
-
-def _objects(tape: Tape, x: Any) -> Any:
+def _objects(tape: Tape, x: Operand) -> ExprArray:
     """An array of Expr."""
     if isinstance(x, Traced):
         return x.entries
@@ -231,7 +239,7 @@ def _objects(tape: Tape, x: Any) -> Any:
     return out
 
 
-def _bare(tape: Tape, x: Any) -> Any:
+def _bare(tape: Tape, x: Operand) -> Operand:
     """Arguments with the arrays of objects in place of traced arrays."""
     if isinstance(x, Traced):
         return x.entries
@@ -244,20 +252,20 @@ def _bare(tape: Tape, x: Any) -> Any:
     return x
 
 
-def _wrapped(tape: Tape, x: Any) -> Any:
+def _wrapped(tape: Tape, x: Operand) -> Operand:
     if isinstance(x, list | tuple):
         return type(x)(_wrapped(tape, e) for e in x)
     return Traced(tape, x)
 
 
-def _checked_key(key: Any) -> Any:
+def _checked_key(key: Key) -> Key:
     parts = key if isinstance(key, tuple) else (key,)
     if any(isinstance(part, Traced) for part in parts):
         raise TraceError("an index depends on the values of the step: write np.where")
     return key
 
 
-def _each(tape: Tape, function: Callable[..., Expr], *arrays: Any, numbers: bool = False) -> Traced:
+def _each(tape: Tape, function: Callable[..., Expr], *arrays: Operand, numbers: bool = False) -> Traced:
     """function on the entries, with broadcasting; `numbers`: truth values count as 0 and 1."""
     made = np.broadcast_arrays(*[_objects(tape, _numbers(tape, a) if numbers else a) for a in arrays])
     out = np.empty(made[0].shape, dtype=object)
@@ -277,7 +285,7 @@ def special(name: str, x: Traced) -> Traced:
     return _each(x.tape, lambda q: x.tape.call(name, q), x)
 
 
-def exponential_action(matrix: Any, m: Any) -> Traced:
+def exponential_action(matrix: Operand, m: Operand) -> Traced:
     """exp(A) m for a matrix (n, n) and a vector (n,), by a series whose length the running code finds.
 
     Examples
@@ -299,7 +307,7 @@ def exponential_action(matrix: Any, m: Any) -> Traced:
 
 
 # -- ufuncs ------------------------------------------------------------------------------------------------
-def _ufunc(tape: Tape, ufunc: Any, method: str, inputs: Any, options: Any) -> Traced:
+def _ufunc(tape: Tape, ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...], options: dict[str, Any]) -> Traced:
     name = ufunc.__name__
     if method == "reduce" and name in REDUCTIONS:
         options.setdefault("axis", 0)
@@ -324,7 +332,7 @@ def _ufunc(tape: Tape, ufunc: Any, method: str, inputs: Any, options: Any) -> Tr
 
 # -- functions that are not only structural ----------------------------------------------------------------
 def _reduced(
-    tape: Tape, combine: Callable[[Expr, Expr], Expr], a: Any, axis: Any, keepdims: bool, start: Any
+    tape: Tape, combine: Callable[[Expr, Expr], Expr], a: Operand, axis: Axis, keepdims: bool, start: Expr | None
 ) -> Traced:
     entries = _objects(tape, a)
     if axis is None:
@@ -344,21 +352,21 @@ def _reduced(
     return Traced(tape, out)
 
 
-def _numbers(tape: Tape, a: Any) -> Traced:
+def _numbers(tape: Tape, a: Operand) -> Traced:
     """Truth values as 0 and 1."""
     made = Traced(tape, a)
     return _each(tape, tape.number, made) if any(e.boolean for e in made.entries.flat) else made
 
 
-def _sum(tape: Tape, a: Any, axis: Any = None, where: Any = True, **options: Any) -> Traced:
+def _sum(tape: Tape, a: Operand, axis: Axis = None, where: Operand = True, **options: Operand) -> Traced:
     known = {k: v for k, v in options.items() if k in ("keepdims", "initial")}
     return Traced(tape, np.sum(_numbers(tape, _where(tape, where, a, 0.0)).entries, axis=axis, **known))
 
 
 def _extremum(least: bool) -> Callable[..., Traced]:
     def found(
-        tape: Tape, a: Any, axis: Any = None, out: Any = None, keepdims: Any = False, initial: Any = None,
-        where: Any = True,
+        tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False,
+        initial: float | None = None, where: Operand = True,
     ) -> Traced:  # fmt: skip
         start = None if initial is None or not np.isscalar(initial) else tape.of(initial)
         a = _numbers(tape, a) if start is None else _where(tape, where, _numbers(tape, a), start)
@@ -367,40 +375,51 @@ def _extremum(least: bool) -> Callable[..., Traced]:
     return found
 
 
-def _all(tape: Tape, a: Any, axis: Any = None, out: Any = None, keepdims: Any = False, where: Any = True) -> Traced:
+def _all(
+    tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False, where: Operand = True
+) -> Traced:
     return _reduced(tape, tape.both, _where(tape, where, a, tape.true), axis, keepdims is True, tape.true)
 
 
-def _any(tape: Tape, a: Any, axis: Any = None, out: Any = None, keepdims: Any = False, where: Any = True) -> Traced:
+def _any(
+    tape: Tape, a: Operand, axis: Axis = None, out: object = None, keepdims: bool = False, where: Operand = True
+) -> Traced:
     return _reduced(tape, tape.either, _where(tape, where, a, tape.false), axis, keepdims is True, tape.false)
 
 
-def _where(tape: Tape, condition: Any, x: Any = None, y: Any = None) -> Traced:
+def _where(tape: Tape, condition: Operand, x: Operand = None, y: Operand = None) -> Traced:
     if x is None:
         raise TraceError("np.where(condition) gives indices, which depend on values")
     return _each(tape, tape.select, condition, x, y)
 
 
-def _clip(tape: Tape, a: Any, a_min: Any = None, a_max: Any = None, **options: Any) -> Any:
+def _clip(tape: Tape, a: Operand, a_min: Operand = None, a_max: Operand = None, **options: Operand) -> Operand:
     low, high = options.get("min", a_min), options.get("max", a_max)
     made = a if low is None else np.maximum(a, low)
     return made if high is None else np.minimum(made, high)
 
 
-def _without_nan(tape: Tape, a: Any, copy: bool = True, nan: Any = 0.0, posinf: Any = None, neginf: Any = None) -> Any:
+def _without_nan(
+    tape: Tape,
+    a: Operand,
+    copy: bool = True,
+    nan: float = 0.0,
+    posinf: float | None = None,
+    neginf: float | None = None,
+) -> Operand:
     largest = float(np.finfo(np.float64).max)
     high, low = largest if posinf is None else posinf, -largest if neginf is None else neginf
     return np.where(np.isnan(a), nan, np.where(a == np.inf, high, np.where(a == -np.inf, low, a)))
 
 
-def _norm(tape: Tape, x: Any, ord: Any = None, axis: Any = None, keepdims: bool = False) -> Any:
+def _norm(tape: Tape, x: Operand, ord: float | str | None = None, axis: Axis = None, keepdims: bool = False) -> Operand:
     axes = np.ndim(x) if axis is None else np.size(axis)
     if not (ord is None or (ord == 2 and axes == 1) or (ord == "fro" and axes == 2)):
         raise TraceError(f"np.linalg.norm with ord={ord!r} cannot be compiled")
     return np.sqrt(np.sum(x * x, axis=axis, keepdims=keepdims))
 
 
-def _solve(tape: Tape, a: Any, b: Any) -> Traced:
+def _solve(tape: Tape, a: Operand, b: Operand) -> Traced:
     """Elimination with partial pivoting, the rows exchanged by selection."""
     a, b = _objects(tape, a), _objects(tape, b)
     vector = b.ndim == 1
@@ -413,12 +432,19 @@ def _solve(tape: Tape, a: Any, b: Any) -> Traced:
     return Traced(tape, out[..., 0] if vector else out)
 
 
-def _inverse(tape: Tape, a: Any) -> Traced:
+def _inverse(tape: Tape, a: Operand) -> Traced:
     return _solve(tape, a, np.broadcast_to(np.eye(np.shape(a)[-1]), np.shape(a)))
 
 
 def _blank(fill: float) -> Callable[..., Traced]:
-    def make(tape: Tape, a: Any, dtype: Any = None, order: str = "K", subok: bool = True, shape: Any = None) -> Traced:
+    def make(
+        tape: Tape,
+        a: Operand,
+        dtype: DTypeLike | None = None,
+        order: str = "K",
+        subok: bool = True,
+        shape: int | Sequence[int] | None = None,
+    ) -> Traced:
         return Traced(tape, np.full(np.shape(a) if shape is None else shape, fill))
 
     return make

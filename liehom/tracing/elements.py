@@ -3,12 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import Tape
+
+# numpy functions that run on arrays of `Expr` as they are
+ARITHMETIC = frozenset(["add", "subtract", "multiply", "divide", "true_divide", "negative", "positive", "matmul",
+                        "square", "reciprocal", "conjugate", "vecdot", "matvec", "vecmat"])  # fmt: skip
+REDUCTIONS = {
+    "add": "sum", "multiply": "prod", "maximum": "max", "minimum": "min", "logical_and": "all", "logical_or": "any",
+}  # fmt: skip
+COMPARISONS = {"less": "lt", "less_equal": "le", "equal": "eq", "not_equal": "ne"}
+STRUCTURAL = frozenset(["stack", "concatenate", "reshape", "swapaxes", "transpose", "moveaxis", "broadcast_to",
+    "expand_dims", "squeeze", "ravel", "diagonal", "trace", "dot", "tensordot", "inner", "outer", "cross", "kron",
+    "vdot", "roll", "flip", "take", "repeat", "tile", "cumsum", "diff", "mean", "prod", "hstack", "vstack", "dstack",
+    "column_stack", "split", "array_split", "atleast_1d", "atleast_2d", "copy", "fliplr", "flipud", "rot90", "triu",
+    "tril", "append", "diag", "delete", "insert", "rollaxis", "matrix_transpose", "vecdot", "block", "average",
+    "concat", "permute_dims", "unstack", "einsum"])  # fmt: skip
+# methods of arrays that are numpy functions of the same name
+METHODS = frozenset(["astype", "copy", "item", "reshape", "transpose", "sum", "max", "min", "all", "any", "mean", "dot",
+    "swapaxes", "ravel", "squeeze", "clip", "prod", "trace", "diagonal", "take", "repeat", "cumsum", "conj",
+    "conjugate"])  # fmt: skip
+
+ExprArray: TypeAlias = npt.NDArray[Any]
+"""An array of objects that are `Expr` of one tape."""
 
 
 def _sign(tape: Tape, x: Expr) -> Expr:
@@ -55,7 +77,7 @@ ELEMENTS: dict[str, Callable[..., Expr]] = {
 }
 
 
-def solve_linear(tape: Tape, a: Any, b: Any) -> Any:
+def solve_linear(tape: Tape, a: ExprArray, b: ExprArray) -> ExprArray:
     """The solution (n, k) of linear equations (n, n), (n, k), arrays of Expr: the rows are exchanged by selection.
 
     Examples

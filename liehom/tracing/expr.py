@@ -5,9 +5,15 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from typing import Any, Protocol, final
+from typing import Any, Literal, Protocol, TypeAlias, final
 
 from liehom.errors import TraceError
+
+NumberLike: TypeAlias = object
+"""A tracer, or a number that `Tape.of` makes a constant."""
+
+Payload: TypeAlias = Any
+"""Data of an operation: a constant's value, an index, the name of a variable, a `Loop`, positions in a matrix."""
 
 FOLDED: dict[str, Callable[..., float]] = {
     "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log,
@@ -24,7 +30,7 @@ BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 class Recorder(Protocol):
     """What arithmetic on an `Expr` calls: the methods of `liehom.tracing.Tape`, which stands above `Expr`."""
 
-    def of(self, x: Any) -> Expr: ...
+    def of(self, x: NumberLike) -> Expr: ...
     def number(self, x: Expr) -> Expr: ...
     def add(self, a: Expr, b: Expr) -> Expr: ...
     def sub(self, a: Expr, b: Expr) -> Expr: ...
@@ -55,9 +61,9 @@ class Expr:
 
     __slots__ = ("args", "boolean", "index", "op", "tape", "terms", "value")
 
-    def __init__(self, tape: Recorder, op: str, args: tuple[Expr, ...], value: Any, index: int) -> None:
+    def __init__(self, tape: Recorder, op: str, args: tuple[Expr, ...], value: Payload, index: int) -> None:
         self.tape, self.op, self.args, self.value, self.index = tape, op, args, value, index
-        self.terms: Any = None
+        self.terms: dict[Expr, float] | Literal[False] | None = None
         self.boolean = op in BOOLEAN
         if op == "const":
             self.boolean = isinstance(value, bool)
@@ -71,24 +77,24 @@ class Expr:
         """Whether the number is known."""
         return self.op == "const"
 
-    def __add__(self, other: Any) -> Expr:
+    def __add__(self, other: NumberLike) -> Expr:
         return self.tape.add(*self._with(other))
 
-    def __sub__(self, other: Any) -> Expr:
+    def __sub__(self, other: NumberLike) -> Expr:
         return self.tape.sub(*self._with(other))
 
-    def __mul__(self, other: Any) -> Expr:
+    def __mul__(self, other: NumberLike) -> Expr:
         return self.tape.mul(*self._with(other))
 
-    def __truediv__(self, other: Any) -> Expr:
+    def __truediv__(self, other: NumberLike) -> Expr:
         return self.tape.div(*self._with(other))
 
     __radd__, __rmul__ = __add__, __mul__
 
-    def __rsub__(self, other: Any) -> Expr:
+    def __rsub__(self, other: NumberLike) -> Expr:
         return self.tape.sub(*self._with(other)[::-1])
 
-    def __rtruediv__(self, other: Any) -> Expr:
+    def __rtruediv__(self, other: NumberLike) -> Expr:
         return self.tape.div(*self._with(other)[::-1])
 
     def __neg__(self) -> Expr:
@@ -97,13 +103,13 @@ class Expr:
     def __pos__(self) -> Expr:
         return self
 
-    def __pow__(self, other: Any) -> Expr:
+    def __pow__(self, other: NumberLike) -> Expr:
         return self.tape.power(*self._with(other))
 
-    def __rpow__(self, other: Any) -> Expr:
+    def __rpow__(self, other: NumberLike) -> Expr:
         return self.tape.power(*self._with(other)[::-1])
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> Callable[..., Expr]:
         # the functions of numpy call these on the entries of an array of objects
         if name in FOLDED and name not in ("pow", "abs"):
             return lambda *args: self.tape.call(name, self, *[self.tape.of(x) for x in args])
@@ -112,7 +118,7 @@ class Expr:
     def __abs__(self) -> Expr:
         return self.tape.call("abs", self)
 
-    def _with(self, other: Any) -> tuple[Expr, Expr]:
+    def _with(self, other: NumberLike) -> tuple[Expr, Expr]:
         """Both as numbers: truth values count as 0 and 1."""
         other = self.tape.of(other)
         return self.tape.number(self) if self.boolean else self, self.tape.number(other) if other.boolean else other

@@ -7,13 +7,16 @@ simplified as it is recorded: products with 0 and 1, terms that cancel in a sum,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Any, final
+from collections.abc import Callable, Hashable, Sequence
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
 from liehom.errors import TraceError
-from liehom.tracing.expr import FOLDED, Expr
+from liehom.tracing.expr import FOLDED, Expr, NumberLike, Payload
+
+TrajectoryConstant: TypeAlias = Callable[[Any], Any]
+"""A number of each trajectory, shape (L,), as a function of the initial points (L, N)."""
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
 MAX_TERMS = 10
@@ -35,12 +38,12 @@ class Tape:
 
     def __init__(self) -> None:
         self.recorded: list[Expr] = []
-        self._known: dict[tuple[Any, ...], Expr] = {}
+        self._known: dict[tuple[Hashable, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
         self.false, self.true = self.constant(False), self.constant(True)
         # truth values without which the numbers of a trajectory are not what they are to be
         self.required: list[Expr] = []
-        self.constant_functions: list[Callable[[Any], Any]] = []
+        self.constant_functions: list[TrajectoryConstant] = []
         self.calls = self.zero  # of the function that is counted; in loops, in all iterations
 
     # -- making numbers ----------------------------------------------------------------------------------
@@ -52,16 +55,16 @@ class Tape:
         """A number that is given when the code runs."""
         return self._make("input", (), index)
 
-    def trajectory_constant(self, function: Callable[[Any], Any]) -> Expr:
+    def trajectory_constant(self, function: TrajectoryConstant) -> Expr:
         """A number that each trajectory has from its start on, as a function of the starts (L, N)."""
         self.constant_functions.append(function)
         return self.input(-len(self.constant_functions))
 
-    def variable(self, name: Any, *, boolean: bool = False) -> Expr:
+    def variable(self, name: Hashable, *, boolean: bool = False) -> Expr:
         """A number, or truth value, that changes in a loop."""
         return self._make("flag" if boolean else "variable", (), name)
 
-    def of(self, x: Any) -> Expr:
+    def of(self, x: NumberLike) -> Expr:
         """A number as an Expr.
 
         Raises
@@ -74,7 +77,8 @@ class Tape:
         if isinstance(x, bool) or type(x).__name__ in ("bool", "bool_"):
             return self.true if x else self.false
         try:
-            return self.constant(float(x))
+            number: Any = x
+            return self.constant(float(number))
         except (TypeError, ValueError):
             raise TraceError(f"compiled code works on real numbers, got {x!r} in the step") from None
 
@@ -86,7 +90,7 @@ class Tape:
         """Whether a number is not 0; truth values as they are."""
         return x if x.boolean else self.compare("ne", x, self.zero)
 
-    def _make(self, op: str, args: tuple[Expr, ...], value: Any = None, extra: Any = None) -> Expr:
+    def _make(self, op: str, args: tuple[Expr, ...], value: Payload = None, extra: Payload = None) -> Expr:
         if op in COMMUTATIVE and args[0].index > args[1].index:
             args = args[1], args[0]
         key = (op, *[a.index for a in args], value if extra is None else extra)
@@ -292,7 +296,7 @@ class Tape:
         return self._make("select", (where, a, b))
 
     # -- blocks ------------------------------------------------------------------------------------------
-    def block(self, name: str, args: Sequence[Expr], count: int, data: Any) -> list[Expr]:
+    def block(self, name: str, args: Sequence[Expr], count: int, data: Payload) -> list[Expr]:
         """The `count` results of an operation with loops of its own, such as "expv"."""
         whole = self._make(name, tuple(args), data)
         return [self._make("get", (whole,), i) for i in range(count)]

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from types import ModuleType
+from typing import Any, TypeAlias
 
 from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import needed
 from liehom.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
 
+JaxArray: TypeAlias = Any
+"""A JAX array or tracer, a numpy array or a number."""
+
 EXP_SUBSTEPS, EXP_TERMS = 4, 18
 """exp(A) m is summed in so many substeps and terms, which serves |A| up to 4; beyond that it gives nan."""
 
 
-def evaluate_with_jax(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, differentiable: bool = False) -> list[Any]:
+def evaluate_with_jax(
+    outputs: Sequence[Expr], inputs: Mapping[int, JaxArray], *, differentiable: bool = False
+) -> list[JaxArray]:
     """The outputs of a graph, computed by jax.numpy.
 
     Parameters
@@ -47,11 +53,13 @@ def evaluate_with_jax(outputs: Sequence[Expr], inputs: Mapping[int, Any], *, dif
     return [values[x.index] for x in outputs]
 
 
-def _known(x: Expr, values: Mapping[int, Any]) -> Any:
+def _known(x: Expr, values: Mapping[int, JaxArray]) -> Any:
     return x.value if x.constant else values[x.index]
 
 
-def _value(jnp: Any, x: Expr, values: Mapping[int, Any], inputs: Mapping[int, Any], whole: bool) -> Any:
+def _value(
+    jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], inputs: Mapping[int, JaxArray], whole: bool
+) -> Any:
     if x.constant:
         return x.value
     if x.op == "input":
@@ -90,7 +98,7 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-def _rotation(jnp: Any, q: Any, first: int) -> Any:
+def _rotation(jnp: ModuleType, q: JaxArray, first: int) -> JaxArray:
     """sin(r)/r or cos(r) with r^2 = q; of the branch that is not taken not even the derivative overflows."""
     near = jnp.abs(q) < SHORT_SERIES_REACH
     total: Any = 0.0
@@ -106,7 +114,7 @@ def _rotation(jnp: Any, q: Any, first: int) -> Any:
     return jnp.where(near, total, far)
 
 
-def _iterated(jnp: Any, x: Expr, values: Mapping[int, Any], whole: bool) -> list[Any]:
+def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], whole: bool) -> list[JaxArray]:
     """The numbers after a loop."""
     from jax import lax
 
@@ -118,7 +126,7 @@ def _iterated(jnp: Any, x: Expr, values: Mapping[int, Any], whole: bool) -> list
         for a, v in zip(before, loop.variables, strict=False)
     ]
 
-    def body(state: list[Any]) -> tuple[list[Any], Any]:
+    def body(state: list[JaxArray]) -> tuple[list[JaxArray], JaxArray]:
         known = dict(values) | {v.index: s for v, s in zip(loop.variables, state, strict=True)}
         for y in loop.inside:
             known[y.index] = _value(jnp, y, known, {}, whole)
@@ -140,7 +148,7 @@ def _iterated(jnp: Any, x: Expr, values: Mapping[int, Any], whole: bool) -> list
     return list(found[1][0])
 
 
-def _exponential(jnp: Any, places: tuple[tuple[int, int], ...], args: list[Any]) -> list[Any]:
+def _exponential(jnp: ModuleType, places: tuple[tuple[int, int], ...], args: list[JaxArray]) -> list[JaxArray]:
     from jax import lax
 
     shape = jnp.broadcast_shapes(*[jnp.shape(a) for a in args])
@@ -153,12 +161,12 @@ def _exponential(jnp: Any, places: tuple[tuple[int, int], ...], args: list[Any])
     matrix = jnp.stack([jnp.stack(row) for row in rows])
     size = sum(a * a for a in entries)
 
-    def term(j: Any, state: Any) -> Any:
+    def term(j: JaxArray, state: JaxArray) -> JaxArray:
         last, total = state
         last = jnp.einsum("ij...,j...->i...", matrix, last) / (EXP_SUBSTEPS * (j + 1.0))
         return last, total + last
 
-    def substep(_: Any, v: Any) -> Any:
+    def substep(_: JaxArray, v: JaxArray) -> JaxArray:
         return v + lax.fori_loop(0, EXP_TERMS, term, (v, jnp.zeros_like(v)))[1]
 
     moved = lax.fori_loop(0, EXP_SUBSTEPS, substep, m)

@@ -11,15 +11,24 @@ import ctypes
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, final
+from types import ModuleType
+from typing import Any, TypeAlias, final
+
+import numpy.typing as npt
 
 from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
-from liehom.tracing.graph import needed
+from liehom.tracing.graph import TrajectoryConstant, needed
 from liehom.tracing.llvm_text import LIBM, Body, Writer
+
+Engine: TypeAlias = Any
+"""An execution engine of llvmlite, which has no types."""
+
+TargetMachine: TypeAlias = Any
+"""A target machine of llvmlite."""
 
 TIME_SLACK = 1e-9
 ARRAY_ARGUMENTS = 12
@@ -77,7 +86,7 @@ class StepGraph:
     ordinary: Expr | None
     largest: dict[str, Expr]
     summed: dict[str, Expr]
-    constant_functions: tuple[Callable[[Any], Any], ...] = ()
+    constant_functions: tuple[TrajectoryConstant, ...] = ()
     clock: tuple[tuple[int, Expr], ...] = ()
     solved: Expr | None = None
     sizes: Sizes | None = None
@@ -88,7 +97,7 @@ class StepGraph:
         """N."""
         return len(self.point)
 
-    def constants(self, points: Any) -> Any:
+    def constants(self, points: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
         """The further inputs, (count, L), for points (L, N)."""
         return [number(points) for number in self.constant_functions]
 
@@ -275,7 +284,14 @@ class Kernel:
         arguments = [ctypes.c_void_p] * ARRAY_ARGUMENTS + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
         self._run = ctypes.CFUNCTYPE(None, *arguments)(self._engine.get_function_address("run"))
 
-    def __call__(self, arrays: Sequence[Any], lanes: int, blocks: tuple[int, int], steps: int, time: Any) -> None:
+    def __call__(
+        self,
+        arrays: Sequence[npt.NDArray[Any] | None],
+        lanes: int,
+        blocks: tuple[int, int],
+        steps: int,
+        time: tuple[float, float],
+    ) -> None:
         """Step the blocks first..last-1 at most so many times; `arrays` are changed in place, None is no path.
 
         They are m, t, h, limit, count, alive, extra, constants, path, path_t; where sizes are adapted also tries (how
@@ -285,7 +301,7 @@ class Kernel:
         self._run(*places, *[None] * (ARRAY_ARGUMENTS - len(places)), lanes, *blocks, steps, *time)
 
 
-_ENGINES: dict[str, Any] = {}
+_ENGINES: dict[str, Engine] = {}
 
 
 def cache_directory() -> Path | None:
@@ -297,7 +313,7 @@ def cache_directory() -> Path | None:
     return Path(home) / "liehom"
 
 
-def _engine(text: str) -> tuple[Any, bool]:
+def _engine(text: str) -> tuple[Engine, bool]:
     """The engine with the code of a module, and whether it was made before."""
     try:
         import llvmlite.binding as llvm
@@ -325,7 +341,7 @@ def _engine(text: str) -> tuple[Any, bool]:
     return engine, found
 
 
-def _compiled(llvm: Any, machine: Any, text: str) -> bytes:
+def _compiled(llvm: ModuleType, machine: TargetMachine, text: str) -> bytes:
     module = llvm.parse_assembly(text)
     module.verify()
     options = llvm.PipelineTuningOptions(2)
@@ -335,7 +351,7 @@ def _compiled(llvm: Any, machine: Any, text: str) -> bytes:
     return bytes(machine.emit_object(module))
 
 
-def _add_symbols(llvm: Any) -> None:
+def _add_symbols(llvm: ModuleType) -> None:
     library = ctypes.CDLL(None)
     for name in {*LIBM.values(), "memset", "memcpy"}:
         address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value

@@ -128,6 +128,6 @@ def while_loop(
     def body(entries: list[Expr]) -> tuple[list[Expr], Expr]:
         new, again = function(*shaped(entries))
         flat = [e for x in new for e in Traced(tape, x).entries.flat]
-        return flat, Traced(tape, again).entries[()]
+        return flat, Traced(tape, again).entry
 
     return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit))

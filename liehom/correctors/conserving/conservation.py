@@ -159,7 +159,7 @@ class Conservation:
         """In compiled code: only steps are made for which `toward` would change nothing."""
         moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(np.float64).eps) * _length(self.m)
         settled: Any = self.moving | ~moved
-        settled.tape.required.append(settled.entries[()])
+        settled.tape.required.append(settled.entry)
 
     @property
     def dimension(self) -> int:

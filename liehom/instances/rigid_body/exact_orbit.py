@@ -125,7 +125,7 @@ class OrbitStep(LocalStep):
         eps = float(np.finfo(s.dtype).eps)
         kept = (np.abs(self._value(s, t)) <= 16 * eps * (1 + np.abs(s))) & (self._slope(s, t) < -MIN_SLOPE)
         if isinstance(s, Traced):  # where it does not hold the step is not made by compiled code
-            s.tape.required.append(Traced(s.tape, np.all(kept)).entries[()])
+            s.tape.required.append(Traced(s.tape, np.all(kept)).entry)
             return s, kept
         if not bool(kept.all()):
             s = np.where(kept, s, self._nearest(start, t, kept))

@@ -136,8 +136,7 @@ def _everywhere(x: Real) -> Callable[[Array], Array]:
 
 def _number(tape: Tape, x: object) -> Expr:
     """A number, or a tracer of shape (), as an expression on the tape."""
-    made: Expr = Traced(tape, x).entries[()]
-    return made
+    return Traced(tape, x).entry
 
 
 def _clock_of(local: LocalStep) -> Sequence[Any]:
