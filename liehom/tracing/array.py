@@ -69,7 +69,7 @@ class Traced(NDArrayOperatorsMixin):
 
     def __init__(self, tape: Tape, entries: Operand) -> None:
         self.tape = tape
-        self.entries = _objects(tape, entries)
+        self.entries = expr_array(tape, entries)
 
     @classmethod
     def inputs(cls, tape: Tape, first: int, count: int) -> Traced:
@@ -123,7 +123,7 @@ class Traced(NDArrayOperatorsMixin):
         return Traced(self.tape, self.entries[_checked_key(key)])
 
     def __setitem__(self, key: Key, value: Operand) -> None:
-        self.entries[_checked_key(key)] = value.entries if isinstance(value, Traced) else _objects(self.tape, value)
+        self.entries[_checked_key(key)] = value.entries if isinstance(value, Traced) else expr_array(self.tape, value)
 
     def __len__(self) -> int:
         return len(self.entries)
@@ -211,13 +211,13 @@ def _converted(x: Traced, dtype: DTypeLike, **_: object) -> Traced:
     """A copy with another type, where that changes no number."""
     kind = np.dtype(dtype)
     if kind.kind == "b":
-        return _each(x.tape, x.tape.truth, x)
+        return elementwise(x.tape, x.tape.truth, x)
     if kind in (np.float64, np.dtype(object)) or (x.dtype.kind == "b" and kind.kind in "iuf"):
         return Traced(x.tape, _numbers(x.tape, x).entries.copy())
     raise TraceError(f"compiled code computes in float64: numbers are not made {kind}")
 
 
-def _objects(tape: Tape, x: Operand) -> ExprArray:
+def expr_array(tape: Tape, x: Operand) -> ExprArray:
     """An array of Expr."""
     if isinstance(x, Traced):
         return x.entries
@@ -244,7 +244,7 @@ def _bare(tape: Tape, x: Operand) -> Operand:
     if isinstance(x, Traced):
         return x.entries
     if isinstance(x, list) and any(isinstance(e, Traced) for e in x) and all(np.ndim(e) == 0 for e in x):
-        return [_objects(tape, e) for e in x]
+        return [expr_array(tape, e) for e in x]
     if isinstance(x, list | tuple):
         return type(x)(_bare(tape, e) for e in x)
     if isinstance(x, dict):
@@ -265,45 +265,13 @@ def _checked_key(key: Key) -> Key:
     return key
 
 
-def _each(tape: Tape, function: Callable[..., Expr], *arrays: Operand, numbers: bool = False) -> Traced:
+def elementwise(tape: Tape, function: Callable[..., Expr], *arrays: Operand, numbers: bool = False) -> Traced:
     """function on the entries, with broadcasting; `numbers`: truth values count as 0 and 1."""
-    made = np.broadcast_arrays(*[_objects(tape, _numbers(tape, a) if numbers else a) for a in arrays])
+    made = np.broadcast_arrays(*[expr_array(tape, _numbers(tape, a) if numbers else a) for a in arrays])
     out = np.empty(made[0].shape, dtype=object)
     for index in np.ndindex(out.shape):
         out[index] = function(*[a[index] for a in made])
     return Traced(tape, out)
-
-
-def special(name: str, x: Traced) -> Traced:
-    """An entire function of the entries: "sinq" is sin(r)/r and "cosq" is cos(r), with r^2 = x.
-
-    Examples
-    --------
-    >>> special("cosq", Traced(Tape(), [0.0])).entries
-    array([1.0], dtype=object)
-    """
-    return _each(x.tape, lambda q: x.tape.call(name, q), x)
-
-
-def exponential_action(matrix: Operand, m: Operand) -> Traced:
-    """exp(A) m for a matrix (n, n) and a vector (n,), by a series whose length the running code finds.
-
-    Examples
-    --------
-    >>> tape = Tape()
-    >>> exponential_action(Traced(tape, np.zeros((2, 2))), Traced.inputs(tape, 0, 2)).entries
-    array([<input 4>, <input 5>], dtype=object)
-    """
-    tape = (matrix if isinstance(matrix, Traced) else m).tape
-    a, v = _objects(tape, matrix), _objects(tape, m)
-    if a.ndim != 2 or v.ndim != 1:
-        raise TraceError(f"exp(A) m is compiled for one A and one m, got shapes {a.shape} and {v.shape}")
-    places = tuple(
-        (i, j) for i in range(len(v)) for j in range(len(v)) if not (a[i, j].constant and a[i, j].value == 0)
-    )
-    if not places:
-        return Traced(tape, v)
-    return Traced(tape, tape.block("expv", [*[a[p] for p in places], *v], len(v), places))
 
 
 # -- ufuncs ------------------------------------------------------------------------------------------------
@@ -318,15 +286,15 @@ def _ufunc(tape: Tape, ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...]
     if name == "add" and all((x if isinstance(x, Traced) else np.asarray(x)).dtype.kind == "b" for x in inputs):
         name = "logical_or"
     if name in ARITHMETIC:
-        return Traced(tape, ufunc(*[_objects(tape, x) for x in inputs]))
+        return Traced(tape, ufunc(*[expr_array(tape, x) for x in inputs]))
     if name in COMPARISONS:
-        return _each(tape, lambda a, b: tape.compare(COMPARISONS[name], a, b), *inputs, numbers=True)
+        return elementwise(tape, lambda a, b: tape.compare(COMPARISONS[name], a, b), *inputs, numbers=True)
     if name in LOGICAL:
-        return _each(tape, lambda *a: LOGICAL[name](tape, *a), *inputs)
+        return elementwise(tape, lambda *a: LOGICAL[name](tape, *a), *inputs)
     if name in ELEMENTS:
-        return _each(tape, lambda *a: ELEMENTS[name](tape, *a), *inputs, numbers=True)
+        return elementwise(tape, lambda *a: ELEMENTS[name](tape, *a), *inputs, numbers=True)
     if name in FOLDED:
-        return _each(tape, lambda *a: tape.call(name, *a), *inputs, numbers=True)
+        return elementwise(tape, lambda *a: tape.call(name, *a), *inputs, numbers=True)
     raise TraceError(f"np.{name} cannot be compiled")
 
 
@@ -334,7 +302,7 @@ def _ufunc(tape: Tape, ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...]
 def _reduced(
     tape: Tape, combine: Callable[[Expr, Expr], Expr], a: Operand, axis: Axis, keepdims: bool, start: Expr | None
 ) -> Traced:
-    entries = _objects(tape, a)
+    entries = expr_array(tape, a)
     if axis is None:
         axes = tuple(range(entries.ndim))
     else:
@@ -355,7 +323,7 @@ def _reduced(
 def _numbers(tape: Tape, a: Operand) -> Traced:
     """Truth values as 0 and 1."""
     made = Traced(tape, a)
-    return _each(tape, tape.number, made) if any(e.boolean for e in made.entries.flat) else made
+    return elementwise(tape, tape.number, made) if any(e.boolean for e in made.entries.flat) else made
 
 
 def _sum(tape: Tape, a: Operand, axis: Axis = None, where: Operand = True, **options: Operand) -> Traced:
@@ -390,7 +358,7 @@ def _any(
 def _where(tape: Tape, condition: Operand, x: Operand = None, y: Operand = None) -> Traced:
     if x is None:
         raise TraceError("np.where(condition) gives indices, which depend on values")
-    return _each(tape, tape.select, condition, x, y)
+    return elementwise(tape, tape.select, condition, x, y)
 
 
 def _clip(tape: Tape, a: Operand, a_min: Operand = None, a_max: Operand = None, **options: Operand) -> Operand:
@@ -421,7 +389,7 @@ def _norm(tape: Tape, x: Operand, ord: float | str | None = None, axis: Axis = N
 
 def _solve(tape: Tape, a: Operand, b: Operand) -> Traced:
     """Elimination with partial pivoting, the rows exchanged by selection."""
-    a, b = _objects(tape, a), _objects(tape, b)
+    a, b = expr_array(tape, a), expr_array(tape, b)
     vector = b.ndim == 1
     b = b[..., None] if vector else b
     lead = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])

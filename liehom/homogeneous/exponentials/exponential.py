@@ -21,7 +21,8 @@ from liehom.series import recurrences
 from liehom.series.arrays import as_values, in_lanes, is_exact, is_jax
 from liehom.series.jet import Jet
 from liehom.series.lie_series import dexp_inverse, magnus, without_constant
-from liehom.tracing.array import Traced, exponential_action
+from liehom.tracing.array import Traced
+from liehom.tracing.exponentials import exponential_action
 
 # up to this norm of rho(x) the series on the vector is cheaper than a matrix exponential of its precision
 MAX_NORM = 8.0

@@ -18,7 +18,8 @@ from liehom.homogeneous.exponentials.exponential import TrueExponential, exact_e
 from liehom.homogeneous.maps import FieldMap
 from liehom.representations import Representation
 from liehom.series.arrays import is_exact, namespace
-from liehom.tracing.array import Traced, special
+from liehom.tracing.array import Traced
+from liehom.tracing.exponentials import entire_function
 
 CUBIC_DIMENSION = 10
 RTOL = 1e-12
@@ -65,8 +66,8 @@ class Rodrigues(TrueExponential):
         once = self.infinitesimal(x, m)
         q = self._form(x, x)
         if type(q) is Traced:  # S(q) = S(q/4) C(q/4): no branches
-            sine = special("sinq", q / 4)
-            return m + (sine * special("cosq", q / 4) * once + 0.5 * sine * sine * self.infinitesimal(x, once))
+            sine = entire_function("sinq", q / 4)
+            return m + (sine * entire_function("cosq", q / 4) * once + 0.5 * sine * sine * self.infinitesimal(x, once))
         if q.shape == (1,) and type(q) is np.ndarray and q.dtype == np.float64 and -1e5 < q[0] < 1e15:
             whole, half = _sine_quotient_of(float(q[0])), _sine_quotient_of(float(q[0]) / 4)
             return m + (whole * once + 0.5 * half * half * self.infinitesimal(x, once))
