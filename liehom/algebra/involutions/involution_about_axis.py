@@ -29,7 +29,7 @@ def involution_about_axis(algebra: LieAlgebra) -> Matrix:
     >>> involution_about_axis(lh.sl(2)).to_strings()
     [['0', '-1', '0'], ['-1', '0', '0'], ['0', '0', '-1']]
     """
-    field, killing = algebra.field, algebra.killing_form()
+    field, killing = algebra.field, as_exact(algebra.killing_form())
     rows, values = orthogonal_basis(killing)
     axis, value = next((r, v) for r, v in zip(rows, values, strict=True) if field.sign(v) < 0)
     theta: Matrix = (axis.T @ (axis @ killing)).scale(2 / value) - field.identity(3)

@@ -13,7 +13,7 @@ and no charts are needed.
 
 from __future__ import annotations
 
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -208,7 +208,7 @@ class RangeInverse:
         while self._coefficients[-1] == 0:
             self._coefficients.pop()
         self.rank = len(self._coefficients) - 1
-        self._last = -1 / self._coefficients[-1] if self.rank else zero
+        self._last: Any = -1 / self._coefficients[-1] if self.rank else zero
 
     def __call__(self, vector: ObjectArray) -> ObjectArray:
         if self.rank == 0:

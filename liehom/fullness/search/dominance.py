@@ -204,7 +204,7 @@ def _inside(low: Scalar, high: Scalar) -> Iterator[Scalar]:
 
 def _real_parts(f: Polynomial) -> list[tuple[Scalar, Scalar, int]]:
     """Rational lower and upper bounds of the real parts of the roots, with multiplicities."""
-    found = []
+    found: list[tuple[Scalar, Scalar, int]] = []
     for part, multiplicity in f.squarefree_parts():
         for ball in complex_root_balls(part, 64):
             found.append((*bounds(ball.real), multiplicity))

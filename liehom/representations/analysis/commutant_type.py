@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from liehom.errors import InputError
+from liehom.errors import InputError, InternalError
 from liehom.representations.analysis.isotypic import CommutantType
 from liehom.representations.invariants.intertwiners import commutant
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, reduction, traceless
@@ -96,5 +96,8 @@ def imaginary_units(matrices: Sequence[ExactMatrix], size: int, over: Field) -> 
     imaginary = traceless(commutant(matrices, size, over), size, over)
     if not imaginary:
         return []
-    rows, values = orthogonal_basis(anticommutator_gram(imaginary, size, over))
+    gram = anticommutator_gram(imaginary, size, over)
+    if gram is None:
+        raise InternalError("an anticommutator of imaginary units is not scalar")
+    rows, values = orthogonal_basis(gram)
     return [(combination(imaginary, row.row(0)), -value) for row, value in zip(rows, values, strict=True)]

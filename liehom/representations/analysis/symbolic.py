@@ -13,7 +13,7 @@ from typing import Any, final
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, InputError, ShapeError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import Field, Matrix, NumberField, Scalar
+from liehom.scalars import QQ, Field, Matrix, NumberField, Scalar
 from liehom.typing import Expression, VectorLike
 
 
@@ -154,14 +154,15 @@ def _number(value: Scalar, field: Field) -> Expression:
     import sympy
 
     if not isinstance(field, NumberField):
-        return sympy.Rational(int(value.p), int(value.q))
+        rational = QQ.convert(value)
+        return sympy.Rational(int(rational.p), int(rational.q))
     if field.symbol.startswith("sqrt("):
         root = sympy.sqrt(int(field.symbol[5:-1]))
     else:
         x = sympy.Dummy("x")
         root = sympy.CRootOf(sympy.Poly(list(field.minpoly)[::-1], x), field.root_index)
     integral = field.leading * root
-    terms = [sympy.Rational(int(c.p), int(c.q)) * integral**k for k, c in enumerate(value.coordinates)]
+    terms = [sympy.Rational(int(c.p), int(c.q)) * integral**k for k, c in enumerate(field.coordinates(value))]
     return sympy.Add(*terms)
 
 

@@ -152,4 +152,5 @@ class RealBasis:
 
 
 def _number(value: Scalar) -> int | Fraction:
-    return int(value.p) if value.q == 1 else Fraction(int(value.p), int(value.q))
+    rational = QQ.convert(value)
+    return int(rational.p) if rational.q == 1 else Fraction(int(rational.p), int(rational.q))

@@ -47,7 +47,7 @@ def _is_sparse(matrices: tuple[Matrix, ...]) -> bool:
     if matrices[0].field.degree > 1:
         return False
     n = matrices[0].nrows
-    filled = sum(1 for a in matrices if isinstance(a, ExactMatrix) for x in a.parts[0].entries() if x)
+    filled = sum(1 for a in matrices if isinstance(a, ExactMatrix) for x in a.parts[0].entries() if x != 0)
     return filled <= len(matrices) * max(2 * n, n * n // 6)
 
 

@@ -51,9 +51,9 @@ class EntryMap:
         m = self.target
         if isinstance(matrix, FloatMatrix):
             array = np.zeros(m * m)
-            for place, value in enumerate(matrix.array.ravel().tolist()):
-                for at, factor in self._by_source.get(place, ()) if value else ():
-                    array[at] += factor * value
+            for place, entry in enumerate(matrix.array.ravel().tolist()):
+                for at, factor in self._by_source.get(place, ()) if entry else ():
+                    array[at] += factor * entry
             return FloatMatrix(matrix.field, array.reshape(m, m))
         if not isinstance(matrix, ExactMatrix):
             raise InputError(f"expected a matrix over a field, got {matrix!r}")
@@ -62,7 +62,7 @@ class EntryMap:
             table: dict[int, int] = {}
             for place, value in enumerate(part.entries()):
                 for at, factor in self._by_source.get(place, ()) if value else ():
-                    table[at] = table.get(at, 0) + factor * value
+                    table[at] = table.get(at, 0) + factor * int(value)
             tables.append(table)
         return matrix_from_entries(matrix.field, tables, m, m, matrix.den)
 

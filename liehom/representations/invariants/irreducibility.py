@@ -17,6 +17,7 @@ from liehom.representations.invariants.intertwiners import commutant
 from liehom.scalars import ExactMatrix, Field, Polynomial, Scalar
 from liehom.scalars.roots.roots import real_part_cut
 from liehom.scalars.spaces.forms import orthogonal_basis
+from liehom.typing import ScalarLike
 
 MAX_EIGENVALUE_DEGREE = 8
 
@@ -129,7 +130,7 @@ def nilpotent_ideal_rows(matrices: Sequence[ExactMatrix], size: int, over: Field
     return rows
 
 
-def combination(matrices: Sequence[ExactMatrix], coefficients: Sequence[Scalar]) -> ExactMatrix:
+def combination(matrices: Sequence[ExactMatrix], coefficients: Sequence[ScalarLike]) -> ExactMatrix:
     """The sum of c_i A_i over at least one matrix."""
     total = matrices[0].scale(coefficients[0])
     for a, c in zip(matrices[1:], coefficients[1:], strict=True):

@@ -12,8 +12,9 @@ from itertools import combinations
 from typing import final
 
 from liehom.errors import InternalError
-from liehom.scalars import ExactField, ExactMatrix, Polynomial, Scalar
+from liehom.scalars import ExactField, ExactMatrix, Polynomial
 from liehom.scalars.spaces.integral_basis import integral_basis
+from liehom.typing import ScalarLike
 
 PAIRS = 60
 REDUCED = 40
@@ -63,7 +64,7 @@ class MatrixAlgebra:
         flat = self.field.stack_rows([m.reshape(1, n * n) for m in matrices], n * n)
         return flat.select(columns=self._places) @ self._inverse
 
-    def element(self, coefficients: Sequence[Scalar]) -> ExactMatrix:
+    def element(self, coefficients: Sequence[ScalarLike]) -> ExactMatrix:
         """The combination of the basis with these coefficients."""
         row = self.field.matrix([coefficients], (1, self.dimension))
         return (row @ self._flat).reshape(self.size, self.size)

@@ -10,6 +10,7 @@ from typing import Any
 
 import flint
 import numpy as np
+import numpy.typing as npt
 
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.rational import QQ
@@ -48,7 +49,7 @@ def reduced_basis(form: Array) -> ExactMatrix:
     return QQ.from_integers(change.entries(), n, n)
 
 
-def reduced_rows(rows: ExactMatrix, factor: Array) -> ExactMatrix:
+def reduced_rows(rows: ExactMatrix, factor: npt.NDArray[np.floating[Any]]) -> ExactMatrix:
     """A basis of the lattice that the rows span, nearly orthogonal and short for the form factor factor^T.
 
     Parameters
