@@ -112,9 +112,10 @@ class Derivations:
             raise InputError("the matrix is not a derivation: D [x, y] differs from [D x, y] + [x, D y] for some x, y")
         row: Matrix = field.zeros(1, 0)
         if self.dimension > 0:
-            if self._flat is None:
-                self._flat = field.stack_rows([m.reshape(1, n * n) for m in self.matrices], n * n)
-            row = self._flat.T.solve(given.reshape(n * n, 1)).T
+            flat: Matrix | None = self._flat
+            if flat is None:
+                self._flat = flat = field.stack_rows([m.reshape(1, n * n) for m in self.matrices], n * n)
+            row = flat.T.solve(given.reshape(n * n, 1)).T
         return row
 
     def __repr__(self) -> str:
