@@ -1,4 +1,4 @@
-"""Lie algebras by structure constants: the algebra, its subalgebras, and how they are made."""
+"""Lie algebras by structure constants, their subalgebras and homomorphisms, structure theory, and constructions."""
 
 from liehom.algebra.closure import Closure as Closure
 from liehom.algebra.closure import lie_closure as lie_closure

@@ -31,7 +31,7 @@ from liehom.typing import IntegerArray
 
 SPARSE_TERMS = 30_000  # products below which double brackets in Python are the fastest proof
 HELD_TERMS = 50_000_000  # products that are held in memory together
-SPARSE_PRODUCT, DENSE_PRODUCT, DENSE_ROW = 400, 4, 300  # times in tenths of a nanosecond: a product; per n^4; per n^3
+SPARSE_PRODUCT, DENSE_PRODUCT, DENSE_SLICE = 400, 4, 300  # tenths of a nanosecond for a product, per n^4 and per n^3
 
 Triple = tuple[int, int, int]
 Coefficients = dict[int, Scalar]
@@ -77,7 +77,7 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
 
 
 def _sparse_is_faster(terms: int, n: int) -> bool:
-    return terms * SPARSE_PRODUCT < n**4 * DENSE_PRODUCT + n**3 * DENSE_ROW
+    return terms * SPARSE_PRODUCT < n**4 * DENSE_PRODUCT + n**3 * DENSE_SLICE
 
 
 def _fail(table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...]) -> NoReturn:

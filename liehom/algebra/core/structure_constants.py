@@ -129,7 +129,7 @@ class StructureConstants:
         return _exact(self.field)
 
     def by_pair(self) -> dict[tuple[int, int], list[tuple[int, Any]]]:
-        """The table as {(i, j): [(k, value), ...]} for both orders of i, j; over QQ the values are numerators."""
+        """The table as {(i, j): [(k, value), ...]} for both orders of i and j, with numerators as values over QQ."""
         table: dict[tuple[int, int], list[tuple[int, Any]]] = {}
         integral = len(self.parts) == 1 and self.field.exact
         values = self.parts[0] if integral else self.values()

@@ -1,14 +1,13 @@
 """The Cartan decomposition g = k + p over the field of the algebra, from a Cartan involution that is proved.
 
 An involution theta is a Cartan involution if it is an automorphism and -K(x, theta y) is positive definite; both are
-exact checks.  Candidates come from these sources, in order of cost:
+exact checks.  Candidates come from these sources, in order of cost.
 
-1. floating point (approximate_involution), because in a well-chosen basis the best Cartan involution has small rational
-   entries;
-2. rotations by pi about an axis, for dimension 3 over the centroid (involution_about_axis);
-3. for each simple ideal, in the basis of a large Lie order (lattice_order), lattice reduction (rational_involution) and
-   nilpotent elements (isotropic_involution);
-4. random inner automorphisms of the candidates of lattice reduction.
+1. Floating point (approximate_involution), because a well-chosen basis gives one with small rational entries.
+2. Rotations by pi about an axis, for dimension 3 over the centroid (involution_about_axis).
+3. Lattice reduction (rational_involution) and nilpotent elements (isotropic_involution), for each simple ideal in the
+   basis of a large Lie order (lattice_order).
+4. Random inner automorphisms of the candidates of lattice reduction.
 
 If the centroid excludes a Cartan involution over the field, `NoRationalInvolutionError` is raised before any search
 (involution_obstruction).  If no candidate passes the checks, `UndecidedError` is raised, because there may be no Cartan

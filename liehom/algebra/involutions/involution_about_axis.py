@@ -16,7 +16,7 @@ from liehom.scalars import ExactMatrix, Matrix, as_exact
 from liehom.scalars.spaces.forms import orthogonal_basis
 from liehom.typing import Array
 
-DIGITS = 12  # roundings that are tried, to integers of up to so many decimal digits
+DIGITS = 12  # roundings that are tried, to integers of up to 12 decimal digits
 SEEDS = 4  # random elements for each rounding
 
 

@@ -4,7 +4,7 @@ For any lattice L the normalizer N(L) = {x : [x, L] in L} is an order.  An order
 divides the discriminant of its Killing form.  The normalizer of an ideal J of M contains M.  For
 J = {x in M : K(x, M) = 0 mod d} it is larger than M for most M that are not maximal, as in the round-2 algorithm for
 orders in fields and algebras.  For primes d < 1000 the ideals {x in M : K(x, M) = 0 mod d^k} + d M and others are also
-tried; at larger primes the result may fail to be maximal.  If d M lies in J and M = N(M), then N(J) lies in M/d and is
+tried.  At larger primes the result may fail to be maximal.  If d M lies in J and M = N(M), then N(J) lies in M/d and is
 found by linear algebra modulo d.  The number d need not be a prime: it is split if elimination meets a divisor of it.
 No order is proved to be maximal.
 """
