@@ -338,6 +338,20 @@ def test_parabolic_of_e6_keeps_the_line_of_a_primitive_idempotent():
     assert killing_signature(mf.combine(rows, matrices)) == (9 + 1, 36, 16)
 
 
+def test_null_space_is_the_primitive_basis_dual_to_the_columns_without_pivot():
+    rng = np.random.default_rng(3)
+    for _ in range(60):
+        n = int(rng.integers(1, 8))
+        matrix = rng.integers(-3, 4, size=(int(rng.integers(0, 7)), n))
+        rows = null_space(matrix)
+        free = [j for j in range(n) if modular_rank(matrix[:, : j + 1]) == modular_rank(matrix[:, :j])]
+        assert rows.shape == (len(free), n)
+        assert not (rows @ matrix.T).any()
+        assert (np.gcd.reduce(rows, axis=1) == 1).all()
+        assert (np.diag(rows[:, free]) > 0).all()
+        assert np.count_nonzero(rows[:, free]) == len(free)
+
+
 def test_null_space_agrees_with_the_modular_rank():
     rng = np.random.default_rng(1)
     for m, n, rank in ((4, 6, 2), (7, 5, 4), (3, 3, 3), (0, 3, 0), (2, 4, 0)):
