@@ -15,6 +15,7 @@ def entire_function(name: str, x: Traced) -> Traced:
 
     Examples
     --------
+    >>> from liehom.tracing import Tape
     >>> entire_function("cosq", Traced(Tape(), [0.0])).entries
     array([1.0], dtype=object)
     """
@@ -26,6 +27,8 @@ def exponential_action(matrix: Operand, m: Operand) -> Traced:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from liehom.tracing import Tape
     >>> tape = Tape()
     >>> exponential_action(Traced(tape, np.zeros((2, 2))), Traced.inputs(tape, 0, 2)).entries
     array([<input 4>, <input 5>], dtype=object)
