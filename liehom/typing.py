@@ -134,5 +134,8 @@ class Values(Protocol):
 Expression: TypeAlias = Any
 """A sympy expression; sympy has no types."""
 
+ValuesLike: TypeAlias = "Values | npt.ArrayLike"
+"""`Values`, or what numpy converts to an array."""
+
 Real: TypeAlias = "float | Values"
 """A real number, or one per trajectory: a time, a step size."""

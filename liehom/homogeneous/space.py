@@ -1,26 +1,28 @@
-"""Action: a representation with an exponential, the numerical face of a homogeneous space.
+"""Action: a representation with an exponential, the numerical description of a homogeneous space.
 
-What integrators and correctors need of a space: rho(x) m, Exp(x) m, the bracket, an inner product on g, and at a
-point the isotropy subalgebra in an orthonormal basis.
+Integrators and correctors use rho(x) m, Exp(x) m, the bracket, an inner product on g, and the isotropy subalgebra at a
+point in an orthonormal basis.
 """
 
 from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, final, overload
 
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.exponentials.custom_exponential import exponential_of
+from liehom.homogeneous.exponentials.custom_exponential import ExponentialLike, exponential_of
 from liehom.homogeneous.exponentials.exponential import Exponential
 from liehom.homogeneous.frames.branch_free_frames import TightFrame, orthogonal_decomposition
 from liehom.homogeneous.frames.inner_product import InnerProduct, inner_product
 from liehom.homogeneous.maps import action_map, bracket_map
 from liehom.representations import Representation
 from liehom.series.arrays import is_jax, namespace
+from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
+from liehom.typing import IntegerArray, Values, ValuesLike
 
 
 @final
@@ -31,8 +33,8 @@ class Action:
     ----------
     representation : Representation
     exponential : str, Exponential or callable
-        See `exponential_of`: "exp" (default), "cayley", "expm", "series", "rodrigues", an `Exponential`, or a
-        function (x, m) -> Exp(x) m written with numpy functions.
+        "exp" (default), "cayley", "expm", "series", "rodrigues", an `Exponential`, or a function (x, m) -> Exp(x) m
+        written with numpy functions; see `liehom.homogeneous.exponential_of`.
 
     Raises
     ------
@@ -51,16 +53,16 @@ class Action:
 
     __slots__ = (
         "_basis",
-        "_size",
+        "_size",  # behind `max_norm`; pickles of 0.1.0 have these two names
         "bracket",
-        "even",  # behind `tight_frame`; pickles of 0.1.0 have this name
+        "even",  # behind `tight_frame`
         "exponential",
         "infinitesimal",
         "inner_product",
         "representation",
     )
 
-    def __init__(self, representation: Representation, exponential: Any = "exp") -> None:
+    def __init__(self, representation: Representation, exponential: ExponentialLike = "exp") -> None:
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {representation!r}")
         self.representation = representation
@@ -81,16 +83,22 @@ class Action:
 
     @property
     def dimension(self) -> int:
-        """The dimension of the algebra."""
+        """Dimension of the algebra."""
         return self.representation.algebra.dimension
 
     @property
     def max_norm(self) -> float:
-        """The largest norm of rho(x) for x in an orthonormal basis of g."""
+        """The largest Frobenius norm of rho(x) for x in an orthonormal basis of g."""
         return self._size
 
-    def act(self, x: Any, m: Any) -> Any:
-        """Exp(x) m for x (..., dim) and m (..., N), arrays or Jets with x(0) = 0.
+    @overload
+    def act(self, x: Jet, m: ValuesLike) -> Jet: ...
+    @overload
+    def act(self, x: ValuesLike, m: Jet) -> Jet: ...
+    @overload
+    def act(self, x: ValuesLike, m: ValuesLike) -> Values: ...
+    def act(self, x: ValuesLike, m: ValuesLike) -> Values:
+        """The points Exp(x) m for x (..., dim) and m (..., N), arrays or Jets with x(0) = 0.
 
         Raises
         ------
@@ -104,14 +112,14 @@ class Action:
             )
         return self.exponential(x, m)
 
-    def isotropy_frame(self, m: Any, orbit_dimension: Any) -> IsotropyFrame:
-        """The isotropy subalgebra at m in an orthonormal basis, of known dimension.
+    def isotropy_frame(self, m: Values, orbit_dimension: int | IntegerArray) -> IsotropyFrame:
+        """Orthonormal bases of the isotropy subalgebra and of the tangent space at m, of known dimension.
 
         Parameters
         ----------
         m : array of shape (..., N)
         orbit_dimension : int or array of shape (...,)
-            It is constant along an orbit, so that no tolerance decides here.
+            The dimension is constant along an orbit, so no tolerance is needed.
 
         Examples
         --------
@@ -127,7 +135,7 @@ class Action:
         xp = namespace(m)
         columns = self.infinitesimal.right(m) @ self._basis
         extended = columns.dtype == np.longdouble
-        wide = columns.shape[-1] > columns.shape[-2]  # only then the kernel is more than the last right vectors
+        wide = columns.shape[-1] > columns.shape[-2]  # else the last right singular vectors span the kernel
         left, sizes, right = xp.linalg.svd(columns.astype(np.float64) if extended else columns, full_matrices=wide)
         rank = np.asarray(orbit_dimension)
         lowest, highest = int(rank.min()), int(rank.max())
@@ -143,23 +151,23 @@ class Action:
         return IsotropyFrame(self._basis @ kernel, tangent, self._basis @ lift, rank)
 
     def with_tight_frame(self, frame: TightFrame | None) -> Action:
-        """This action, where points (not of JAX) are known to be on orbits with these properties.
+        """A copy of this action whose points (except JAX arrays) lie on orbits with this tight frame; None removes it.
 
-        Isotropy frames are then without a basis of g_m, and their tangent vectors those of V.
+        Its isotropy frames have no basis of g_m, and the standard basis of V in place of a tangent basis.
         """
         made = copy(self)
         made.even = frame
         return made
 
-    def _frame_of_tight(self, tight: TightFrame, m: Any, orbit_dimension: Any) -> IsotropyFrame:
+    def _frame_of_tight(self, tight: TightFrame, m: Values, orbit_dimension: int | IntegerArray) -> IsotropyFrame:
         columns = self.infinitesimal.right(m)
         rank = np.asarray(orbit_dimension)
         over = np.max(rank) / np.sum((m @ tight.trace) * m, axis=-1) if tight.over is None else tight.over
         lift = tight.inverse @ np.swapaxes(columns, -1, -2) * over[..., None, None]
         return IsotropyFrame(None, np.eye(m.shape[-1]), lift, rank)
 
-    def _branch_free_frame(self, m: Any, rank: int) -> IsotropyFrame:
-        """The projector on g_m in place of a basis, of which only the range matters."""
+    def _branch_free_frame(self, m: Values, rank: int) -> IsotropyFrame:
+        """The frame with the projector on g_m in place of a basis: only the range of the matrix is used."""
         xp = namespace(m)
         columns = self.infinitesimal.right(m)
         columns = columns @ xp.asarray(self._basis)
@@ -179,27 +187,28 @@ class IsotropyFrame:
     Attributes
     ----------
     basis : array of shape (..., dim, s), or None
-        Columns span g_m, orthonormal in the inner product of the action (zero columns fill up where the orbits of an
-        ensemble have different dimensions). None for a tight frame, where no basis is needed.
+        Columns span g_m, orthonormal in the inner product of the action. If the orbits of an ensemble have different
+        dimensions, zero columns fill the array. None for a tight frame, where no basis is needed.
     tangent : array of shape (..., N, d)
-        Columns span T_m M, orthonormal (zero columns fill up).
+        Columns span T_m M, orthonormal, filled with zero columns.
     lift : array of shape (..., dim, d)
-        Column j is the generator of least norm with rho(x) m = tangent[:, j].
+        Column j is the generator x of minimal norm with rho(x) m = tangent[:, j].
     orbit_dimension : array of shape (...,)
     """
 
-    basis: Any
-    tangent: Any
-    lift: Any
-    orbit_dimension: Any
+    basis: Values | None
+    tangent: Values
+    lift: Values
+    orbit_dimension: IntegerArray
 
 
-def _positive(sizes: Any, xp: Any) -> Any:
-    return xp.where(sizes > 0, sizes, 1.0)
+def _positive(sizes: Values, xp: Any) -> Values:
+    made: Values = xp.where(sizes > 0, sizes, 1.0)
+    return made
 
 
-def _refined(columns: Any, kernel: Any, tangent: Any, lift: Any) -> tuple[Any, Any, Any]:
-    """The frame to the precision of extended floats, by two Newton steps from the one in float64."""
+def _refined(columns: Values, kernel: Values, tangent: Values, lift: Values) -> tuple[Values, Values, Values]:
+    """Kernel, tangent and lift in extended precision, by two Newton steps from their values in float64."""
     inverse = lift @ np.swapaxes(tangent, -1, -2)
     for _ in range(2):
         kernel = kernel - inverse @ (columns @ kernel)
@@ -212,10 +221,11 @@ def _refined(columns: Any, kernel: Any, tangent: Any, lift: Any) -> tuple[Any, A
     return kernel, tangent, lift
 
 
-def _orthonormal(a: Any) -> Any:
+def _orthonormal(a: Values) -> Values:
     return a @ _towards_orthonormal(a)
 
 
-def _towards_orthonormal(a: Any) -> Any:
-    """(3 - A^T A) / 2, which takes nearly orthonormal columns to orthonormal ones; columns of zeros stay."""
-    return (3 * np.eye(a.shape[-1], dtype=a.dtype) - np.swapaxes(a, -1, -2) @ a) / 2
+def _towards_orthonormal(a: Values) -> Values:
+    """The factor (3 - A^T A) / 2: A times it has columns closer to orthonormal ones, and the same zero columns."""
+    made: Values = (3 * np.eye(a.shape[-1], dtype=a.dtype) - np.swapaxes(a, -1, -2) @ a) / 2
+    return made

@@ -78,6 +78,8 @@ class RangeSolver:
         self._frame, self._leading, self._weight = frame, leading, weight
         self._size, unit = _normalized(xp, velocity)
         self._down = xp.swapaxes(frame.tangent, -1, -2)
+        if frame.basis is None:
+            raise InternalError("a RangeSolver needs a frame with a basis of g_m")
         self._basis = frame.basis
         if unit.dtype == np.longdouble:
             self._basis = _polished(frame.basis, action.inner_product.matrix)

@@ -263,7 +263,7 @@ class _Expansion:
         return Jet.from_node(Node(n, zeros(values, values.shape[1:]), known))
 
     def _require_isotropy(self, x: npt.NDArray[Any], k: int) -> None:
-        moved = self.action.infinitesimal(x, self.point)
+        moved: Any = self.action.infinitesimal(x, self.point)
         if self.exact:
             wrong = any(value != 0 for value in moved.flat)
         else:

@@ -111,7 +111,8 @@ class SymbolicRange:
             moves = simple(factor * self._moved(velocity) @ self.projector)
             self._adjoint = simple(self._dual @ moves.T @ self._metric)
         else:  # an orthonormal basis is not at hand, and not needed: zeta is unique, or 0
-            moves = simple(factor * self._action.infinitesimal(self.row, velocity))[:, None]
+            moved: Any = self._action.infinitesimal(self.row, velocity)
+            moves = simple(factor * moved)[:, None]
             self._adjoint = moves.T @ self._metric
         self._inverse = RangeInverse(simple(moves @ self._adjoint))
         self._moves = moves

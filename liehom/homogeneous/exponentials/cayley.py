@@ -1,13 +1,14 @@
-"""The Cayley transform cay(x) = (1 - x/2)^-1 (1 + x/2), where the group is quadratic.
+"""The Cayley transform cay(x) = (1 - x/2)^-1 (1 + x/2) of quadratic groups.
 
-It lies in the group if the matrices D(x) of a representation contain all cubes D(x)^3 (so, sp, u, e(n), and others
-given by a bilinear form, but not sl(n) or su(n), n > 2).  In D itself it is a rational map.  On another representation
-rho of the same algebra it acts through the group: cay(x) = exp(y) with D(y) = 2 artanh(D(x)/2), and exp(y) acts by rho.
+cay(x) lies in the group if the matrices D(x) of a representation contain all cubes D(x)^3.  That holds for so, sp, u,
+e(n) and other groups given by a bilinear form, but not for sl(n) or su(n), n > 2.  On D itself the Cayley transform is
+a rational map.  On another representation rho of the same algebra it acts through the group: cay(x) = exp(y) with
+D(y) = 2 artanh(D(x)/2), and exp(y) acts by rho.
 """
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import Any, final, overload
 
 import numpy as np
 
@@ -16,13 +17,15 @@ from liehom.homogeneous.exponentials.exponential import Exponential, SeriesExpon
 from liehom.homogeneous.exponentials.matrix_functions import cayley_logarithm, identity, norms, solve
 from liehom.homogeneous.maps import FieldMap, FieldMatrix, action_map
 from liehom.representations import Representation, defining
+from liehom.scalars import Matrix
 from liehom.series.arrays import is_exact, is_lazy
 from liehom.series.jet import Jet
 from liehom.series.lie_series import cayley_magnus, dcayley_inverse, without_constant
+from liehom.typing import ObjectArray, Values
 
 RTOL = 1e-12
 PROVED_DIMENSION = 21
-# above this norm of the matrix the linear system is solved in extended precision, so that invariants stay
+# above this norm of the matrix the linear system is solved in extended precision, which preserves invariants
 REFINED_NORM = 4.0
 
 
@@ -41,13 +44,14 @@ class Cayley(Exponential):
     Raises
     ------
     InputError
-        If no such D is known: the group is then not known to be quadratic.
+        If no such D is known, so that the group is not known to be quadratic.
     SingularError
-        When it is evaluated where it is not defined: at a real eigenvalue 2 of D(x), or beyond 2 if rho is not D.
+        On evaluation where the transform is not defined: if D(x) has the real eigenvalue 2 or, if rho is not D, a real
+        eigenvalue of size at least 2.
 
     Notes
     -----
-    That the cubes are in D(g) is proved exactly for algebras of dimension up to 21 over an exact field, else checked
+    The cubes are proved to lie in D(g) for algebras of dimension up to 21 over an exact field, else this is checked
     numerically to 1e-12.
 
     Examples
@@ -73,7 +77,7 @@ class Cayley(Exponential):
     def name(self) -> str:
         return "Cayley" if self._through is None else "Cayley (through the group)"
 
-    def act(self, x: Any, m: Any) -> Any:
+    def act(self, x: Values, m: Values) -> Values:
         if self._through is not None:
             return self._through.act(self._logarithm(x), m)
         matrix = self._matrices.left(x)
@@ -81,34 +85,42 @@ class Cayley(Exponential):
             return _exact_action(self._defining, matrix, m)
         return m + _increment(matrix, m)
 
-    def series(self, x: Jet, m: Any) -> Jet:
+    def series(self, x: Jet, m: Values) -> Jet:
         x = without_constant(x, check=True)
         if self._through is not None:
             return self._through.series(self._logarithmic_jet(x), m)
         return _rational_series(self._matrices, x, m)
 
-    def differential_inverse(self, x: Any, y: Any, terms: int) -> Any:
-        """dcay^-1_x y = (1 - x/2) y (1 + x/2), exact."""
-        return self._coefficients(dcayley_inverse(self._matrices.left(x), self._matrices.left(y)))
+    def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
+        """The value dcay^-1_x y = (1 - x/2) y (1 + x/2), exact."""
+        moved: Values = dcayley_inverse(self._matrices.left(x), self._matrices.left(y))
+        return self._coefficients(moved)
 
     def logarithmic_series(self, a: Jet) -> Jet:
-        return self._coefficients(cayley_magnus(self._matrices.left(a)))  # type: ignore[no-any-return]
+        return self._coefficients(cayley_magnus(self._matrices.left(a)))
 
-    def _coefficients(self, matrix: Any) -> Any:
+    @overload
+    def _coefficients(self, matrix: Jet) -> Jet: ...
+    @overload
+    def _coefficients(self, matrix: Values) -> Values: ...
+    def _coefficients(self, matrix: Values) -> Values:
+        """The x with D(x) = matrix, shape (..., dim)."""
         n = matrix.shape[-1]
-        return self._dual(matrix.reshape((*matrix.shape[:-2], n * n)))
+        flat: Values = matrix.reshape((*matrix.shape[:-2], n * n))
+        return self._dual(flat)
 
     def _logarithmic_jet(self, x: Jet) -> Jet:
-        """2 artanh(x/2) = x + x^3/12 + x^5/80 + ... as a series in t."""
-        a = self._matrices.left(x)
+        """The Jet 2 artanh(x/2) = x + x^3/12 + x^5/80 + ...."""
+        a: Any = self._matrices.left(x)
         square = a @ a
         power, total = a, a
         for j in range(1, (x.order - 1) // 2 + 1):
             power = power @ square
             total = total + power / (4**j * (2 * j + 1))
-        return self._coefficients(total)  # type: ignore[no-any-return]
+        made: Jet = self._coefficients(total)
+        return made
 
-    def _logarithm(self, x: Any) -> Any:
+    def _logarithm(self, x: Values) -> Values:
         if is_exact(x):
             raise InputError("the Cayley transform through the group needs a logarithm: use floats, or series")
         return self._coefficients(cayley_logarithm(self._matrices.left(x)))
@@ -117,45 +129,47 @@ class Cayley(Exponential):
         return f"<exponential {self.name}>"
 
 
-def _increment(matrix: Any, m: Any) -> Any:
-    """cay(A) m - m = (1 - A/2)^-1 A m."""
+def _increment(matrix: Values, m: Values) -> Values:
+    """The vector cay(A) m - m = (1 - A/2)^-1 A m."""
     right = matrix @ m[..., None]
     if not is_lazy(right) and right.dtype != np.longdouble:
         large = float(np.max(norms(matrix), initial=0.0)) > REFINED_NORM
         if large:
             wide = matrix.astype(np.longdouble)
             made = solve(identity(wide) - wide / 2, wide @ m[..., None].astype(np.longdouble))
-            return made[..., 0].astype(right.dtype)
-    return solve(identity(matrix) - matrix / 2, right)[..., 0]
+            rounded: Values = made[..., 0].astype(right.dtype)
+            return rounded
+    found: Values = solve(identity(matrix) - matrix / 2, right)[..., 0]
+    return found
 
 
-def _rational_series(action: FieldMap, x: Jet, m: Any) -> Jet:
-    """z = m + x (m + z)/2, coefficient by coefficient."""
+def _rational_series(action: FieldMap, x: Jet, m: Values) -> Jet:
+    """The Jet z = m + x (m + z)/2, coefficient by coefficient."""
     start: Any = m if isinstance(m, Jet) else Jet.constant(m, x.order)
     shape = np.broadcast_shapes(x.shape[:-1], start.shape[:-1])
     if start.shape[:-1] != shape:
         start = np.broadcast_to(start, (*shape, start.shape[-1]))
     z = Jet.growing(start.value, min(x.order, start.order))
-    made = start + action(x, start + z) / 2
+    made: Jet = start + action(x, start + z) / 2
     z.node.depends((made.node, 0), rule=lambda k: made.node.known[k])
     return z
 
 
-def _exact_action(representation: Representation, matrix: Any, m: Any) -> Any:
-    """cay(A) m over the field, point by point."""
+def _exact_action(representation: Representation, matrix: Values, m: Values) -> ObjectArray:
+    """The vectors cay(A) m over the field, point by point."""
     field, n = representation.field, representation.size
     lead = np.broadcast_shapes(matrix.shape[:-2], m.shape[:-1])
-    matrix, m = np.broadcast_to(matrix, (*lead, n, n)), np.broadcast_to(m, (*lead, n))
-    out = np.empty(m.shape, dtype=object)
+    matrices, points = np.broadcast_to(matrix, (*lead, n, n)), np.broadcast_to(m, (*lead, n))
+    out = np.empty(points.shape, dtype=object)
     for index in np.ndindex(*lead):
-        half = field.matrix((matrix[index] / 2).tolist(), (n, n))
-        point = field.matrix([[v] for v in m[index]], (n, 1))
+        half = field.matrix((matrices[index] / 2).tolist(), (n, n))
+        point = field.matrix([[v] for v in points[index]], (n, 1))
         moved = (field.identity(n) - half).solve(point + half @ point)
         out[index] = moved.entries()
     return out
 
 
-# -- which groups are quadratic --------------------------------------------------------------------------
+# -- recognition of quadratic groups --------------------------------------------------------------------------
 def _quadratic(representation: Representation, given: Representation | None) -> Representation:
     if given is not None:
         if not isinstance(given, Representation):
@@ -186,8 +200,8 @@ def contains_cubes(representation: Representation) -> bool:
 
     Notes
     -----
-    By polarization and because g is closed under brackets, it does if (a b + b a) c + c (a b + b a) lies in D(g) for
-    all a, b, c of the basis. Then so do all odd powers, and x y x.
+    By polarization, and because g is closed under brackets, the cubes lie in D(g) if (a b + b a) c + c (a b + b a)
+    does for all basis elements a, b, c. Then D(g) contains all odd powers, and x y x.
 
     Examples
     --------
@@ -229,13 +243,14 @@ def _is_faithful(representation: Representation) -> bool:
     return bool(_flat(representation).rank() == representation.algebra.dimension)
 
 
-def _flat(representation: Representation) -> Any:
+def _flat(representation: Representation) -> Matrix:
     size = representation.size**2
-    return representation.field.stack_rows([m.reshape(1, size) for m in representation.matrices], size)
+    flat: Matrix = representation.field.stack_rows([m.reshape(1, size) for m in representation.matrices], size)
+    return flat
 
 
-def _left_inverse(representation: Representation) -> Any:
-    """The matrix (dim, N^2) of D(x) -> x; x has no component in the kernel of D, where that is not 0."""
+def _left_inverse(representation: Representation) -> Matrix:
+    """The matrix (dim, N^2) of D(x) -> x, with x orthogonal to the kernel of D."""
     flat = _flat(representation)
     if not representation.matrices:
         return flat
@@ -244,6 +259,7 @@ def _left_inverse(representation: Representation) -> Any:
     if kernel.nrows:
         gram = gram + kernel.T @ kernel
     try:
-        return gram.inverse() @ flat
-    except SingularError:  # floats whose Gram matrix has too wide a spread
-        return representation.field.matrix(np.linalg.pinv(flat.to_numpy()).T.tolist(), flat.shape)
+        found: Matrix = gram.inverse() @ flat
+    except SingularError:  # floats whose Gram matrix is too badly conditioned
+        found = representation.field.matrix(np.linalg.pinv(flat.to_numpy()).T.tolist(), flat.shape)
+    return found

@@ -1,9 +1,9 @@
-"""A user's own exponential, and which exponential a name stands for."""
+"""Custom exponentials, given as functions, and the exponential that a name denotes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 
@@ -15,6 +15,13 @@ from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation
 from liehom.series.jet import Jet
 from liehom.series.node import Node
+from liehom.typing import Values
+
+ExponentialFunction: TypeAlias = Callable[[Any, Any], Any]
+"""A function (x, m) -> Exp(x) m of two `Values`."""
+
+ExponentialLike: TypeAlias = "str | Exponential | type[Exponential] | ExponentialFunction"
+"""What `exponential_of` reads as an exponential."""
 
 RTOL = 1e-8
 STEP = 1e-3
@@ -22,7 +29,7 @@ STEP = 1e-3
 
 @final
 class CustomExponential(Exponential):
-    """A user's map, as a function (x, m) -> Exp(x) m that runs on arrays and Jets.
+    """An exponential given by a function (x, m) -> Exp(x) m that runs on arrays and Jets.
 
     Parameters
     ----------
@@ -34,10 +41,10 @@ class CustomExponential(Exponential):
     Raises
     ------
     ShapeError
-        If it does not return (..., N) for any leading axes.
+        If the function does not return shape (..., N) for all leading axes.
     InputError
-        If Exp(t x) m does not begin with m + t rho(x) m + t^2/2 rho(x)^2 m, as the correctors need; if it does not
-        run on Jets.
+        If Exp(t x) m does not begin with m + t rho(x) m + t^2/2 rho(x)^2 m, as the correctors need, or if the function
+        does not run on Jets.
 
     Examples
     --------
@@ -51,9 +58,7 @@ class CustomExponential(Exponential):
     'my Cayley'
     """
 
-    def __init__(
-        self, representation: Representation, function: Callable[[Any, Any], Any], name: str = "custom"
-    ) -> None:
+    def __init__(self, representation: Representation, function: ExponentialFunction, name: str = "custom") -> None:
         if not callable(function):
             raise InputError(f"an exponential is a function (x, m) -> Exp(x) m, got {function!r}")
         self._function = function
@@ -64,12 +69,13 @@ class CustomExponential(Exponential):
     def name(self) -> str:
         return self._name
 
-    def act(self, x: Any, m: Any) -> Any:
-        return self._function(x, m)
+    def act(self, x: Values, m: Values) -> Values:
+        made: Values = self._function(x, m)
+        return made
 
 
 def check_exponential(representation: Representation, exponential: Exponential) -> None:
-    """Check that a map is one of the representation and begins as exp does.
+    """Check that an exponential belongs to a representation and agrees with exp through order 2.
 
     Raises
     ------
@@ -87,7 +93,7 @@ def check_exponential(representation: Representation, exponential: Exponential) 
     """
     rng = np.random.default_rng(0)
     dimension, size = representation.algebra.dimension, representation.size
-    # several trajectories, none of the numbers equal: axes that are mixed up do not fit
+    # several trajectories with distinct numbers, so that exchanged axes are found
     count = 2 + max(dimension, size)
     x, m = rng.normal(size=(count, dimension)), rng.normal(size=(count, size))
     a = action_map(representation)
@@ -110,10 +116,10 @@ def check_exponential(representation: Representation, exponential: Exponential) 
             )
         begin = series(STEP) if points is m else series(STEP)[0]
         if not float(np.abs(made - begin).max(initial=0.0)) <= STEP**3 * (1 + float(np.abs(m).max(initial=0.0))):
-            raise InputError(f"{what} has a series that is not the one of its values on arrays")
+            raise InputError(f"{what} has a series that differs from its values on arrays")
 
 
-def _expanded(what: str, exponential: Exponential, x: Any, m: Any) -> Jet:
+def _expanded(what: str, exponential: Exponential, x: Values, m: Values) -> Jet:
     try:
         series = exponential(Jet.from_node(Node(2, 0 * x, [None, x, None])), m)
     except SeriesError as error:
@@ -136,21 +142,22 @@ _BY_NAME: dict[str, Callable[[Representation], Exponential]] = {
 }
 
 
-def exponential_of(representation: Representation, which: Any = "exp") -> Exponential:
-    """The exponential that a name or an object stands for.
+def exponential_of(representation: Representation, which: ExponentialLike = "exp") -> Exponential:
+    """The exponential that a name, a class, a function or an `Exponential` denotes.
 
     Parameters
     ----------
     representation : Representation
     which : str, Exponential or callable
-        "exp" (Rodrigues' formula where it applies, else the series), "series", "expm", "rodrigues", "cayley"; an
-        `Exponential`, or a subclass of it that is made from a representation; or a function (x, m) -> Exp(x) m.
+        One of the names "exp" (Rodrigues' formula where it applies, else the series), "series", "expm", "rodrigues"
+        and "cayley"; an `Exponential`; a subclass of `Exponential` whose constructor takes a representation; or a
+        function (x, m) -> Exp(x) m.
 
     Raises
     ------
     ShapeError, InputError
-        If the name is unknown, the representation does not allow it, or the object is no exponential of this
-        representation that begins with 1 + x + x^2/2.
+        If the name is unknown, if the representation does not allow it, or if the object is not an exponential of
+        this representation that begins with 1 + x + x^2/2.
 
     Examples
     --------

@@ -1,15 +1,16 @@
 """Exponentials: analytic maps Exp from g to the group with Exp(x) = 1 + x + x^2/2 + ..., acting on V.
 
-`Exponential` is the interface: the action on a vector and, for the expansion of steps, on Jets.  Here are the true
-exponential by its series on the vector and by the matrix exponential; Rodrigues' formula is in `rodrigues.py`, the
-Cayley transform in `cayley.py`, a user's own map in `custom_exponential.py`.
+`Exponential` is the interface: the action on a vector and, for the expansion of steps, on Jets.  This module has the
+true exponential by its Taylor series on the vector and by the matrix exponential.  Rodrigues' formula is in
+`rodrigues`, the Cayley transform in `cayley`, user-defined maps in `custom_exponential`.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from math import ceil, sqrt
-from typing import Any, final
+from typing import Any, final, overload
 
 import numpy as np
 
@@ -23,11 +24,12 @@ from liehom.series.jet import Jet
 from liehom.series.lie_series import dexp_inverse, magnus, without_constant
 from liehom.tracing.array import Traced
 from liehom.tracing.exponentials import exponential_action
+from liehom.typing import Array, BooleanArray, Values, ValuesLike
 
-# up to this norm of rho(x) the series on the vector is cheaper than a matrix exponential of its precision
+# up to this norm of rho(x) the series on the vector is cheaper than a matrix exponential of the same precision
 MAX_NORM = 8.0
 MAX_NORM_EXTENDED = 64.0
-# the Frobenius norm; where it is this, the terms of the series do not exceed the vector by much
+# largest Frobenius norm of rho(x) in a substep: larger terms of the series would cancel
 SUBSTEP = 2.0
 
 
@@ -36,14 +38,14 @@ class Exponential(ABC):
 
     Notes
     -----
-    A new one needs a name and `act`. `series` has a default for functions `act` that run on Jets;
-    `differential_inverse` and `logarithmic_series` may be given where they are known. Coefficient 0 of the Jet x is
-    zero: x(t) = x_1 t + x_2 t^2 + .... Pass an instance wherever "exp" may stand; that it agrees with exp through
-    order 2 is then checked.
+    A subclass defines `name` and `act`. The default `series` calls `act`, which must then run on Jets. Define
+    `differential_inverse` and `logarithmic_series` where they are known. Coefficient 0 of the Jet x is zero:
+    x(t) = x_1 t + x_2 t^2 + .... An instance can be passed wherever "exp" can; the agreement with exp through order 2
+    is then checked.
 
     Examples
     --------
-    A product of two exponentials that is symmetric, as splitting methods have it:
+    A symmetric product of two exponentials, as in splitting methods:
 
     >>> import numpy as np
     >>> import liehom as lh
@@ -61,42 +63,55 @@ class Exponential(ABC):
     @property
     @abstractmethod
     def name(self) -> str:
-        """What reports call it."""
+        """Name in reports, a string."""
 
     @abstractmethod
-    def act(self, x: Any, m: Any) -> Any:
+    def act(self, x: Values, m: Values) -> Values:
         """Exp(x) m for arrays x (..., dim) and m (..., N)."""
 
-    def series(self, x: Jet, m: Any) -> Jet:
-        """Exp(x(t)) m(t) as a Jet, for x(0) = 0."""
-        return self.act(x, m)  # type: ignore[no-any-return]
+    def series(self, x: Jet, m: Values) -> Jet:
+        """The Jet Exp(x(t)) m(t), for x(0) = 0."""
+        made: Any = self.act(x, m)
+        return made  # type: ignore[no-any-return]
 
-    def differential_inverse(self, x: Any, y: Any, terms: int) -> Any:
-        """dExp^-1_x y, by `terms` terms where it is a series; needed by Runge-Kutta-Munthe-Kaas steps."""
+    def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
+        """The value dExp^-1_x y, with `terms` terms of its series; Runge-Kutta-Munthe-Kaas steps need it.
+
+        Raises
+        ------
+        InputError
+            If it is not known (default).
+        """
         raise InputError(f"the inverse differential of {self.name} is not known, so RKMK steps cannot use it")
 
     def logarithmic_series(self, a: Jet) -> Jet | None:
-        """x(t) with Exp(x(t))' = a(t) Exp(x(t)), x(0) = 0; None if it is not known."""
+        """The Jet x(t) with Exp(x(t))' = a(t) Exp(x(t)), x(0) = 0, or None if it is not known (default)."""
         return None
 
-    def __call__(self, x: Any, m: Any) -> Any:
+    @overload
+    def __call__(self, x: Jet, m: ValuesLike) -> Jet: ...
+    @overload
+    def __call__(self, x: ValuesLike, m: Jet) -> Jet: ...
+    @overload
+    def __call__(self, x: ValuesLike, m: ValuesLike) -> Values: ...
+    def __call__(self, x: ValuesLike, m: ValuesLike) -> Values:
         """Exp(x) m for arrays or Jets."""
         if isinstance(x, Jet):
             return self.series(x, m if isinstance(m, Jet) else as_values(m))
-        x = as_values(x)
+        values: Values = as_values(x)
         if isinstance(m, Jet):  # Exp(x) is one linear map of V
-            return Jet.from_node(recurrences.linear(lambda v: self.act(x, v), [m.node]))
+            return Jet.from_node(recurrences.linear(lambda v: self.act(values, v), [m.node]))
         with np.errstate(over="ignore", invalid="ignore"):  # too large an x gives inf or nan, for that trajectory
-            return self.act(x, as_values(m))
+            return self.act(values, as_values(m))
 
     def __repr__(self) -> str:
         return f"<exponential {self.name}>"
 
 
 class TrueExponential(Exponential, ABC):
-    """What all versions of the true exponential share: the series, and dexp^-1 in the algebra.
+    """Base class of implementations of the true exponential: the expansion on Jets, and dexp^-1 in the algebra.
 
-    Another implementation of exp needs a name and `act` on arrays; everything else is here.
+    A subclass defines `name` and `act` on arrays.
 
     Parameters
     ----------
@@ -119,8 +134,8 @@ class TrueExponential(Exponential, ABC):
         self.infinitesimal: FieldMap = action_map(representation)
         self.bracket: FieldMap = bracket_map(representation)
 
-    def series(self, x: Jet, m: Any) -> Jet:
-        """The sum of the nested products rho(x)^j m / j!."""
+    def series(self, x: Jet, m: Values) -> Jet:
+        """The Jet exp(rho(x(t))) m(t): the sum of the nested products rho(x)^j m / j!."""
         x = without_constant(x, check=True)
         total = m if isinstance(m, Jet) else Jet.constant(m, x.order)
         term = total
@@ -131,8 +146,9 @@ class TrueExponential(Exponential, ABC):
             total = total + term
         return total
 
-    def differential_inverse(self, x: Any, y: Any, terms: int) -> Any:
-        return dexp_inverse(self.bracket, x, y, terms)
+    def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
+        made: Values = dexp_inverse(self.bracket, x, y, terms)
+        return made
 
     def logarithmic_series(self, a: Jet) -> Jet:
         return magnus(self.bracket, a)
@@ -142,9 +158,9 @@ class TrueExponential(Exponential, ABC):
 class SeriesExponential(TrueExponential):
     """exp(rho(x)) m by its Taylor series on the vector, in substeps of norm at most 2.
 
-    The increment is summed apart from m, so that round-off is relative to the increment. For large rho(x), and on
+    The increment is summed separately from m, so that round-off is relative to the increment. For large rho(x), and on
     JAX arrays, exp(rho(x)) - 1 is computed as a matrix, in extended precision where the platform has it. On exact
-    numbers it is the finite sum where rho(x) is nilpotent.
+    numbers exp is the finite sum if rho(x) is nilpotent.
 
     Parameters
     ----------
@@ -153,7 +169,7 @@ class SeriesExponential(TrueExponential):
     Raises
     ------
     FieldError
-        When it is evaluated on exact numbers where rho(x) is not nilpotent.
+        On evaluation at exact numbers where rho(x) is not nilpotent.
 
     Examples
     --------
@@ -168,15 +184,15 @@ class SeriesExponential(TrueExponential):
     def name(self) -> str:
         return "exp (series)"
 
-    def act(self, x: Any, m: Any) -> Any:
+    def act(self, x: Values, m: Values) -> Values:
         if is_exact(x) or is_exact(m):
             return exact_exponential(self.infinitesimal, x, m)
-        if self.infinitesimal.works_by_columns(x, m):  # of a large ensemble no matrices are made
+        if self.infinitesimal.works_by_columns(x, m):  # a large ensemble: without the matrices rho(x)
             x = in_lanes(x)
             largest = float(self.infinitesimal.frobenius_norms(x).max(initial=0.0))
             if largest <= SUBSTEP:
                 return m + _increment(x, m, largest, self.infinitesimal)
-        matrix = self.infinitesimal.left(x)
+        matrix: Any = self.infinitesimal.left(x)
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m):
@@ -184,7 +200,7 @@ class SeriesExponential(TrueExponential):
         if matrix.ndim == 2 and m.ndim == 1:
             flat = matrix.ravel()
             size = sqrt(flat.dot(flat))
-            if size <= SUBSTEP:  # one trajectory and a step of usual size: nothing but the series
+            if size <= SUBSTEP:  # the usual case: one trajectory, one substep
                 return m + _increment(matrix, m, size, np.dot)
             sizes: Any = np.asarray(size)
         else:
@@ -193,17 +209,18 @@ class SeriesExponential(TrueExponential):
         far = ~(sizes <= limit)
         if not bool(far.any()):
             return _in_substeps(matrix, m, float(sizes.max(initial=0.0)))
-        moved = m + _times(expm1(matrix.astype(np.longdouble)), m)
-        moved = moved.astype(np.result_type(matrix, m))
+        wide = m + _times(expm1(matrix.astype(np.longdouble)), m)
+        moved: Values = wide.astype(np.result_type(matrix, m))
         if bool(far.all()):
             return moved
         near = np.where(far[..., None, None], 0, matrix)
-        return np.where(far[..., None], moved, _in_substeps(near, m, float(np.where(far, 0, sizes).max())))
+        mixed: Values = np.where(far[..., None], moved, _in_substeps(near, m, float(np.where(far, 0, sizes).max())))
+        return mixed
 
 
 @final
 class MatrixExponential(TrueExponential):
-    """expm(rho(x)) m, with the matrix exponential of scipy (its own in extended precision and on JAX arrays).
+    """expm(rho(x)) m, with the matrix exponential of scipy (`expm1` in extended precision and on JAX arrays).
 
     Examples
     --------
@@ -218,29 +235,31 @@ class MatrixExponential(TrueExponential):
     def name(self) -> str:
         return "exp (expm)"
 
-    def act(self, x: Any, m: Any) -> Any:
+    def act(self, x: Values, m: Values) -> Values:
         if is_exact(x) or is_exact(m):
             return exact_exponential(self.infinitesimal, x, m)
-        matrix = self.infinitesimal.left(x)
+        matrix: Any = self.infinitesimal.left(x)
         if type(matrix) is Traced or type(m) is Traced:
             return exponential_action(matrix, m)
         if is_jax(matrix) or is_jax(m) or matrix.dtype == np.longdouble:
             return m + _times(expm1(matrix), m)
         from scipy.linalg import expm
 
-        bad = ~np.isfinite(matrix).all(axis=(-1, -2))
+        bad: BooleanArray = ~np.isfinite(matrix).all(axis=(-1, -2))
         if not bool(bad.any()):
             return _times(expm(matrix), m)
         made = _times(expm(np.where(bad[..., None, None], 0.0, matrix)), m)
-        return np.where(bad[..., None], np.nan, made)
+        marked: Array = np.where(bad[..., None], np.nan, made)
+        return marked
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _times(matrix: Any, m: Any) -> Any:
-    return (matrix @ m[..., None])[..., 0]
+def _times(matrix: Values, m: Values) -> Values:
+    made: Values = (matrix @ m[..., None])[..., 0]
+    return made
 
 
-def _in_substeps(matrix: Any, m: Any, size: float) -> Any:
+def _in_substeps(matrix: Values, m: Values, size: float) -> Values:
     substeps = max(1, ceil(size / SUBSTEP))
     matrix = matrix / substeps if substeps > 1 else matrix
     single = matrix.ndim == 2 and m.ndim == 1
@@ -249,14 +268,15 @@ def _in_substeps(matrix: Any, m: Any, size: float) -> Any:
     return m
 
 
-def _products(matrix: Any, m: Any) -> Any:
-    return np.einsum("...ij,...j->...i", matrix, m)
+def _products(matrix: Values, m: Values) -> Values:
+    made: Values = np.einsum("...ij,...j->...i", matrix, m)
+    return made
 
 
-def _increment(matrix: Any, m: Any, size: float, times: Any) -> Any:
-    """exp(A) m - m for |A| = size, at most SUBSTEP; times(A, m) is A m."""
+def _increment(matrix: Values, m: Values, size: float, times: Callable[[Any, Any], Any]) -> Values:
+    """The vector exp(A) m - m for |A| = size, at most SUBSTEP; times(A, m) is A m."""
     term = times(matrix, m)
-    total = term
+    total: Values = term
     for j in range(2, series_terms(size, float(np.finfo(term.dtype).eps)) + 1):
         term = times(matrix, term)
         term /= j
@@ -264,13 +284,13 @@ def _increment(matrix: Any, m: Any, size: float, times: Any) -> Any:
     return total
 
 
-def exact_exponential(action: FieldMap, x: Any, m: Any) -> Any:
-    """exp(rho(x)) m on exact numbers: a finite sum where rho(x) is nilpotent on m.
+def exact_exponential(action: FieldMap, x: Values, m: Values) -> Values:
+    """The vector exp(rho(x)) m for exact numbers: a finite sum if rho(x) is nilpotent on m.
 
     Raises
     ------
     FieldError
-        If it is not.
+        If rho(x) is not nilpotent on m.
 
     Examples
     --------
@@ -280,7 +300,8 @@ def exact_exponential(action: FieldMap, x: Any, m: Any) -> Any:
     >>> exact_exponential(action_map(lh.coadjoint(lh.heisenberg(1))), x, x[[2, 2, 1]]).tolist()
     [1, -1/2, 1]
     """
-    total, term = m, m
+    total: Values = m
+    term: Any = m
     for j in range(1, action.shape[1] + 1):
         term = action(x, term) / j
         if not bool(np.any(term != 0)):

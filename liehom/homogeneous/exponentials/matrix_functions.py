@@ -1,8 +1,8 @@
-"""Functions of matrices (..., n, n) on which exponentials rest: exp(a) - 1, 2 artanh(a/2), and linear systems.
+"""Functions of matrices (..., n, n) for exponentials: exp(a) - 1, 2 artanh(a/2), and linear systems.
 
-In float64, in extended precision (for which LAPACK has nothing), and on JAX arrays with a fixed number of operations,
-so that they can be traced and differentiated.  A matrix that is not finite gives nan and leaves the others of a
-batch alone.
+They are computed in float64, in extended precision (which LAPACK does not support), and on JAX arrays.  On JAX arrays
+the number of operations is fixed, so that they can be traced and differentiated.  A matrix that is not finite gives nan
+and does not affect the others of a batch.
 """
 
 from __future__ import annotations
@@ -10,12 +10,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from math import ceil, log, log2
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 
 from liehom.errors import SingularError
 from liehom.series.arrays import is_jax, namespace
+from liehom.typing import Values
+
+S = TypeVar("S")
 
 MAX_SQUARINGS = 60
 MAX_TERMS = 60
@@ -24,12 +27,12 @@ JAX_TERMS = 14
 SERIES_RADIUS = 0.35
 MAX_HALVINGS = 12
 MAX_ITERATIONS = 60
-# of the square roots in the halvings under JAX; they reach round-off for |a| up to a few hundred
+# Newton steps for the square root in each halving under JAX; they reach round-off for |a| up to a few hundred
 JAX_ITERATIONS = (16, 7, 6)
 
 
-def norms(a: Any) -> Any:
-    """The Frobenius norms, shape (...,).
+def norms(a: Values) -> Values:
+    """The Frobenius norms of matrices, shape (...,).
 
     Examples
     --------
@@ -38,29 +41,33 @@ def norms(a: Any) -> Any:
     """
     if type(a) is np.ndarray and a.ndim == 2:
         flat = a.ravel()
-        return np.sqrt(flat.dot(flat))
+        one: Values = np.sqrt(flat.dot(flat))
+        return one
     xp = namespace(a)
-    return xp.sqrt(xp.einsum("...ij,...ij->...", a, a))
+    many: Values = xp.sqrt(xp.einsum("...ij,...ij->...", a, a))
+    return many
 
 
-def identity(a: Any) -> Any:
-    """The identity matrix of the size and dtype of a.
+def identity(a: Values) -> Values:
+    """The identity matrix of the size and dtype of a matrix.
 
     Examples
     --------
     >>> identity(np.zeros((5, 2, 2))).tolist()
     [[1.0, 0.0], [0.0, 1.0]]
     """
-    return namespace(a).eye(a.shape[-1], dtype=a.dtype)
+    made: Values = namespace(a).eye(a.shape[-1], dtype=a.dtype)
+    return made
 
 
-def expm1(a: Any) -> Any:
-    """exp(a) - 1, relative to its own size.
+def expm1(a: Values) -> Values:
+    """The matrices exp(a) - 1, with errors relative to their norms.
 
     Notes
     -----
-    The Taylor polynomial at a / 2^s, then s times exp(2b) - 1 = 2 (exp(b) - 1) + (exp(b) - 1)^2, which loses nothing
-    where a is small. Matrices of norm beyond 2^60 give nan: no digit of their exponential is determined.
+    The Taylor polynomial is evaluated at b = a / 2^s. Then exp(2b) - 1 = 2 (exp(b) - 1) + (exp(b) - 1)^2 is applied s
+    times, which loses no digits for small a. Matrices of norm beyond 2^60 give nan: no digit of their exponential is
+    determined.
 
     Examples
     --------
@@ -69,7 +76,8 @@ def expm1(a: Any) -> Any:
     """
     if is_jax(a):
         made = _doubled(_taylor(a / 2**JAX_SQUARINGS, JAX_TERMS), JAX_SQUARINGS)
-        return namespace(a).where((norms(a) < 2 ** (JAX_SQUARINGS - 1))[..., None, None], made, np.nan)
+        found: Values = namespace(a).where((norms(a) < 2 ** (JAX_SQUARINGS - 1))[..., None, None], made, np.nan)
+        return found
     a, bad, size = _finite(a, 2.0**MAX_SQUARINGS)
     squarings = max(0, ceil(log2(2 * size))) if size > 0 else 0
     terms = series_terms(size / 2**squarings, float(np.finfo(a.dtype).eps))
@@ -77,7 +85,7 @@ def expm1(a: Any) -> Any:
 
 
 def series_terms(size: float, eps: float) -> int:
-    """The number of terms after which size^j / j! is below eps / 8.
+    """Number of terms after which size^j / j! is below eps / 8, at most 60.
 
     Examples
     --------
@@ -91,44 +99,45 @@ def series_terms(size: float, eps: float) -> int:
     return j
 
 
-def _taylor(a: Any, terms: int) -> Any:
-    """a + a^2/2 + ... by Horner's rule."""
+def _taylor(a: Values, terms: int) -> Values:
+    """The sum a + a^2/2 + ... by Horner's rule."""
     return _repeated(_horner, terms - 1, (a, a / terms, terms - 1))[1]
 
 
-def _horner(_: Any, state: Any) -> Any:
+def _horner(_: int, state: tuple[Values, Values, int]) -> tuple[Values, Values, int]:
     a, total, k = state
     return a, (a + a @ total) / k, k - 1
 
 
-def _doubled(e: Any, times: int) -> Any:
+def _doubled(e: Values, times: int) -> Values:
     return _repeated(_double, times, e)
 
 
-def _double(_: Any, e: Any) -> Any:
+def _double(_: int, e: Values) -> Values:
     return 2 * e + e @ e
 
 
-def _repeated(body: Callable[[Any, Any], Any], times: int, state: Any) -> Any:
-    """body(i, state) for i < times; under JAX in one loop, which is compiled once and can be differentiated."""
+def _repeated(body: Callable[[int, S], S], times: int, state: S) -> S:
+    """The state after body(i, state) for i < times; under JAX in one loop, compiled once and differentiable."""
     if any(is_jax(x) for x in (state if isinstance(state, tuple) else (state,))):
-        return sys.modules["jax"].lax.fori_loop(0, times, body, state)
+        looped: S = sys.modules["jax"].lax.fori_loop(0, times, body, state)
+        return looped
     for i in range(times):
         state = body(i, state)
     return state
 
 
-def cayley_logarithm(a: Any) -> Any:
-    """2 artanh(a/2) = a + a^3/12 + a^5/80 + ..., the y with exp(y) = (1 - a/2)^-1 (1 + a/2).
+def cayley_logarithm(a: Values) -> Values:
+    """The y = 2 artanh(a/2) = a + a^3/12 + a^5/80 + ... with exp(y) = (1 - a/2)^-1 (1 + a/2).
 
     Raises
     ------
     SingularError
-        If an eigenvalue of a is real and at least 2 in size: the transform is then on no one-parameter group.
+        If a has a real eigenvalue of size at least 2: the transform is then on no one-parameter group.
 
     Notes
     -----
-    artanh(z) = 2 artanh(z / (1 + sqrt(1 - z^2))) until z is small, then the series.
+    artanh(z) = 2 artanh(z / (1 + sqrt(1 - z^2))) is applied until z is small enough for the series.
 
     Examples
     --------
@@ -152,15 +161,15 @@ def cayley_logarithm(a: Any) -> Any:
     return _marked(factor * _artanh(z, terms), bad)
 
 
-def _halved(z: Any, iterations: int | None) -> Any:
-    """tanh(artanh(z) / 2)."""
+def _halved(z: Values, iterations: int | None) -> Values:
+    """The matrix tanh(artanh(z) / 2)."""
     one = identity(z)
     b = one - z @ z
     start = b, namespace(b).broadcast_to(one, b.shape)
     if iterations is not None:
         return solve(one + _repeated(_newton, iterations, start)[0], z)
     root = _square_root(b, start)
-    # where 1 - z^2 has a negative eigenvalue no root is a function of it; others do not commute with z
+    # if 1 - z^2 has a negative eigenvalue, no square root is a function of it, and others do not commute with z
     if root is None or not bool(np.all(norms(root @ z - z @ root) <= 1e-6 * norms(root) * norms(z))):
         raise SingularError(
             "the Cayley transform of x is on no one-parameter group: its matrix has a real eigenvalue beyond 2 in "
@@ -169,14 +178,14 @@ def _halved(z: Any, iterations: int | None) -> Any:
     return solve(one + root, z)
 
 
-def _newton(_: Any, state: Any) -> Any:
-    """The coupled iteration y, p -> sqrt(b), 1/sqrt(b) from b, 1."""
+def _newton(_: int, state: tuple[Values, Values]) -> tuple[Values, Values]:
+    """One step of the coupled iteration that takes (b, 1) to (sqrt(b), 1/sqrt(b))."""
     y, p = state
     return (y + inverse(p)) / 2, (p + inverse(y)) / 2
 
 
-def _square_root(b: Any, state: Any) -> Any:
-    """The square root of b, None where the iteration does not converge."""
+def _square_root(b: Values, state: tuple[Values, Values]) -> Values | None:
+    """The square root of b, or None if the iteration does not converge."""
     for i in range(MAX_ITERATIONS):
         y, p = _newton(i, state)
         if _has_converged(y, p, state[0], b):
@@ -185,25 +194,25 @@ def _square_root(b: Any, state: Any) -> Any:
     return None
 
 
-def _has_converged(y: Any, p: Any, before: Any, b: Any) -> bool:
+def _has_converged(y: Values, p: Values, before: Values, b: Values) -> bool:
     spread = norms(y) * norms(p)  # the condition number, to which round-off is proportional
     bound = 8 * b.shape[-1] * float(np.finfo(b.dtype).eps) * norms(y) * spread
     return bool(np.all(norms(y - before) <= bound)) and bool(np.all(norms(y @ y - b) <= 1e-6 * norms(b)))
 
 
-def _artanh(z: Any, terms: int) -> Any:
-    """z + z^3/3 + z^5/5 + ... by Horner's rule."""
+def _artanh(z: Values, terms: int) -> Values:
+    """The sum z + z^3/3 + z^5/5 + ... by Horner's rule."""
     start = z @ z, z, z / (2 * terms - 1), 2 * terms - 3
     return _repeated(_odd_horner, terms - 1, start)[2]
 
 
-def _odd_horner(_: Any, state: Any) -> Any:
+def _odd_horner(_: int, state: tuple[Values, Values, Values, int]) -> tuple[Values, Values, Values, int]:
     square, z, total, k = state
     return square, z, z / k + square @ total, k - 2
 
 
-def solve(a: Any, b: Any) -> Any:
-    """x with a x = b, for b of shape (..., n, k); in extended precision by refinement of the double one.
+def solve(a: Values, b: Values) -> Values:
+    """The solution x of a x = b, for b of shape (..., n, k); in extended precision by refinement of float64.
 
     Raises
     ------
@@ -218,18 +227,19 @@ def solve(a: Any, b: Any) -> Any:
     xp = namespace(a, b)
     try:
         if xp is not np or np.result_type(a, b) != np.longdouble:
-            return xp.linalg.solve(a, b)
+            direct: Values = xp.linalg.solve(a, b)
+            return direct
         rough = np.linalg.inv(a.astype(np.float64)).astype(np.longdouble)
     except np.linalg.LinAlgError:
         raise SingularError("a linear system is singular: 1 - x/2, for a Cayley transform of x") from None
-    found = rough @ b
+    found: Values = rough @ b
     for _ in range(3):
         found = found + rough @ (b - a @ found)
     return found
 
 
-def inverse(a: Any) -> Any:
-    """The inverse, in the precision of a.
+def inverse(a: Values) -> Values:
+    """The inverse matrix, in the precision of a.
 
     Raises
     ------
@@ -244,8 +254,8 @@ def inverse(a: Any) -> Any:
     return solve(a, namespace(a).broadcast_to(identity(a), a.shape))
 
 
-def _finite(a: Any, limit: float) -> tuple[Any, Any, float]:
-    """a with 0 for matrices that are too large or not finite, where these are (or None), and the largest norm."""
+def _finite(a: Values, limit: float) -> tuple[Values, Values | None, float]:
+    """The matrices with 0 for those too large or not finite, the mask of these (or None), and the largest norm."""
     size = norms(a)
     bad = ~(size < limit)
     if not bool(np.any(bad)):
@@ -253,5 +263,5 @@ def _finite(a: Any, limit: float) -> tuple[Any, Any, float]:
     return np.where(bad[..., None, None], 0, a), bad, float(np.max(np.where(bad, 0, size), initial=0.0))
 
 
-def _marked(a: Any, bad: Any) -> Any:
+def _marked(a: Values, bad: Values | None) -> Values:
     return a if bad is None else np.where(bad[..., None, None], a.dtype.type(np.nan), a)

@@ -1,50 +1,58 @@
-"""What a user may give as a generator or a vector field, as one function (m, t) -> components.
+"""Components: a generator or vector field, in any form a user may give, as one function (m, t) -> components.
 
-A function psi(m) or psi(m, t) written with numpy functions over leading axes; a list of sympy expressions, texts of
-the whitelist grammar or numbers, in the symbols m0, m1, ..., t; or constant components.  All run on arrays, on
-exact scalars and on Jets.
+The forms are a function psi(m) or psi(m, t) written with numpy functions over leading axes; a list of sympy
+expressions, strings of the whitelist grammar or numbers, in the symbols m0, m1, ..., t; and an array of constant
+components.  All of them run on arrays, on exact numbers and on Jets.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.fields.evaluation import Evaluation
+from liehom.homogeneous.fields.evaluation import Evaluation, Value
 from liehom.homogeneous.fields.expression import FUNCTIONS as FUNCTIONS
-from liehom.homogeneous.fields.expression import compiled
+from liehom.homogeneous.fields.expression import ComponentLike, compiled
 from liehom.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.series.jet import Jet
+from liehom.typing import Array, Real, Values, ValuesLike
+
+GeneratorLike: TypeAlias = "Callable[..., Any] | Sequence[ComponentLike] | npt.NDArray[Any]"
+"""What is read as a generator or vector field: a function of m (and t), a list of components, or a constant array."""
+
+Evaluated: TypeAlias = Callable[[Any, Any], Any]
+"""A function of (m, t)."""
 
 
 @final
 class Components:
-    """A function (m, t) -> array of shape (..., count), from any of the forms a user may give.
+    """A function (m, t) -> array of shape (..., count), from any form that a user may give.
 
     Parameters
     ----------
-    source : callable, array, or sequence of numbers, texts, sympy expressions or parsed texts
+    source : callable, array, or sequence of numbers, strings, sympy expressions or parsed strings
         A function is called as f(m), or as f(m, t) if it has a second parameter without a default, or one named t.
         A constant array may have leading axes, which broadcast against those of m.
     size : int
         N, the number of coordinates of m.
     counts : tuple of int
-        The numbers of components that are right.
+        The admissible numbers of components.
     what : str
-        What error messages call it.
+        Name in error messages.
     time_dependent : bool, optional
-        Whether a function is called with t, where its parameters are not to decide.
+        Whether a function is called with t (default: decided by its parameters).
 
     Raises
     ------
     ShapeError
         If the number of components is wrong.
     InputError
-        If it is none of the forms; when it is evaluated, if the values are no real numbers.
+        If the source has none of these forms. On evaluation, if the values are not real numbers.
 
     Examples
     --------
@@ -57,10 +65,10 @@ class Components:
     __slots__ = ("_function", "_source", "counts", "size", "time_dependent", "what")
 
     def __init__(
-        self, source: Any, size: int, counts: tuple[int, ...], what: str, time_dependent: bool | None = None
+        self, source: GeneratorLike, size: int, counts: tuple[int, ...], what: str, time_dependent: bool | None = None
     ) -> None:
         self.size, self.counts, self.what, self._source = size, counts, what, source
-        self._function: Callable[[Any, Any], Any]
+        self._function: Evaluated
         if callable(source):
             self._function, self.time_dependent = _called(source, what, time_dependent)
         elif is_jax(source) or (isinstance(source, np.ndarray) and (source.dtype != object or source.ndim != 1)):
@@ -72,22 +80,25 @@ class Components:
         else:
             self._function, self.time_dependent = self._from_list(list(source))
 
-    def __reduce__(self) -> Any:
-        # closures over the source cannot be pickled; the source can, if it is no function or has a name in a module
+    def __reduce__(self) -> tuple[Any, ...]:
+        # closures over the source cannot be pickled; the source can, if it is not a function or has a name in a module
         return Components, (self._source, self.size, self.counts, self.what, self.time_dependent)
 
-    def __call__(self, m: Any, t: Any = 0.0) -> Any:
+    def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The components at m (..., N) and t (...,): array or Jet of shape (..., count)."""
-        if not isinstance(m, Jet):
-            m = as_values(m)
-            if is_jax(m) or is_jax(t):
-                # numpy functions run on Jets over JAX arrays, not on the arrays themselves
-                found = self(Jet.constant(namespace(m, t).asarray(m), 0), t)
-                return found.value if isinstance(found, Jet) else namespace(m, t).asarray(found)
-        return self._checked(self._function(m, t), m)
+        if isinstance(m, Jet):
+            return self._checked(self._function(m, t), m)
+        point: Values = as_values(m)
+        if is_jax(point) or is_jax(t):
+            # numpy functions run on Jets over JAX arrays, not on the arrays themselves
+            xp = namespace(point, t)
+            found = self(Jet.constant(xp.asarray(point), 0), t)
+            value: Values = found.value if isinstance(found, Jet) else xp.asarray(found)
+            return value
+        return self._checked(self._function(point, t), point)
 
-    def check(self, m: Any, t: Any = 0.0) -> None:
-        """Evaluate at starting points, and check that the values are finite and belong to the right trajectory.
+    def check(self, m: ValuesLike, t: Real = 0.0) -> None:
+        """Check at initial points that the values are finite and that trajectories do not depend on each other.
 
         Parameters
         ----------
@@ -97,7 +108,7 @@ class Components:
         Raises
         ------
         ShapeError
-            If the values have the wrong shape, or those of one trajectory depend on another one.
+            If the values have the wrong shape, or the values of one trajectory depend on another trajectory.
         InputError
             If a value is not a finite real number; names the component.
 
@@ -108,26 +119,26 @@ class Components:
         ...
         liehom.errors.InputError: psi[0] is inf at m = [0.], t = 0.0: start where it is defined, ...
         """
-        m = as_values(m)
-        if m.ndim == 0 or m.shape[-1] != self.size:
-            raise ShapeError(f"a point has {self.size} coordinates (on its last axis), got shape {m.shape}")
-        if is_exact(m) or is_traced(m) or is_traced(t):
-            self(m, t)
+        point: Values = as_values(m)
+        if point.ndim == 0 or point.shape[-1] != self.size:
+            raise ShapeError(f"a point has {self.size} coordinates (on its last axis), got shape {point.shape}")
+        if is_exact(point) or is_traced(point) or is_traced(t):
+            self(point, t)
             return
         with np.errstate(all="ignore"):
-            made = np.asarray(self(m, t))
+            made = np.asarray(self(point, t))
             bad = np.argwhere(~np.isfinite(made))
             if len(bad):
                 index = tuple(int(i) for i in bad[0])
-                time = np.broadcast_to(np.asarray(t), m.shape[:-1])[index[:-1]]
+                time = np.broadcast_to(np.asarray(t), point.shape[:-1])[index[:-1]]
                 raise InputError(
-                    f"{self.what}[{index[-1]}] is {made[index]} at m = {np.asarray(m)[index[:-1]]}, t = {time}"
+                    f"{self.what}[{index[-1]}] is {made[index]} at m = {np.asarray(point)[index[:-1]]}, t = {time}"
                     f"{_of_trajectory(index[:-1])}: start where it is defined, or change the field"
                 )
-            self._check_trajectories(np.asarray(m), t, made)
+            self._check_trajectories(np.asarray(point), t, made)
 
-    def _check_trajectories(self, m: Any, t: Any, made: Any) -> None:
-        """Where all others start at the point of one trajectory, its value must be what it was."""
+    def _check_trajectories(self, m: Array, t: Real, made: Array) -> None:
+        """Check that the values of one trajectory stay the same if all others are moved to its point."""
         if m.ndim == 1 or m.size == 0:
             return
         for index in {(0,) * (m.ndim - 1), tuple(n - 1 for n in m.shape[:-1])}:
@@ -138,26 +149,25 @@ class Components:
                     "on the last axis of m (write m[..., 0], and np.stack(..., axis=-1))"
                 )
 
-    def _checked(self, made: Any, m: Any) -> Any:
-        made = joined(made, m)
-        if not isinstance(made, Jet):
-            made = self._real(made, m)
-        shape = made.shape
+    def _checked(self, made: object, m: Values) -> Values:
+        found = joined(made, m)
+        values = found if isinstance(found, Jet) else self._real(found, m)
+        shape = values.shape
         if not shape or shape[-1] not in self.counts:
             raise ShapeError(f"{self.what} has shape {shape} at m of shape {m.shape}, expected (..., {self._wanted()})")
         lead = m.shape[:-1]
         if shape[:-1] == lead:
-            return made
+            return values
         try:
-            return np.broadcast_to(made, (*lead, shape[-1]))
+            return np.broadcast_to(values, (*lead, shape[-1]))
         except ValueError:
             raise ShapeError(
                 f"{self.what} has shape {shape} at m of shape {m.shape}: its leading axes must be those of m "
                 "(write m[..., 0], and np.stack(..., axis=-1))"
             ) from None
 
-    def _real(self, made: Any, m: Any) -> Any:
-        """An array of real numbers, of the kind of m."""
+    def _real(self, made: Any, m: Values) -> Any:
+        """The values as an array of real numbers in the arithmetic of m."""
         kind = made.dtype.kind
         if kind == "f" or is_jax(made):
             return made
@@ -181,20 +191,20 @@ class Components:
     def _wanted(self) -> str:
         return " or ".join(map(str, sorted(set(self.counts))))
 
-    def _constant(self, array: Any) -> Callable[[Any, Any], Any]:
+    def _constant(self, array: Any) -> Evaluated:
         if not array.shape or array.shape[-1] not in self.counts:
             raise ShapeError(f"{self.what} is an array of shape {array.shape}, expected (..., {self._wanted()})")
         if not is_jax(array) and (array.dtype.kind not in "iuf" or not bool(np.all(np.isfinite(array)))):
             raise InputError(f"{self.what} is {array!r}: expected finite real numbers")
         return lambda m, t: array
 
-    def _from_list(self, parts: Sequence[Any]) -> tuple[Callable[[Any, Any], Any], bool]:
+    def _from_list(self, parts: Sequence[ComponentLike]) -> tuple[Evaluated, bool]:
         if len(parts) not in self.counts:
             raise ShapeError(f"{self.what} has {len(parts)} components, expected {self._wanted()}")
         made = [compiled(part, self.size, f"{self.what}[{i}]") for i, part in enumerate(parts)]
         functions = [function for function, _ in made]
 
-        def evaluated(m: Any, t: Any) -> Any:
+        def evaluated(m: Values, t: Real) -> Values:
             at = Evaluation(m, t)
             return _stacked([function(at) for function in functions], m)
 
@@ -202,7 +212,7 @@ class Components:
 
 
 def takes_time(function: Callable[..., Any]) -> bool:
-    """Whether a function takes (m, t) rather than m alone.
+    """Whether a function is called with (m, t), and not with m alone.
 
     Examples
     --------
@@ -213,7 +223,7 @@ def takes_time(function: Callable[..., Any]) -> bool:
 
 
 def _signature(function: Callable[..., Any]) -> tuple[bool, bool, list[str]]:
-    """Whether it takes t, whether by keyword only, and which other parameters must be given beyond m."""
+    """Whether a function takes t, whether t is keyword-only, and the names of further required parameters."""
     try:
         parameters = list(inspect.signature(function).parameters.values())
     except (TypeError, ValueError):
@@ -229,7 +239,7 @@ def _signature(function: Callable[..., Any]) -> tuple[bool, bool, list[str]]:
     return second or by_name, by_name and not second, more
 
 
-def _called(source: Any, what: str, time_dependent: bool | None) -> tuple[Callable[[Any, Any], Any], bool]:
+def _called(source: Callable[..., Any], what: str, time_dependent: bool | None) -> tuple[Evaluated, bool]:
     """A user's function as a function of (m, t), and whether it depends on t."""
     timed, by_name, more = _signature(source)
     if more:
@@ -243,11 +253,11 @@ def _called(source: Any, what: str, time_dependent: bool | None) -> tuple[Callab
     return (source, True) if timed else ((lambda m, t: source(m)), False)
 
 
-# -- making one array or Jet of what functions return ----------------------------------------------------
-def joined(made: Any, m: Any) -> Any:
-    """Lists and object arrays that hold Jets, or arrays, as one Jet or array of the kind of m.
+# -- one array or Jet from the results of functions ----------------------------------------------------
+def joined(made: Any, m: Values) -> Any:
+    """One array or Jet from a list, tuple or object array of numbers, arrays or Jets.
 
-    A list or tuple holds the components, each of shape (...,), or the rows of the trajectories.
+    A list or tuple has either the components, each of shape (...,), or the rows of the trajectories as its entries.
 
     Examples
     --------
@@ -278,19 +288,21 @@ def _joined(parts: list[Any], axis: int) -> Any:
     return xp.stack([xp.broadcast_to(p if is_lazy(p) else xp.asarray(p), shape) for p in parts], axis=axis)
 
 
-def _arrayed(part: Any) -> Any:
+def _arrayed(part: Value) -> Any:
     return part if isinstance(part, Jet) or is_lazy(part) else np.asarray(part)
 
 
-def _stacked(parts: list[Any], m: Any) -> Any:
-    """Components, each a number or of shape (...,), on the last axis; over exact numbers none is a float."""
+def _stacked(parts: list[Value], m: Values) -> Values:
+    """Components, each a number or of shape (...,), stacked on the last axis; exact if m is."""
     lead = m.shape[:-1]
     if any(isinstance(p, Jet) for p in parts):
         spread = [p if np.shape(p) == lead else np.broadcast_to(_arrayed(p), lead) for p in map(_arrayed, parts)]
-        return np.stack(spread, axis=-1)
+        stacked: Values = np.stack(spread, axis=-1)
+        return stacked
     value = m.value if isinstance(m, Jet) else m
     if is_lazy(value) or any(map(is_lazy, parts)):
-        return _joined([*parts, namespace(value).zeros(lead)], -1)[..., :-1]
+        with_zeros: Values = _joined([*parts, namespace(value).zeros(lead)], -1)[..., :-1]
+        return with_zeros
     if is_exact(value):
         out = np.empty((*lead, len(parts)), dtype=object)
     else:

@@ -1,14 +1,14 @@
-"""Evaluation: in which numbers an expression is evaluated, and the nodes of expressions that are compiled to functions.
+"""Evaluation: the point, the time and the arithmetic for an expression; and the nodes of compiled expressions.
 
-A compiled expression is a function of a `Evaluation`, that is of m and t; its numbers are taken in the arithmetic of m,
-which may be floats, extended floats, exact scalars or Jets of these.
+A compiled expression is a function of an `Evaluation`, that is of m and t.  Its constants are numbers of the arithmetic
+of m: float64, extended precision, exact numbers, or Jets of these.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 
@@ -17,16 +17,25 @@ from liehom.homogeneous.maps import remainder
 from liehom.scalars.fields.number_field import AlgebraicNumber
 from liehom.series.arrays import elementary, is_exact
 from liehom.series.jet import Jet
+from liehom.typing import Real, Values
+
+Value: TypeAlias = Any
+"""A value of an expression: a float, an exact number, an array or a Jet."""
 
 
 @final
 class Evaluation:
-    """The coordinates of m, the time, and how numbers are written next to them, for one evaluation.
+    """The coordinates of a point m, the time t, and constants as numbers of the arithmetic of m.
 
     Parameters
     ----------
     m : array or Jet of shape (..., N)
     t : float, array or Jet
+
+    Attributes
+    ----------
+    kind : {'float', 'extended', 'exact'}
+        The arithmetic.
 
     Examples
     --------
@@ -37,38 +46,38 @@ class Evaluation:
 
     __slots__ = ("_coordinates", "_m", "_zero", "kind", "t")
 
-    def __init__(self, m: Any, t: Any) -> None:
-        value = m.value if isinstance(m, Jet) else m
+    def __init__(self, m: Values, t: Real) -> None:
+        value: Any = m.value if isinstance(m, Jet) else m
         self._m, self.t = m, t
-        self._coordinates: dict[int, Any] = {}
-        self._zero: Any = 0.0
-        self.kind = "float"
+        self._coordinates: dict[int, Value] = {}
+        self._zero: Value = 0.0
+        self.kind: Literal["float", "extended", "exact"] = "float"
         if is_exact(value):
             self.kind, self._zero = "exact", 0 * value.flat[0] if value.size else Fraction(0)
         elif value.dtype == np.longdouble:
             self.kind, self._zero = "extended", np.longdouble(0)
 
-    def coordinate(self, i: int) -> Any:
-        """m_i, of shape (...,)."""
+    def coordinate(self, i: int) -> Value:
+        """The coordinate m_i, of shape (...,)."""
         found = self._coordinates.get(i)
         if found is None:
             found = self._coordinates[i] = self._m[..., i]
         return found
 
-    def rational(self, value: Fraction) -> Any:
-        """A rational number next to m."""
+    def rational(self, value: Fraction) -> Value:
+        """A rational number in the arithmetic of m."""
         if self.kind == "float":
             return value.numerator / value.denominator
         return (self._zero + value.numerator) / value.denominator
 
-    def irrational(self, value: float, digits: str) -> Any:
-        """A number that is no rational, such as pi, from its float and from more of its digits."""
+    def irrational(self, value: float, digits: str) -> Value:
+        """An irrational number such as pi in the arithmetic of m, given by its float and by a string of digits."""
         if self.kind == "exact":
             raise FieldError(f"{value!r} stands next to exact numbers: write a fraction, or use floats throughout")
         return value if self.kind == "float" else np.longdouble(digits)
 
-    def algebraic(self, value: AlgebraicNumber) -> Any:
-        """An element of a number field next to m."""
+    def algebraic(self, value: AlgebraicNumber) -> Value:
+        """An element of a number field in the arithmetic of m."""
         if self.kind == "exact":
             return self._zero + value
         near = value.field.to_float(value)
@@ -77,12 +86,13 @@ class Evaluation:
         )
 
 
-Compiled = Callable[[Evaluation], Any]
+Compiled = Callable[[Evaluation], Value]
+"""A compiled expression."""
 
 
 @final
 class Constant:
-    """A number, computed once for each arithmetic.
+    """The node of a constant, computed once for each arithmetic.
 
     Examples
     --------
@@ -94,9 +104,9 @@ class Constant:
 
     def __init__(self, inner: Compiled) -> None:
         self._inner = inner
-        self._known: dict[str, Any] = {}
+        self._known: dict[str, Value] = {}
 
-    def __call__(self, at: Evaluation) -> Any:
+    def __call__(self, at: Evaluation) -> Value:
         if at.kind == "exact":
             return self._inner(at)
         if at.kind not in self._known:
@@ -106,12 +116,12 @@ class Constant:
 
 @final
 class Chain:
-    """a + b - c ... or a * b / c ..., from left to right.
+    """The node of a + b - c ... or a * b / c ..., evaluated from left to right.
 
     Raises
     ------
     ParseError
-        When an exact number is divided by zero.
+        On division of an exact number by zero.
 
     Examples
     --------
@@ -124,7 +134,7 @@ class Chain:
     def __init__(self, first: Compiled, steps: list[tuple[str, Compiled]]) -> None:
         self._first, self._steps = first, steps
 
-    def __call__(self, at: Evaluation) -> Any:
+    def __call__(self, at: Evaluation) -> Value:
         total = self._first(at)
         for operator, part in self._steps:
             right = part(at)
@@ -144,7 +154,7 @@ class Chain:
 
 @final
 class Power:
-    """A power with a constant integer exponent.
+    """The node of a power with a constant integer exponent.
 
     Examples
     --------
@@ -157,7 +167,7 @@ class Power:
     def __init__(self, base: Compiled, exponent: int) -> None:
         self._base, self._exponent = base, exponent
 
-    def __call__(self, at: Evaluation) -> Any:
+    def __call__(self, at: Evaluation) -> Value:
         try:
             return self._base(at) ** self._exponent
         except ZeroDivisionError:
@@ -166,7 +176,7 @@ class Power:
 
 @final
 class Function:
-    """A function of one argument, by its numpy name.
+    """The node of a function of one argument, given by its numpy name.
 
     Examples
     --------
@@ -179,7 +189,7 @@ class Function:
     def __init__(self, name: str, argument: Compiled) -> None:
         self._name, self._argument = name, argument
 
-    def __call__(self, at: Evaluation) -> Any:
+    def __call__(self, at: Evaluation) -> Value:
         x = self._argument(at)
         if isinstance(x, Jet):
             return getattr(np, self._name)(x)
@@ -188,5 +198,5 @@ class Function:
         return elementary(self._name, x)
 
 
-def _exact_root(x: Any) -> Any:
+def _exact_root(x: Value) -> Value:
     return x.field.sqrt(x) if isinstance(x, AlgebraicNumber) else elementary("sqrt", x)

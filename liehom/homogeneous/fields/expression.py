@@ -1,14 +1,14 @@
-"""One component of a generator as a text, a sympy expression or a number: compiled to a function of (m, t).
+"""Compilation of one component of a generator, a string, sympy expression or number, to a function of (m, t).
 
-The compiled function runs on arrays of any precision, on exact scalars and on Jets; its constants are rational numbers,
-square roots, pi, ..., and are taken in the arithmetic of m.  What sympy can write and this file cannot (Piecewise, Abs,
-special functions) is left to sympy's own numpy code.
+The compiled function runs on arrays of any precision, on exact numbers and on Jets.  Its constants are rational
+numbers, square roots, pi, ..., evaluated in the arithmetic of m.  Expressions that this module does not translate
+(Piecewise, Abs, special functions) are compiled by `sympy.lambdify`.
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -16,30 +16,34 @@ from liehom.errors import InputError, ParseError
 from liehom.homogeneous.fields.evaluation import Chain, Compiled, Constant, Function, Power
 from liehom.scalars.fields.grammar import Call, Name, Node, Number, Operation, parse
 from liehom.scalars.fields.number_field import AlgebraicNumber
+from liehom.typing import Expression, ScalarLike
 
-# what a text may call; the names are those of sympy, and mostly those of numpy
+# functions that a string may call, by their names in sympy
 FUNCTIONS = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "atan", "asin", "asinh", "atanh")
 _NUMPY = {"atan": "arctan", "asin": "arcsin", "asinh": "arcsinh", "atanh": "arctanh"}
 TREES = (Number, Name, Call, Operation)
 
+ComponentLike: TypeAlias = ScalarLike | Node | Expression
+"""What is read as one component of a generator: a number, a string, a parsed string or a sympy expression."""
 
-def compiled(part: Any, size: int, what: str) -> tuple[Compiled, bool]:
-    """One component as a function of a `Evaluation`, and whether it depends on t.
+
+def compiled(part: ComponentLike, size: int, what: str) -> tuple[Compiled, bool]:
+    """One component as a function of an `Evaluation`, and whether it depends on t.
 
     Parameters
     ----------
-    part : str, parsed text, sympy expression or real number
+    part : str, parsed string, sympy expression or real number
     size : int
         N; the symbols are m0, ..., m(N-1) and t.
     what : str
-        What error messages call it.
+        Name in error messages.
 
     Raises
     ------
     ParseError
-        If a text is not of the grammar.
+        If a string does not follow the grammar.
     InputError
-        If the component is none of these, is not real or finite, or has unknown symbols.
+        If the component is not one of these, is not real and finite, or has unknown symbols.
 
     Examples
     --------
@@ -78,10 +82,10 @@ def _of_number(part: Any, what: str) -> Compiled:
             return (lambda s: s.rational(ratio)) if ratio.denominator == 1 else (lambda s: s.irrational(near, digits))
         except (TypeError, ValueError, OverflowError):
             pass
-    raise InputError(f"{what} is {part!r}: expected a finite real number, a text or a sympy expression")
+    raise InputError(f"{what} is {part!r}: expected a finite real number, a string or a sympy expression")
 
 
-# -- texts -----------------------------------------------------------------------------------------------
+# -- strings -----------------------------------------------------------------------------------------------
 def _names(tree: Node) -> set[str]:
     found, stack = set(), [tree]
     while stack:
@@ -134,7 +138,7 @@ def _combined(tree: Node) -> Compiled:
 
 
 # -- sympy expressions -----------------------------------------------------------------------------------
-def _of_sympy(part: Any, size: int, what: str) -> tuple[Compiled, bool]:
+def _of_sympy(part: Expression, size: int, what: str) -> tuple[Compiled, bool]:
     import sympy
     from sympy.core.function import AppliedUndef
 
@@ -150,8 +154,8 @@ def _of_sympy(part: Any, size: int, what: str) -> tuple[Compiled, bool]:
     return _translated(part) or _numpy_code(part, size), timed
 
 
-def _translated(part: Any) -> Compiled | None:
-    """The function of an expression, None if it has something that is not known here."""
+def _translated(part: Expression) -> Compiled | None:
+    """The compiled function of an expression, or None if it has an operation that is not translated here."""
     import sympy
 
     if part.is_Symbol:
@@ -167,7 +171,7 @@ def _translated(part: Any) -> Compiled | None:
     return Constant(made) if made is not None and not part.free_symbols else made
 
 
-def _operation(part: Any) -> Compiled | None:
+def _operation(part: Expression) -> Compiled | None:
     import sympy
 
     if part.is_Mul or part.is_Add:
@@ -184,11 +188,11 @@ def _operation(part: Any) -> Compiled | None:
     return None if inner is None else Function(_NUMPY.get(name, name), inner)
 
 
-def _is_divisor(part: Any) -> bool:
+def _is_divisor(part: Expression) -> bool:
     return bool(part.is_Pow and part.exp.is_Rational and part.exp.is_negative)
 
 
-def _sympy_power(base: Any, exponent: Any) -> Compiled | None:
+def _sympy_power(base: Expression, exponent: Expression) -> Compiled | None:
     inner = _translated(base)
     if inner is None:
         return None
@@ -201,7 +205,7 @@ def _sympy_power(base: Any, exponent: Any) -> Compiled | None:
     return None if above is None else lambda s: inner(s) ** above(s)
 
 
-def _numpy_code(part: Any, size: int) -> Compiled:
+def _numpy_code(part: Expression, size: int) -> Compiled:
     import sympy
 
     by_name = {str(s): s for s in part.free_symbols}

@@ -1,8 +1,9 @@
-"""The generator of least norm of a vector field that is tangent to the orbits.
+"""The generator of minimal norm of a vector field that is tangent to the orbits.
 
 With A = [rho(b_1) m, ..., rho(b_r) m] for an orthonormal basis b of g, psi = A^+ X in this basis.  At a point
-A = U S V^T, and R = S^-1 U^T A is V^T; along a curve through the point, with U and S held fixed, the rows of R still
-span those of A, so that psi = R^T (R R^T)^-1 S^-1 U^T X: this is expanded, and no singular vector is differentiated.
+A = U S V^T, and R = S^-1 U^T A is V^T.  Along a curve through the point, with U and S held fixed, the rows of R still
+span the rows of A, so that psi = R^T (R R^T)^-1 S^-1 U^T X.  This formula is expanded in series; no singular vector is
+differentiated.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ import numpy as np
 
 from liehom.errors import InputError, TangencyError
 from liehom.homogeneous.exponentials.matrix_functions import inverse, solve
-from liehom.homogeneous.fields.components import Components
+from liehom.homogeneous.fields.components import Components, GeneratorLike
 from liehom.homogeneous.frames.inner_product import inner_product
 from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation
 from liehom.series import recurrences
 from liehom.series.arrays import is_exact, is_jax, is_traced, namespace
 from liehom.series.jet import Jet
+from liehom.typing import Array, Real, Values, ValuesLike
 
 RANK_RTOL = 1e-9
 NOISE_RTOL = 1e-13
@@ -29,7 +31,7 @@ TANGENCY_RTOL = 1e-8
 
 @final
 class LeastNorm:
-    """(m, t) -> the generator of least norm of a vector field.
+    """The function (m, t) -> generator of minimal norm of a vector field.
 
     Parameters
     ----------
@@ -37,16 +39,16 @@ class LeastNorm:
     field : callable or sequence
         X in one of the forms of `Components`, with N components.
     orbit_dimension : int, optional
-        The dimension of the orbits, where the numerical rank at the points is not to decide.
+        The dimension of the orbits (default: the numerical rank at each point).
     rtol : float
-        How large the normal component of X may be, relative to X.
+        Largest admissible normal component of X, relative to X.
 
     Raises
     ------
     TangencyError
-        When it is evaluated where X is not tangent to the orbit.
+        On evaluation at points where X is not tangent to the orbit.
     InputError
-        If `orbit_dimension` is not a dimension that orbits can have.
+        If `orbit_dimension` is not a possible dimension of orbits.
 
     Examples
     --------
@@ -62,7 +64,7 @@ class LeastNorm:
     def __init__(
         self,
         representation: Representation,
-        field: Any,
+        field: GeneratorLike,
         orbit_dimension: int | None = None,
         rtol: float = TANGENCY_RTOL,
         time_dependent: bool | None = None,
@@ -81,26 +83,28 @@ class LeastNorm:
         flat = np.array([a.to_numpy() for a in representation.matrices]).reshape(len(self._basis), size * size)
         self._size = float(np.linalg.norm(self._basis.T @ flat, axis=-1).max(initial=0.0))
 
-    def __call__(self, m: Any, t: Any = 0.0) -> Any:
+    def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The generator at m (..., N) and t: array or Jet of shape (..., dim g)."""
         x = self.components(m, t)
-        value = m.value if isinstance(m, Jet) else namespace(m).asarray(m)
+        value: Values = m.value if isinstance(m, Jet) else namespace(m).asarray(m)
         if is_exact(value):
-            raise InputError("the generator of least norm is computed in floats; give psi itself for exact numbers")
+            raise InputError("the generator of minimal norm is computed in floats; give psi itself for exact numbers")
         down, right, kept = self._decomposed(value, x.value if isinstance(x, Jet) else x)
         xp = namespace(value)
 
-        def lifted(rows: Any, y: Any) -> Any:
-            return (xp.swapaxes(rows, -1, -2) @ y)[..., 0] @ self._basis.T
+        def lifted(rows: Values, y: Values) -> Values:
+            made: Values = (xp.swapaxes(rows, -1, -2) @ y)[..., 0] @ self._basis.T
+            return made
 
-        def image(v: Any) -> Any:
-            return down @ v[..., None]
+        def image(v: Values) -> Values:
+            column: Values = v[..., None]
+            return down @ column
 
         series = isinstance(m, Jet) or isinstance(x, Jet)
         if not series and xp is np and value.dtype == np.float64:
             return lifted(right, image(x))
 
-        def rows_at(v: Any) -> Any:
+        def rows_at(v: Values) -> Values:
             return down @ self._columns(v)
 
         rest = (~kept)[..., None] * xp.eye(kept.shape[-1], dtype=value.dtype)
@@ -108,7 +112,8 @@ class LeastNorm:
             rows = rows_at(value)
             return lifted(rows, solve(rows @ xp.swapaxes(rows, -1, -2) + rest, image(x)))
         order = min(v.order for v in (m, x) if isinstance(v, Jet))
-        points, field = (v.node if isinstance(v, Jet) else recurrences.constant(v, order) for v in (m, x))
+        operands = (m if isinstance(m, Jet) else value, x)
+        points, field = (v.node if isinstance(v, Jet) else recurrences.constant(v, order) for v in operands)
         along = recurrences.linear(rows_at, [points])
         gram = recurrences.multilinear(lambda a, b: a @ xp.swapaxes(b, -1, -2), [along, along])
         gram = recurrences.add(gram, recurrences.constant(rest, order))
@@ -116,19 +121,19 @@ class LeastNorm:
         y = recurrences.solution(recurrences.linear(image, [field]), gram, _product, lambda a, _: first @ a)
         return Jet.from_node(recurrences.multilinear(lifted, [along, y]))
 
-    def check(self, m: Any, t: Any = 0.0) -> None:
-        """Check that X is finite at starting points, and tangent to their orbits."""
+    def check(self, m: ValuesLike, t: Real = 0.0) -> None:
+        """Check that X is finite at initial points and tangent to their orbits."""
         self.components.check(m, t)
         self(m, t)
 
-    def _columns(self, m: Any) -> Any:
-        """A = [rho(b_1) m, ..., rho(b_r) m], shape (..., N, r)."""
+    def _columns(self, m: Values) -> Values:
+        """The matrix A = [rho(b_1) m, ..., rho(b_r) m], shape (..., N, r)."""
         return self._action.right(m) @ self._basis
 
-    def _decomposed(self, value: Any, field: Any) -> tuple[Any, Any, Any]:
-        """S^-1 U^T, V^T, and which of the rows stand for tangent directions (the others are 0)."""
+    def _decomposed(self, value: Values, field: Values) -> tuple[Values, Values, Values]:
+        """S^-1 U^T, V^T, and the mask of the rows that belong to tangent directions (the other rows are 0)."""
         xp = namespace(value)
-        at = self._columns(value)
+        at: Any = self._columns(value)
         if is_jax(value):
             at = sys.modules["jax"].lax.stop_gradient(at)
         elif value.dtype == np.longdouble:
@@ -147,10 +152,10 @@ class LeastNorm:
             self._check_tangent(np.asarray(value), np.asarray(field), np.asarray(up))
         return up / xp.where(kept, sizes, 1.0)[..., None], right * kept[..., None], kept
 
-    def _check_tangent(self, m: Any, field: Any, up: Any) -> None:
+    def _check_tangent(self, m: Array, field: Array, up: Array) -> None:
         normal = field - (np.swapaxes(up, -1, -2) @ (up @ field[..., None]))[..., 0]
         sizes = _length(normal)
-        # next to points of size |m|, a field below 1e-6 |m| counts as round-off where it is not tangent
+        # a normal component below rtol * 1e-6 |m| counts as round-off
         bound = self._rtol * (_length(field) + 1e-6 * _length(m))
         if bool(np.any(sizes > bound)):
             index = np.unravel_index(int(np.argmax(np.where(sizes > bound, sizes, -1.0))), sizes.shape)
@@ -163,10 +168,11 @@ class LeastNorm:
             )
 
 
-def _length(v: Any) -> Any:
+def _length(v: Values) -> Values:
     xp = namespace(v)
-    return xp.sqrt(xp.einsum("...i,...i->...", v, v))
+    made: Values = xp.sqrt(xp.einsum("...i,...i->...", v, v))
+    return made
 
 
-def _product(a: Any, b: Any) -> Any:
+def _product(a: Values, b: Values) -> Values:
     return a @ b

@@ -1,52 +1,56 @@
-"""Isotropy frames and pseudo-inverses without the values of arrays: for traced steps and for JAX.
+"""Isotropy frames and pseudo-inverses with a fixed sequence of operations, for traced steps and JAX.
 
-A singular value decomposition branches, and its derivative does not exist where singular values agree, as they do on
-spheres.  Here A of known rank d is decomposed as U B, with columns of U from d columns of A that are chosen by
-selection (the longest first), and B = L V^T by rows; both by orthogonalisation, twice.  Then A^+ = V L^-1 U^T, and
-1 - V V^T is the projector on the kernel.  Where all singular values of A are the same, A^+ = A^T d / tr(A A^T).
+The singular value decomposition branches, and it is not differentiable where singular values coincide, as they do on
+spheres.  A matrix A of known rank d is therefore factored as A = U B and B = L V^T.  The columns of U come from d
+columns of A, chosen by selection (the longest first), and B = L V^T by rows; both orthogonalizations are repeated once.
+Then A^+ = V L^-1 U^T, and 1 - V V^T is the projector on the kernel.  If all singular values of A agree, then
+A^+ = A^T d / tr(A A^T).
 """
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from liehom.homogeneous.frames.inner_product import InnerProduct
+from liehom.homogeneous.maps import FieldMap
 from liehom.series.arrays import namespace
+from liehom.typing import Array, BooleanArray, Real, Values, ValuesLike
 
 SAMPLES = 16
 TIGHT_RTOL = 1e-11
 
 
 class OrthogonalDecomposition(NamedTuple):
-    """Of a matrix (..., n, k).
+    """A complete orthogonal decomposition A = U L V^T of a matrix (..., n, k).
 
     Attributes
     ----------
     image : array of shape (..., n, d)
-        U: an orthonormal basis of the range; columns of zeros where the rank is less than d.
+        U: an orthonormal basis of the range, filled with zero columns where the rank is less than d.
     lift : array of shape (..., k, d)
-        V L^-1: columns are the least solutions of A x = U[:, j].
+        V L^-1: column j is the solution of A x = U[:, j] of smallest norm.
     rows : array of shape (..., k, d)
-        V: an orthonormal basis of the complement of the kernel.
+        V: an orthonormal basis of the orthogonal complement of the kernel.
     """
 
-    image: Any
-    lift: Any
-    rows: Any
+    image: Values
+    lift: Values
+    rows: Values
 
 
-def orthogonal_decomposition(matrix: Any, rank: int, cutoff: Any = 0.0) -> OrthogonalDecomposition:
+def orthogonal_decomposition(matrix: Values, rank: int, cutoff: Real = 0.0) -> OrthogonalDecomposition:
     """A complete orthogonal decomposition of a matrix of rank at most `rank`.
 
     Parameters
     ----------
     matrix : array of shape (..., n, k)
     rank : int
-        d; no more columns are chosen.
+        d, the number of columns that are chosen.
     cutoff : float
-        Columns whose rest is no longer than this count as dependent.
+        Columns whose remainder has at most this length count as dependent.
 
     Examples
     --------
@@ -55,7 +59,7 @@ def orthogonal_decomposition(matrix: Any, rank: int, cutoff: Any = 0.0) -> Ortho
     [[0.0, 0.0], [0.12, 0.0], [0.16, 0.0]]
     """
     xp = namespace(matrix)
-    chosen: list[Any] = []
+    chosen: list[Values] = []
     columns = [matrix[..., :, j] for j in range(matrix.shape[-1])]
     for _ in range(rank):
         unit = _unit(xp, _longest(xp, columns), chosen, cutoff)
@@ -65,15 +69,15 @@ def orthogonal_decomposition(matrix: Any, rank: int, cutoff: Any = 0.0) -> Ortho
     return OrthogonalDecomposition(*[xp.stack(parts, axis=-1) for parts in (chosen, lifts, rows)])
 
 
-def _by_rows(xp: Any, rows: list[Any], cutoff: Any) -> tuple[list[Any], list[Any]]:
+def _by_rows(xp: Any, rows: list[Values], cutoff: Real) -> tuple[list[Values], list[Values]]:
     """The columns of V and of V L^-1, for the rows of B = L V^T."""
-    units: list[Any] = []
-    overs: list[Any] = []
-    below: list[list[Any]] = []
+    units: list[Values] = []
+    overs: list[Values] = []
+    below: list[list[Values]] = []
     for row in rows:
-        shares = [_dot(xp, v, row) for v in units]
-        for share, v in zip(shares, units, strict=True):
-            row = row - share[..., None] * v
+        coefficients = [_dot(xp, v, row) for v in units]
+        for c, v in zip(coefficients, units, strict=True):
+            row = row - c[..., None] * v
         for v in units:
             row = row - _dot(xp, v, row)[..., None] * v
         square = _dot(xp, row, row)
@@ -81,8 +85,8 @@ def _by_rows(xp: Any, rows: list[Any], cutoff: Any) -> tuple[list[Any], list[Any
         over = xp.where(some, 1.0 / xp.sqrt(xp.where(some, square, 1.0)), 0.0)[..., None]
         units.append(row * over)
         overs.append(over)
-        below.append(shares)
-    lifts: list[Any] = list(units)
+        below.append(coefficients)
+    lifts: list[Values] = list(units)
     for j in range(len(units) - 1, -1, -1):
         for i in range(j + 1, len(units)):
             lifts[j] = lifts[j] - below[i][j][..., None] * lifts[i]
@@ -90,7 +94,7 @@ def _by_rows(xp: Any, rows: list[Any], cutoff: Any) -> tuple[list[Any], list[Any
     return units, lifts
 
 
-def _longest(xp: Any, columns: list[Any]) -> Any:
+def _longest(xp: Any, columns: list[Values]) -> Values:
     best, size = columns[0], _dot(xp, columns[0], columns[0])
     for column in columns[1:]:
         square = _dot(xp, column, column)
@@ -100,49 +104,74 @@ def _longest(xp: Any, columns: list[Any]) -> Any:
     return best
 
 
-def _unit(xp: Any, column: Any, before: list[Any], cutoff: Any) -> Any:
+def _unit(xp: Any, column: Values, before: list[Values], cutoff: Real) -> Values:
     for u in before:
         column = column - _dot(xp, u, column)[..., None] * u
     square = _dot(xp, column, column)
     some = square > cutoff * cutoff
-    return column * xp.where(some, 1.0 / xp.sqrt(xp.where(some, square, 1.0)), 0.0)[..., None]
+    over: Values = xp.where(some, 1.0 / xp.sqrt(xp.where(some, square, 1.0)), 0.0)[..., None]
+    return column * over
 
 
-def _dot(xp: Any, a: Any, b: Any) -> Any:
-    return xp.sum(a * b, axis=-1)
+def _dot(xp: Any, a: Values, b: Values) -> Values:
+    made: Values = xp.sum(a * b, axis=-1)
+    return made
 
 
 class TightFrame(NamedTuple):
-    """What makes the linear systems at all points of some orbits short.
+    """Data of orbits on which all singular values agree: rho(b_1) m, ..., rho(b_r) m is a tight frame of T_m.
+
+    The linear systems of the correctors then have short closed solutions at all points of the orbits.
 
     Attributes
     ----------
     trace : array of shape (N, N)
         The form tr(A A^T) of m, with A = [rho(b_1) m, ..., rho(b_r) m] in an orthonormal basis of g.
     isotropy : float
-        mu with R P R^T = mu (Pi - u u^T) for all unit tangent vectors u: R = [rho(b_1) u, ...], P the projector on
-        g_m, Pi that on the tangent space.
+        mu with R P R^T = mu (Pi - u u^T) for all unit tangent vectors u. Here R = [rho(b_1) u, ...], P is the projector
+        on g_m, and Pi is the projector on the tangent space.
     inverse : array of shape (dim, dim)
-        Of the Gram matrix of the inner product on g.
+        The inverse of the Gram matrix of the inner product on g.
     symmetric : bool
-        Whether R^T r is in g_m for all tangent r and u, so that nothing has to be projected.
+        Whether R^T r is in g_m for all tangent r and u, so that no projection is needed.
     over : traced number or None
-        rank / tr(A A^T), where it is given: it is constant along orbits if the inner product is invariant.
+        rank / tr(A A^T) if it is computed once: it is constant along orbits if the inner product is invariant.
     """
 
-    trace: Any
+    trace: Array
     isotropy: float
-    inverse: Any
+    inverse: Array
     symmetric: bool
-    over: Any = None
+    over: Values | None = None
 
 
-def tight_frame(action: Any, points: Any, rank: int, seed: int = 0) -> TightFrame | None:
-    """What makes the systems short on the orbits of these points, all of one dimension; None if nothing does.
+class ActionLike(Protocol):
+    """What `tight_frame` needs of a `liehom.Action`, which is defined in a module above this one."""
 
-    That the singular values of A agree, and how isotropy acts on tangent vectors, is checked at the points and at
-    random points of their orbits, to round-off: they are identities between polynomials, which hold at random points
-    only if they hold everywhere.
+    infinitesimal: FieldMap
+    inner_product: InnerProduct
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of the algebra."""
+        ...
+
+    @property
+    def max_norm(self) -> float:
+        """The largest norm of rho(x) for x in an orthonormal basis of g."""
+        ...
+
+    def act(self, x: ValuesLike, m: ValuesLike) -> Values:
+        """Exp(x) m."""
+        ...
+
+
+def tight_frame(action: ActionLike, points: Array, rank: int, seed: int = 0) -> TightFrame | None:
+    """The tight frame of the orbits of points, all of one dimension, or None if their singular values differ.
+
+    Both conditions, on the singular values of A and on the action of the isotropy on tangent vectors, are checked to
+    round-off at the points and at random points of their orbits. They are identities between polynomials, which hold at
+    random points only if they hold everywhere.
 
     Parameters
     ----------
@@ -185,23 +214,24 @@ def tight_frame(action: Any, points: Any, rank: int, seed: int = 0) -> TightFram
     turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
     outside = np.abs(turned - kernel @ turned).max()
     symmetric = bool(outside <= TIGHT_RTOL * max(1.0, float(np.abs(turned).max())))
-    inverse = np.linalg.inv(action.inner_product.matrix)
+    inverse: Any = np.linalg.inv(action.inner_product.matrix)
     corners = action.infinitesimal.right(np.eye(points.shape[-1]))
     trace = np.einsum("pia,ab,qib->pq", corners, inverse, corners)
     near = float(Fraction(mu).limit_denominator(256))
     return TightFrame(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
 
 
-def is_tight(matrix: Any, rank: int) -> Any:
-    """Whether A A^T A = lambda A with lambda = tr(A A^T) / rank, bool (...,).
+def is_tight(matrix: Values, rank: int) -> BooleanArray:
+    """Mask, shape (...,), of the matrices with A A^T A = lambda A, lambda = tr(A A^T) / rank.
 
     Examples
     --------
     >>> bool(is_tight(np.eye(3), 3)), bool(is_tight(np.diag([1.0, 2.0]), 2))
     (True, False)
     """
-    a = np.ascontiguousarray(np.moveaxis(matrix, (-2, -1), (0, 1)))  # sums over all matrices at once
+    a = np.ascontiguousarray(np.moveaxis(np.asarray(matrix), (-2, -1), (0, 1)))  # sums over all matrices at once
     square = np.einsum("pq...,pq...->...", a, a) / rank
     left = np.einsum("pr...,qr...->pq...", a, a)
     defect = np.einsum("pr...,rq...->pq...", left, a) - square * a
-    return np.abs(defect).max(axis=(0, 1)) <= TIGHT_RTOL * (square * np.abs(a).max(axis=(0, 1)))
+    tight: BooleanArray = np.abs(defect).max(axis=(0, 1)) <= TIGHT_RTOL * (square * np.abs(a).max(axis=(0, 1)))
+    return tight

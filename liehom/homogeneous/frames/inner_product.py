@@ -1,21 +1,23 @@
-"""Which inner product on g measures "least norm": an Ad-invariant one where there is one.
+"""The inner product on g for minimal norms: an Ad-invariant one if there is one.
 
-On a compact algebra -tr(rho(x) rho(y)), or minus the Killing form B with anything on the centre, is Ad-invariant and
-positive definite.  For matrices closed under transposition tr(rho(x)^T rho(y)) is the trace form of x and -theta y with
-the Cartan involution theta(x) = -x^T, invariant under the maximal compact subgroup; where rho does not show it,
--B(x, theta y) with theta from the defining matrices.  Otherwise the coefficient product of the given basis.
+On a compact algebra -tr(rho(x) rho(y)) is Ad-invariant and positive definite; so is minus the Killing form B plus any
+inner product on the centre.  For matrices closed under transposition, tr(rho(x)^T rho(y)) is the trace form of x and
+-theta y with the Cartan involution theta(x) = -x^T; it is invariant under the maximal compact subgroup.  If rho does
+not show the involution, the inner product is -B(x, theta y) with theta from the defining matrices.  Otherwise it is the
+product of coefficients in the given basis.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import InputError
 from liehom.representations import Representation, defining
+from liehom.typing import Array
 
 RTOL = 1e-9
 
@@ -30,9 +32,9 @@ class InnerProduct:
     matrix : array of shape (dim, dim)
         The Gram matrix in the basis of g.
     name : str
-        The formula, as the report of a corrector prints it.
+        The formula, printed in the report of a corrector.
     invariant : bool
-        Whether it is Ad-invariant: <[x, y], z> + <y, [x, z]> = 0.
+        Whether the form is Ad-invariant: <[x, y], z> + <y, [x, z]> = 0.
 
     Examples
     --------
@@ -41,12 +43,12 @@ class InnerProduct:
     '-tr(rho(x) rho(y)), Ad-invariant'
     """
 
-    matrix: Any
+    matrix: Array
     name: str
     invariant: bool
 
-    def orthonormal_basis(self) -> Any:
-        """A matrix whose columns are an orthonormal basis, shape (dim, dim).
+    def orthonormal_basis(self) -> Array:
+        """The matrix, shape (dim, dim), whose columns are an orthonormal basis of g.
 
         Examples
         --------
@@ -56,11 +58,12 @@ class InnerProduct:
         >>> bool(np.allclose(basis.T @ product.matrix @ basis, np.eye(3)))
         True
         """
-        return np.linalg.inv(np.linalg.cholesky(self.matrix)).T
+        made: Array = np.linalg.inv(np.linalg.cholesky(self.matrix)).T
+        return made
 
 
 def inner_product(representation: Representation) -> InnerProduct:
-    """The inner product on g by which corrections are least: see the module's formula.
+    """The inner product on g in which correctors minimize norms; Ad-invariant if g has such an inner product.
 
     Parameters
     ----------
@@ -68,8 +71,11 @@ def inner_product(representation: Representation) -> InnerProduct:
 
     Notes
     -----
-    Whether a form is positive definite is decided numerically, after its diagonal is scaled to 1; whether it is
-    Ad-invariant is checked on the bracket.
+    The first positive definite form in this list is chosen: -tr(rho(x) rho(y)); minus the Killing form B, plus the
+    coefficients on the centre if g is reductive; tr(rho(x)^T rho(y)) if the matrices are closed under transposition;
+    -B(x, theta y) with the Cartan involution theta of the defining matrices; the coefficients in the given basis.
+    Positive definiteness is decided numerically, after scaling the diagonal to 1. Ad-invariance is checked on the
+    bracket.
 
     Examples
     --------
@@ -103,20 +109,20 @@ def inner_product(representation: Representation) -> InnerProduct:
     return _made(algebra, np.eye(n), "coefficients in the given basis")
 
 
-def _made(algebra: LieAlgebra, form: Any, name: str) -> InnerProduct:
+def _made(algebra: LieAlgebra, form: Array, name: str) -> InnerProduct:
     form = (form + form.T) / 2
     invariant = _is_invariant(algebra, form)
     return InnerProduct(form, name + ", Ad-invariant" * invariant, invariant)
 
 
-def _rows(representation: Representation) -> tuple[Any, Any]:
+def _rows(representation: Representation) -> tuple[Array, Array]:
     """The matrices rho(e_i) and their transposes as rows."""
     n, size = representation.algebra.dimension, representation.size
     a = np.array([m.to_numpy() for m in representation.matrices]).reshape(n, size, size)
     return a.reshape(n, size * size), np.swapaxes(a, -1, -2).reshape(n, size * size)
 
 
-def _is_invariant(algebra: LieAlgebra, form: Any) -> bool:
+def _is_invariant(algebra: LieAlgebra, form: Array) -> bool:
     """Whether <[x, y], z> + <y, [x, z]> = 0 on the basis, to round-off."""
     n = algebra.dimension
     bracket = np.zeros((n, n, n))
@@ -129,7 +135,7 @@ def _is_invariant(algebra: LieAlgebra, form: Any) -> bool:
     return bool(defect <= RTOL * np.abs(lowered).max(initial=0.0))
 
 
-def _is_positive(form: Any) -> bool:
+def _is_positive(form: Array) -> bool:
     """Whether a symmetric form is positive definite, whatever the lengths of the basis elements."""
     if form.size == 0:
         return True
@@ -141,13 +147,13 @@ def _is_positive(form: Any) -> bool:
     return bool(values[0] > RTOL * abs(values[-1]))
 
 
-def _is_semidefinite(form: Any) -> bool:
+def _is_semidefinite(form: Array) -> bool:
     """Whether a symmetric form has no negative eigenvalue."""
     values = np.linalg.eigvalsh((form + form.T) / 2)
     return bool(values[0] >= -RTOL * np.abs(values).max())
 
 
-def _contains(rows: Any, others: Any) -> bool:
+def _contains(rows: Array, others: Array) -> bool:
     """Whether the span of the rows contains the others."""
     if rows.size == 0:
         return True
@@ -155,8 +161,8 @@ def _contains(rows: Any, others: Any) -> bool:
     return bool(np.abs(rows.T @ found - others.T).max(initial=0.0) <= RTOL * np.abs(rows).max(initial=1.0))
 
 
-def _coefficients_on_the_centre(algebra: LieAlgebra) -> Any:
-    """x, y -> <Px, Py> with P the projector on the centre along [g, g], if g is their direct sum and not either."""
+def _coefficients_on_the_centre(algebra: LieAlgebra) -> Array | None:
+    """The form <Px, Py> with P the projector on the centre along [g, g], if g is their direct sum and neither is 0."""
     n = algebra.dimension
     centre, derived = algebra.center(), algebra.derived_series()[-1]  # of a reductive algebra it is [g, g]
     if not 0 < centre.dimension < n or centre.dimension + derived.dimension != n:
@@ -164,14 +170,15 @@ def _coefficients_on_the_centre(algebra: LieAlgebra) -> Any:
     rows = np.concatenate([centre.basis.to_numpy(), derived.basis.to_numpy()])
     if not np.linalg.cond(rows) < 1 / RTOL:
         return None
-    # y = rows^T c, and the first c are the coordinates on the centre
+    # y = rows^T c, and the first entries of c are the coordinates on the centre
     coordinates = np.linalg.inv(rows.T)[: centre.dimension]
     projector = rows[: centre.dimension].T @ coordinates
-    return projector.T @ projector
+    form: Array = projector.T @ projector
+    return form
 
 
-def _by_the_defining_representation(algebra: LieAlgebra, killing: Any) -> Any:
-    """-B(x, theta y) with theta(x) = -D(x)^T for the standard matrices D of a semisimple algebra."""
+def _by_the_defining_representation(algebra: LieAlgebra, killing: Array) -> Array | None:
+    """The form -B(x, theta y) with theta(x) = -D(x)^T for the standard matrices D of a semisimple algebra."""
     try:
         flat, turned = _rows(defining(algebra))
     except InputError:
@@ -179,5 +186,5 @@ def _by_the_defining_representation(algebra: LieAlgebra, killing: Any) -> Any:
     if not _contains(flat, turned):
         return None
     theta = -np.linalg.lstsq(flat.T, turned.T, rcond=None)[0]
-    form = -killing @ theta
+    form: Array = -killing @ theta
     return form if _is_positive(form) and np.allclose(form, form.T, rtol=0, atol=RTOL * np.abs(form).max()) else None

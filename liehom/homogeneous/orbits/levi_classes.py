@@ -1,8 +1,8 @@
 """Subsets of the simple roots up to the Weyl group: conjugacy classes of standard Levi subalgebras.
 
-For a subset S and a simple root a outside, let K be the component of S + {a} that contains a.  The longest elements of
-the Weyl groups of S and K together move S to (S without K) + opposition_K(S in K), again a set of simple roots; and
-two subsets that the Weyl group conjugates are joined by such moves (Deodhar, Howlett).
+For a subset S and a simple root a outside S, let K be the component of S + {a} that contains a.  The product of the
+longest elements of the Weyl groups of S and K moves S to (S without K) + opposition_K(S in K), again a set of simple
+roots.  Two subsets that are conjugate under the Weyl group are joined by such moves (Deodhar, Howlett).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Nodes = tuple[int, ...]
 
 
 def levi_classes(system: RootSystem) -> list[list[Nodes]]:
-    """The subsets of the simple roots, numbers from 0, in classes under the Weyl group; small subsets first.
+    """Classes under the Weyl group of the subsets of simple roots, given by numbers from 0; small subsets first.
 
     Examples
     --------

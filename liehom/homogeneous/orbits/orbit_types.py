@@ -1,14 +1,15 @@
-"""Orbit types: points of a representation sorted by the isotropy they have."""
+"""Orbit types: points of a representation sorted by their isotropy subalgebras."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 from liehom.algebra import Subalgebra
 from liehom.homogeneous.orbits.structure_name import structure_name
 from liehom.representations import Representation
+from liehom.typing import VectorLike
 
 Key = tuple[int, int, tuple[int, ...], tuple[int, int, int]]
 
@@ -26,9 +27,9 @@ class OrbitType:
     killing : tuple of int
         The signature of its Killing form.
     points : tuple of int
-        Which of the given points.
+        Indices of the given points of this type.
     isotropy : Subalgebra
-        That of the first of them.
+        The isotropy subalgebra of the first of these points.
 
     Examples
     --------
@@ -46,12 +47,12 @@ class OrbitType:
     isotropy: Subalgebra
 
     def structure(self) -> str:
-        """The structure of the isotropy by name, 'so(3) + R' or 'so(3) ⋉ R^3'; see `structure_name`."""
+        """The name of the isotropy algebra, 'so(3) + R' or 'so(3) ⋉ R^3'; see `structure_name`."""
         return structure_name(self.isotropy)
 
 
-def orbit_types(rho: Representation, points: Iterable[Any]) -> list[OrbitType]:
-    """The given points sorted by orbit dimension and elementary invariants of the isotropy, largest orbits first.
+def orbit_types(rho: Representation, points: Iterable[VectorLike]) -> list[OrbitType]:
+    """Points sorted by orbit dimension and elementary invariants of their isotropy, largest orbits first.
 
     Parameters
     ----------
@@ -61,10 +62,10 @@ def orbit_types(rho: Representation, points: Iterable[Any]) -> list[OrbitType]:
     Returns
     -------
     list of OrbitType
-        Points of one type have isotropy subalgebras of equal dimension, derived series and Killing signature;
-        these are necessary for the subalgebras to be conjugate, not sufficient. For symmetric and Hermitian matrices
-        and for adjoint representations of compact algebras `symmetric_strata`, `hermitian_strata` and `adjoint_strata`
-        list all strata.
+        Points of one type have isotropy subalgebras of equal dimension, derived series and Killing signature. These
+        conditions are necessary for the subalgebras to be conjugate, but not sufficient. `symmetric_strata`,
+        `hermitian_strata` and `adjoint_strata` list all strata of symmetric matrices, Hermitian matrices and adjoint
+        representations of compact algebras.
 
     Examples
     --------

@@ -1,9 +1,10 @@
 """All isotropy strata, exactly: symmetric and Hermitian matrices under conjugation, adjoint orbits of compact algebras.
 
-The orbit of a symmetric or Hermitian matrix holds a diagonal one, and its isotropy depends on the multiplicities of the
-eigenvalues: a partition.  An adjoint orbit of a compact algebra meets a closed Weyl chamber once; the isotropy of x
-there is spanned by the maximal torus and the roots in the span of S, the simple roots that vanish at x, and two sets
-give conjugate algebras exactly if the Weyl group moves one to the other (`levi_classes`).
+The orbit of a symmetric or Hermitian matrix contains a diagonal matrix, and its isotropy depends on the multiplicities
+of the eigenvalues, a partition.  An adjoint orbit of a compact algebra meets a closed Weyl chamber once.  The isotropy
+of a point x of the chamber is spanned by the maximal torus and the root spaces of the roots in the span of S, the
+simple roots that vanish at x.  Two sets S give conjugate algebras if and only if the Weyl group moves one to the other
+(`levi_classes`).
 """
 
 from __future__ import annotations
@@ -21,28 +22,28 @@ from liehom.errors import CertificateError, InputError
 from liehom.homogeneous.orbits.levi_classes import levi_classes
 from liehom.homogeneous.orbits.structure_name import reductive_name, structure_name
 from liehom.representations import Representation, adjoint, hermitian_conjugation, sym_conjugation
-from liehom.scalars import QQ
+from liehom.scalars import QQ, Scalar
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Stratum:
-    """The points of a representation whose isotropy is conjugate to one subalgebra.
+    """The set of points of a representation whose isotropy subalgebras are conjugate to a given one.
 
     Attributes
     ----------
     label : tuple
-        A partition of k (multiplicities of the eigenvalues, decreasing), or for an adjoint representation the sets of
+        A partition of k, the decreasing multiplicities of the eigenvalues. For an adjoint representation: the sets of
         simple roots (tuples of numbers from 0) that vanish at the points in the closed Weyl chamber.
     structure : str
-        The isotropy algebra by name, 'so(3) + R'.
+        The name of the isotropy algebra, such as 'so(3) + R'.
     parameters : int
-        On how many parameters the orbits of the stratum depend.
+        Number of parameters on which the orbits of the stratum depend.
     representation : Representation
     point : tuple
         A point of the stratum.
     isotropy : Subalgebra
-        That of the point.
+        The isotropy subalgebra of this point.
 
     Examples
     --------
@@ -57,26 +58,31 @@ class Stratum:
     structure: str
     parameters: int
     representation: Representation
-    point: tuple[Any, ...]
+    point: tuple[Scalar, ...]
     isotropy: Subalgebra
 
     @property
     def orbit_dimension(self) -> int:
-        """The dimension of its orbits."""
+        """Dimension of the orbits, an int."""
         return self.isotropy.codimension
 
     @property
     def dimension(self) -> int:
-        """The dimension of the stratum: that of its orbits and their parameters."""
+        """Dimension of the stratum, an int: the dimension of its orbits plus the number of parameters."""
         return self.orbit_dimension + self.parameters
 
     def verify(self, *, name: bool = True) -> bool:
-        """Compute the isotropy at the point, and diagram_components its structure (unless `name` is False).
+        """Whether the isotropy at the point and its name are right: True, or raises `CertificateError`.
+
+        Parameters
+        ----------
+        name : bool, optional
+            Identify the structure of the isotropy algebra again (default).
 
         Raises
         ------
         CertificateError
-            If one of them is another than the stratum says.
+            If the isotropy or its name differs from the one of the stratum.
         """
         if self.representation.isotropy(self.point) != self.isotropy:
             raise CertificateError("isotropy", f"{self!r}: the isotropy at the point is another subalgebra")
@@ -141,7 +147,7 @@ def hermitian_strata(k: int) -> list[Stratum]:
         values = [[level[i] if part == 0 and i == j else 0] for i in range(k) for j in range(i, k) for part in range(2)]
         places = [(i, j, part) for i in range(k) for j in range(i, k) for part in range(2)]
         point = tuple(QQ.convert(v[0]) for v, (i, j, part) in zip(values, places, strict=True) if i < j or not part)
-        # two elements for each pair i < j, then the diagonal ones, which fix every diagonal matrix
+        # two elements for each pair i < j, then the diagonal elements, which fix every diagonal matrix
         rows = [_unit(n, 2 * x + part) for x, (i, j) in enumerate(pairs) if level[i] == level[j] for part in range(2)]
         rows += [_unit(n, x) for x in range(2 * len(pairs), n)]
         ideals = [canonical_real_form(f"su({m})") for m in partition if m > 1]
@@ -160,9 +166,9 @@ def adjoint_strata(type_name: str) -> list[Stratum]:
 
     Notes
     -----
-    One stratum for each class of subsets of the Dynkin diagram under the Weyl group; the isotropy algebras are the
-    centralizers of tori, of maximal rank. Semisimple orbits of other real forms are not classified here: they need
-    the Cartan subalgebras up to conjugation.
+    The strata correspond to the classes of subsets of the Dynkin diagram under the Weyl group. The isotropy algebras
+    are the centralizers of tori, of maximal rank. Semisimple orbits of other real forms are not classified here, since
+    they need the Cartan subalgebras up to conjugation.
 
     Examples
     --------
@@ -204,9 +210,14 @@ def _compact_names(system: RootSystem, nodes: Sequence[int]) -> list[str]:
 
 
 def _stratum(
-    label: tuple[Any, ...], structure: str, parameters: int, rho: Representation, point: tuple[Any, ...], rows: Any
+    label: tuple[Any, ...],
+    structure: str,
+    parameters: int,
+    rho: Representation,
+    point: tuple[Scalar, ...],
+    rows: list[list[int]],
 ) -> Stratum:
-    # Spanned by root spaces of a closed set of roots and the torus, or by the blocks of a partition: closed.
+    # Closed: spanned by the torus and the root spaces of a closed set of roots, or by the blocks of a partition.
     isotropy = Subalgebra(rho.algebra, rho.field.matrix(rows, (len(rows), rho.algebra.dimension)), check=False)
     return Stratum(label, structure, parameters, rho, point, isotropy)
 
@@ -215,14 +226,14 @@ def _ordered(strata: list[Stratum]) -> list[Stratum]:
     return sorted(strata, key=lambda s: (-s.orbit_dimension, -s.dimension, s.label))
 
 
-def _size(k: Any) -> int:
+def _size(k: object) -> int:
     if isinstance(k, bool) or not isinstance(k, int) or k < 1:
         raise InputError(f"the size of the matrices is an integer at least 1, got {k!r}")
     return k
 
 
 def _partitions(k: int, largest: int | None = None) -> Iterator[tuple[int, ...]]:
-    """Decreasing sequences with sum k."""
+    """The decreasing sequences of positive integers with sum k."""
     if k == 0:
         yield ()
     for first in range(min(k, k if largest is None else largest), 0, -1):
@@ -231,7 +242,7 @@ def _partitions(k: int, largest: int | None = None) -> Iterator[tuple[int, ...]]
 
 
 def _levels(partition: Sequence[int]) -> list[int]:
-    """Eigenvalues 0, 1, 2, ... with these multiplicities."""
+    """The eigenvalues 0, 1, 2, ... with these multiplicities."""
     return [value for value, m in enumerate(partition) for _ in range(m)]
 
 

@@ -1,4 +1,4 @@
-"""A short name for the structure of a Lie algebra, for tables of isotropy algebras."""
+"""Short names of Lie algebras by their structure, for tables of isotropy algebras."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from liehom.algebra.roots.real_form_names import join_real_forms
 
 
 def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
-    """'so(3) + R^2' for a reductive algebra, 'so(3) ⋉ R^3' for another one; '0' for the zero algebra.
+    """Name of a Lie algebra by its structure: 'so(3) + R^2' if it is reductive, else such as 'so(3) ⋉ R^3'.
 
     Parameters
     ----------
@@ -19,15 +19,16 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
     Returns
     -------
     str
-        The simple ideals of a Levi factor by their canonical names (so(4) is 'so(3) + so(3)'), then the centre of a
-        reductive algebra, or the radical: 'R^n' if abelian, 'nilpotent(n)' or 'solvable(n)' for dimension n.
+        The canonical names of the simple ideals of a Levi factor (so(4) is 'so(3) + so(3)'), followed by the centre of
+        a reductive algebra or by the radical: 'R^n' if abelian, else 'nilpotent(n)' or 'solvable(n)' with its dimension
+        n. '0' for the zero algebra.
 
     Raises
     ------
     FieldError
         Over float64.
     UndecidedError
-        For the few real forms that are not told apart; see `LieAlgebra.real_form`.
+        For the few real forms that are not distinguished; see `LieAlgebra.real_form`.
 
     Examples
     --------
@@ -55,7 +56,7 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
 
 
 def reductive_name(ideals: Iterable[str], center: int) -> str:
-    """The name of the sum of simple ideals (joined and sorted) and a centre of a dimension.
+    """Name of a reductive algebra with simple ideals (joined and sorted) and a centre of given dimension.
 
     Examples
     --------

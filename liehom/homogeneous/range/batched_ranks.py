@@ -1,32 +1,35 @@
-"""The ranks of many small matrices: singular values above a bound, counted without computing them.
+"""Numerical ranks of a batch of small matrices: numbers of singular values above a bound, mostly without an SVD.
 
-Orthogonalization with pivoting is worked on all matrices at once, entry by entry.  After k steps the rest R, and the
-length r of the last pivot, enclose the singular values on either side of k:
+Orthogonalization with pivoting runs on all matrices at once, entry by entry.  After k steps the remainder R and the
+length r of the last pivot bound the singular values on either side of k:
 
     s_(k+1) <= |R|_F,    s_k >= 3 r / (4^k + 6 k - 1)^(1/2)
 
-Where the bound is between them, the rank is k; else the singular values decide.
+If the given bound is between them, the rank is k; otherwise the singular values are computed.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+import numpy.typing as npt
 
-FEW, BLOCK = 64, 2048
-SLACK = 1e-6
+from liehom.typing import Array, IntegerArray, Values
+
+# below this number of matrices the singular values are computed; larger batches are split into blocks for the cache
+MIN_BATCH, BLOCK = 64, 2048
+# relative margin for round-off in both bounds
+MARGIN = 1e-6
 
 
-def batched_ranks(matrices: Any, bounds: Any) -> Any:
-    """The numbers of singular values above a bound.
+def batched_ranks(matrices: Values, bounds: npt.ArrayLike) -> IntegerArray:
+    """Numbers of singular values above a bound, shape (...,).
 
     Parameters
     ----------
     matrices : array of shape (..., p, q)
-        In float64, finite.
+        Finite, in float64.
     bounds : array of shape (...,)
-        Well above round-off of the entries.
+        Well above the round-off of the entries.
 
     Returns
     -------
@@ -34,8 +37,9 @@ def batched_ranks(matrices: Any, bounds: Any) -> Any:
 
     Notes
     -----
-    The first bound is that of s_(k+1) by any matrix of rank k. The second is that of the inverse of a triangular
-    factor with pivoting: Higham, Accuracy and Stability of Numerical Algorithms, theorem 8.14.
+    The upper bound for s_(k+1) is the distance to a matrix of rank k. The lower bound for s_k follows from the bound
+    for the inverse of a triangular factor with pivoting: Higham, Accuracy and Stability of Numerical Algorithms,
+    theorem 8.14.
 
     Examples
     --------
@@ -43,35 +47,38 @@ def batched_ranks(matrices: Any, bounds: Any) -> Any:
     array([2, 1, 1])
     """
     lead, (p, q) = matrices.shape[:-2], matrices.shape[-2:]
-    bounds = np.broadcast_to(bounds, lead)
-    count = bounds.size
-    if count < FEW or not p or not q:
-        return _by_values(matrices, bounds)
+    limits: Array = np.broadcast_to(bounds, lead)
+    count = limits.size
+    if count < MIN_BATCH or not p or not q:
+        return _by_values(matrices, limits)
     if p < q:
         matrices, p, q = np.swapaxes(matrices, -1, -2), q, p
-    matrices, bounds = matrices.reshape(count, p, q), bounds.reshape(count)
+    batch: Array = matrices.reshape(count, p, q)
+    limits = limits.reshape(count)
     found = np.empty(count, dtype=int)
     for first in range(0, count, BLOCK):
         here = slice(first, first + BLOCK)
-        found[here] = _by_pivots(np.array(matrices[here].transpose(2, 1, 0), order="C"), bounds[here])
+        found[here] = _by_pivots(np.array(batch[here].transpose(2, 1, 0), order="C"), limits[here])
     left = np.flatnonzero(found < 0)
     if len(left):
-        found[left] = _by_values(matrices[left], bounds[left])
-    return found.reshape(lead)
+        found[left] = _by_values(batch[left], limits[left])
+    ranks: IntegerArray = found.reshape(lead)
+    return ranks
 
 
-def _by_values(matrices: Any, bounds: Any) -> Any:
-    return (np.linalg.svd(matrices, compute_uv=False) > bounds[..., None]).sum(axis=-1)
+def _by_values(matrices: Values, bounds: Array) -> IntegerArray:
+    ranks: IntegerArray = (np.linalg.svd(np.asarray(matrices), compute_uv=False) > bounds[..., None]).sum(axis=-1)
+    return ranks
 
 
-def _by_pivots(columns: Any, bounds: Any) -> Any:
-    """The ranks of the matrices with these columns (q, p, L), which are overwritten; -1 where they are not decided."""
+def _by_pivots(columns: Array, bounds: Array) -> IntegerArray:
+    """Ranks of L matrices given by their columns (q, p, L), which are overwritten; -1 for undecided ones."""
     found, lanes = np.full(bounds.shape, -1), np.arange(len(bounds))
     lowest = np.full(bounds.shape, np.inf)
     for k in range(len(columns) + 1):
         squares = np.einsum("cpl,cpl->cl", columns, columns)
         rest = np.sqrt(squares.sum(axis=0))
-        decided = (found < 0) & (rest <= (1 - SLACK) * bounds) & (lowest > (1 + SLACK) * bounds)
+        decided = (found < 0) & (rest <= (1 - MARGIN) * bounds) & (lowest > (1 + MARGIN) * bounds)
         found[decided] = k
         if k == len(columns) or bool((rest <= bounds).all()):
             break

@@ -1,21 +1,44 @@
 """Certified subsets of the cone on which the range condition fails.
 
 The cone is Z = {psi in g : [h, psi] + R psi + h is not g}, described in V = g/h.  Each part below is a subset of Z
-for a reason that is checked here, except where numerical vectors only illustrate it.
+for a reason that is checked here; a numerical basis of an eigenspace is only an illustration.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Protocol, final
 
 import numpy as np
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, RelativeInvariant, relative_invariant
 from liehom.representations import Pair
-from liehom.scalars import QQ
+from liehom.scalars import QQ, Matrix, Scalar
+from liehom.scalars.fields.field import MatrixLike
+from liehom.typing import Array
+
+
+class CertificateLike(Protocol):
+    """What `failure_cone` reads of a `liehom.Certificate`, which is defined in a layer above this one."""
+
+    @property
+    def kind(self) -> str:
+        """The kind of certificate."""
+        ...
+
+    def number(self, name: str, /) -> Scalar:
+        """The number under a key."""
+        ...
+
+    def vector(self, name: str, length: int, /) -> Sequence[Scalar]:
+        """The vector under a key."""
+        ...
+
+    def matrix(self, name: str, nrows: int, ncols: int, /) -> Matrix:
+        """The matrix under a key."""
+        ...
 
 
 @final
@@ -27,44 +50,49 @@ class FailureSet:
     ----------
     kind : {'hypersurface', 'null cone', 'subspace', 'eigenspace'}
     description : str
-        The set in a sentence, in the coordinates x of ``pair.coordinates``.
+        The set as a noun phrase, in the coordinates x of ``pair.coordinates``.
     data : RelativeInvariant, Matrix or array
-        f; the matrix P of the form; rows of coordinates x that span the subspace (for 'eigenspace' as floats).
+        For a hypersurface f, for a null cone the matrix P of the form, otherwise rows of coordinates x that span the
+        subspace (floats for 'eigenspace').
     covers : bool
-        Whether Z is this set up to a set of codimension at least 2.
+        Whether Z without this set has codimension at least 2.
     """
 
     kind: str
     description: str
-    data: Any
+    data: RelativeInvariant | Matrix | Array
     covers: bool = False
 
 
 def failure_cone(
-    pair: Pair, *, forms: Sequence[Any] = (), subspaces: Sequence[Any] = (), certificate: Any = None
+    pair: Pair,
+    *,
+    forms: Sequence[MatrixLike] = (),
+    subspaces: Sequence[MatrixLike] = (),
+    certificate: CertificateLike | None = None,
 ) -> list[FailureSet]:
     """Certified subsets of the cone of psi at which the range condition fails.
 
     Parameters
     ----------
     pair : Pair
-        Over an exact field, not of dimension 0.
+        Over an exact field, with g/h not zero.
     forms : sequence of matrices (d, d)
         Symmetric forms on g/h that h preserves up to scalars, in the coordinates of ``pair.coordinates``.
     subspaces : sequence of matrices or rows (m, d)
-        Subspaces of g/h that h maps to themselves, other than 0 and g/h.
+        Invariant subspaces of g/h, except 0 and g/h.
     certificate : optional
         A verified certificate of kind 'dominance' or 'commutant'; its eigenspace W is listed with a numerical basis.
 
     Returns
     -------
     list of FailureSet
-        Of a full pair that has an invariant form, the zeros of the form, which are 0 alone.
+        For a full pair with an invariant form these are the zeros of the form, which is 0 only.
 
     Raises
     ------
     InputError
-        If a form or a subspace is not invariant, or is zero or everything.
+        If a form is zero or not invariant, or a subspace is zero, not proper or not invariant.
 
     Notes
     -----
@@ -95,15 +123,15 @@ def _hypersurface(invariant: RelativeInvariant) -> FailureSet:
     return FailureSet("hypersurface", text, invariant, covers=True)
 
 
-def _matrix(pair: Pair, rows: Any) -> Any:
+def _matrix(pair: Pair, rows: MatrixLike) -> Matrix:
     d = pair.dimension
-    made = pair.field.read(rows) if hasattr(rows, "nrows") else pair.field.matrix(rows, (len(rows), d))
+    made: Matrix = pair.field.read(rows, None if isinstance(rows, Matrix) else (len(rows), d))
     if made.ncols != d:
         raise ShapeError(f"expected rows of length {d} (coordinates on g/h), got {made.ncols}")
     return made
 
 
-def _null_cone(pair: Pair, form: Any) -> FailureSet:
+def _null_cone(pair: Pair, form: MatrixLike) -> FailureSet:
     p = _matrix(pair, form)
     if p.nrows != p.ncols or p != p.T or p.is_zero():
         raise InputError("an invariant form is a symmetric matrix that is not zero")
@@ -116,7 +144,7 @@ def _null_cone(pair: Pair, form: Any) -> FailureSet:
     return FailureSet("null cone", f"the zeros of the invariant form of signature {p.signature()}", p)
 
 
-def _subspace(pair: Pair, rows: Any) -> FailureSet:
+def _subspace(pair: Pair, rows: MatrixLike) -> FailureSet:
     made = _matrix(pair, rows)
     basis = made.row_space()
     m, d = basis.nrows, pair.dimension
@@ -128,8 +156,8 @@ def _subspace(pair: Pair, rows: Any) -> FailureSet:
     return FailureSet("subspace", f"an invariant subspace of dimension {m} of g/h", basis)
 
 
-def _eigenspace(pair: Pair, certificate: Any) -> FailureSet:
-    """The sum W of the generalised eigenspaces with real part above the cut, with a numerical basis."""
+def _eigenspace(pair: Pair, certificate: CertificateLike) -> FailureSet:
+    """The sum W of the generalized eigenspaces with real part above the cut, with a numerical basis."""
     from scipy.linalg import schur
 
     d = pair.dimension
@@ -150,7 +178,8 @@ def _eigenspace(pair: Pair, certificate: Any) -> FailureSet:
     return FailureSet("eigenspace", text, basis)
 
 
-def _isotropy_of(pair: Pair, row: Any) -> Any:
-    """rho(X) on g/h for X in h, as floats."""
+def _isotropy_of(pair: Pair, row: Matrix) -> Array:
+    """The matrix rho(X) on g/h for X in h, as floats."""
     data = pair.subalgebra.quotient()
-    return pair.algebra.table.contract(row, data.lift, data.projection)[0].T.to_numpy()
+    made: Array = pair.algebra.table.contract(row, data.lift, data.projection)[0].T.to_numpy()
+    return made

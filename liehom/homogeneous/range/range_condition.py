@@ -1,22 +1,23 @@
 """The range condition at a generator: [h, psi] + R psi + h = g.
 
-With x = psi mod h in V = g/h it reads rank [rho(z_1) x, ..., rho(z_k) x, x] = d = dim V.  For one psi it is a
-rank; for generic psi it holds as soon as it holds for one, and that it never holds is proved by the rank of
-this matrix over the field of rational functions of x, or by an invariant definite form.
+With x = psi mod h in V = g/h the condition is rank [rho(z_1) x, ..., rho(z_k) x, x] = d = dim V.  For one psi it is
+decided by this rank.  It holds for generic psi if and only if it holds for one psi.  The proof that it never holds is
+the rank of this matrix over the field of rational functions of x, or an invariant definite form.
 """
 
 from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, cast, final
+from typing import cast, final
 
 from liehom.errors import InputError, ShapeError, UndecidedError
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import traceless
-from liehom.scalars import ExactMatrix, FloatMatrix, RankDecision
+from liehom.scalars import ExactMatrix, FloatMatrix, Matrix, RankDecision, Scalar
 from liehom.scalars.spaces.linear_forms import LinearForms
+from liehom.typing import VectorLike
 
 SAMPLES = 6
 MAX_PROOF_DIMENSION = 10
@@ -30,24 +31,24 @@ class RangeCondition:
     Attributes
     ----------
     holds : bool or None
-        For one psi: whether it holds there. Generic: True if it holds for all psi off a proper closed cone,
-        False if it holds for no psi, None if that could not be proved.
+        For one psi: whether the condition holds at psi. For generic psi: True if it holds for all psi outside a proper
+        closed cone, False if it holds for no psi, None if that could not be proved.
     rank : int
         The rank of [rho(h) x, x] at `psi`.
     dimension : int
-        d = dim g/h, the rank that is needed.
+        d = dim g/h, the required rank.
     psi : list
-        The element tested: the given one, or the sample that decided.
+        The tested element: the given psi, or the sample that decided.
     missing : list or None
-        Where the rank at `psi` is less than d: a covector on g that vanishes on h, on psi and on [h, psi].
+        A covector on g that vanishes on h, on psi and on [h, psi], if the rank at `psi` is less than d.
     equilibrium : bool
-        Whether psi lies in h; the condition then fails unless h = g.
+        Whether psi lies in h; the condition then fails except for h = g.
     generic : bool
         Whether the question was about generic psi.
     message : str
-        The reason in a sentence.
+        The reason, a sentence.
     numerical : RankDecision or None
-        Over floats: the singular values that decided the rank at `psi`.
+        The singular values that decided the rank at `psi`, over floats.
 
     Examples
     --------
@@ -60,8 +61,8 @@ class RangeCondition:
     holds: bool | None
     rank: int
     dimension: int
-    psi: list[Any]
-    missing: list[Any] | None
+    psi: list[Scalar]
+    missing: list[Scalar] | None
     equilibrium: bool
     generic: bool
     message: str
@@ -82,19 +83,19 @@ class RangeCondition:
         return f"<range condition: {state}, rank {self.rank} of {self.dimension}>"
 
 
-def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
+def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition:
     """Decide the range condition [h, psi] + R psi + h = g, at one psi or for generic psi.
 
     Parameters
     ----------
     pair : Pair
     psi : sequence of n coefficients, optional
-        An element of g. Without it the question is whether the condition holds for generic psi.
+        An element of g. Without it the condition is decided for generic psi.
 
     Returns
     -------
     RangeCondition
-        Exact over an exact field; over floats with the singular values that decided.
+        Exact over an exact field; over floats it has the singular values that decided.
 
     Raises
     ------
@@ -103,15 +104,15 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
     FieldError
         If a coefficient is not in the pair's field.
     InputError
-        If `pair` is no pair.
+        If `pair` is not a `Pair`.
 
     Notes
     -----
-    One psi at which the rank is d proves that it is d on a dense open cone. That it is less than d everywhere is
-    proved by dim(rho(h) + R) < d; by a definite form on g/h that h preserves up to scale, for then one psi outside
-    h decides for all of them; or, for d <= 10, by the rank over the field of rational functions in x. Beyond that
-    the answer is honest: `holds` is None. Where h acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with
-    both signs, the condition holds generically without the pair being full.
+    One psi with rank d proves that the rank is d on a dense open cone. The proof that the rank is less than d
+    everywhere is one of the following: dim(rho(h) + R) < d; a definite form on g/h that h preserves up to scale, in
+    which case one psi outside h decides for all psi; or, for d <= 10, the rank over the field of rational functions in
+    x. If none of them applies, `holds` is None. If h acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with
+    both signs, the condition holds generically although the pair is not full.
 
     Examples
     --------
@@ -137,8 +138,8 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
     if forms.shape[1] < pair.dimension:
         return _never(best, f"it never holds: rho(h) + R has dimension {forms.shape[1]} < {pair.dimension}")
     if pair.dimension > MAX_PROOF_DIMENSION:
-        if _keeps_a_definite_form(pair):
-            return _never(best, "it never holds: h keeps a definite form up to scale, so that one psi decides for all")
+        if _preserves_a_definite_form(pair):
+            return _never(best, "it never holds: h preserves a definite form up to scale, so one psi decides for all")
         return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi")
     at = forms.at((pair.algebra.row(best.psi) @ pair.subalgebra.quotient().projection).row(0))
     columns = at.echelon()[1]
@@ -151,7 +152,7 @@ def range_condition(pair: Pair, psi: Any = None) -> RangeCondition:
 def pencil(pair: Pair) -> LinearForms:
     """The matrix of linear forms x -> [A_1 x, ..., A_m x], A_i a basis of rho(h) + R, over an exact field.
 
-    x are the coordinates of ``pair.coordinates``; there is at least one (d >= 1).
+    x are the coordinates of ``pair.coordinates``, at least one (d >= 1).
 
     Examples
     --------
@@ -171,7 +172,7 @@ def pencil(pair: Pair) -> LinearForms:
     )
 
 
-def _at(pair: Pair, row: Any, *, generic: bool) -> RangeCondition:
+def _at(pair: Pair, row: Matrix, *, generic: bool) -> RangeCondition:
     d, field = pair.dimension, pair.field
     psi = row.row(0)
     if d == 0:
@@ -195,15 +196,15 @@ def _at(pair: Pair, row: Any, *, generic: bool) -> RangeCondition:
     return RangeCondition(rank == d, rank, d, psi, missing, equilibrium, generic, message, numerical)
 
 
-def _vanishes(x: Any, row: Any) -> bool:
+def _vanishes(x: Matrix, row: Matrix) -> bool:
     """Whether psi lies in h; over floats, up to the field's tolerance times the largest coefficient of psi."""
-    if isinstance(x, FloatMatrix):
+    if isinstance(x, FloatMatrix) and isinstance(row, FloatMatrix):
         return float(abs(x.array).max()) <= x.field.rtol * float(abs(row.array).max())
     return bool(x.is_zero())
 
 
 def _best_sample(pair: Pair) -> RangeCondition:
-    """The answer at the random point, out of a few, with the largest rank."""
+    """The answer at the first of a few random points with the largest rank."""
     rng = random.Random(pair.algebra.dimension)
     best: RangeCondition | None = None
     lift = pair.subalgebra.quotient().lift
@@ -218,7 +219,7 @@ def _best_sample(pair: Pair) -> RangeCondition:
     return _decided(best, False, f"the numerical rank is at most {best.rank} of {best.dimension} at {SAMPLES} points")
 
 
-def _keeps_a_definite_form(pair: Pair) -> bool:
+def _preserves_a_definite_form(pair: Pair) -> bool:
     """Whether a basis element of the symmetric forms on g/h that h preserves up to scale is definite."""
     d = pair.dimension
     reduced = traceless(cast(list[ExactMatrix], pair.isotropy_matrices()), d, pair.field)

@@ -1,9 +1,9 @@
 """The relative invariant of a pair: the equation of the hypersurface where the range condition fails.
 
-M(x) = [A_1 x, ..., A_m x], A_i a basis of L = rho(h) + R.  If rank M(x) = d for generic x, an irreducible p
-divides all d x d minors exactly if it divides one of them and is a relative invariant of L:
-the zeros of a common divisor are permuted by the connected group of L, so p is; conversely grad p annihilates
-L x on p = 0, so the rank is less than d there.  Hence the product below is exact, from one minor.
+Let M(x) = [A_1 x, ..., A_m x], A_i a basis of L = rho(h) + R, and let rank M(x) = d for generic x.  An irreducible p
+divides all d x d minors if and only if it divides one of them and is a relative invariant of L.  The connected group
+of L permutes the zeros of a common divisor, so a common divisor is a relative invariant.  Conversely grad p
+annihilates L x on p = 0, so the rank is less than d there.  Hence one minor determines the product below exactly.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from liehom.errors import FieldError, InputError
 from liehom.homogeneous.range.range_condition import pencil, range_condition
 from liehom.representations import Pair
 from liehom.scalars import QQ, ExactField, ExactMatrix, Scalar
+from liehom.scalars.spaces.linear_forms import LinearForms
+from liehom.typing import VectorLike
 
 MAX_DIMENSION = 8
 
@@ -33,9 +35,9 @@ class RelativeInvariant:
 
     Notes
     -----
-    The range condition fails where f vanishes, and the rest of where it fails has codimension at least 2 (over the
-    complex numbers too). f is the radical of the greatest common divisor of the minors; of a full pair it may be
-    a definite form, whose only real zero is 0.
+    The range condition fails where f vanishes. The other points where it fails have codimension at least 2 (over the
+    complex numbers too). f is the radical of the greatest common divisor of the minors. For a full pair f may be a
+    definite form, whose only real zero is 0.
 
     Examples
     --------
@@ -49,11 +51,11 @@ class RelativeInvariant:
 
     @property
     def degree(self) -> int:
-        """The degree; 0 where the failures have codimension at least 2."""
+        """Degree of f, an int; 0 if all failures have codimension at least 2."""
         return sum(int(p.total_degree()) for p in self.factors)
 
-    def __call__(self, psi: Any) -> Scalar:
-        """The value at an element psi of g."""
+    def __call__(self, psi: VectorLike) -> Scalar:
+        """The value of f at an element psi of g."""
         x = self.pair.coordinates(psi).row(0)
         total = self.pair.field.one
         for p in self.factors:
@@ -75,14 +77,14 @@ class RelativeInvariant:
 
 
 def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> RelativeInvariant | None:
-    """The reduced equation of the hypersurface on which the range condition fails.
+    """The reduced equation of the hypersurface on which the range condition fails, or None.
 
     Parameters
     ----------
     pair : Pair
         Over QQ.
     max_dimension : int
-        Refuse above this dimension of g/h: the minors have degree d in d variables.
+        Largest admissible dimension d of g/h: the minors have degree d in d variables.
 
     Returns
     -------
@@ -118,8 +120,8 @@ def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> Relati
     return RelativeInvariant(pair, tuple(sorted((_signed(p) for p in factors), key=str)))
 
 
-def _generic_minor(forms: Any, rng: random.Random) -> Any:
-    """The determinant of M(x) T for a random constant T, not the zero polynomial."""
+def _generic_minor(forms: LinearForms, rng: random.Random) -> Any:
+    """The determinant, a non-zero polynomial, of M(x) T for a random constant T."""
     d, m = forms.shape
     while True:
         mix = QQ.matrix([[rng.randint(-2, 2) for _ in range(d)] for _ in range(m)])

@@ -225,8 +225,8 @@ it: take exponential='exp', or an RKMK or LieTaylor step
         return
     rng = np.random.default_rng(0)
     x, m = rng.normal(size=action.dimension), rng.normal(size=action.representation.size)
-    made = action.act(x * step_variable(order, x), m)
-    term = m
+    made: Any = action.act(x * step_variable(order, x), m)
+    term: Any = m
     for k in range(1, order + 1):
         term = action.infinitesimal(x, term) / k
         if float(np.abs(made.coefficient(k) - term).max()) > RTOL * (1 + float(np.abs(term).max())):
