@@ -60,9 +60,9 @@ class Generator:
     __slots__ = ("field", "orbit_dimension", "prepared", "start")
 
     def __init__(self, field: GeneratorField, orbit_dimension: int | IntegerArray, start: Values | None = None) -> None:
-        self.field = field
-        self.orbit_dimension = orbit_dimension
-        self.start = start
+        self.field: GeneratorField = field
+        self.orbit_dimension: int | IntegerArray = orbit_dimension
+        self.start: Values | None = start
         self.prepared: dict[Hashable, Any] = {}
 
     def __call__(self, m: Values, t: Values) -> Values:

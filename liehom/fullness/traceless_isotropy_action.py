@@ -37,16 +37,16 @@ class TracelessIsotropyAction:
     def __init__(self, pair: Pair) -> None:
         if not isinstance(pair.field, ExactField):
             raise TypeError("the exact decision needs an exact field")
-        self.pair = pair
-        self.field = pair.field
-        self.size = pair.dimension
+        self.pair: Pair = pair
+        self.field: ExactField = pair.field
+        self.size: int = pair.dimension
         self.quotient = pair.subalgebra.quotient()
-        self.matrices = cast("list[ExactMatrix]", pair.isotropy_matrices())  # the field is exact
+        self.matrices: list[ExactMatrix] = cast("list[ExactMatrix]", pair.isotropy_matrices())  # the field is exact
         reduced = [self._traceless(a) for a in self.matrices]
         square = self.size * self.size
         flat = self.field.stack_rows([a.reshape(1, square) for a in reduced], square)
-        self.members = independent_rows(flat) if reduced else []
-        self.traceless = [reduced[i] for i in self.members]
+        self.members: list[int] = independent_rows(flat) if reduced else []
+        self.traceless: list[ExactMatrix] = [reduced[i] for i in self.members]
         self._columns: dict[int, tuple[list[int], ExactMatrix]] = {}
 
     def _traceless(self, matrix: ExactMatrix) -> ExactMatrix:

@@ -53,7 +53,7 @@ class Bilinear:
         for i, j, k, _ in rows:
             if not (0 <= i < shape[0] and 0 <= j < shape[1] and 0 <= k < shape[2]):
                 raise ShapeError(f"entry ({i}, {j}, {k}) of a bilinear map of shape {shape}")
-        self.shape = shape
+        self.shape: tuple[int, int, int] = shape
         self._i, self._j, self._k = (np.array([row[a] for row in rows], dtype=int) for a in range(3))
         self._values = np.empty(len(rows), dtype=object)
         for index, row in enumerate(rows):

@@ -39,4 +39,4 @@ class Dispatch:
     method: Callable[[Any, str], Any]
 
 
-dispatch = Dispatch()
+dispatch: Dispatch = Dispatch()

@@ -57,8 +57,8 @@ class Node:
         operands: tuple[tuple[Node, int], ...] = (),
         rule: Rule | None = None,
     ) -> None:
-        self.order = order
-        self.value = value
+        self.order: int = order
+        self.value: Values = value
         self.known = known
         self.operands = operands
         self.rule = rule

@@ -59,7 +59,7 @@ class CochainComplex:
     __slots__ = ("_differentials", "algebra", "matrices", "size")
 
     def __init__(self, algebra: LieAlgebra, matrices: MatricesLike | None = None, *, size: int | None = None) -> None:
-        self.algebra = algebra
+        self.algebra: LieAlgebra = algebra
         self._differentials: dict[int, Matrix] = {}
         self.matrices: tuple[Matrix, ...] | None = None
         self.size = 1

@@ -54,9 +54,9 @@ class Cohomology:
     __slots__ = ("cochains", "degree", "representatives")
 
     def __init__(self, cochains: CochainComplex, degree: int, representatives: Matrix) -> None:
-        self.cochains = cochains
-        self.degree = degree
-        self.representatives = representatives
+        self.cochains: CochainComplex = cochains
+        self.degree: int = degree
+        self.representatives: Matrix = representatives
 
     # -- properties --------------------------------------------------------------------------------------
     @property

@@ -54,9 +54,9 @@ class Derivations:
     __slots__ = ("_algebra", "_flat", "inner_dimension", "matrices", "source")
 
     def __init__(self, source: LieAlgebra, matrices: tuple[Matrix, ...], inner_dimension: int) -> None:
-        self.source = source
-        self.matrices = matrices
-        self.inner_dimension = inner_dimension
+        self.source: LieAlgebra = source
+        self.matrices: tuple[Matrix, ...] = matrices
+        self.inner_dimension: int = inner_dimension
         self._algebra: LieAlgebra | None = None
         self._flat: Matrix | None = None
 

@@ -53,8 +53,8 @@ class Homomorphism:
         if source.field != target.field:
             raise InputError(f"the source is over {source.field.name}, the target over {target.field.name}")
         shape = (target.dimension, source.dimension)
-        self.source = source
-        self.target = target
+        self.source: LieAlgebra = source
+        self.target: LieAlgebra = target
         self.matrix: Matrix = source.field.read(matrix, shape)
         if self.matrix.shape != shape:
             raise ShapeError(f"the matrix of a homomorphism has shape {shape}, got {self.matrix.shape}")

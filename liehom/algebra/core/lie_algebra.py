@@ -107,8 +107,10 @@ class LieAlgebra:
             over = field if field is not None else field_of_constants(constants)
             self._constants = constants_from(constants, over, dimension)
         n = self._constants.dimension
-        self.basis_names = tuple(f"e{i}" for i in range(n)) if basis is None else _checked_names(basis, n)
-        self.name = name
+        self.basis_names: tuple[str, ...] = (
+            tuple(f"e{i}" for i in range(n)) if basis is None else _checked_names(basis, n)
+        )
+        self.name: str | None = name
         if check:
             prove_jacobi(self._constants, self.basis_names)
 

@@ -41,7 +41,7 @@ class StructureConstants:
     def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
         ordered = sorted(entries, key=lambda e: e[:3])
         self.field = field
-        self.dimension = dimension
+        self.dimension: int = dimension
         index = np.array([e[:3] for e in ordered], dtype=np.int64).reshape(len(ordered), 3)
         self.i, self.j, self.k = index[:, 0], index[:, 1], index[:, 2]
         values = [e[3] for e in ordered]

@@ -59,7 +59,7 @@ class Subalgebra:
     __slots__ = ("_quotient", "_subspace", "algebra", "basis")
 
     def __init__(self, algebra: LieAlgebra, rows: MatrixLike, *, check: bool = True) -> None:
-        self.algebra = algebra
+        self.algebra: LieAlgebra = algebra
         self.basis: Matrix = _matrix(algebra, rows)
         self._subspace: Subspace | None = None
         self._quotient: Quotient | None = None

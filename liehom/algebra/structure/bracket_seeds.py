@@ -46,13 +46,13 @@ class BracketSeeds:
     def __init__(self, algebra: LieAlgebra) -> None:
         self.algebra = algebra
         self.field = exact_field(algebra, "centroids")
-        self.n = algebra.dimension
-        self.rng = random.Random(self.n)
+        self.n: int = algebra.dimension
+        self.rng: random.Random = random.Random(self.n)
         table = algebra.table
         dense = as_exact(table.dense()) if table.is_dense() else None
         # clearing denominators multiplies the bracket by a number, which changes no statement about it
         self._flat: ExactMatrix | None = None if dense is None else dense.cleared().reshape(self.n, self.n**2)
-        self.attempt = 0 if self._flat is None else self._best_prime(self._flat)
+        self.attempt: int = 0 if self._flat is None else self._best_prime(self._flat)
         self._narrow: ExactMatrix | None = None
         self._inverse: ExactMatrix | None = None
         self._generating: list[ExactMatrix] | None = None
@@ -127,7 +127,7 @@ class BracketSeeds:
         units = [x - first_unit for x in chosen if x >= first_unit]
         self.vectors = self.vectors + [self.field.unit(n, i) for i in units]
         self._basis_rows = [x for x in chosen if x < first_unit] + [first_unit + i for i in range(len(units))]
-        self.free = [x - first for x in self._basis_rows if x >= first]
+        self.free: list[int] = [x - first for x in self._basis_rows if x >= first]
 
     def is_perfect(self) -> bool:
         """Whether [g, g] = g. True is proved; False is correct for all but finitely many primes."""

@@ -89,7 +89,7 @@ class Conservation:
     ) -> None:
         self.action, self.integral, self.m, self.factor = action, integral, m, factor
         self.value, self.gradient = integral.gradient(m)
-        self.scale = conditioning(self.value, self.gradient, m)
+        self.scale: Values = conditioning(self.value, self.gradient, m)
         noise = ROUND_OFF_UNITS * float(np.finfo(m.dtype).eps)
         self._on_tangents = self.gradient
         if frame.basis is None:

@@ -100,7 +100,7 @@ class Conserving(Step):
         if value is not None and aim == "previous":
             raise InputError("the step aims at the previous point: leave out the value")
         self.step, self.aim, self.linear = step, aim, bool(linear)
-        self.conserved_order = None if order is None else int(order)
+        self.conserved_order: int | None = None if order is None else int(order)
         self._source = F
         self._value = None if value is None else np.asarray(value, dtype=float)
 

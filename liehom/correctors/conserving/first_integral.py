@@ -67,7 +67,7 @@ class FirstIntegral:
     __slots__ = ("_components", "_source", "scalar", "size")
 
     def __init__(self, source: IntegralSource, size: int) -> None:
-        self.size = size
+        self.size: int = size
         self._components: Components | None = None
         self._source: Any = source
         self.scalar: bool | None = None

@@ -87,15 +87,15 @@ class OrderRecursion:
         one_exponential: bool = True,
         weight: float | None = None,
     ) -> None:
-        self.xp = namespace(m)
+        self.xp: ModuleType = namespace(m)
         self.action, self.m, self.total = action, m, total
-        self.shape = tuple(m.shape[:-1])
+        self.shape: tuple[int, ...] = tuple(m.shape[:-1])
         self.flow: Flow = flow_series(field, m, total, t)
-        self.zeta = self._no_correction()
+        self.zeta: Jet = self._no_correction()
         self._factors = with_correction(local.factors(step_variable(total, m)), self.zeta, one_exponential)
         step: Any = apply_factors(action, self._factors, m)
         self.step: Jet = step
-        self.clock = Clock(self.flow, total, self.shape)
+        self.clock: Clock = Clock(self.flow, total, self.shape)
         self._orbit_dimension = orbit_dimension
         # the values of traced arrays are not known: w_1 = 0 is then met by a fraction of 0
         if is_lazy(m):
@@ -112,7 +112,7 @@ class OrderRecursion:
             self.active = self.moving = ~still
         elif not field.time_dependent and not bool(np.all(self.leading)):
             self.active = self.leading > 0
-        self.parts = self._split(0.5 if one_exponential else 1.0, weight)
+        self.parts: list[Part] = self._split(0.5 if one_exponential else 1.0, weight)
         self.levels = 0 * self.xp.asarray(self.leading)
         self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
         self.defects: list[tuple[int, Values]] = []

@@ -105,11 +105,11 @@ class LaneGroup:
 
     def __init__(self, graph: StepGraph, lanes: IntegerArray, backend: str, points: Array) -> None:
         self.graph, self.lanes = graph, lanes
-        self.width = 1 if backend == "jax" else _width(graph, len(lanes))
+        self.width: int = 1 if backend == "jax" else _width(graph, len(lanes))
         self.kernel: Kernel | JaxKernel = JaxKernel(graph) if backend == "jax" else Kernel(graph, self.width)
-        self.blocks = padded(len(lanes), self.width) // self.width
+        self.blocks: int = padded(len(lanes), self.width) // self.width
         rows = [self.padded_row(x) for x in graph.constants(points)]
-        self.constants = np.array(rows) if rows else None
+        self.constants: Array | None = np.array(rows) if rows else None
 
     def padded_row(self, values: Array) -> Array:
         """Values (L,) of these lanes, filled up with 1 to whole blocks."""
@@ -158,7 +158,7 @@ class FastPath:
 
     def __init__(self, groups: list[LaneGroup]) -> None:
         self.groups = groups
-        self.work = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
+        self.work: int = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
         self.calls: Array = np.zeros(())
 
     def __call__(self, run: Run) -> bool:

@@ -201,7 +201,7 @@ class _Stages:
 
     def __init__(self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values) -> None:
         self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
-        self.numbers = method.coefficients(m)
+        self.numbers: Coefficients = method.coefficients(m)
         # a row without entries beyond its diagonal needs no later stage
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
         self._shape = (*np.shape(m)[:-1], action.dimension)

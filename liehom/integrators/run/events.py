@@ -58,8 +58,8 @@ class Events:
             if not callable(g):
                 raise InputError(f"events[{i}] is {g!r}, expected a function g(t, y)")
         self.functions: Sequence[EventFunction] = listed
-        self.directions = [_direction(getattr(g, "direction", 0), i) for i, g in enumerate(listed)]
-        self.terminal = [_limit(getattr(g, "terminal", False), i) for i, g in enumerate(listed)]
+        self.directions: list[float] = [_direction(getattr(g, "direction", 0), i) for i, g in enumerate(listed)]
+        self.terminal: list[float] = [_limit(getattr(g, "terminal", False), i) for i, g in enumerate(listed)]
 
     @property
     def count(self) -> int:

@@ -93,18 +93,18 @@ class Run:
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.step, self.options = action, step, options
         self.psi_raised = False
-        self.field = psi.field
-        self.psi = Generator(self._counted(psi.field), psi.orbit_dimension, start)
+        self.field: GeneratorField = psi.field
+        self.psi: Generator = Generator(self._counted(psi.field), psi.orbit_dimension, start)
         self.span, self.start, self.shape, self.dtype = span, in_lanes(start), start.shape[:-1], start.dtype
         self.end, self.direction = span[1], self.dtype.type(1 if span[1] >= span[0] else -1)
         self.tried: tuple[LocalStep, Array] | None = None
-        self.tolerance = Tolerance(options.rtol, options.atol)
+        self.tolerance: Tolerance = Tolerance(options.rtol, options.atol)
         self.tiny = 8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))
-        self.total = None if options.dt is None else self._number_of_steps(options.dt)
-        self.events = None if options.events is None else Events(options.events)
+        self.total: Array | None = None if options.dt is None else self._number_of_steps(options.dt)
+        self.events: Events | None = None if options.events is None else Events(options.events)
         self.fast_path: Callable[[Run], bool] | None = None
-        self.keeps = options.t_eval is None or options.dense_output
-        self.state = self._initial_state(start)
+        self.keeps: bool = options.t_eval is None or options.dense_output
+        self.state: RunState = self._initial_state(start)
 
     def _initial_state(self, start: Array) -> RunState:
         options, span = self.options, self.span

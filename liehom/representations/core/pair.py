@@ -49,11 +49,13 @@ class Pair:
     def __init__(self, algebra: LieAlgebra, subalgebra: Subalgebra | MatrixLike, *, name: str | None = None) -> None:
         if not isinstance(algebra, LieAlgebra):
             raise InputError(f"expected a LieAlgebra and a subalgebra of it, got {algebra!r}; names go to liehom.pair")
-        self.algebra = algebra
-        self.subalgebra = subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)
+        self.algebra: LieAlgebra = algebra
+        self.subalgebra: Subalgebra = (
+            subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)
+        )
         if self.subalgebra.algebra is not algebra and self.subalgebra.algebra != algebra:
             raise InputError("the subalgebra belongs to another Lie algebra")
-        self.name = name
+        self.name: str | None = name
         self._isotropy: list[Matrix] | None = None
 
     @property

@@ -89,12 +89,12 @@ class Representation:
             raise ShapeError(f"{len(made)} matrices for an algebra of dimension {algebra.dimension}")
         if not made and size is None:
             raise ShapeError("a representation of the zero algebra needs its size")
-        self.algebra = algebra
-        self.matrices = made
-        self.size = int(made[0].nrows) if made else int(size or 0)
-        self.name = name
-        self.given = len(made) if given is None else given
-        self.appended = appended
+        self.algebra: LieAlgebra = algebra
+        self.matrices: tuple[Matrix, ...] = made
+        self.size: int = int(made[0].nrows) if made else int(size or 0)
+        self.name: str | None = name
+        self.given: int = len(made) if given is None else given
+        self.appended: tuple[tuple[int, int], ...] = appended
         if check:
             self._prove()
 

@@ -49,10 +49,10 @@ class SparseStack:
         j, b, c = (np.array([e[x] for e in entries], dtype=np.int64) for x in range(3))
         values = [e[3] for e in entries]
         d = len(matrices)
-        self.size = size
-        self.wide = SparseInteger(b, j * size + c, values, (size, d * size))
-        self.tall = SparseInteger(j * size + b, c, values, (d * size, size))
-        self.flat = SparseInteger(j, b * size + c, values, (d, size * size))
+        self.size: int = size
+        self.wide: SparseInteger = SparseInteger(b, j * size + c, values, (size, d * size))
+        self.tall: SparseInteger = SparseInteger(j * size + b, c, values, (d * size, size))
+        self.flat: SparseInteger = SparseInteger(j, b * size + c, values, (d, size * size))
 
     def matrix(self, j: int) -> SparseInteger:
         """A_j."""

@@ -49,7 +49,7 @@ class MatrixAlgebra:
         flat = field.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
         reducible = field.degree == 1 and len(matrices) <= REDUCED
         self._flat = integral_basis(flat) if reducible else flat.row_space()
-        self.basis = tuple(self._flat.split_rows(size, size))
+        self.basis: tuple[ExactMatrix, ...] = tuple(self._flat.split_rows(size, size))
         self._places = self._flat.echelon()[1]
         self._inverse = self._flat.select(columns=self._places).inverse()
 

@@ -138,7 +138,7 @@ class ExactMatrix(Matrix):
     def __init__(self, field: ExactField, parts: tuple[flint.fmpz_mat, ...], den: int) -> None:
         self._field = field
         self.parts = parts
-        self.den = den
+        self.den: int = den
 
     # -- shape and entries -------------------------------------------------------------------------------
     @property

@@ -63,7 +63,7 @@ class FloatField(Field["FloatMatrix"]):
     def __init__(self, rtol: float = 1e-9) -> None:
         if not 0 < rtol < 1:
             raise FieldError(f"rtol must lie between 0 and 1, got {rtol}")
-        self.rtol = rtol
+        self.rtol: float = rtol
 
     @property
     def exact(self) -> bool:
@@ -148,7 +148,7 @@ class FloatMatrix(Matrix):
 
     def __init__(self, field: FloatField, array: Array) -> None:
         self._field = field
-        self.array = array
+        self.array: Array = array
 
     @property
     def field(self) -> FloatField:

@@ -79,9 +79,9 @@ class NumberField(ExactField):
         if len(factors) != 1 or factors[0][1] != 1:
             shown = ", ".join(str(f) for f, _ in factors)
             raise FieldError(f"the minimal polynomial {integral} is reducible: factors {shown}; use one of them")
-        self.symbol = symbol
-        self.minpoly = tuple(int(c) for c in integral.coeffs())
-        self.leading = self.minpoly[-1]
+        self.symbol: str = symbol
+        self.minpoly: tuple[int, ...] = tuple(int(c) for c in integral.coeffs())
+        self.leading: int = self.minpoly[-1]
         m = self.degree
         monic = [c * self.leading ** (m - 1 - i) for i, c in enumerate(self.minpoly[:-1])]
         self._modulus = flint.fmpz_poly([*monic, 1])
@@ -300,7 +300,7 @@ class AlgebraicNumber(ExactNumber):
     __slots__ = ("field", "polynomial")
 
     def __init__(self, field: NumberField, polynomial: flint.fmpq_poly) -> None:
-        self.field = field
+        self.field: NumberField = field
         self.polynomial = polynomial
 
     @property

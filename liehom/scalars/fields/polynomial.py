@@ -37,11 +37,11 @@ class Polynomial:
     __slots__ = ("coefficients", "field")
 
     def __init__(self, field: ExactField, coefficients: Sequence[ScalarLike]) -> None:
-        self.field = field
+        self.field: ExactField = field
         values = [field.convert(c) for c in coefficients]
         while values and values[-1] == 0:
             values.pop()
-        self.coefficients = tuple(values)
+        self.coefficients: tuple[Scalar, ...] = tuple(values)
 
     @property
     def degree(self) -> int:

@@ -66,14 +66,14 @@ class CoordinateRing:
         constraints: Iterable[Mapping[tuple[int, ...], ScalarLike]] = (),
         graded: Sequence[str] = (),
     ) -> None:
-        self.names = tuple(names)
+        self.names: tuple[str, ...] = tuple(names)
         self.context = flint.fmpq_mpoly_ctx.get(self.names, flint.Ordering.degrevlex)
         given = [self.polynomial(c) for c in constraints]
         given = [c for c in given if not c.is_zero()]
         self.basis = given if len(given) < 2 else self._groebner(given)
         if any(c.is_constant() for c in self.basis):
             raise FieldError("the constraints contradict each other: they have no common zero")
-        self.weights = [int(name in graded) for name in self.names]
+        self.weights: list[int] = [int(name in graded) for name in self.names]
         self._form = self._homogeneous_form(given)
 
     def polynomial(self, terms: Mapping[tuple[int, ...], ScalarLike]) -> flint.fmpq_mpoly:

@@ -58,14 +58,14 @@ class FunctionField:
         constraints: Iterable[Mapping[tuple[int, ...], ScalarLike]] = (),
         graded: Sequence[str] = (),
     ) -> None:
-        self.ring = CoordinateRing(names, constraints, graded)
+        self.ring: CoordinateRing = CoordinateRing(names, constraints, graded)
         constant = self.ring.context.constant
         self.atoms: list[flint.fmpq_mpoly] = []
         self._reduced: list[flint.fmpq_mpoly] = []
-        self.zero = RationalFunction(self, constant(0), ())
-        self.one = RationalFunction(self, constant(1), ())
+        self.zero: RationalFunction = RationalFunction(self, constant(0), ())
+        self.one: RationalFunction = RationalFunction(self, constant(1), ())
         generators = map(self.ring.reduce, self.ring.context.gens())
-        self.variables = tuple(RationalFunction(self, g, ()) for g in generators)
+        self.variables: tuple[RationalFunction, ...] = tuple(RationalFunction(self, g, ()) for g in generators)
 
     # -- denominators ------------------------------------------------------------------------------------
     def atom(self, p: flint.fmpq_mpoly) -> int:
@@ -170,7 +170,7 @@ class RationalFunction:
     __slots__ = ("field", "numerator", "powers")
 
     def __init__(self, field: FunctionField, numerator: flint.fmpq_mpoly, powers: Powers) -> None:
-        self.field = field
+        self.field: FunctionField = field
         self.numerator = numerator
         self.powers: Powers = () if numerator.is_zero() else powers
 

@@ -41,9 +41,9 @@ class LinearForms:
     def __init__(self, parts: Sequence[ExactMatrix]) -> None:
         if not parts or any(part.shape != parts[0].shape for part in parts):
             raise ShapeError("a matrix of linear forms needs matrices of one shape, at least one")
-        self.parts = tuple(parts)
+        self.parts: tuple[ExactMatrix, ...] = tuple(parts)
         self.field: ExactField = parts[0].field
-        self.shape = parts[0].shape
+        self.shape: tuple[int, int] = parts[0].shape
         names = [f"x{i}" for i in range(len(parts))]
         if self.field.degree > 1:
             names.append("b")

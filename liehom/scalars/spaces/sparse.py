@@ -47,9 +47,9 @@ class SparseInteger:
     ) -> None:
         self.rows = np.asarray(rows, dtype=np.int64)
         self.columns = np.asarray(columns, dtype=np.int64)
-        self.values = _narrowed(values)
-        self.shape = shape
-        self.den = den
+        self.values: IntegerArray | ObjectArray = _narrowed(values)
+        self.shape: tuple[int, int] = shape
+        self.den: int = den
 
     @classmethod
     def from_matrix(cls, matrix: ExactMatrix) -> SparseInteger:

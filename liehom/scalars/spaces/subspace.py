@@ -46,7 +46,7 @@ class Subspace:
         if matrix.ncols != ambient:
             raise ShapeError(f"rows of length {matrix.ncols} in a space of dimension {ambient}")
         self.field = field
-        self.ambient = ambient
+        self.ambient: int = ambient
         self.basis: Any = matrix.row_space()
 
     @property
