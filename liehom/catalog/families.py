@@ -26,7 +26,9 @@ from liehom.catalog.names import Term
 from liehom.errors import CatalogError, InputError
 
 MAX_PARAMETER = 64
+"""Largest integer parameter of a family in a name."""
 MAX_FREE_LENGTH = 3000
+"""Largest number of words of maximal length, g^k, of free_nilpotent(g,k) in a name."""
 
 
 def is_family(term: Term) -> bool:

@@ -19,14 +19,21 @@ import numpy as np
 
 from liehom.algebra import matrices as families
 from liehom.algebra.matrices.matrix_basis import stack
-from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS, classical_matrices, exceptional_matrices
+from liehom.algebra.matrices.named_matrices import (
+    CLASSICAL_KINDS,
+    EXCEPTIONAL_MATRICES,
+    classical_matrices,
+    exceptional_matrices,
+)
 from liehom.catalog.names import Expression, Item, Sum, Term, terms
 from liehom.errors import CatalogError
 from liehom.typing import IntegerArray
 
-EXCEPTIONAL = ("g2", "f4", "e6")
+EXCEPTIONAL_KINDS = frozenset(name.partition("(")[0] for name in EXCEPTIONAL_MATRICES)
 MAX_SIZE = 64
+"""Largest real dimension on which matrices of a name act."""
 MAX_SPIN = 16
+"""Largest p + q of spin(p,q) in a name."""
 
 
 def linear_matrices(tree: Expression) -> IntegerArray:
@@ -53,7 +60,8 @@ def linear_matrices(tree: Expression) -> IntegerArray:
 def is_linear(tree: Expression) -> bool:
     """Whether all heads of a parsed name denote linear Lie algebras."""
     return all(
-        t.head in (*CLASSICAL_KINDS, *EXCEPTIONAL, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree)
+        t.head in (*CLASSICAL_KINDS, *EXCEPTIONAL_KINDS, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head)
+        for t in terms(tree)
     )
 
 
@@ -88,7 +96,7 @@ def _term_matrices(term: Term) -> IntegerArray:
         raise CatalogError(f"{term} is not a linear Lie algebra: unexpected ';'")
     if term.head in CLASSICAL_KINDS:
         return _classical(term)
-    if term.head in EXCEPTIONAL:
+    if term.head in EXCEPTIONAL_KINDS:
         return exceptional_matrices(str(term))
     power = re.fullmatch(r"([SL])(\d+)", term.head)
     if power:

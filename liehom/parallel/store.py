@@ -24,6 +24,7 @@ from liehom.errors import FormatError, InputError
 
 FORMAT = "liehom-store"
 ABOUT = "store.json"
+"""File in the folder of a store with its format, version and fingerprint."""
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
 DAMAGED = (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error)
 """The exceptions that reading a damaged file may raise."""

@@ -22,6 +22,7 @@ from liehom.scalars import ExactField, ExactMatrix, Field, FloatField, Matrix
 from liehom.scalars.fields.field import MatricesLike
 
 MAX_ENTRIES = 30_000_000
+"""Largest number of entries of a differential, a dense matrix."""
 
 
 @final

@@ -23,6 +23,7 @@ CochainLike: TypeAlias = VectorLike | Matrix
 """A cochain: its coordinates as a sequence of numbers, or a row matrix."""
 
 MAX_PRIMES = 5
+"""Number of primes that are tried before the computation fails."""
 
 
 @final

@@ -199,14 +199,14 @@ def _require_constants(value: object) -> None:
     """`InputError` if the value is a Lie algebra instead of a table."""
     if isinstance(value, LieAlgebra):
         raise InputError(
-            f"realification takes complex structure constants, got {value!r}; complexification makes the complex "
-            "algebra, and .algebra of that is it as a real one"
+            f"realification takes complex structure constants, got {value!r}; its complexification as a real Lie "
+            "algebra is g.complexification().algebra"
         )
 
 
 def _as_mapping(constants: object) -> tuple[dict[tuple[int, int], dict[int, object]], int]:
     """The mapping of a nested list or array of shape (n, n, n) or (n, n, n, 2), and n."""
-    rows = constants.tolist() if hasattr(constants, "tolist") else constants
+    rows: object = getattr(constants, "tolist", lambda: constants)()
     if not isinstance(rows, (list, tuple)):
         raise StructureError(f"{constants!r} are not structure constants; write {{(i, j): {{k: value}}}} or an array")
     n = len(rows)
@@ -219,6 +219,7 @@ def _as_mapping(constants: object) -> tuple[dict[tuple[int, int], dict[int, obje
 
 
 def _has_length(values: object, n: int) -> bool:
+    """Whether a value is a list or tuple of length n."""
     return isinstance(values, (list, tuple)) and len(values) == n
 
 
@@ -230,7 +231,8 @@ def _parts(value: object) -> tuple[Any, Any]:
         return value[0], value[1]
     if isinstance(value, (complex, np.complexfloating)):
         return float(value.real), float(value.imag)
-    if hasattr(value, "as_real_imag"):
-        real, imaginary = value.as_real_imag()
+    split = getattr(value, "as_real_imag", None)  # sympy's
+    if split is not None:
+        real, imaginary = split()
         return real, imaginary
     return value, 0

@@ -54,7 +54,7 @@ def central_extension(
     True
     """
     n, field = algebra.dimension, algebra.field
-    forms = [field.read(form, (n, n)) for form in _listed(cocycle, n)]
+    forms = [field.read(form, (n, n)) for form in _listed(cocycle)]
     entries = list(algebra.structure_constants())
     for a, form in enumerate(forms):
         if form.shape != (n, n):
@@ -68,11 +68,11 @@ def central_extension(
     return LieAlgebra(table, basis=names, name=name, check=False)
 
 
-def _listed(cocycle: MatrixLike | MatricesLike, n: int) -> list[MatrixLike]:
+def _listed(cocycle: MatrixLike | MatricesLike) -> list[MatrixLike]:
     """The list of matrices, from one matrix or several."""
     if isinstance(cocycle, Matrix):
         return [cocycle]
-    rows: Any = cocycle.tolist() if hasattr(cocycle, "tolist") else cocycle
+    rows: Any = getattr(cocycle, "tolist", lambda: cocycle)()
     if not isinstance(rows, Sequence) or isinstance(rows, str):
         raise ShapeError(f"a cocycle is an antisymmetric matrix or a list of them, got {cocycle!r}")
     if all(hasattr(x, "nrows") or hasattr(x, "tolist") for x in rows):
@@ -80,11 +80,12 @@ def _listed(cocycle: MatrixLike | MatricesLike, n: int) -> list[MatrixLike]:
     else:
         tables = list(rows)
     # a list of rows of numbers is one matrix; a list of tables is several
-    single = any(isinstance(row, Sequence) and row and not _is_row(row[0]) for row in tables)
+    single = any(isinstance(row, Sequence) and row and not _is_sequence(row[0]) for row in tables)
     return [tables] if single else tables
 
 
-def _is_row(value: object) -> bool:
+def _is_sequence(value: object) -> bool:
+    """Whether a value is a sequence and not a string."""
     return isinstance(value, Sequence) and not isinstance(value, str)
 
 
@@ -114,6 +115,7 @@ def _rounding(field: Field, values: list[Scalar]) -> float:
 
 
 def _exceeds(value: Scalar, bound: float) -> bool:
+    """Whether a value is larger than the bound; for the bound 0, whether it is not zero."""
     return bool(abs(value) > bound) if bound else bool(value != 0)
 
 

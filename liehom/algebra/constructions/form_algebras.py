@@ -173,7 +173,7 @@ def _form(form: MatrixLike, sign: int) -> Matrix:
     if isinstance(form, Matrix):
         matrix = form
     else:
-        rows = form.tolist() if hasattr(form, "tolist") else form
+        rows = getattr(form, "tolist", lambda: form)()
         if not hasattr(rows, "__iter__") or isinstance(rows, str):
             raise ShapeError(f"a form is given by a square matrix, got {form!r}")
         matrix = square_matrices([list(rows)])[0]

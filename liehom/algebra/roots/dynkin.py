@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 CartanMatrix = tuple[tuple[int, ...], ...]
 
 _LOWEST_RANK = {"A": 1, "B": 1, "C": 1, "D": 2, "E": 6, "F": 4, "G": 2}
-_HIGHEST_RANK = {"E": 8, "F": 4, "G": 2}
+_HIGHEST_RANK = {"E": 8, "F": 4, "G": 2}  # the classical series have no highest rank
 
 
 def parse_type(name: str) -> tuple[tuple[str, int], ...]:

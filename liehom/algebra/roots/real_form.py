@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, final
 
 from liehom.algebra.roots.dynkin import parse_type
 from liehom.algebra.roots.real_form_names import (
-    EXCEPTIONAL,
+    EXCEPTIONAL_CHARACTERS,
     canonical_names,
     canonical_real_form,
     parse_name,
@@ -251,11 +251,13 @@ def _of_canonical(name: str) -> RealForm:
     """The real form with a canonical name."""
     kind, numbers, letter = parse_name(name)
     if letter == "C":
-        type_name = f"{kind[0].upper()}{kind[1]}" if kind in EXCEPTIONAL else _classical_type(kind, numbers[0], "C")
+        type_name = (
+            f"{kind[0].upper()}{kind[1]}" if kind in EXCEPTIONAL_CHARACTERS else _classical_type(kind, numbers[0], "C")
+        )
         rank = parse_type(type_name)[0][1]
         exchange = (*range(rank, 2 * rank), *range(rank))
         return RealForm(name, type_name, VoganDiagram(f"{type_name} + {type_name}", (), exchange))
-    if kind in EXCEPTIONAL:
+    if kind in EXCEPTIONAL_CHARACTERS:
         type_name = kind.upper()
         painted, outer = _EXCEPTIONAL_NODES.get(name, ((), False))
         flip = (5, 1, 4, 3, 2, 0) if outer else ()
@@ -342,7 +344,7 @@ def _maximal_compact(form: RealForm) -> str:
     kind, numbers, letter = parse_name(form.name)
     if form.is_compact:
         return form.name
-    if kind in EXCEPTIONAL:
+    if kind in EXCEPTIONAL_CHARACTERS:
         simple, center = form.vogan.maximal_compact_type()
         names = [_compact_name(*part) for part in sorted(parse_type(simple), key=lambda part: -part[1])]
         return "+".join([*names, *["u(1)"] * center])

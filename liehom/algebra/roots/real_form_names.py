@@ -23,13 +23,14 @@ from liehom.errors import CatalogError
 
 Parsed = tuple[str, tuple[int, ...], str]
 
-EXCEPTIONAL = {
+EXCEPTIONAL_CHARACTERS = {
     "e6": (6, 2, -14, -26, -78),
     "e7": (7, -5, -25, -133),
     "e8": (8, -24, -248),
     "f4": (4, -20, -52),
     "g2": (2, -14),
 }
+"""Characters of the real forms of each exceptional type; the last is that of the compact form."""
 _KNOWN = (
     "sl(n,R), sl(n,C), sl(n,H), su(p,q), so(p,q), so(n,C), so*(2n), sp(p,q), sp(2n,R), sp(2n,C), "
     "g2, g2(2), g2(C), f4, f4(4), f4(-20), f4(C), e6, e6(6), e6(2), e6(-14), e6(-26), e6(C), "
@@ -79,9 +80,9 @@ def _sort_key(name: str) -> tuple[int, bool, str]:
     """(dimension, not compact, name) of a canonical name."""
     kind, numbers, letter = parse_name(name)
     n = sum(numbers)
-    if kind in EXCEPTIONAL:
+    if kind in EXCEPTIONAL_CHARACTERS:
         dimension = {"g2": 14, "f4": 52, "e6": 78, "e7": 133, "e8": 248}[kind]
-        compact = numbers == EXCEPTIONAL[kind][-1:]
+        compact = numbers == EXCEPTIONAL_CHARACTERS[kind][-1:]
     else:
         size = {"so": n * (n - 1) // 2, "so*": n * (n - 1) // 2, "su": n * n - 1, "sl": n * n - 1}
         quaternionic = 4 * n * n - 1 if kind == "sl" else n * (2 * n + 1)
@@ -105,14 +106,14 @@ def canonical_ideals(name: str) -> list[str]:
     ['so(3)', 'sl(2,R)']
     """
     kind, numbers, letter = parse_name(name)
-    if kind in EXCEPTIONAL:
+    if kind in EXCEPTIONAL_CHARACTERS:
         return [name_of(kind, numbers, letter)]
     if kind == "so*":
         found = _quaternionic_orthogonal(numbers[0])
     elif letter == "C":
         found = _complex(kind, numbers[0])
     else:
-        found = _REAL[kind](max(numbers), min(numbers) if len(numbers) > 1 else 0, letter)
+        found = _REAL_IDEALS[kind](max(numbers), min(numbers) if len(numbers) > 1 else 0, letter)
     if not found:
         raise CatalogError(f"{name.strip()!r} is not semisimple; known names of semisimple algebras: {_KNOWN}")
     return found
@@ -135,10 +136,10 @@ def parse_name(name: str) -> Parsed:
     if re.match(r"[EFG][2-8]\(", text):  # E6 with a character is accepted; E6 alone is a type, e6 the compact form
         text = text[0].lower() + text[1:]
     if exceptional := re.fullmatch(r"(e6|e7|e8|f4|g2)(?:\((-?\d+|C)\))?", text, re.ASCII):
-        kind, character = exceptional[1], exceptional[2] or str(EXCEPTIONAL[exceptional[1]][-1])
+        kind, character = exceptional[1], exceptional[2] or str(EXCEPTIONAL_CHARACTERS[exceptional[1]][-1])
         if character == "C":
             return kind, (), "C"
-        if int(character) in EXCEPTIONAL[kind]:
+        if int(character) in EXCEPTIONAL_CHARACTERS[kind]:
             return kind, (int(character),), ""
     elif starred := re.fullmatch(r"(so|su)\*\((\d+)\)", text, re.ASCII):
         size = int(starred[2])
@@ -162,7 +163,7 @@ def name_of(kind: str, numbers: tuple[int, ...], letter: str) -> str:
     >>> name_of("so", (4, 1), ""), name_of("sp", (6,), "R"), name_of("e6", (-78,), ""), name_of("e6", (), "C")
     ('so(4,1)', 'sp(6,R)', 'e6', 'e6(C)')
     """
-    if kind in EXCEPTIONAL and numbers == EXCEPTIONAL[kind][-1:]:
+    if kind in EXCEPTIONAL_CHARACTERS and numbers == EXCEPTIONAL_CHARACTERS[kind][-1:]:
         return kind
     if kind == "sl" and not letter:
         letter = "R"
@@ -190,7 +191,7 @@ def canonical_names(series: str, rank: int) -> list[str]:
         names += [f"so*({size})"] if series == "D" else []
     else:
         kind = f"{series.lower()}{rank}"
-        return [name_of(kind, (character,), "") for character in EXCEPTIONAL[kind]]
+        return [name_of(kind, (character,), "") for character in EXCEPTIONAL_CHARACTERS[kind]]
     return list(dict.fromkeys(canonical for name in names for canonical in canonical_ideals(name)))
 
 
@@ -243,4 +244,4 @@ def _complex(kind: str, size: int) -> list[str]:
 
 
 _LETTERS = {"sl": ("", "R", "C", "H"), "su": ("",), "so": ("", "R", "C"), "sp": ("", "R", "C")}
-_REAL = {"sl": _linear, "su": _unitary, "so": _orthogonal, "sp": _symplectic}
+_REAL_IDEALS = {"sl": _linear, "su": _unitary, "so": _orthogonal, "sp": _symplectic}
