@@ -74,13 +74,13 @@ def spanning_commutators(generators: Sequence[ExactMatrix]) -> Words:
     def brackets(last: Residues) -> Residues:
         return np.concatenate([np.mod(product(a, last, p) - product(last, a, p), p) for a in given])
 
-    return left_normed_words(ModularSpan(p, n * n), given, brackets)[0]
+    return right_normed_words(ModularSpan(p, n * n), given, brackets)[0]
 
 
-def left_normed_words(
+def right_normed_words(
     span: ModularSpan, generators: Residues, brackets: Callable[[Residues], Residues]
 ) -> tuple[Words, list[Residues]]:
-    """Words [x_i, [x_j, ... x_k]] that are a basis of what generators generate modulo a prime, and their values.
+    """Words [x_i, [x_j, ... x_k]] that are a basis, modulo a prime, of the generated algebra, and their values.
 
     Parameters
     ----------
@@ -89,20 +89,20 @@ def left_normed_words(
     generators : (s, ...) float64
         The residues of x_1, ..., x_s.
     brackets : callable
-        From the residues of m words w to those of all [x_i, w], an array whose entry i m + j is [x_i, w_j].
+        Maps the residues of m words w_j to the array whose entry i m + j holds the residues of [x_i, w_j].
 
     Returns
     -------
     words : list of (int, int)
     levels : list of arrays
-        The residues of the words of each length; one after the other they are those of `words`.
+        The residues of the words of each length. Their concatenation is in the order of `words`.
 
     Examples
     --------
     The cross product, from the first two unit vectors:
 
     >>> one = np.eye(3)
-    >>> words, levels = left_normed_words(
+    >>> words, levels = right_normed_words(
     ...     ModularSpan(7, 3), one[:2], lambda w: np.concatenate([np.cross(x, w) % 7 for x in one[:2]])
     ... )
     >>> words, levels[1].tolist()

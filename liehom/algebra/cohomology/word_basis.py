@@ -12,7 +12,7 @@ from typing import final
 
 import numpy as np
 
-from liehom.algebra.closure.generated_span import Words, left_normed_words
+from liehom.algebra.closure.generated_span import Words, right_normed_words
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FieldError
@@ -140,7 +140,7 @@ def _closed(table: Residues, generators: list[list[int]], p: int) -> tuple[Words
     def brackets(last: Residues) -> Residues:
         return np.concatenate([product(last, action, p) for action in actions])
 
-    words, levels = left_normed_words(ModularSpan(p, n), first, brackets)
+    words, levels = right_normed_words(ModularSpan(p, n), first, brackets)
     return words, np.concatenate(levels)
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -67,7 +67,7 @@ class CartanDecomposition:
     p: Subspace
     theta: Matrix
 
-    def __iter__(self) -> Iterator[Subalgebra | Subspace]:
+    def __iter__(self) -> Iterator[Any]:
         return iter((self.k, self.p))
 
 

@@ -1,4 +1,4 @@
-"""Lie closure: against a plain closure by rows, in both completions; refusals; the fast paths against each other."""
+"""Lie closure compared with a direct closure by rows, in both completions; errors; the fast paths agree."""
 
 from __future__ import annotations
 

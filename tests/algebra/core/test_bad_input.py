@@ -1,4 +1,4 @@
-"""What users give: tables that are none, numbers of every kind, no dimension at all, fractions of a million digits."""
+"""Input of users: malformed tables, numbers of every kind, dimension zero, fractions of a million digits."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_a_table_that_is_not_antisymmetric() -> None:
     ],
     ids=["jagged", "matrix", "0 x 3 x 3", "2 x 2 x 3", "number", "none", "name", "sparse", "nan"],
 )
-def test_what_is_no_table(constants: Any, error: type[LiehomError]) -> None:
+def test_malformed_constants_raise(constants: Any, error: type[LiehomError]) -> None:
     with pytest.raises(error):
         lh.LieAlgebra(constants)
 
@@ -169,7 +169,7 @@ def test_floats_alone_call_for_float64() -> None:
     ],
     ids=str,
 )
-def test_what_is_no_number(value: Any, error: type[LiehomError]) -> None:
+def test_values_that_are_not_numbers_raise(value: Any, error: type[LiehomError]) -> None:
     with pytest.raises(error):
         lh.LieAlgebra({(0, 1): {1: value}})
     with pytest.raises(InputError):
@@ -283,7 +283,7 @@ def test_matrices_in_every_form() -> None:
 
 
 # -- rows, matrices and maps that are not what they should be ------------------------------------------------
-def test_subalgebras_that_are_none() -> None:
+def test_rows_that_do_not_span_a_subalgebra_raise() -> None:
     g = lh.so(3)
     with pytest.raises(DependentRowsError) as dependent:
         g.subalgebra([[0, 0, 1], [0, 0, half], [1, 0, 0]])
@@ -296,7 +296,7 @@ def test_subalgebras_that_are_none() -> None:
 
 
 @pytest.mark.parametrize("rows", [[[1, 0]], [1, 0, 0], 3, "abc", ["abc"], [[1, 0, 0], [1]], [[[1], 0, 0]], None])
-def test_what_is_no_list_of_rows(rows: Any) -> None:
+def test_malformed_rows_raise(rows: Any) -> None:
     g = lh.so(3)
     for call in (g.subalgebra, g.subalgebra_generated_by, g.centralizer, g.quotient):
         with pytest.raises(InputError):
@@ -304,7 +304,7 @@ def test_what_is_no_list_of_rows(rows: Any) -> None:
 
 
 @pytest.mark.parametrize("x", [[1, 0], [1, 0, 0, 0], 3, "abc", None, [[1, 0, 0]]])
-def test_what_is_no_element(x: Any) -> None:
+def test_malformed_elements_raise(x: Any) -> None:
     g = lh.so(3)
     for call in (g.ad, lambda x: g.bracket(x, [1, 0, 0]), lambda x: g.bracket([1, 0, 0], x)):
         with pytest.raises(InputError):
@@ -312,12 +312,12 @@ def test_what_is_no_element(x: Any) -> None:
 
 
 @pytest.mark.parametrize("matrices", [3, "abc", None, [], [3], [[1, 2]], [[[1, 2]]], [[[1], [2, 3]]], [[["x"]]]])
-def test_what_is_no_list_of_square_matrices(matrices: Any) -> None:
+def test_malformed_matrices_raise(matrices: Any) -> None:
     with pytest.raises(InputError):
         lh.LieAlgebra.from_matrices(matrices)
 
 
-def test_representations_and_maps_that_are_none() -> None:
+def test_invalid_representations_maps_and_cocycles_raise() -> None:
     with pytest.raises(RepresentationError) as caught:
         lh.Representation(lh.so(3), [sympy.eye(2)] * 3)
     assert caught.value.pair == (0, 1)
@@ -432,13 +432,13 @@ def test_a_list_of_summands_is_to_be_unpacked() -> None:
 
 
 @pytest.mark.parametrize("build", [lh.adjoint, lh.coadjoint, lh.trivial, lh.so(3).is_isomorphic])
-def test_a_name_is_no_algebra(build: Callable[[Any], Any]) -> None:
+def test_name_in_place_of_an_algebra_raises(build: Callable[[Any], Any]) -> None:
     with pytest.raises(InputError, match="so\\(3\\)"):
         build("so(3)")
 
 
 @pytest.mark.parametrize("verb", ["tensor", "direct_sum", "is_equivalent", "equivalence", "intertwiners"])
-def test_a_number_is_no_representation(verb: str) -> None:
+def test_number_in_place_of_a_representation_raises(verb: str) -> None:
     with pytest.raises(InputError, match="expected a Representation"):
         getattr(lh.defining(lh.so(3)), verb)(3)
 

@@ -12,7 +12,7 @@ from liehom.errors import HomomorphismError, InputError, ShapeError
 ZERO_3 = [[0] * 3 for _ in range(3)]
 
 
-def test_a_map_that_does_not_respect_the_bracket_is_refused() -> None:
+def test_map_that_does_not_respect_the_bracket_raises() -> None:
     with pytest.raises(HomomorphismError) as caught:
         lh.Homomorphism(lh.so(3), lh.so(3), [[2, 0, 0], [0, 1, 0], [0, 0, 1]])
     assert caught.value.pair == (0, 1)
@@ -54,7 +54,7 @@ def test_inclusion_and_quotient() -> None:
     assert projection.compose(inclusion).is_isomorphism()
 
 
-def test_between_different_real_forms_there_is_no_isomorphism_by_the_identity() -> None:
+def test_identity_between_different_real_forms_is_not_a_homomorphism() -> None:
     with pytest.raises(HomomorphismError):
         lh.Homomorphism(lh.so(3), lh.so(2, 1), [[1, 0, 0], [0, 1, 0], [0, 0, 1]])
 

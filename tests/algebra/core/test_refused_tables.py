@@ -1,4 +1,4 @@
-"""Bracket tables that do not say what they mean are refused with a library error."""
+"""Malformed bracket tables raise an error of the library that names the fault."""
 
 from typing import Any
 
@@ -29,7 +29,7 @@ def test_malformed_mappings(table: Any, field: Any, dimension: int | None) -> No
 
 
 @pytest.mark.parametrize("dimension", [-1, 2.5, "3"])
-def test_dimensions_that_are_no_dimensions(dimension: Any) -> None:
+def test_invalid_dimensions_raise(dimension: Any) -> None:
     with pytest.raises(ShapeError, match="dimension"):
         lh.LieAlgebra({}, dimension=dimension)
 

@@ -1,4 +1,4 @@
-"""Cartan decompositions: the laws of k and p, in bases that do not suit the algebra, and where none is rational."""
+"""Cartan decompositions: the laws of k and p, in scrambled bases, and algebras without a rational involution."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ NAMES = ("so(3)", "sl(2,R)", "so(4,1)", "sl(3,R)", "sl(2,C)", "su(2,1)", "sl(2,H
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_laws_in_the_natural_basis(name: str) -> None:
+def test_cartan_decomposition_laws_in_the_natural_basis(name: str) -> None:
     algebra = form(name)
     found = cartan_decomposition(algebra)
     check_laws(algebra, found)
@@ -56,7 +56,7 @@ def test_laws_in_the_natural_basis(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["sl(2,R)", "so(4,1)", "sl(3,R)", "sl(2,C)", "su(2,1)", "sl(2,H)"])
 @pytest.mark.parametrize("seed", [1, 3])
-def test_laws_in_bases_that_do_not_suit(name: str, seed: int) -> None:
+def test_cartan_decomposition_laws_in_scrambled_bases(name: str, seed: int) -> None:
     """A dense basis of another lattice, and a unimodular one."""
     natural = form(name)
     n = natural.dimension
@@ -67,7 +67,7 @@ def test_laws_in_bases_that_do_not_suit(name: str, seed: int) -> None:
         assert found.k.dimension == lh.RealForm.of_name(name).compact_dimension
 
 
-def test_sums_are_taken_apart() -> None:
+def test_direct_sums_are_decomposed() -> None:
     algebra = lh.direct_sum(lh.so(4, 1), lh.sl(2), lh.so(3)).change_of_basis(rational_rows(16, 1))
     found = cartan_decomposition(algebra)
     check_laws(algebra, found)
@@ -120,7 +120,7 @@ def test_numerically(name: str) -> None:
     assert np.abs(bases[0] @ killing @ bases[1].T).max() < 1e-8 * np.abs(killing).max()
 
 
-def test_what_is_no_cartan_involution() -> None:
+def test_matrix_that_is_not_a_cartan_involution_is_rejected() -> None:
     g = lh.sl(2)
     assert not is_cartan_involution(g, g.field.identity(3))
     theta = cartan_decomposition(g).theta
@@ -128,7 +128,7 @@ def test_what_is_no_cartan_involution() -> None:
     assert not is_cartan_involution(lh.so(3), cartan_decomposition(lh.so(3)).theta.scale(2))
 
 
-def test_only_semisimple_algebras_have_one() -> None:
+def test_cartan_decomposition_of_a_non_semisimple_algebra_raises() -> None:
     with pytest.raises(InputError, match="semisimple"):
         cartan_decomposition(lh.gl(2))
 
@@ -192,7 +192,7 @@ def _left_multiplications(units: list[Any], s: Any) -> lh.LieAlgebra:
 
 
 @pytest.mark.slow
-def test_none_is_rational_for_a_division_algebra_of_degree_three() -> None:
+def test_division_algebra_of_degree_three_has_no_rational_cartan_involution() -> None:
     algebra = division_algebra_form()
     assert algebra.real_form() == "sl(3,R)"
     with pytest.raises(UndecidedError):
@@ -262,7 +262,7 @@ def scalars_extended(polynomial: list[int]) -> lh.LieAlgebra:
         ([1, -3, 0, 1], None),
     ],
 )
-def test_what_the_places_of_the_centroid_exclude(polynomial: list[int], reason: str | None) -> None:
+def test_places_of_the_centroid_exclude_a_cartan_involution(polynomial: list[int], reason: str | None) -> None:
     algebra = scalars_extended(polynomial)
     if reason is None:
         check_laws(algebra, cartan_decomposition(algebra))

@@ -1,4 +1,4 @@
-"""Cartan involutions from nilpotent elements: sl2-triples, minimal parabolic subalgebras, and where there is none."""
+"""Cartan involutions from nilpotent elements: sl2-triples, minimal parabolic subalgebras, and failures."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_a_compact_algebra_has_no_nilpotent_elements() -> None:
     assert generic_nilpotent(algebra, approximate_involution(algebra, 2)) is None
 
 
-def test_what_is_not_nilpotent_has_no_triple() -> None:
+def test_sl2_triple_of_a_non_nilpotent_element_raises() -> None:
     g = lh.sl(2)
     for row in ([[0, 0, 1]], [[1, -1, 0]], [[0, 0, 0]]):
         with pytest.raises(SingularError):

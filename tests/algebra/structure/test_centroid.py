@@ -101,7 +101,7 @@ def test_random_two_step_algebras_against_all_equations(m: int, k: int, data: st
     assert len(centroid(algebra)) == dense_centroid_dimension(algebra)
 
 
-def test_it_is_one_space_in_all_bases() -> None:
+def test_centroid_is_the_same_space_in_all_bases() -> None:
     """phi -> P^-T phi P^T carries the centroid of the one basis to that of the other."""
     algebra = lh.direct_sum(lh.so(4), lh.heisenberg(1))
     rows = QQ.matrix(random_unimodular(9, random.Random(1)))
@@ -128,7 +128,7 @@ def test_large_sparse_tables() -> None:
     assert all(respects(algebra, phi, random.Random(2)) for phi in maps)
 
 
-def test_floats_are_refused() -> None:
+def test_floats_raise_field_error() -> None:
     with pytest.raises(FieldError, match="exact"):
         centroid(lh.so(3).over(lh.RR))
 

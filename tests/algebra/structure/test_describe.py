@@ -1,4 +1,4 @@
-"""The card of an algebra says the right words in any basis, over QQ and QQ(sqrt(2)), within seconds."""
+"""The summary of an algebra is correct in any basis, over QQ and QQ(sqrt(2)), within seconds."""
 
 from __future__ import annotations
 
@@ -107,12 +107,12 @@ CASES: dict[str, tuple[LieAlgebra, list[str]]] = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_card_in_a_scrambled_basis(name: str) -> None:
+def test_summary_is_the_same_in_a_scrambled_basis(name: str) -> None:
     natural, lines = CASES[name]
     algebra = scrambled(natural)
     start = time.process_time()
-    card = algebra.describe().splitlines()
+    summary = algebra.describe().splitlines()
     assert time.process_time() - start < LIMIT
-    assert card[0].endswith(f"dimension {algebra.dimension} over {algebra.field.name}")
+    assert summary[0].endswith(f"dimension {algebra.dimension} over {algebra.field.name}")
     for line in lines:
-        assert line in (card[0].split(", ", 1)[1], *(text.strip() for text in card)), card
+        assert line in (summary[0].split(", ", 1)[1], *(text.strip() for text in summary)), summary

@@ -64,7 +64,7 @@ def test_the_ideals_of_a_semisimple_algebra_are_unique() -> None:
     assert all(any(s == algebra.subalgebra(u) for s in spans) for u in units)
 
 
-def test_over_an_extension_more_splits() -> None:
+def test_an_extension_of_the_field_splits_more() -> None:
     """so(3) over QQ(sqrt 2), seen over QQ, splits over QQ(sqrt 2) only; so(3,1) does over no real field."""
     table: dict[tuple[int, int], dict[int, Any]] = {}
     for i, j, k, sign in ((0, 1, 2, 1), (1, 2, 0, 1), (0, 2, 1, -1)):

@@ -101,7 +101,7 @@ def test_isomorphism_over_the_reals() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["so*(18)", "so(12,6)"])
-def test_what_the_killing_signature_does_not_tell_is_not_guessed(name: str) -> None:
+def test_real_forms_with_equal_killing_signature_raise_undecided_error(name: str) -> None:
     with pytest.raises(UndecidedError, match=r"so\(12,6\) and so\*\(18\)"):
         lh.simple("D9", name).real_form()
 

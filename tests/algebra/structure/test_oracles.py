@@ -1,4 +1,4 @@
-"""What GAP says about 200 random Lie algebras of dimensions 3 to 30, beside what liehom says.
+"""Answers of GAP and of liehom about 200 random Lie algebras of dimensions 3 to 30 agree.
 
 The files structure_*.json of tests/oracles are written by tests/oracles/make_structure.py.  Each test takes one
 family and lists all disagreements; what rests on a Levi factor is compared for every fourth algebra, with --slow for
@@ -98,7 +98,7 @@ def test_killing_form(family: str) -> None:
 
 
 @each_family
-def test_radicals(family: str) -> None:
+def test_radical_has_the_known_dimension(family: str) -> None:
     assert not disagreements(
         family, radical=lambda g: g.radical().dimension, nilradical=lambda g: g.nilradical().dimension
     )

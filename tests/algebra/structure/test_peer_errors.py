@@ -1,4 +1,4 @@
-"""Every wrong or refused answer of another tool that is known, and the right one here.
+"""Known wrong or missing answers of other packages, and the correct answers of liehom.
 
 tests/oracles/peer_errors.json has the inputs and what the tools said; tests/oracles/make_peer_errors.py writes it.
 """
@@ -102,7 +102,7 @@ def test_jacobi(name: str) -> None:
 
 
 @having("refused")
-def test_a_map_that_is_no_representation(name: str) -> None:
+def test_map_that_is_not_a_representation_raises(name: str) -> None:
     with pytest.raises(errors.RepresentationError):
         lh.Representation(lh.so(3), BY_ID[name]["matrices"])
 
@@ -152,7 +152,7 @@ STABILISERS = [  # type, highest weight, dimension, of a generic vector, of a hi
 
 
 @pytest.mark.parametrize(("kind", "weight", "size", "generic", "highest"), STABILISERS)
-def test_stabilisers(kind: str, weight: tuple[int, ...], size: int, generic: int, highest: int) -> None:
+def test_stabilizers_of_vectors(kind: str, weight: tuple[int, ...], size: int, generic: int, highest: int) -> None:
     """No peer has the stabiliser of a vector; the dimensions agree with the known orbit dimensions."""
     rho = lh.highest_weight_module(kind, weight, check=False).representation
     assert rho.size == size

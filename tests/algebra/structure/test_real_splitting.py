@@ -89,7 +89,9 @@ def test_places_of_restrictions_of_scalars(name: str, seed: int) -> None:
     ],
     ids=["so(7)", "sl(4)", "so(3,1)", "sl(3,C)", "su(2,1)"],
 )
-def test_one_place(algebra: lh.LieAlgebra, kind: str, signature: tuple[int, int]) -> None:
+def test_algebra_simple_over_the_reals_has_one_place(
+    algebra: lh.LieAlgebra, kind: str, signature: tuple[int, int]
+) -> None:
     """so(3, 1) is simple over R and of complex type, though its centroid over QQ is QQ(i)."""
     place = places(whole(scrambled(algebra, 3)))
     assert [(p.kind, p.killing_signature, p.dimension) for p in place] == [(kind, signature, algebra.dimension)]
@@ -130,7 +132,7 @@ def test_a_quadratic_centroid_is_shown_by_a_square_root() -> None:
     assert centroid_field(whole(scrambled(algebra, 1))).polynomial == Polynomial(QQ, [-5, 0, 1])
 
 
-def test_an_algebra_that_is_not_simple_is_refused() -> None:
+def test_places_of_a_non_simple_algebra_raise_input_error() -> None:
     with pytest.raises(InputError, match="sum of ideals"):
         places(whole(lh.so(4)))
     with pytest.raises(InputError, match="degenerate"):
@@ -176,7 +178,7 @@ def test_real_ideals_over_a_real_number_field() -> None:
     assert sorted(h.as_algebra().killing_signature() for h in parts) == [(0, 3, 0), (2, 1, 0)]
 
 
-def test_what_does_not_split_is_returned_as_it_is() -> None:
+def test_real_ideal_of_an_absolutely_simple_algebra_is_the_algebra() -> None:
     """so(4) splits over QQ already; so(3, 1) is simple over R."""
     compact = [real_ideals(h) for h in direct_sum_decomposition(scrambled(lh.so(4), 1))]
     assert [[(p.dimension, p.algebra.field) for p in parts] for parts in compact] == [[(3, lh.QQ)], [(3, lh.QQ)]]
@@ -184,7 +186,7 @@ def test_what_does_not_split_is_returned_as_it_is() -> None:
     assert real_ideals(lorentz) == [lorentz]
 
 
-def test_a_field_of_too_large_a_degree_is_refused() -> None:
+def test_field_of_too_large_a_degree_raises_field_error() -> None:
     """t^10 - 2 has complex roots: sums of two of its ten roots may have degree 45; places are found still."""
     ideal = whole(restricted([1], [1], [1], [-2, *[0] * 9, 1]))
     with pytest.raises(FieldError, match="degree 45"):

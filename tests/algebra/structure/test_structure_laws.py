@@ -98,7 +98,7 @@ def test_levi_factor_and_radical(name: str, seed: int) -> None:
 
 @few
 @given(names, seeds)
-def test_nilradical_lies_between(name: str, seed: int) -> None:
+def test_nilradical_lies_between_its_bounds(name: str, seed: int) -> None:
     g = scrambled(ALGEBRAS[name], seed)
     nilradical, radical = g.nilradical(), g.radical()
     assert nilradical.is_ideal() and nilradical.as_algebra().is_nilpotent()
@@ -189,7 +189,7 @@ def test_an_ideal_that_splits_over_the_reals_only() -> None:
     assert {h.as_algebra().real_form() for h in (first, second)} == {"so(3)", "sl(2,R)"}
 
 
-def test_what_needs_a_semisimple_algebra_says_so() -> None:
+def test_semisimple_methods_raise_on_other_algebras() -> None:
     g = lh.euclidean(3)
     for question in (g.root_system, g.cartan_decomposition, lambda: g.is_isomorphic(lh.so(4))):
         with pytest.raises(InputError, match=r"semisimple|radical"):
@@ -198,7 +198,7 @@ def test_what_needs_a_semisimple_algebra_says_so() -> None:
         root_data(g)
 
 
-def test_what_is_exact_refuses_floats() -> None:
+def test_exact_methods_raise_on_floats() -> None:
     g = lh.so(4).over(lh.RR)
     for question in (g.nilradical, g.levi_decomposition, g.cartan_subalgebra, g.real_form, g.semisimple_type):
         with pytest.raises(FieldError, match="exact"):
@@ -229,7 +229,7 @@ CARDS = {
 
 
 @pytest.mark.parametrize("name", sorted(CARDS))
-def test_cards(name: str) -> None:
+def test_summary_has_the_expected_lines(name: str) -> None:
     algebra, line = CARDS[name]
     assert line in algebra.describe()
     assert line in scrambled(algebra, 5).describe()
@@ -265,7 +265,7 @@ def test_the_root_spaces_of_a_split_algebra_multiply() -> None:
                 assert list(bracket) in by_values[total] and any(bracket)
 
 
-def test_a_subalgebra_of_another_algebra_is_refused() -> None:
+def test_subalgebra_of_another_algebra_raises_input_error() -> None:
     g, foreign = lh.so(3), lh.heisenberg(1).subalgebra([[0, 0, 1]])
     for question in (g.normalizer, g.centralizer, g.ideal_generated_by, g.subalgebra_generated_by):
         with pytest.raises(InputError, match="is not a subalgebra of"):
