@@ -59,10 +59,8 @@ def linear_matrices(tree: Expression) -> IntegerArray:
 
 def is_linear(tree: Expression) -> bool:
     """Whether all heads of a parsed name denote linear Lie algebras."""
-    return all(
-        t.head in (*CLASSICAL_KINDS, *EXCEPTIONAL_KINDS, *_HEADS) or re.fullmatch(r"[SL]\d+", t.head)
-        for t in terms(tree)
-    )
+    heads = CLASSICAL_KINDS | EXCEPTIONAL_KINDS | _HEADS.keys()
+    return all(t.head in heads or re.fullmatch(r"[SL]\d+", t.head) for t in terms(tree))
 
 
 def scalar_parameters(term: Term) -> tuple[int, ...]:
