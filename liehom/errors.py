@@ -30,6 +30,10 @@ def _restored(kind: type[LiehomError], args: tuple[Any, ...], attributes: dict[s
     return error
 
 
+_again = _restored
+"""The name of `_restored` in pickles of 0.1.0."""
+
+
 def shown(value: str) -> str:
     """A value as a message shows it: only the beginning and the end of a string of more than 200 characters.
 

@@ -23,6 +23,7 @@ from tests.compatibility.v0_1_0.cases import ATLAS, CERTIFICATES, OBJECTS, RUNS,
 from tests.compatibility.v0_1_0.make import found_by, pickled, results, run, shape
 from tests.results import compare, record
 from tests.results.integrations import PROBLEMS, Interrupting
+from tests.results.record import in_words_of_0_1_0
 
 FOLDER = Path(__file__).with_name("v0_1_0")
 ROOT = FOLDER.parents[2]
@@ -55,7 +56,7 @@ def test_a_pickled_object_answers_as_a_new_one(name: str) -> None:
         return
     answer = ask(found)
     if same_machine or not name.startswith(FLOATS):
-        assert repr(answer) == repr(ask(make()))
+        assert in_words_of_0_1_0(repr(answer)) == in_words_of_0_1_0(repr(ask(make())))
     assert repr(ask(pickle.loads(pickle.dumps(found)))) == repr(answer)
 
 
@@ -229,7 +230,7 @@ def test_a_store_of_an_atlas_is_read(tmp_path: Path) -> None:
     decided: list[Any] = []
     atlas = lh.atlas.sweep(ATLAS, store=store, progress=decided.append)
     assert not decided
-    assert atlas.to_json() == lh.atlas.sweep(ATLAS).to_json()
+    assert in_words_of_0_1_0(atlas.to_json()) == in_words_of_0_1_0(lh.atlas.sweep(ATLAS).to_json())
     assert all(entry.verify() for entry in atlas)
 
 

@@ -52,7 +52,7 @@ def header() -> dict[str, Any]:
 
 def recorded(section: str, name: str) -> Any:
     """The values of a case, hashed where they are long, in the words of 0.1.0."""
-    return _worded(shortened(SECTIONS[section][name]()))
+    return in_words_of_0_1_0(shortened(SECTIONS[section][name]()))
 
 
 def shortened(value: Any) -> Any:
@@ -62,9 +62,12 @@ def shortened(value: Any) -> Any:
     return value.short() if hasattr(value, "short") else value
 
 
-def _worded(value: Any) -> Any:
+def in_words_of_0_1_0(value: Any) -> Any:
+    """The value with every string in it reworded."""
     if isinstance(value, dict):
-        return {key: _worded(item) for key, item in value.items()}
+        return {key: in_words_of_0_1_0(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [in_words_of_0_1_0(item) for item in value]
     if isinstance(value, str):
         for now, then in sorted(REWORDED.items(), key=lambda pair: -len(pair[0])):
             value = value.replace(now, then)
