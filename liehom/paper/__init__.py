@@ -1,8 +1,9 @@
-"""Section 4 of the paper done again: every figure as tables, with claims that are checked, and two pictures.
+"""Reproduction of section 4 of the paper: each figure as tables, with claims that are checked, and two plots.
 
-In reading order: `printed_data` (the paper's numbers), `kernels` (the 13 updates on coordinates), `samples` (random
-bodies), `tables` (what a reproduction consists of), `energy_errors` (Figures 3 to 5), `trajectories` (1 and 2),
-`separatrices`, `orders`, `costs`, `efficiency` (6 and 7), `pictures`, `figures` (by name).
+`figures` finds a figure by its name; `trajectories` (Figures 1 and 2), `energy_errors` (3 to 5), `efficiency` (6 and 7)
+and `separatrices` compute them. They use `printed_data` (the numbers of the paper), `kernels` (the 13 updates on
+coordinates), `samples` (random bodies), `orders`, `costs`, `reproduction` (tables, claims and files) and `plots`. The
+command ``liehom reproduce`` calls them; docs/reproduction.md discusses the results.
 """
 
 from liehom.paper.efficiency import figure6 as figure6

@@ -1,23 +1,23 @@
-"""What a step costs: arithmetic operations, counted, and time relative to a step of Euler, measured."""
+"""Cost of a step: the number of arithmetic operations, and the time relative to a step of Euler."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from liehom.paper.kernels import Body, kernel
+from liehom.paper.kernels import Body, Update, Vector, kernel
 from liehom.paper.printed_data import UPDATES
 from liehom.paper.samples import SEED, random_bodies
 
 LANES, ROUNDS = 1000, 21
+"""Bodies in the arrays, and rounds of all updates in which times are measured."""
 DT = 0.1
 
 
 class Cost(NamedTuple):
-    """Of a step: operations, and time relative to a step of xi_b^Eul, of 1000 bodies at once and of one body."""
+    """Cost of a step: operations, and time relative to xi_b^Eul on arrays of 1000 bodies and on one body."""
 
     operations: int
     arrays: float
@@ -25,7 +25,7 @@ class Cost(NamedTuple):
 
 
 class Counted:
-    """A number that counts the operations it takes part in.
+    """Number that counts the arithmetic operations on it.
 
     Examples
     --------
@@ -44,22 +44,22 @@ class Counted:
         self.counter[0] += 1
         return Counted(value, self.counter)
 
-    def __add__(self, other: Any) -> Counted:
+    def __add__(self, other: Counted | float) -> Counted:
         return self._made(self.value + _value(other))
 
-    def __sub__(self, other: Any) -> Counted:
+    def __sub__(self, other: Counted | float) -> Counted:
         return self._made(self.value - _value(other))
 
-    def __mul__(self, other: Any) -> Counted:
+    def __mul__(self, other: Counted | float) -> Counted:
         return self._made(self.value * _value(other))
 
-    def __truediv__(self, other: Any) -> Counted:
+    def __truediv__(self, other: Counted | float) -> Counted:
         return self._made(self.value / _value(other))
 
-    def __rsub__(self, other: Any) -> Counted:
+    def __rsub__(self, other: Counted | float) -> Counted:
         return self._made(_value(other) - self.value)
 
-    def __rtruediv__(self, other: Any) -> Counted:
+    def __rtruediv__(self, other: Counted | float) -> Counted:
         return self._made(_value(other) / self.value)
 
     __radd__ = __add__
@@ -67,7 +67,7 @@ class Counted:
 
 
 def operations(name: str) -> int:
-    """Sums, products and quotients in a step of an update; powers of dt and constants of the body are free.
+    """Number of sums, products and quotients in a step of an update, without powers of dt and constants of the body.
 
     Examples
     --------
@@ -85,9 +85,9 @@ def operations(name: str) -> int:
 
 
 def costs(lanes: int = LANES, rounds: int = ROUNDS, seed: int = SEED) -> dict[str, Cost]:
-    """Costs of the 13 updates; times are medians of ratios, each taken within one round of all updates.
+    """Costs of the 13 updates, by name. Times are medians of ratios, each within one round of all updates.
 
-    Only ratios are given: they depend on the machine less than times.
+    Ratios depend less on the machine than times.
 
     Examples
     --------
@@ -102,15 +102,15 @@ def costs(lanes: int = LANES, rounds: int = ROUNDS, seed: int = SEED) -> dict[st
     return {name: Cost(operations(name), arrays[name], numbers[name]) for name in UPDATES}
 
 
-def _ratios(body: Body, m: Any, rounds: int, repeats: int) -> dict[str, float]:
+def _ratios(body: Body, m: Vector, rounds: int, repeats: int) -> dict[str, float]:
     updates = {name: kernel(name, body) for name in UPDATES}
     taken = np.array([[_seconds(update, m, repeats) for update in updates.values()] for _ in range(rounds)])
     ratios = np.median(taken / taken[:, :1], axis=0)
     return {name: float(ratio) for name, ratio in zip(updates, ratios, strict=True)}
 
 
-def _seconds(update: Callable[[Any, float], Any], m: Any, repeats: int) -> float:
-    """The shortest of three times."""
+def _seconds(update: Update, m: Vector, repeats: int) -> float:
+    """Shortest of three times for `repeats` steps, in seconds."""
     found = []
     for _ in range(3):
         begin = time.perf_counter()
@@ -120,5 +120,5 @@ def _seconds(update: Callable[[Any, float], Any], m: Any, repeats: int) -> float
     return min(found)
 
 
-def _value(x: Any) -> float:
+def _value(x: Counted | float) -> float:
     return x.value if isinstance(x, Counted) else float(x)

@@ -1,4 +1,4 @@
-"""Figures 6 and 7: orders and costs of the 13 updates, cost over accuracy, and where two fits intersect.
+"""Figures 6 and 7: orders and costs of the 13 updates, cost over accuracy, and the intersection of two fits.
 
     ln cost = a x + b,   x = -ln (average energy error on [0, 100]),   cost = steps times cost of a step
 
@@ -8,10 +8,10 @@ over the step sizes of Figures 3 to 5; the unit of cost is a step of xi_b^Eul.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from liehom.paper.plots import Curve, draw_costs
 from liehom.paper.printed_data import CROSSOVER, EULER, FIGURE_6, UPDATES
 from liehom.paper.reproduction import Check, Reproduction, Table
 from liehom.paper.samples import MOMENTS, SEED, described, spread
+from liehom.typing import Array
 
 PANELS = (
     ("Euler", EULER),
@@ -37,32 +38,35 @@ PANELS = (
 )
 LOW, HIGH = "eul_i", "sy4_o"  # the updates whose fits intersect
 ORDER_NEAR, OSCILLATING = 0.15, 0.25
-Fit = tuple[float, float]
+Fit: TypeAlias = tuple[float, float]
+"""The coefficients a and b of a x + b."""
 
 
 @dataclass(frozen=True, slots=True)
 class Accuracy:
-    """Average errors of an update over the step sizes of its figure.
+    """Average energy errors of an update for the step sizes of its figure.
 
     Attributes
     ----------
     steps : array of shape (sizes,)
+        Number of steps in a run.
     errors : array of shape (sizes, batches)
     """
 
-    steps: Any
-    errors: Any
+    steps: Array
+    errors: Array
 
-    def fits(self, cost: float) -> Any:
-        """a and b of every batch, shape (2, batches)."""
+    def fits(self, cost: float) -> Array:
+        """Coefficients a and b of the fit for each batch, shape (2, batches)."""
         x, y = -np.log(self.errors), np.log(cost * self.steps)[:, None]
         x0, y0 = x.mean(axis=0), y.mean(axis=0)
         a = ((x - x0) * (y - y0)).sum(axis=0) / ((x - x0) ** 2).sum(axis=0)
-        return np.stack([a, y0 - a * x0])
+        coefficients: Array = np.stack([a, y0 - a * x0])
+        return coefficients
 
 
 def accuracy(size: Scale, name: str, quick: bool) -> Accuracy:
-    """Averages over ten triaxial bodies each, on [0, 100].
+    """Accuracy of an update on batches of ten triaxial bodies, on [0, 100].
 
     Examples
     --------
@@ -77,12 +81,12 @@ def accuracy(size: Scale, name: str, quick: bool) -> Accuracy:
 
 @cache
 def measured_costs(quick: bool) -> dict[str, Cost]:
-    """The costs, measured once in a run of the program."""
+    """Costs of the 13 updates, measured once per process."""
     return costs(rounds=3) if quick else costs()
 
 
 def figure6(quick: bool = False, seed: int = SEED) -> Reproduction:
-    """Figure 6: orders, relative costs, fits, the crossover.
+    """Figure 6: orders, relative costs, fits, and the crossover of two fits.
 
     Examples
     --------
@@ -117,7 +121,7 @@ def figure6(quick: bool = False, seed: int = SEED) -> Reproduction:
         Check(
             "the printed fits intersect at 7.16e-6",
             f"{printed:.2e} from their three printed digits",
-            abs(printed / CROSSOVER - 1) < 0.05,
+            bool(abs(printed / CROSSOVER - 1) < 0.05),
         ),
         Check(
             "x = -ln error: the fits for xi_b^Eul and xi_i^Eul follow from the errors in Figure 3",
@@ -131,7 +135,7 @@ def figure6(quick: bool = False, seed: int = SEED) -> Reproduction:
 
 
 def figure7(quick: bool = False, seed: int = SEED) -> Reproduction:
-    """Figure 7: cost over orbit accuracy, with the fits and those of the paper.
+    """Figure 7: cost over orbit accuracy, with the fits and the paper's fits.
 
     Examples
     --------
@@ -170,16 +174,16 @@ def figure7(quick: bool = False, seed: int = SEED) -> Reproduction:
     )
 
 
-# -- the paper by itself ---------------------------------------------------------------------------------
-def _printed_points(name: str) -> tuple[Any, Any]:
-    """x and ln steps, from the triaxial errors of Figures 3 to 5."""
+# -- consistency of the paper ---------------------------------------------------------------------------------
+def _printed_points(name: str) -> tuple[Array, Array]:
+    """Points x and ln(steps) from the triaxial errors of Figures 3 to 5."""
     setting = next(s for s in SETTINGS if name in s.updates)
     errors = np.array([setting.printed["triaxial", dt, name] for dt in setting.dts])
     return -np.log(errors), np.log(100 / np.array(setting.dts))
 
 
 def paper_unit() -> float:
-    """ln of the paper's time for a step of xi_b^Eul, from its fit at the errors of Figure 3.
+    """Logarithm of the paper's time for a step of xi_b^Eul, from its fit and the errors of Figure 3.
 
     Examples
     --------
@@ -192,7 +196,7 @@ def paper_unit() -> float:
 
 
 def own_consistency() -> Table:
-    """The paper's fits against its own errors: slopes, and relative costs implied by a and b.
+    """Table that compares the paper's fits with its own errors: slopes, and relative costs implied by a and b.
 
     Examples
     --------
@@ -213,14 +217,14 @@ def own_consistency() -> Table:
 
 
 def _as_printed(name: str, found: Orders) -> bool:
-    """Whether measured orders are those of the paper; a leading term that only oscillates may hide behind the next."""
+    """Whether measured orders agree with the paper's; an oscillating leading term may look one order higher."""
     solution, energy = FIGURE_6[name][:2]
     more = OSCILLATING if energy == 4 else 0
     return abs(found.solution - solution) < ORDER_NEAR and -ORDER_NEAR < found.energy - energy < ORDER_NEAR + more
 
 
 # -- tables ----------------------------------------------------------------------------------------------
-def _order_table(orders: Mapping[str, Any]) -> Table:
+def _order_table(orders: Mapping[str, Orders]) -> Table:
     rows = [
         (name, orders[name].solution, FIGURE_6[name][0], orders[name].energy, FIGURE_6[name][1]) for name in UPDATES
     ]
@@ -261,7 +265,7 @@ def _fit_table(size: Scale, cost: Mapping[str, Cost], quick: bool) -> Table:
 
 
 def _crossover_table(size: Scale, cost: Mapping[str, Cost], quick: bool) -> Table:
-    """Where the fits of xi_i^Eul and xi_o^sy4 intersect, with three kinds of cost."""
+    """Table of the intersections of the fits of xi_i^Eul and xi_o^sy4, for three kinds of cost."""
     kinds: dict[str, Callable[[str], float]] = {
         "operations": lambda name: float(cost[name].operations),
         "measured time (arrays)": lambda name: cost[name].arrays,
@@ -275,6 +279,7 @@ def _crossover_table(size: Scale, cost: Mapping[str, Cost], quick: bool) -> Tabl
     return Table("Below this error xi_o^sy4 is cheaper than xi_i^Eul", columns, rows)
 
 
-def _crossing(first: Any, second: Any) -> Any:
-    """The error at which two fits agree."""
-    return np.exp(-(second[1] - first[1]) / (first[0] - second[0]))
+def _crossing(first: Sequence[float] | Array, second: Sequence[float] | Array) -> Array:
+    """Error at which two fits (a, b) agree, one for each batch."""
+    error: Array = np.exp(-(second[1] - first[1]) / (first[0] - second[0]))
+    return error

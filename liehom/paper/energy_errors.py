@@ -26,12 +26,13 @@ from liehom.paper.samples import (
     slope,
     spread,
 )
+from liehom.typing import Array
 
 SPAN, BATCHES = 100.0, 40
 QUICK_SPAN, QUICK_BATCHES = 25.0, 3
 ZERO = 1e-13
-# orders of the energy on [0, T]; where the leading term is odd in D = <X, Om^2 m> it only oscillates, and long runs
-# show up to one order more
+# orders of the energy on [0, T]; a leading term that is odd in D = <X, Om^2 m> only oscillates, and long runs then show
+# up to one order higher
 ENERGY_ORDERS: dict[str, dict[str, int | None]] = {
     "triaxial": dict(zip((*EULER, *HEUN, *FOURTH), (1, 1, 2, 3, 3, 4, 4, 4, 4, 5, 5, 4, 4), strict=True)),
     "axisymmetric": dict(zip((*EULER, *HEUN, *FOURTH), (1, 1, None, 3, 3, 5, 5, 5, 5, 5, 5, 5, 5), strict=True)),
@@ -41,7 +42,7 @@ NEAR = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What a table of errors is made of: step sizes, and for each kind of body the two that give the slope."""
+    """Data of a table of errors: updates, step sizes, and for each kind of body the two sizes that give the slope."""
 
     figure: int
     updates: tuple[str, ...]
@@ -59,19 +60,19 @@ SETTINGS = (
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """How large a sample is, how long runs are."""
+    """Size of a sample in batches of ten bodies, time span of a run, and seed."""
 
     batches: int
     span: float
     seed: int
 
     def sample(self, kind: str) -> Sample:
-        """The bodies of a kind."""
+        """Bodies of a kind, ten per batch."""
         return random_bodies(kind, 10 * self.batches, seed=self.seed)
 
 
 def scale(quick: bool, seed: int = SEED) -> Scale:
-    """The scale of the figures, or a small one for tests.
+    """Scale of the figures, or with `quick` a small one.
 
     Examples
     --------
@@ -82,8 +83,8 @@ def scale(quick: bool, seed: int = SEED) -> Scale:
 
 
 @cache
-def energy_errors(scale: Scale, kind: str, name: str, dt: float, printed: bool = False) -> Any:
-    """The largest energy error of every run, shape (10 batches,), for an update of Figure 6 or its misprint.
+def energy_errors(scale: Scale, kind: str, name: str, dt: float, printed: bool = False) -> Array:
+    """Largest energy error of each run, shape (10 batches,), for an update of Figure 6 or its misprint.
 
     Examples
     --------
@@ -97,8 +98,8 @@ def energy_errors(scale: Scale, kind: str, name: str, dt: float, printed: bool =
     return found
 
 
-def batch_averages(scale: Scale, kind: str, name: str, dt: float) -> Any:
-    """Averages over ten runs, shape (batches,)."""
+def batch_averages(scale: Scale, kind: str, name: str, dt: float) -> Array:
+    """Average over the ten runs of each batch, shape (batches,)."""
     return averages(energy_errors(scale, kind, name, dt))
 
 
@@ -117,7 +118,7 @@ def figure3(quick: bool = False, seed: int = SEED) -> Reproduction:
 
 
 def figure4(quick: bool = False, seed: int = SEED) -> Reproduction:
-    """Figure 4: Heun's method, with the printed forms that cannot have been run beside it.
+    """Figure 4: Heun's method, compared with the printed forms, which cannot have been used.
 
     Examples
     --------
@@ -169,7 +170,7 @@ def figure5(quick: bool = False, seed: int = SEED) -> Reproduction:
 
 
 def kernels_agree(size: Scale, names: tuple[str, ...], bodies: int = 3, dt: float = 0.5) -> Check:
-    """The kernels against base scheme and generic corrector."""
+    """Check that the kernels agree with base scheme and generic corrector."""
     sample, worst = size.sample("triaxial"), 0.0
     for i in range(bodies):
         body = RigidBody(sample.moments[:, i])
@@ -238,7 +239,7 @@ def _slope(size: Scale, setting: Setting, kind: str, name: str, printed: bool = 
 
 
 def _slopes(size: Scale, setting: Setting) -> list[tuple[Any, ...]]:
-    """(body, update, dt, dt, slope, order, as expected, slope of the paper)."""
+    """Rows (body, update, dt, dt, slope, order, as expected, slope of the paper)."""
     rows: list[tuple[Any, ...]] = []
     for kind in KINDS:
         for name in setting.updates:
@@ -251,7 +252,7 @@ def _slopes(size: Scale, setting: Setting) -> list[tuple[Any, ...]]:
 
 
 def _printed_slope(setting: Setting, kind: str, name: str) -> float:
-    """The slope between the two smallest step sizes of which the paper's error is above round-off."""
+    """Slope between the two smallest step sizes at which the paper's error exceeds round-off; NaN if there is one."""
     errors = [(dt, setting.printed[kind, dt, name]) for dt in setting.dts]
     above = [(dt, error) for dt, error in errors if error > 2e-13]
     if len(above) < 2:

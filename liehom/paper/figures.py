@@ -1,4 +1,4 @@
-"""reproduce: a figure of the paper by its name."""
+"""Figures of the paper by name."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ NAMES = tuple(_FIGURES)
 
 
 def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Reproduction:
-    """A figure of the paper, or its separatrix experiment, done again.
+    """Reproduction of a figure of the paper, or of its separatrix experiment.
 
     Parameters
     ----------
     name : str
         One of `NAMES`: fig1, ..., fig7, separatrix.
     quick : bool
-        Few bodies and short runs: orders and zeros are shown, averages cannot be compared with the paper's.
+        Use few bodies and short runs: they show orders and zeros, but no averages to compare with the paper's.
     seed : int, optional
-        Of the random bodies and starting points, in place of that of the figure.
+        Seed of the random bodies and initial points (default: the figure's).
 
     Returns
     -------

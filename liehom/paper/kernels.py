@@ -11,23 +11,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from liehom.errors import InputError
 from liehom.paper.printed_data import UPDATES
 
-Vector = tuple[Any, Any, Any]
-Update = Callable[[Vector, Any], Vector]
+Coordinate: TypeAlias = Any
+"""A float of any precision, an array with one entry per body, or a `Counted` number: what + - * / combine."""
+Vector: TypeAlias = tuple[Coordinate, Coordinate, Coordinate]
+Update: TypeAlias = Callable[[Vector, Coordinate], Vector]
+"""A step (m, dt) -> m on coordinates."""
 
-# formulas as the paper prints them: they are run for the record of what goes wrong
+# updates that the paper prints with a mistake; the printed form is run too, to show the difference
 MISPRINTS = ("rk2_b", "rk2_ib", "sy4_b", "sy4_o")
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Bodies in principal axes.
+    """One body, or several bodies, in principal axes.
 
     Parameters
     ----------
@@ -37,7 +40,7 @@ class Body:
     Attributes
     ----------
     e1, e2, e3 : arrays or numbers
-        Their elementary symmetric functions.
+        The elementary symmetric functions of w.
 
     Examples
     --------
@@ -47,9 +50,9 @@ class Body:
     """
 
     w: Vector
-    e1: Any = field(init=False)
-    e2: Any = field(init=False)
-    e3: Any = field(init=False)
+    e1: Coordinate = field(init=False)
+    e2: Coordinate = field(init=False)
+    e3: Coordinate = field(init=False)
 
     def __post_init__(self) -> None:
         a, b, c = self.w
@@ -58,16 +61,16 @@ class Body:
         object.__setattr__(self, "e3", a * b * c)
 
     def apply(self, m: Vector) -> Vector:
-        """Om m."""
+        """Angular velocity Om m of an angular momentum m."""
         return self.w[0] * m[0], self.w[1] * m[1], self.w[2] * m[2]
 
-    def energy(self, m: Vector) -> Any:
-        """H(m) = <m, Om m>/2."""
+    def energy(self, m: Vector) -> Coordinate:
+        """Energy H(m) = <m, Om m>/2."""
         return dot(m, self.apply(m)) / 2
 
 
 def kernel(name: str, body: Body, *, printed: bool = False) -> Update:
-    """An update as a function (m, dt) -> m of coordinates.
+    """Update of Figure 6 as a function (m, dt) -> m of coordinates.
 
     Parameters
     ----------
@@ -75,13 +78,13 @@ def kernel(name: str, body: Body, *, printed: bool = False) -> Update:
         One of the 13 names of Figure 6: eul_b, ..., rk4_o.
     body : Body
     printed : bool
-        The formula with the misprint of the paper, for rk2_b (a minus sign between the stages), rk2_ib (the sign of
+        Use the formula with the misprint of the paper, for rk2_b (a minus sign between the stages), rk2_ib (the sign of
         sigma_ib), sy4_b (omega_b = +Om m, as the list of generators has it) and sy4_o (<omega', m> for <omega'', m>).
 
     Raises
     ------
     InputError
-        If there is no such update.
+        If no update has this name, or `printed` is given for an update without misprint.
 
     Examples
     --------
@@ -108,7 +111,7 @@ def kernel(name: str, body: Body, *, printed: bool = False) -> Update:
         return lambda m, dt: cay(_times(turn, base(m, dt)) if turn < 0 else base(m, dt), m)
     sigma, power = _SIGMAS[name], 3 if scheme == "rk2" else 4
 
-    def improved(m: Vector, dt: Any) -> Vector:
+    def improved(m: Vector, dt: Coordinate) -> Vector:
         s = sigma(body, m) * (sign * dt**power)
         x, y, z = base(m, dt)
         return cay((x + s * m[0], y + s * m[1], z + s * m[2]), m)
@@ -117,8 +120,8 @@ def kernel(name: str, body: Body, *, printed: bool = False) -> Update:
 
 
 # -- arithmetic ------------------------------------------------------------------------------------------
-def dot(a: Vector, b: Vector) -> Any:
-    """<a, b>.
+def dot(a: Vector, b: Vector) -> Coordinate:
+    """Inner product <a, b>.
 
     Examples
     --------
@@ -129,7 +132,7 @@ def dot(a: Vector, b: Vector) -> Any:
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """The cross product.
+    """Cross product a x b.
 
     Examples
     --------
@@ -140,7 +143,7 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def cay(x: Vector, m: Vector) -> Vector:
-    """cay(x) m.
+    """Point cay(x) m, by the formula of the module's docstring.
 
     Examples
     --------
@@ -158,7 +161,7 @@ def cay(x: Vector, m: Vector) -> Vector:
     )
 
 
-def _times(c: Any, a: Vector) -> Vector:
+def _times(c: Coordinate, a: Vector) -> Vector:
     return c * a[0], c * a[1], c * a[2]
 
 
@@ -167,7 +170,7 @@ def _plus(a: Vector, b: Vector) -> Vector:
 
 
 def _omega(body: Body, kind: str) -> Callable[[Vector], Vector]:
-    """omega_b or omega_o."""
+    """Generator omega_b or omega_o as a function of m."""
     w = body.w
 
     def basic(m: Vector) -> Vector:
@@ -181,14 +184,14 @@ def _omega(body: Body, kind: str) -> Callable[[Vector], Vector]:
 
 
 def _improved(body: Body, m: Vector) -> Vector:
-    """omega_o + sigma_i m = (R - Om) m: h drops out."""
+    """Generator omega_o + sigma_i m = (R - Om) m, in which h cancels."""
     r = _quotient(body, m)[2]
     w = body.w
     return (r - w[0]) * m[0], (r - w[1]) * m[1], (r - w[2]) * m[2]
 
 
-def _quotient(body: Body, m: Vector) -> tuple[Vector, Any, Any]:
-    """X, v^2 and R = <X, Om X>/v^2, which at equilibria is h."""
+def _quotient(body: Body, m: Vector) -> tuple[Vector, Coordinate, Coordinate]:
+    """X = m x Om m, v^2 = |X|^2 and R = <X, Om X>/v^2; at equilibria R = h."""
     turned = body.apply(m)
     x = cross(m, turned)
     v2 = dot(x, x)
@@ -204,7 +207,7 @@ def _quotient(body: Body, m: Vector) -> tuple[Vector, Any, Any]:
 def _heun(body: Body, kind: str, printed: bool) -> Update:
     omega = _omega(body, kind)
 
-    def xi(m: Vector, dt: Any) -> Vector:
+    def xi(m: Vector, dt: Coordinate) -> Vector:
         first = omega(m)
         second = omega(cay(_times(dt, first), m))
         half = dt * 0.5
@@ -214,9 +217,9 @@ def _heun(body: Body, kind: str, printed: bool) -> Update:
 
 
 def _taylor(body: Body, kind: str, printed: bool) -> Update:
-    """xi^sy4: derivatives of omega along the flow; with Cayley."""
+    """Generator xi^sy4 of order 4 for the Cayley map, from derivatives of omega along the flow."""
 
-    def derivatives(m: Vector) -> tuple[list[Vector], Any]:
+    def derivatives(m: Vector) -> tuple[list[Vector], Coordinate]:
         p0, q0 = m, body.apply(m)
         p1 = cross(p0, q0)
         q1 = body.apply(p1)
@@ -229,7 +232,7 @@ def _taylor(body: Body, kind: str, printed: bool) -> Update:
         h = dot(p0, q0)
         return [_plus(_times(h, p), _times(-1, q)) for p, q in zip((p0, p1, p2, p3), turned, strict=True)], h
 
-    def xi(m: Vector, dt: Any) -> Vector:
+    def xi(m: Vector, dt: Coordinate) -> Vector:
         w, _ = derivatives(m)
         square, half = dot(w[0], w[0]), dot(w[1], w[0])
         third, fourth = dt**3 * (1 / 12), dt**4 * (1 / 24)
@@ -249,10 +252,10 @@ def _taylor(body: Body, kind: str, printed: bool) -> Update:
 
 
 def _munthe_kaas(body: Body, kind: str, printed: bool) -> Update:
-    """RK4 in the algebra, with dcay_u^-1(y) = y - u x y/2 + <u, y> u/4."""
+    """Generator of RK4 in the algebra, with dcay_u^-1(y) = y - u x y/2 + <u, y> u/4."""
     omega = _omega(body, kind)
 
-    def xi(m: Vector, dt: Any) -> Vector:
+    def xi(m: Vector, dt: Coordinate) -> Vector:
         def stage(u: Vector) -> Vector:
             y = _times(dt, omega(cay(u, m)))
             return _plus(_plus(y, _times(-0.5, cross(u, y))), _times(0.25 * dot(u, y), u))
@@ -270,17 +273,17 @@ _BASES: dict[str, Callable[[Body, str, bool], Update]] = {"rk2": _heun, "sy4": _
 
 
 # -- improvements: sigma of dt^p sigma m -----------------------------------------------------------------
-def _sigma_ib(body: Body, m: Vector) -> Any:
+def _sigma_ib(body: Body, m: Vector) -> Coordinate:
     return (body.e2 * _quotient(body, m)[2] - body.e3) * 0.25
 
 
-def _sigma_io(body: Body, m: Vector) -> Any:
+def _sigma_io(body: Body, m: Vector) -> Coordinate:
     _, v2, r = _quotient(body, m)
     h = dot(m, body.apply(m))
     return (3 * (v2 + h * h) - 2 * body.e1 * h + body.e2) * (r - h) * 0.25
 
 
-def _sigma_ib_sy4(body: Body, m: Vector) -> Any:
+def _sigma_ib_sy4(body: Body, m: Vector) -> Coordinate:
     x, v2, r = _quotient(body, m)
     turned = body.apply(m)
     d = dot(x, body.apply(turned))
@@ -288,13 +291,13 @@ def _sigma_ib_sy4(body: Body, m: Vector) -> Any:
     return (q * (body.e2 * dot(m, turned) - 2 * body.e3) - 3 * d * r) * (1 / 24)
 
 
-def _sigma_io_sy4(body: Body, m: Vector) -> Any:
+def _sigma_io_sy4(body: Body, m: Vector) -> Coordinate:
     x, _, r = _quotient(body, m)
     turned = body.apply(m)
     return dot(x, body.apply(turned)) * (dot(m, turned) - r) * 0.125
 
 
-_SIGMAS: dict[str, Callable[[Body, Vector], Any]] = {
+_SIGMAS: dict[str, Callable[[Body, Vector], Coordinate]] = {
     "rk2_ib": _sigma_ib,
     "rk2_io": _sigma_io,
     "sy4_ib": _sigma_ib_sy4,

@@ -1,29 +1,37 @@
-"""The pictures of Figures 1 and 7."""
+"""Plots of Figures 1 and 7."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from liehom.plotting.canvas import COLOURS, GREY, MARKERS, PALE, finished, new_figure, style
+from liehom.typing import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Path: TypeAlias = str | os.PathLike[str] | None
 
 ELEVATION, AZIMUTH = np.radians(24.0), np.radians(35.0)
 
 
 class Curve(NamedTuple):
-    """Points (-ln error, ln cost) of an update, its affine fit and that of the paper, as (a, b) of a x + b."""
+    """Points (-ln error, ln cost) of an update, its affine fit and the paper's, as (a, b) of a x + b."""
 
     name: str
-    x: Any
-    y: Any
+    x: Array
+    y: Array
     fit: tuple[float, float]
     paper: tuple[float, float]
 
 
 def label(name: str) -> str:
-    """The paper's symbol of an update.
+    """Symbol of an update in the paper, as mathtext.
 
     Examples
     --------
@@ -35,8 +43,10 @@ def label(name: str) -> str:
     return rf"$\xi_{{{variant}}}^{{\mathrm{{{upper}}}}}$"
 
 
-def draw_spheres(curves: Mapping[tuple[str, str], Any], path: Any = None) -> Any:
-    """Trajectories on the sphere: a row for each body, a column for each update; pale behind the sphere.
+def draw_spheres(curves: Mapping[tuple[str, str], Array], path: Path = None) -> Figure:
+    """Plot of trajectories on spheres, with a row for each body and a column for each update.
+
+    Parts of a trajectory behind the sphere are pale.
 
     Parameters
     ----------
@@ -60,14 +70,14 @@ def draw_spheres(curves: Mapping[tuple[str, str], Any], path: Any = None) -> Any
     return finished(figure, path)
 
 
-def _view() -> Any:
-    """Right, up and towards the eye, in rows."""
+def _view() -> Array:
+    """Unit vectors to the right, up and towards the viewer, as rows."""
     eye = np.array([np.cos(ELEVATION) * np.cos(AZIMUTH), np.cos(ELEVATION) * np.sin(AZIMUTH), np.sin(ELEVATION)])
     right = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0.0])
     return np.stack([right, np.cross(eye, right), eye])
 
 
-def _draw_sphere(axes: Any, points: Any) -> None:
+def _draw_sphere(axes: Axes, points: Array) -> None:
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set(xlim=(-1.4, 1.25), ylim=(-1.2, 1.3))
@@ -82,7 +92,11 @@ def _draw_sphere(axes: Any, points: Any) -> None:
             line = np.where(near, x, np.nan), np.where(near, y, np.nan)
             axes.plot(*line, color=COLOURS[k], linewidth=width, alpha=alpha, zorder=zorder)
         pale = depth[0] < 0
-        fill = {"markerfacecolor": COLOURS[k], "markeredgecolor": "white", "alpha": 0.4 if pale else 1.0}
+        fill: dict[str, Any] = {
+            "markerfacecolor": COLOURS[k],
+            "markeredgecolor": "white",
+            "alpha": 0.4 if pale else 1.0,
+        }
         axes.plot(x[:1], y[:1], "o", markersize=5.5, zorder=1.5 if pale else 5, **fill)
     for k, direction in enumerate(np.eye(3)):
         x, y, _ = _view() @ direction
@@ -90,8 +104,8 @@ def _draw_sphere(axes: Any, points: Any) -> None:
         axes.text(1.22 * x, 1.22 * y, f"$m_{k + 1}$", ha="center", va="center", fontsize=9, color=GREY)
 
 
-def draw_costs(panels: Sequence[tuple[str, Sequence[Curve]]], path: Any = None) -> Any:
-    """Figure 7: cost over accuracy, both as natural logarithms, with affine fits; the paper's fits are dashed.
+def draw_costs(panels: Sequence[tuple[str, Sequence[Curve]]], path: Path = None) -> Figure:
+    """Plot of Figure 7: cost over accuracy, as natural logarithms, with affine fits (the paper's are dashed).
 
     Returns
     -------
@@ -113,7 +127,7 @@ def draw_costs(panels: Sequence[tuple[str, Sequence[Curve]]], path: Any = None) 
     return finished(figure, path)
 
 
-def _draw_cost(axes: Any, curve: Curve, k: int) -> None:
+def _draw_cost(axes: Axes, curve: Curve, k: int) -> None:
     colour = COLOURS[k % len(COLOURS)]
     ends = np.array([curve.x.min(), curve.x.max()])
     axes.plot(ends, np.polyval(curve.fit, ends), color=colour, linewidth=1.2, zorder=2)

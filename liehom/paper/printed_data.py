@@ -1,6 +1,6 @@
-"""The numbers that the paper prints in section 4, as they stand there; `None` where it prints nothing.
+"""Numbers that the paper prints in section 4, unchanged; `None` if it prints nothing.
 
-Keys of the tables of errors: body, step size, update; names of updates are those of `liehom.instances.RigidBody`.
+Tables of errors have the keys (body, step size, update), with the names of updates in `liehom.instances.RigidBody`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a reproduction consists of: tables (CSV, Markdown), claims with the evidence for them, a picture."""
+"""Data of a reproduction: tables (CSV, Markdown), claims with their evidence, and a plot."""
 
 from __future__ import annotations
 
@@ -9,29 +9,32 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from liehom.errors import FormatError, InputError
 from liehom.io.solution_file import check_target
 
+Cell: TypeAlias = Any
+"""Content of a cell of a table: a string, a number of Python or numpy, or None."""
+
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Named columns and rows of texts and numbers.
+    """Named columns and rows of strings and numbers.
 
     Parameters
     ----------
     title : str
     columns : sequence of str
     rows : sequence of sequences
-        None and NaN are written as an empty cell.
+        Cells are strings or numbers; None and NaN become an empty cell.
     in_markdown : bool, optional
-        False for points of curves, of which Markdown shows the number only.
+        False for the points of curves; Markdown then shows only the number of rows.
 
     Raises
     ------
     InputError
-        If a row has another length than `columns`.
+        If a row does not have as many cells as there are columns.
 
     Examples
     --------
@@ -46,7 +49,7 @@ class Table:
 
     title: str
     columns: Sequence[str]
-    rows: Sequence[Sequence[Any]]
+    rows: Sequence[Sequence[Cell]]
     in_markdown: bool = True
 
     def __post_init__(self) -> None:
@@ -57,7 +60,7 @@ class Table:
             )
 
     def csv(self) -> str:
-        """The table as comma-separated values, numbers in full."""
+        """Table as comma-separated values, numbers with all digits."""
         target = io.StringIO()
         writer = csv.writer(target, lineterminator="\n")
         writer.writerow(self.columns)
@@ -65,7 +68,7 @@ class Table:
         return target.getvalue()
 
     def markdown(self) -> str:
-        """The table in Markdown, numbers with three digits."""
+        """Table in Markdown, numbers with three digits."""
         lines = ["| " + " | ".join(cells) + " |" for cells in (self.columns, *map(_shown_row, self.rows))]
         lines.insert(1, "|" + "---|" * len(self.columns))
         return "\n".join(lines)
@@ -73,7 +76,7 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A claim of the paper (or of its correction), what was found, and whether it holds."""
+    """Claim of the paper or of its correction, the evidence, and whether the claim holds."""
 
     claim: str
     found: str
@@ -82,19 +85,19 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Reproduction:
-    """A figure of the paper, done again.
+    """Reproduction of a figure of the paper.
 
     Attributes
     ----------
     name, title : str
     sample : str
-        The random data: law, numbers, seed.
+        Sentence on the random data: distribution, numbers, seed.
     tables : dict of str to Table
-        By the end of the file name: "" is the table itself.
+        Tables by the end of their file names; "" is the main table.
     checks : tuple of Check
     notes : tuple of str
     plot : callable or None
-        Draws into a path, or returns a figure of matplotlib for the path None.
+        Writes the plot to a path; with None it returns a figure of matplotlib.
 
     Examples
     --------
@@ -109,7 +112,7 @@ class Reproduction:
     tables: dict[str, Table]
     checks: tuple[Check, ...] = ()
     notes: tuple[str, ...] = ()
-    plot: Callable[[Any], Any] | None = None
+    plot: Callable[[Path | None], object] | None = None
 
     @property
     def holds(self) -> bool:
@@ -117,7 +120,7 @@ class Reproduction:
         return all(check.holds for check in self.checks)
 
     def markdown(self) -> str:
-        """Everything but the picture, as a page."""
+        """Page in Markdown with the title, the data, all tables and the claims."""
         parts = [f"# {self.title}", self.sample]
         for table in self.tables.values():
             body = table.markdown() if table.in_markdown else f"{len(table.rows)} rows: see the CSV file."
@@ -128,9 +131,9 @@ class Reproduction:
         return "\n\n".join([*parts, *self.notes]) + "\n"
 
     def write(self, folder: str | os.PathLike[str], plot: bool = True) -> list[Path]:
-        """Write NAME.md, NAME.csv (one for each table) and NAME.png; the paths.
+        """Paths of the files NAME.md, NAME.csv (one for each table) and NAME.png, after writing them.
 
-        Files of these names are replaced. Without matplotlib there is no picture.
+        Existing files with these names are replaced. With `plot` False no plot is drawn, so matplotlib is not needed.
 
         Raises
         ------
@@ -155,7 +158,7 @@ class Reproduction:
         return written
 
     def to_json(self) -> dict[str, Any]:
-        """The tables and claims as plain data."""
+        """JSON object of the tables and claims."""
         tables = {
             end or "table": {"columns": list(t.columns), "rows": [[_json(x) for x in row] for row in t.rows]}
             for end, t in self.tables.items()
@@ -165,24 +168,24 @@ class Reproduction:
         return {"name": self.name, "title": self.title, "sample": self.sample, "tables": tables, "checks": checks}
 
 
-def _is_empty(x: Any) -> bool:
+def _is_empty(x: Cell) -> bool:
     return x is None or (not isinstance(x, str) and math.isnan(x))
 
 
-def _plain(x: Any) -> Any:
+def _plain(x: Cell) -> str | int:
     return x if isinstance(x, str | int) else repr(float(x))
 
 
-def _json(x: Any) -> Any:
+def _json(x: Cell) -> str | float | None:
     return None if _is_empty(x) else x if isinstance(x, str | int) else float(x)
 
 
-def _shown_row(row: Sequence[Any]) -> list[str]:
+def _shown_row(row: Sequence[Cell]) -> list[str]:
     return [_shown(x) for x in row]
 
 
-def _shown(x: Any) -> str:
-    """A cell of Markdown.
+def _shown(x: Cell) -> str:
+    """Content of a cell in Markdown.
 
     Examples
     --------

@@ -1,30 +1,33 @@
-"""Random bodies and starting points, and the largest error of the energy over a run.
+"""Random bodies and initial points, and the largest error of the energy in a run.
 
-The paper averages over ten runs whose data it does not give. Here many such averages are made, each over ten bodies of
-its own, and their median is shown with the range that nine tenths of them lie in.
+The paper averages over ten runs and does not give their data. A reproduction therefore computes many such averages,
+each over a batch of ten new bodies, and shows their median with the range from the 5th to the 95th percentile.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from liehom.errors import InputError
 from liehom.paper.kernels import Body, Update, Vector
+from liehom.typing import Array
 
 RUNS = 10
+"""Bodies in a batch."""
 SEED = 2001
 MOMENTS = (1.0, 20.0)
-# of a law with w about 1 and bodies that all turn: for orders of convergence
+"""Interval of the principal moments."""
 NARROW_MOMENTS = (1.0, 3.0)
+"""Interval for orders of convergence: all bodies rotate at about the same rate."""
 KINDS = ("triaxial", "axisymmetric")
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Bodies in their principal axes, one in each lane, and a starting point for each.
+    """Bodies in their principal axes, one per column, and an initial point for each.
 
     Attributes
     ----------
@@ -39,26 +42,26 @@ class Sample:
     """
 
     kind: str
-    moments: Any
-    start: Any
+    moments: Array
+    start: Array
 
     @property
     def body(self) -> Body:
-        """The bodies as the kernels take them."""
+        """Bodies in the form that the kernels use."""
         w = 1 / self.moments
         return Body((w[0], w[1], w[2]))
 
     @property
     def points(self) -> Vector:
-        """The starting points, coordinate by coordinate."""
+        """Initial points as three arrays of coordinates."""
         return self.start[0], self.start[1], self.start[2]
 
 
 def random_bodies(kind: str, count: int, law: tuple[float, float] = MOMENTS, seed: int = SEED) -> Sample:
-    """Principal moments uniform on the interval `law`, independent; starting points uniform on the unit sphere.
+    """Bodies with independent principal moments, uniform on `law`, and initial points uniform on the unit sphere.
 
-    Axisymmetric bodies have I_1 = I_2. A random rotation of the tensor would change nothing but the names of the axes:
-    updates commute with rotations and the starting points are uniform.
+    Axisymmetric bodies have I_1 = I_2. A random rotation of the inertia tensor would only rename the axes, because
+    updates commute with rotations and the initial points are uniform.
 
     Raises
     ------
@@ -82,7 +85,7 @@ def random_bodies(kind: str, count: int, law: tuple[float, float] = MOMENTS, see
 
 
 def described(law: tuple[float, float], batches: int, seed: int) -> str:
-    """The data of the tables of errors, in words."""
+    """Sentence that describes the random data of the tables of errors."""
     return (
         f"Principal moments independent and uniform on ({law[0]:g}, {law[1]:g}), I_1 = I_2 for axisymmetric bodies; "
         f"starting points uniform on the unit sphere; seed {seed}. Errors are averages over {RUNS} runs: medians of "
@@ -90,8 +93,8 @@ def described(law: tuple[float, float], batches: int, seed: int) -> str:
     )
 
 
-def largest_energy_error(update: Update, body: Body, m: Vector, dt: float, span: float) -> Any:
-    """max |H(m_k) - H(m_0)| over the steps of a run, for each lane.
+def largest_energy_error(update: Update, body: Body, m: Vector, dt: float, span: float) -> Array:
+    """Largest |H(m_k) - H(m_0)| over the steps of a run, for each body.
 
     Examples
     --------
@@ -102,7 +105,7 @@ def largest_energy_error(update: Update, body: Body, m: Vector, dt: float, span:
     True
     """
     start = body.energy(m)
-    largest = np.zeros_like(start)
+    largest: Array = np.zeros_like(start)
     for _ in range(round(span / dt)):
         m = update(m, dt)
         np.maximum(largest, np.abs(body.energy(m) - start), out=largest)
@@ -117,12 +120,12 @@ class Spread(NamedTuple):
     high: float
 
     def has(self, value: float) -> bool:
-        """Whether a value is in the range."""
+        """Whether a value is between the 5th and the 95th percentile."""
         return self.low <= value <= self.high
 
 
-def spread(values: Any) -> Spread:
-    """Median and range of numbers.
+def spread(values: Array) -> Spread:
+    """Median, 5th and 95th percentile of numbers.
 
     Examples
     --------
@@ -132,13 +135,14 @@ def spread(values: Any) -> Spread:
     return Spread(*(float(np.quantile(values, q)) for q in (0.5, 0.05, 0.95)))
 
 
-def averages(errors: Any) -> Any:
-    """Averages over ten runs each, shape (N / 10,)."""
-    return errors.reshape(-1, RUNS).mean(axis=1)
+def averages(errors: Array) -> Array:
+    """Averages over batches of ten runs, shape (N / 10,)."""
+    means: Array = errors.reshape(-1, RUNS).mean(axis=1)
+    return means
 
 
-def slope(coarse: Any, fine: Any, ratio: float, floor: float = 1e-13) -> float:
-    """The median over runs of log(coarse / fine) / log(ratio), of runs whose errors are above round-off.
+def slope(coarse: Array, fine: Array, ratio: float, floor: float = 1e-13) -> float:
+    """Median of log(coarse / fine) / log(ratio) over the runs with errors above round-off; NaN if there are none.
 
     Examples
     --------

@@ -1,8 +1,6 @@
-"""The separatrix experiment of section 4: Euler's method from random points of separatrices, over [0, 500]."""
+"""Separatrix experiment of section 4: Euler's method from random points of separatrices, on [0, 500]."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 
@@ -13,13 +11,14 @@ from liehom.paper.printed_data import EULER
 from liehom.paper.printed_data import SEPARATRIX as PRINTED
 from liehom.paper.reproduction import Check, Reproduction, Table
 from liehom.paper.samples import MOMENTS, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
+from liehom.typing import Array
 
 SPAN, BATCHES = 500.0, 40
 ZERO = 1e-12
 
 
 def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
-    """Errors of the energy on separatrices: xi_b^Eul leaves them, xi_o^Eul and xi_i^Eul do not.
+    """Energy errors on separatrices: xi_b^Eul leaves a separatrix, xi_o^Eul and xi_i^Eul stay on it.
 
     Examples
     --------
@@ -57,7 +56,7 @@ def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
 
 
 def separatrix_sample(count: int, seed: int = SEED) -> Sample:
-    """Triaxial bodies, and for each of them a point at a random angle on one of its two great circles h = w_2.
+    """Triaxial bodies, each with a point at a random angle on one of its two great circles h = w_2.
 
     Examples
     --------
@@ -69,5 +68,5 @@ def separatrix_sample(count: int, seed: int = SEED) -> Sample:
     drawn: Sample = random_bodies("triaxial", count, MOMENTS, seed)
     rng = np.random.default_rng([seed, 2])
     angles, branches = rng.uniform(0, 2 * np.pi, count), rng.choice([-1, 1], count)
-    points: list[Any] = [RigidBody(drawn.moments[:, i]).separatrix(angles[i], int(branches[i])) for i in range(count)]
+    points: list[Array] = [RigidBody(drawn.moments[:, i]).separatrix(angles[i], int(branches[i])) for i in range(count)]
     return Sample("triaxial", drawn.moments, np.stack(points, axis=-1))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from liehom.paper.energy_errors import kernels_agree, scale
@@ -12,11 +10,14 @@ from liehom.paper.plots import draw_spheres
 from liehom.paper.printed_data import EULER, FIGURE_2
 from liehom.paper.reproduction import Check, Reproduction, Table
 from liehom.paper.samples import KINDS, NARROW_MOMENTS, Sample, largest_energy_error, random_bodies, spread
+from liehom.typing import Array
 
 SPAN, DT = 200.0, 0.1
 STARTS, MANY = 3, 400
-FIGURE_SEED = 44  # most starting points in front, both bodies far from spheres
-EVERY = 10  # of the steps in the CSV file
+FIGURE_SEED = 44
+"""With this seed most initial points are in front of the sphere, and both bodies are far from spherical."""
+EVERY = 10
+"""Every 10th step is in the CSV file."""
 ZERO = 1e-12
 
 
@@ -108,8 +109,8 @@ def figure2(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
     )
 
 
-def trajectory(name: str, sample: Sample, span: float) -> Any:
-    """Points of a run, shape (steps + 1, 3, N).
+def trajectory(name: str, sample: Sample, span: float) -> Array:
+    """Points of a run, an array of shape (steps + 1, 3, N).
 
     Examples
     --------
@@ -125,12 +126,12 @@ def trajectory(name: str, sample: Sample, span: float) -> Any:
 
 
 def _one_body(kind: str, seed: int) -> Sample:
-    """One body, several starting points."""
+    """One body with several initial points."""
     several = random_bodies(kind, STARTS, NARROW_MOMENTS, seed)
     return Sample(kind, several.moments[:, :1], several.start)
 
 
-def _errors(name: str, sample: Sample, span: float) -> Any:
+def _errors(name: str, sample: Sample, span: float) -> Array:
     return largest_energy_error(kernel(name, sample.body), sample.body, sample.points, DT, span)
 
 
@@ -142,5 +143,5 @@ def _described(seed: int) -> str:
     )
 
 
-def _triple(values: Any) -> str:
+def _triple(values: Array) -> str:
     return "(" + ", ".join(f"{x:.4f}" for x in values) + ")"

@@ -1,7 +1,7 @@
-"""Figures, their style and their files: the one place that loads matplotlib.
+"""Figures, their style and their files; the one module that loads matplotlib.
 
-Colours are those of Okabe and Ito, which people with any kind of colour vision can tell apart; lines differ in their
-markers or dashes too.
+The colours are those of Okabe and Ito, which people with any kind of colour vision can distinguish. Lines also differ
+in their markers or dashes.
 """
 
 from __future__ import annotations
@@ -10,12 +10,16 @@ import os
 from contextlib import AbstractContextManager
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from liehom.errors import FormatError, InputError
 from liehom.io.solution_file import check_target
 
-# Okabe and Ito without yellow, which is pale on white; grey for what is in the background
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito without yellow, which is pale on white; grey for the background
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 DASHES = ("-", "--", "-.", ":")
@@ -42,14 +46,14 @@ STYLE = {
     "xtick.labelcolor": "black",
     "ytick.labelcolor": "black",
     "savefig.dpi": 160,
-    "svg.hashsalt": "liehom",  # the same picture is the same file
+    "svg.hashsalt": "liehom",  # equal plots are equal files
 }
-# what a file would say about the time at which it was written
+# metadata that would contain the time of writing, so that equal plots would be different files
 UNDATED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 
 def matplotlib_module(name: str) -> Any:
-    """A module of matplotlib, ``matplotlib_module("figure")``; loaded when it is first needed.
+    """Module of matplotlib such as ``matplotlib_module("figure")``, imported at the first call.
 
     Raises
     ------
@@ -64,41 +68,43 @@ def matplotlib_module(name: str) -> Any:
     try:
         import_module("matplotlib")
     except ModuleNotFoundError:
-        raise InputError("pictures need matplotlib: install it with  pip install 'liehom[plot]'") from None
+        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]'") from None
     return import_module(f"matplotlib.{name}" if name else "matplotlib")
 
 
 def style() -> AbstractContextManager[None]:
-    """The style of the library's pictures, as a context."""
+    """Context manager that sets the style of the library's plots."""
     context: AbstractContextManager[None] = matplotlib_module("").rc_context(STYLE)
     return context
 
 
-def new_figure(width: float, height: float) -> Any:
-    """A figure that no window shows and nobody else knows of."""
-    return matplotlib_module("figure").Figure(figsize=(width, height), layout="constrained")
+def new_figure(width: float, height: float) -> Figure:
+    """Figure of this size in inches, in no window and not registered with pyplot."""
+    figure: Figure = matplotlib_module("figure").Figure(figsize=(width, height), layout="constrained")
+    return figure
 
 
-def figure_of(axes: Any) -> Any:
-    """The figure that axes of the caller belong to.
+def figure_of(axes: Axes) -> Figure:
+    """Figure that the axes of the caller belong to.
 
     Raises
     ------
     InputError
-        If these are no axes.
+        If `axes` are not axes of matplotlib.
     """
     if not isinstance(axes, matplotlib_module("axes").Axes):
         raise InputError(f"axes is {axes!r}, expected axes of matplotlib")
-    return axes.figure
+    figure: Figure = axes.figure
+    return figure
 
 
-def finished(figure: Any, path: str | os.PathLike[str] | None) -> Any:
-    """The figure, written to a file if there is a path.
+def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
+    """The figure, after it is written to a file if a path is given.
 
     Raises
     ------
     FormatError
-        If the suffix is not that of a picture, the folder does not exist, or the file cannot be written.
+        If matplotlib has no format with this suffix, the folder does not exist, or the file cannot be written.
     """
     if path is None:
         return figure
@@ -106,7 +112,7 @@ def finished(figure: Any, path: str | os.PathLike[str] | None) -> Any:
     suffix = target.suffix.lower()
     known = sorted(f".{kind}" for kind in figure.canvas.get_supported_filetypes())
     if suffix not in known:
-        raise FormatError(f"{os.fspath(path)!r} is not the name of a picture: it must end in one of {', '.join(known)}")
+        raise FormatError(f"{os.fspath(path)!r} is not the name of a plot: it must end in one of {', '.join(known)}")
     check_target(target, force=True)
     try:
         with style():

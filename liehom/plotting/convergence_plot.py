@@ -1,26 +1,30 @@
-"""plot_convergence: errors over step sizes, both logarithmic, with triangles that show the slopes."""
+"""Plots of errors over step sizes, on logarithmic axes, with triangles that show the slopes."""
 
 from __future__ import annotations
 
 import math
 import os
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from liehom.errors import InputError
 from liehom.integrators import ConvergenceTable
 from liehom.plotting.canvas import COLOURS, GREY, MARKERS, PALE, figure_of, finished, new_figure, style
 
-# a triangle is drawn where a measured order is so close to an integer
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# a triangle is drawn if a measured order is at most this far from an integer
 SLOPE_TOLERANCE = 0.3
-# the lower edge of a triangle below its curve, as a factor of the error
+# height of the lower edge of a triangle, as a multiple of the smallest error of its curve
 TRIANGLE_OFFSET = 0.4
-# round-off is shown if an error comes so close to it
+# the floor is drawn if an error is less than this multiple of it
 FLOOR_MARGIN = 300.0
 
 
 class _Curve(NamedTuple):
-    """Errors above the floor, errors below it, and how they are drawn."""
+    """Errors above the floor, errors below it (`lost`), and their style."""
 
     label: str | None
     points: list[tuple[float, float]]
@@ -36,19 +40,19 @@ def plot_convergence(
     path: str | os.PathLike[str] | None = None,
     *,
     labels: Sequence[str] | None = None,
-    axes: Any = None,
-) -> Any:
+    axes: Axes | None = None,
+) -> Figure:
     """Draw the errors of one or several tables of `observed_order` over the step size.
 
     Parameters
     ----------
     tables : ConvergenceTable or sequence of them
     path : path, optional
-        A file to write: .png, .pdf, .svg, ....
+        File to write: .png, .pdf, .svg, ....
     labels : sequence of str, optional
-        One for each table; by default the step as printed.
-    axes : matplotlib axes, optional
-        Where to draw, instead of on a new figure.
+        One label for each table (default: the step's repr).
+    axes : matplotlib.axes.Axes, optional
+        Axes to draw on (default: those of a new figure).
 
     Returns
     -------
@@ -57,14 +61,14 @@ def plot_convergence(
     Raises
     ------
     InputError
-        If matplotlib is not installed, or an argument is not right.
+        If matplotlib is not installed, `tables` are not tables, or there are not as many labels as tables.
     FormatError
         If the file cannot be written.
 
     Notes
     -----
-    Solid lines are orbit errors, dashed ones trajectory errors. Triangles have the integer slopes that were measured.
-    Errors of the size of round-off, or of the reference's accuracy, are open and grey and take part in no slope.
+    Solid lines are orbit errors, dashed lines trajectory errors. Triangles show the integer slopes next to the measured
+    ones. Errors of the size of round-off, or of the reference's accuracy, have open grey markers and enter no slope.
 
     Examples
     --------
@@ -99,7 +103,7 @@ def plot_convergence(
 
 
 def _curves(table: ConvergenceTable, k: int, count: int) -> list[_Curve]:
-    """The curve of orbit errors and that of trajectory errors; only those that have a point."""
+    """Curves of the orbit errors and of the trajectory errors, if they have a point."""
     made = []
     kinds = (("orbit", table.orbit_errors, table.orders[0]), ("trajectory", table.trajectory_errors, table.orders[1]))
     for i, (kind, errors, slope) in enumerate(kinds):
@@ -121,7 +125,7 @@ def _curves(table: ConvergenceTable, k: int, count: int) -> list[_Curve]:
     return made
 
 
-def _frame(axes: Any, tables: Sequence[ConvergenceTable]) -> None:
+def _frame(axes: Axes, tables: Sequence[ConvergenceTable]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("step size $h$")
@@ -139,30 +143,34 @@ def _frame(axes: Any, tables: Sequence[ConvergenceTable]) -> None:
         axes.set_title(f"{name}{first.exponential}, clock {first.clock}, {span}")
 
 
-def _draw(axes: Any, curve: _Curve) -> None:
+def _draw(axes: Axes, curve: _Curve) -> None:
     both = sorted([*curve.points, *curve.lost])
     if curve.lost:
         axes.plot(*zip(*both, strict=True), color=PALE, linestyle=curve.dashes, linewidth=1.0, zorder=1.5)
         axes.plot(*zip(*curve.lost, strict=True), curve.marker, color=GREY, markerfacecolor="white", zorder=2.5)
-    look = {"color": curve.colour, "marker": curve.marker, "linestyle": curve.dashes, "markersize": 6}
-    hollow = {"markerfacecolor": "white"} if curve.dashes == "--" else {}
+    look: dict[str, Any] = {"color": curve.colour, "marker": curve.marker, "linestyle": curve.dashes, "markersize": 6}
+    hollow: dict[str, Any] = {"markerfacecolor": "white"} if curve.dashes == "--" else {}
     points = sorted(curve.points) or [(math.nan, math.nan)]
     axes.plot(*zip(*points, strict=True), label=curve.label, **look, **hollow)
 
 
-def _explain(axes: Any, tables: Sequence[ConvergenceTable], names: Sequence[str]) -> None:
-    """Names and measured orders of several tables, beside the axes; what is solid and what is dashed."""
+def _explain(axes: Axes, tables: Sequence[ConvergenceTable], names: Sequence[str]) -> None:
+    """Legend next to the axes: names and measured orders of the tables, and the meaning of solid and dashed lines."""
     for k, (table, name) in enumerate(zip(tables, names, strict=True)):
         orders = ", ".join("–" if math.isnan(order) else f"{order:.2f}" for order in table.orders)
-        look = {"color": COLOURS[k % len(COLOURS)], "marker": MARKERS[k % len(MARKERS)], "markersize": 6}
+        look: dict[str, Any] = {
+            "color": COLOURS[k % len(COLOURS)],
+            "marker": MARKERS[k % len(MARKERS)],
+            "markersize": 6,
+        }
         axes.plot([math.nan], [math.nan], label=f"{name}\norders {orders}", **look)
     for dashes, fill, kind in (("-", GREY, "orbit"), ("--", "white", "trajectory")):
         axes.plot([math.nan], [math.nan], dashes, marker="o", markerfacecolor=fill, color=GREY, label=kind)
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
 
 
-def _draw_triangles(axes: Any, curves: Sequence[_Curve]) -> None:
-    """One triangle for every integer slope, below the lowest curve that has it."""
+def _draw_triangles(axes: Axes, curves: Sequence[_Curve]) -> None:
+    """Draw one triangle for each integer slope, below the lowest curve with this slope."""
     lowest: dict[int, _Curve] = {}
     for curve in curves:
         if len(curve.points) < 2 or math.isnan(curve.slope):
@@ -187,8 +195,8 @@ def _draw_triangles(axes: Any, curves: Sequence[_Curve]) -> None:
         )
 
 
-def _draw_floor(axes: Any, tables: Sequence[ConvergenceTable]) -> None:
-    """The highest floor, where errors come near it."""
+def _draw_floor(axes: Axes, tables: Sequence[ConvergenceTable]) -> None:
+    """Shade the region below the highest floor, if errors come near it."""
     highest = max(max(table.floors) for table in tables)
     errors = [e for t in tables for e in (*t.orbit_errors, *t.trajectory_errors) if e > 0]
     if errors and min(errors) < FLOOR_MARGIN * highest:

@@ -1,34 +1,42 @@
-"""plot_trajectory: solutions in space where points have two or three coordinates, else coordinates over time."""
+"""Plots of solutions: curves in the plane or in space for two or three coordinates, else coordinates over time."""
 
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from liehom.errors import InputError
 from liehom.integrators import Solution
 from liehom.plotting.canvas import COLOURS, DASHES, GREY, PALE, finished, matplotlib_module, new_figure, style
+from liehom.typing import Array
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Axes: TypeAlias = Any
+"""Axes of matplotlib in the plane or in space; those in space have no types."""
 
 MAX_TRAJECTORIES = 50
 MAX_LINES = 8
 CURVE_POINTS = 400
-# |m| is constant, and a sphere is drawn, if it varies by less than this share
+# |m| counts as constant, and a sphere is drawn, if it varies by at most this fraction
 SPHERE_TOLERANCE = 1e-6
 ELEVATION, AZIMUTH = 22.0, 35.0
 SIDES = np.array([-1.0, 1.0])
 
 
-def plot_trajectory(solution: Solution, path: str | os.PathLike[str] | None = None) -> Any:
-    """Draw a solution of `integrate`, one trajectory or an ensemble (its first 50).
+def plot_trajectory(solution: Solution, path: str | os.PathLike[str] | None = None) -> Figure:
+    """Draw a solution of `integrate`: a trajectory, or the first 50 trajectories of an ensemble.
 
     Parameters
     ----------
     solution : Solution
-        With dense output, curves are drawn through it; else from step to step.
+        With dense output the curves follow it; without, they connect the steps.
     path : path, optional
-        A file to write: .png, .pdf, .svg, ....
+        File to write: .png, .pdf, .svg, ....
 
     Returns
     -------
@@ -37,14 +45,18 @@ def plot_trajectory(solution: Solution, path: str | os.PathLike[str] | None = No
     Raises
     ------
     InputError
-        If matplotlib is not installed, or this is no solution.
+        If matplotlib is not installed, or `solution` is not a Solution.
     FormatError
         If the file cannot be written.
 
     Notes
     -----
-    Points of three coordinates: in space, with the sphere if |m| is constant, what is behind it being pale; of two: in
-    the plane; of up to eight: coordinates over time; of more: the coordinates of the first trajectory as colours.
+    The number of coordinates decides:
+
+    * two: curves in the plane;
+    * three: curves in space, with the sphere if |m| is constant (parts behind the sphere are pale);
+    * four to eight: coordinates over time;
+    * more: the coordinates of the first trajectory as colours.
 
     Examples
     --------
@@ -74,8 +86,8 @@ def plot_trajectory(solution: Solution, path: str | os.PathLike[str] | None = No
     return finished(figure, path)
 
 
-def _paths(solution: Solution) -> tuple[Any, Any, int]:
-    """Times (k, n), points (k, N, n) of the trajectories that are drawn, and how many there are."""
+def _paths(solution: Solution) -> tuple[Array, Array, int]:
+    """Times (k, n) and points (k, N, n) of the trajectories to draw, and the number of all trajectories."""
     y = np.asarray(solution.y, dtype=float)
     t = np.broadcast_to(np.asarray(solution.t, dtype=float), (*y.shape[:-2], y.shape[-1]))
     t, y = t.reshape(-1, t.shape[-1]), y.reshape(-1, *y.shape[-2:])
@@ -86,12 +98,12 @@ def _paths(solution: Solution) -> tuple[Any, Any, int]:
         low, high = np.nanmin(t, axis=-1)[:, None], np.nanmax(t, axis=-1)[:, None]
         y = np.where(((times >= low) & (times <= high))[:, None, :], y, np.nan)
         t = np.broadcast_to(times, (count, CURVE_POINTS))
-        if solution.t[..., 0].flat[0] == np.nanmax(solution.t):  # backwards: the start comes first
+        if solution.t[..., 0].flat[0] == np.nanmax(solution.t):  # backwards in time: the initial point comes first
             t, y = t[:, ::-1], y[..., ::-1]
     return t[:MAX_TRAJECTORIES], y[:MAX_TRAJECTORIES], count
 
 
-def _span(t: Any) -> str:
+def _span(t: Array) -> str:
     first = t[0][np.isfinite(t[0])]
     return f"$t$ = {first[0]:.4g} to {first[-1]:.4g}"
 
@@ -100,14 +112,14 @@ def _look(k: int, count: int) -> dict[str, Any]:
     return {"color": COLOURS[k % len(COLOURS)], "linewidth": 1.5 if count <= 5 else 0.9}
 
 
-def _ends(points: Any) -> tuple[Any, Any]:
-    """The first and the last point that is finite, of (N, n)."""
+def _ends(points: Array) -> tuple[Array, Array]:
+    """First and last finite point of a curve (N, n)."""
     there = np.flatnonzero(np.isfinite(points).all(axis=0))
     return points[:, there[0]], points[:, there[-1]]
 
 
-def _mark_ends(axes: Any, y: Any, hidden: Any = None) -> None:
-    """A disc at the start, a square at the end, pale where `hidden`; explained once."""
+def _mark_ends(axes: Axes, y: Array, hidden: Callable[[Array], bool] | None = None) -> None:
+    """Mark initial points by a disc and ends by a square, pale if `hidden`, with one legend for all curves."""
     size = 6 if len(y) <= 5 else 3.5
     for k, points in enumerate(y):
         colour = COLOURS[k % len(COLOURS)]
@@ -123,7 +135,7 @@ def _mark_ends(axes: Any, y: Any, hidden: Any = None) -> None:
 
 
 # -- in space --------------------------------------------------------------------------------------------
-def _in_space(y: Any) -> Any:
+def _in_space(y: Array) -> Figure:
     figure = new_figure(5.6, 5.6)
     axes = figure.add_subplot(projection="3d", proj_type="ortho", computed_zorder=False)
     axes.view_init(elev=ELEVATION, azim=AZIMUTH)
@@ -145,14 +157,14 @@ def _in_space(y: Any) -> Any:
     return figure
 
 
-def _on_the_sphere(axes: Any, y: Any, radius: float) -> None:
-    """Curves on the sphere, pale where they are behind it, and the ends of the coordinate axes."""
+def _on_the_sphere(axes: Axes, y: Array, radius: float) -> None:
+    """Draw curves on the sphere, pale if behind it, and the ends of the coordinate axes."""
     _draw_sphere(axes, radius)
     for k, points in enumerate(y):
         front = _towards_the_eye() @ points >= 0
         axes.plot(*_only(points, ~front), **_look(k, len(y)), alpha=0.3, zorder=1)
         axes.plot(*_only(points, front), **_look(k, len(y)), zorder=3)
-    _mark_ends(axes, y, hidden=lambda point: _towards_the_eye() @ point < 0)
+    _mark_ends(axes, y, hidden=lambda point: bool(_towards_the_eye() @ point < 0))
     for i, direction in enumerate(np.eye(3)):
         axes.plot(*np.outer(direction, radius * np.array([1.0, 1.15])), color=GREY, linewidth=1.0, zorder=4)
         axes.text(*(1.23 * radius * direction), f"$m_{i}$", ha="center", va="center", zorder=6)
@@ -161,26 +173,27 @@ def _on_the_sphere(axes: Any, y: Any, radius: float) -> None:
     axes.set_box_aspect((1, 1, 1), zoom=1.25)
 
 
-def _radius(y: Any) -> float | None:
-    """The common |m| of all points, None if there is none."""
+def _radius(y: Array) -> float | None:
+    """Common |m| of all points, or None if |m| varies or is 0."""
     sizes = np.linalg.norm(y, axis=1)
     largest = float(np.nanmax(sizes))
     return largest if largest - float(np.nanmin(sizes)) <= SPHERE_TOLERANCE * largest and largest > 0 else None
 
 
-def _towards_the_eye() -> Any:
+def _towards_the_eye() -> Array:
+    """Unit vector from the origin to the viewer."""
     up, round_ = np.radians(ELEVATION), np.radians(AZIMUTH)
     return np.array([np.cos(up) * np.cos(round_), np.cos(up) * np.sin(round_), np.sin(up)])
 
 
-def _only(points: Any, kept: Any) -> Any:
-    """The points that are kept, and the next ones before them, so that the parts of a curve meet."""
+def _only(points: Array, kept: Array) -> Array:
+    """Points that are kept, and the point before each part, so that the parts of a curve meet; NaN elsewhere."""
     near = kept | np.r_[kept[1:], False]
     return np.where(near, points, np.nan)
 
 
-def _draw_sphere(axes: Any, radius: float) -> None:
-    """The outline of the sphere, and its circles of latitude and longitude where they are in front."""
+def _draw_sphere(axes: Axes, radius: float) -> None:
+    """Draw the outline of the sphere, and the visible parts of its circles of latitude and longitude."""
     u, v = np.linspace(0, 2 * np.pi, 145), np.linspace(0, np.pi, 73)
     grid = radius * np.array(
         [np.outer(np.cos(u), np.sin(v)), np.outer(np.sin(u), np.sin(v)), np.outer(0 * u + 1, np.cos(v))]
@@ -193,7 +206,7 @@ def _draw_sphere(axes: Any, radius: float) -> None:
 
 
 # -- in the plane, over time -----------------------------------------------------------------------------
-def _in_the_plane(y: Any) -> Any:
+def _in_the_plane(y: Array) -> Figure:
     figure = new_figure(5.4, 5.0)
     axes = figure.add_subplot()
     for k, points in enumerate(y):
@@ -205,7 +218,7 @@ def _in_the_plane(y: Any) -> Any:
     return figure
 
 
-def _over_time(t: Any, y: Any) -> Any:
+def _over_time(t: Array, y: Array) -> Figure:
     figure = new_figure(7.0, 4.2)
     axes = figure.add_subplot()
     for k, (times, points) in enumerate(zip(t, y, strict=True)):
@@ -222,7 +235,7 @@ def _over_time(t: Any, y: Any) -> Any:
     return figure
 
 
-def _as_colours(times: Any, points: Any) -> Any:
+def _as_colours(times: Array, points: Array) -> Figure:
     figure = new_figure(7.0, 4.2)
     axes = figure.add_subplot()
     there = np.isfinite(times)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -73,7 +73,8 @@ def _balanced(action: TracelessIsotropyAction, bits: int) -> Frame | None:
     matrices = action.traceless
     for _ in range(ROUNDS):
         sized = [fixed_point(a, bits)[0] for a in matrices]
-        chosen = [combination(sized, [rng.choice((-3, -2, -1, 1, 2, 3)) for _ in sized]) for _ in range(GENERATORS)]
+        weights: list[list[Any]] = [[rng.choice((-3, -2, -1, 1, 2, 3)) for _ in sized] for _ in range(GENERATORS)]
+        chosen = [combination(sized, row) for row in weights]
         rows = balancing_rows(chosen, bits)
         if rows is None:
             return None
