@@ -67,6 +67,7 @@ WINGS: dict[str, tuple[str, ...]] = {
 # the class files: a method may delegate, inside its body, to a wing above its class; nothing else may point upwards
 CLASS_FILES = (
     "liehom.algebra.core.lie_algebra",
+    "liehom.algebra.core.subalgebra",
     "liehom.representations.core.representation",
     "liehom.representations.core.pair",
 )

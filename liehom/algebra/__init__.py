@@ -59,5 +59,3 @@ from liehom.algebra.structure import LeviDecomposition as LeviDecomposition
 from liehom.algebra.structure import Place as Place
 from liehom.algebra.structure import RootSpace as RootSpace
 from liehom.algebra.structure import RootSpaceDecomposition as RootSpaceDecomposition
-from liehom.algebra.structure import places as places
-from liehom.algebra.structure import real_ideals as real_ideals

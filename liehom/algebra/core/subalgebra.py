@@ -7,7 +7,7 @@ below the class implement the methods of `LieAlgebra` that return subalgebras.
 from __future__ import annotations
 
 import random
-from typing import Any, TypeVar, final
+from typing import TYPE_CHECKING, Any, TypeVar, final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
@@ -16,6 +16,9 @@ from liehom.scalars import ExactMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike, rows_of
 from liehom.scalars.spaces.quotient import Quotient, echelon_quotient, quotient
 from liehom.typing import VectorLike
+
+if TYPE_CHECKING:
+    from liehom.algebra.structure.real_splitting import Place
 
 M = TypeVar("M", bound=Matrix)
 
@@ -126,7 +129,7 @@ class Subalgebra:
 
     __hash__ = None  # type: ignore[assignment]
 
-    # -- verbs -------------------------------------------------------------------------------------------
+    # -- ideals, quotients, images -------------------------------------------------------------------------
     def intersection(self, other: Subalgebra) -> Subalgebra:
         """The intersection with another subalgebra of the same algebra.
 
@@ -197,6 +200,66 @@ class Subalgebra:
         """The image of h under an automorphism of g, given by its matrix (n, n) on columns; closure is proved."""
         return Subalgebra(self.algebra, self.basis @ matrix.T)
 
+    # -- over the reals ----------------------------------------------------------------------------------
+    def places(self) -> list[Place]:
+        """The places of the centroid of a subalgebra that is simple over its field: its simple ideals over the reals.
+
+        Returns
+        -------
+        list of Place
+            The real places by increasing root, then the complex ones. The dimensions add up to `dimension`.
+
+        Raises
+        ------
+        InputError
+            If the subalgebra is not simple over its field.
+        FieldError
+            Over float64.
+
+        Notes
+        -----
+        No field is extended, because only signatures of forms over the given field are computed.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> (ideal,) = lh.so(3, 1).direct_sum_decomposition()
+        >>> [(p.kind, p.killing_signature) for p in ideal.places()]
+        [('complex', (3, 3))]
+        """
+        from liehom.algebra.structure.real_splitting import places
+
+        return places(self)
+
+    def real_ideals(self) -> list[Subalgebra]:
+        """The simple ideals over the reals of a subalgebra that is simple over its field F, over extensions of F.
+
+        Returns
+        -------
+        list of Subalgebra
+            In the order of `places`. Each is contained in the given ideal over its own real number field. For a real
+            root theta_v of the polynomial f of the centroid this is F(theta_v), for a pair of complex roots the field
+            of the coefficients of the quadratic factor of f.
+
+        Raises
+        ------
+        InputError
+            If the subalgebra is not simple over its field.
+        FieldError
+            Over float64, or if the degree of such a field could exceed 36; `places` needs no field.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> (ideal,) = lh.so(3, 1).direct_sum_decomposition()
+        >>> ideal.real_ideals()
+        [<subalgebra of dimension 6 in so(3,1) over QQ>]
+        """
+        from liehom.algebra.structure.real_splitting import real_ideals
+
+        return real_ideals(self)
+
+    # -- printing ----------------------------------------------------------------------------------------
     def __repr__(self) -> str:
         around = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
         return f"<subalgebra of dimension {self.dimension} in {around} over {self.algebra.field.name}>"

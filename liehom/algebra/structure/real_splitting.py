@@ -123,36 +123,7 @@ def centroid_field(ideal: Subalgebra) -> CentroidField:
 
 
 def places(ideal: Subalgebra) -> list[Place]:
-    """The simple ideals over the reals, as places of the centroid, of an algebra that is simple over its field.
-
-    Parameters
-    ----------
-    ideal : Subalgebra
-        An algebra that is simple over its exact field, such as a simple ideal or a simple Levi factor.
-
-    Returns
-    -------
-    list of Place
-        The real places by increasing root, then the complex ones. The dimensions add up to the dimension of the ideal.
-
-    Raises
-    ------
-    InputError
-        If the subalgebra is not simple over its field.
-    FieldError
-        Over float64.
-
-    Notes
-    -----
-    No field is extended, because only signatures of forms over the given field are computed.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> g = lh.so(3, 1)
-    >>> [(p.kind, p.killing_signature) for p in places(g.subalgebra(g.whole().basis))]
-    [('complex', (3, 3))]
-    """
+    """Implements `Subalgebra.places`."""
     return field_places(centroid_field(ideal))
 
 
@@ -221,34 +192,7 @@ def real_root_intervals(f: Polynomial) -> list[Interval]:
 
 
 def real_ideals(ideal: Subalgebra) -> list[Subalgebra]:
-    """The simple ideals over the reals of an algebra that is simple over its field, each over an extension of it.
-
-    Parameters
-    ----------
-    ideal : Subalgebra
-        An algebra that is simple over its exact field F.
-
-    Returns
-    -------
-    list of Subalgebra
-        In the order of `places`. Each is contained in the given ideal over its own real number field. For a real
-        root theta_v of the polynomial f of the centroid this is F(theta_v), for a pair of complex roots the field of
-        the coefficients of the quadratic factor of f.
-
-    Raises
-    ------
-    InputError
-        If the subalgebra is not simple over its field.
-    FieldError
-        Over float64, or if the degree of such a field could exceed `LARGEST_DEGREE`; `places` needs no field.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> g = lh.so(3, 1)
-    >>> real_ideals(g.subalgebra(g.whole().basis))
-    [<subalgebra of dimension 6 in so(3,1) over QQ>]
-    """
+    """Implements `Subalgebra.real_ideals`."""
     centroid = centroid_field(ideal)
     f, m = centroid.polynomial, centroid.degree
     complex_pairs = (m - f.count_real_roots()) // 2

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition
-from liehom.algebra.structure.real_splitting import centroid_field, places, real_ideals, real_root_intervals
+from liehom.algebra.structure.real_splitting import centroid_field, real_root_intervals
 from liehom.errors import FieldError, InputError
 from liehom.scalars import QQ, Polynomial
 from liehom.testing import random_unimodular
@@ -52,7 +52,7 @@ def whole(algebra: lh.LieAlgebra) -> lh.Subalgebra:
 
 
 def found(algebra: lh.LieAlgebra) -> Counter[Any]:
-    return Counter((p.kind, p.killing_signature) for p in places(whole(algebra)))
+    return Counter((p.kind, p.killing_signature) for p in whole(algebra).places())
 
 
 COMPACT, SPLIT, COMPLEX = ("real", (0, 3)), ("real", (2, 1)), ("complex", (3, 3))
@@ -93,7 +93,7 @@ def test_algebra_simple_over_the_reals_has_one_place(
     algebra: lh.LieAlgebra, kind: str, signature: tuple[int, int]
 ) -> None:
     """so(3, 1) is simple over R and of complex type, though its centroid over QQ is QQ(i)."""
-    place = places(whole(scrambled(algebra, 3)))
+    place = whole(scrambled(algebra, 3)).places()
     assert [(p.kind, p.killing_signature, p.dimension) for p in place] == [(kind, signature, algebra.dimension)]
 
 
@@ -112,7 +112,7 @@ def test_the_form_decides_at_each_real_place(p: int, q: int, f: list[int], rng: 
 
 def test_signatures_add_up_to_that_of_the_killing_form() -> None:
     algebra = scrambled(restricted([1], [1], [0, 1], [2, -4, 0, 0, 0, 1]), 5)
-    signatures = [p.killing_signature for p in places(whole(algebra))]
+    signatures = [p.killing_signature for p in whole(algebra).places()]
     assert tuple(map(sum, zip(*signatures, strict=True))) == algebra.killing_signature()[:2]
 
 
@@ -134,13 +134,13 @@ def test_a_quadratic_centroid_is_shown_by_a_square_root() -> None:
 
 def test_places_of_a_non_simple_algebra_raise_input_error() -> None:
     with pytest.raises(InputError, match="sum of ideals"):
-        places(whole(lh.so(4)))
+        whole(lh.so(4)).places()
     with pytest.raises(InputError, match="degenerate"):
-        places(whole(lh.gl(2)))
+        whole(lh.gl(2)).places()
     with pytest.raises(InputError, match="degenerate"):
-        places(lh.so(3).subalgebra([]))
+        lh.so(3).subalgebra([]).places()
     with pytest.raises(FieldError, match="exact"):
-        places(whole(lh.so(3).over(lh.RR)))
+        whole(lh.so(3).over(lh.RR)).places()
 
 
 @pytest.mark.parametrize("name", sorted(CASES))
@@ -148,9 +148,9 @@ def test_real_ideals_have_the_signatures_of_their_places(name: str) -> None:
     """Each ideal is closed and an ideal over its own field, where its Killing form can be looked at directly."""
     data, _ = CASES[name]
     ideal = whole(scrambled(restricted(*data), 1))
-    found_ideals = real_ideals(ideal)
-    assert len(found_ideals) == len(places(ideal))
-    for part, place in zip(found_ideals, places(ideal), strict=True):
+    found_ideals = ideal.real_ideals()
+    assert len(found_ideals) == len(ideal.places())
+    for part, place in zip(found_ideals, ideal.places(), strict=True):
         assert part.dimension == place.dimension
         if part.algebra.field.degree <= 5:
             closed = lh.Subalgebra(part.algebra, part.basis)
@@ -161,7 +161,7 @@ def test_a_real_ideal_of_a_part_of_an_algebra() -> None:
     """An ideal of a larger algebra: the rows are in the coordinates of the algebra around."""
     algebra = scrambled(lh.direct_sum(lh.sl(2), restricted([1], [1], [0, 1], SQRT2)), 4)
     large = next(h for h in direct_sum_decomposition(algebra) if h.dimension == 6)
-    parts = real_ideals(large)
+    parts = large.real_ideals()
     assert [h.algebra.field for h in parts] == [lh.number_field("sqrt(2)")] * 2
     rows = lh.QQ.stack_rows([large.basis], 9)
     for h in parts:
@@ -172,7 +172,7 @@ def test_a_real_ideal_of_a_part_of_an_algebra() -> None:
 def test_real_ideals_over_a_real_number_field() -> None:
     """Over QQ(sqrt 3) the ideals need QQ(sqrt 2, sqrt 3), of degree 4."""
     doubled = scrambled(restricted([1], [1], [0, 1], SQRT2).over(lh.number_field("sqrt(3)")), 2)
-    parts = real_ideals(whole(doubled))
+    parts = whole(doubled).real_ideals()
     assert [h.algebra.field.degree for h in parts] == [4, 4]
     assert all(lh.Subalgebra(h.algebra, h.basis).is_ideal() for h in parts)
     assert sorted(h.as_algebra().killing_signature() for h in parts) == [(0, 3, 0), (2, 1, 0)]
@@ -180,18 +180,18 @@ def test_real_ideals_over_a_real_number_field() -> None:
 
 def test_real_ideal_of_an_absolutely_simple_algebra_is_the_algebra() -> None:
     """so(4) splits over QQ already; so(3, 1) is simple over R."""
-    compact = [real_ideals(h) for h in direct_sum_decomposition(scrambled(lh.so(4), 1))]
+    compact = [h.real_ideals() for h in direct_sum_decomposition(scrambled(lh.so(4), 1))]
     assert [[(p.dimension, p.algebra.field) for p in parts] for parts in compact] == [[(3, lh.QQ)], [(3, lh.QQ)]]
     lorentz = whole(scrambled(lh.so(3, 1), 1))
-    assert real_ideals(lorentz) == [lorentz]
+    assert lorentz.real_ideals() == [lorentz]
 
 
 def test_field_of_too_large_a_degree_raises_field_error() -> None:
     """t^10 - 2 has complex roots: sums of two of its ten roots may have degree 45; places are found still."""
     ideal = whole(restricted([1], [1], [1], [-2, *[0] * 9, 1]))
     with pytest.raises(FieldError, match="degree 45"):
-        real_ideals(ideal)
-    assert Counter(p.kind for p in places(ideal)) == Counter(real=2, complex=4)
+        ideal.real_ideals()
+    assert Counter(p.kind for p in ideal.places()) == Counter(real=2, complex=4)
 
 
 def test_intervals_hold_one_root_each() -> None:
