@@ -1,7 +1,7 @@
-"""Types that signatures of all layers name: arrays by their entries, numbers, values that numpy code runs on.
+"""Named types for the signatures of all layers: arrays by their entries, numbers, values for numpy code.
 
-Input that numpy converts is `numpy.typing.ArrayLike`, as in numpy's own signatures; `MatrixLike`, what is read as a
-matrix over a field, stands beside `liehom.scalars.Matrix`.
+Input that numpy converts has the type `numpy.typing.ArrayLike`, as in numpy's own signatures. Input that a field reads
+as a matrix has the type `liehom.scalars.fields.field.MatrixLike`.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ ObjectArray: TypeAlias = npt.NDArray[np.object_]
 """A numpy array of Python objects: exact numbers, sympy expressions."""
 
 Key: TypeAlias = Any
-"""What stands in the brackets of an array: integers, slices, Ellipsis, masks, and tuples of these."""
+"""Index of an array: integers, slices, Ellipsis, masks, and tuples of these."""
 
 
 class Number(Protocol):
-    """What has the arithmetic of a field: numbers of Python, numpy, flint and sympy, elements of number fields."""
+    """A number with field arithmetic: of Python, numpy, flint or sympy, or an element of a number field."""
 
     def __neg__(self) -> Any: ...
     def __add__(self, other: Any, /) -> Any: ...
@@ -46,14 +46,14 @@ class Number(Protocol):
 
 
 ScalarLike: TypeAlias = int | float | str | Number
-"""What a field reads as one of its elements: numbers of Python, numpy, flint and sympy, strings such as "1/2"."""
+"""Input that a field reads as an element: numbers of Python, numpy, flint and sympy, strings such as "1/2"."""
 
 VectorLike: TypeAlias = Sequence[ScalarLike] | npt.NDArray[Any]
-"""What a field reads as a row of its elements."""
+"""Input that a field reads as a row of elements."""
 
 
 class Values(Protocol):
-    """What numpy code runs on: numpy arrays, `liehom.Jet`, the tracers of `liehom.tracing`, JAX arrays.
+    """The values of numpy code: numpy arrays, `liehom.Jet`, the tracers of `liehom.tracing`, JAX arrays.
 
     Code written for `Values` uses numpy's operators and functions only, so the same lines compute with numbers,
     expand in Taylor series and record a graph to be compiled. The last axis holds components, leading axes hold

@@ -1,8 +1,8 @@
-"""Which numbers, and the linear algebra over them: QQ, real number fields, float64.
+"""Numbers and linear algebra over them: QQ, real number fields, float64.
 
-In reading order: `field` (the interfaces), `exact` and `exact_matrix` (QQ and QQ(a)), `number_fields` (from
-what a user writes), `polynomial` (root counts), `balls` (certain signs), `floating` (float64), `subspace`,
-`grammar` (how values are read).
+The wings, in reading order: `fields` (numbers and matrices), `spaces` (subspaces and quotients), `modular` (linear
+algebra modulo a prime), `functions` (rational functions on a variety), `lattices`, and `roots` (roots of polynomials,
+larger number fields). The conventions are in docs/notation.md.
 """
 
 from liehom.scalars.fields import QQ as QQ

@@ -1,7 +1,7 @@
-"""Ball arithmetic (flint): real roots as balls of any precision, and signs that are certain.
+"""Ball arithmetic (flint): rigorous enclosures of real roots with any precision, and certified signs.
 
-A ball [m +- r] contains the number it stands for, so a comparison of disjoint balls is a proof; where balls
-overlap the precision is doubled.
+A ball [m +- r] contains the number that it represents, so a comparison of disjoint balls is a proof. If balls overlap,
+the precision is doubled.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from liehom.errors import FieldError
 
 @contextmanager
 def working_precision(bits: int) -> Iterator[None]:
-    """Set flint's working precision for the block, and restore it.
+    """Context manager that sets flint's working precision (bits) for the block and restores it.
 
     Examples
     --------
@@ -59,14 +59,14 @@ def real_root_balls(polynomial: flint.fmpz_poly, precision: int) -> list[flint.a
 
 
 def root_ball(polynomial: flint.fmpz_poly, index: int, precision: int) -> flint.arb:
-    """A ball around the `index`-th real root (from the left) of a squarefree integer polynomial."""
+    """Ball (``flint.arb``) around real root number `index`, from the left, of a squarefree integer polynomial."""
     return real_root_balls(polynomial, precision)[index]
 
 
 def isolate_real_root(
     polynomial: flint.fmpz_poly, interval: tuple[flint.fmpq, flint.fmpq]
 ) -> tuple[tuple[flint.fmpq, flint.fmpq], int]:
-    """Check that an interval holds exactly one root; return it with the root's index from the left.
+    """The interval and the index from the left of the one root that it contains.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def isolate_real_root(
     Raises
     ------
     FieldError
-        If the interval is empty or does not hold exactly one root.
+        If the interval is empty or does not contain exactly one root.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def isolate_real_root(
             if len(inside) == 1:
                 return interval, inside[0]
             raise FieldError(
-                f"the interval ({low}, {high}) holds {len(inside)} real roots of {polynomial}; "
-                f"it must hold exactly one ({len(balls)} real roots in all)"
+                f"the interval ({low}, {high}) contains {len(inside)} real roots of {polynomial}; "
+                f"it must contain exactly one ({len(balls)} real roots in all)"
             )
         precision *= 2

@@ -1,4 +1,4 @@
-"""ExactField and ExactMatrix: QQ and the real number fields have their linear algebra in common, on python-flint.
+"""ExactField and ExactMatrix: the linear algebra that QQ and the real number fields share, on python-flint.
 
 A number of QQ(b), b an algebraic integer of degree m, has m coordinates over QQ in the powers of b; QQ is the case
 m = 1. A matrix is A = (A_0 + A_1 b + ... + A_{m-1} b^(m-1)) / den with integer matrices A_s. Products are
@@ -37,7 +37,7 @@ GUESSED_INVERSE = 40
 
 
 class ExactField(Field["ExactMatrix"]):
-    """What QQ and the real number fields have in common: coordinates over QQ in powers of an integral generator."""
+    """An exact field, QQ or a real number field: elements have coordinates in powers of an integral generator."""
 
     __slots__ = ()
 
@@ -48,7 +48,7 @@ class ExactField(Field["ExactMatrix"]):
     @property
     @abstractmethod
     def degree(self) -> int:
-        """The degree over QQ."""
+        """Degree over QQ."""
 
     @abstractmethod
     def coordinates(self, value: Scalar) -> list[flint.fmpq]:
@@ -68,7 +68,7 @@ class ExactField(Field["ExactMatrix"]):
 
     @abstractmethod
     def residue(self, attempt: int = 0) -> tuple[int, int]:
-        """A prime p and the image of the integral generator in F_p; other `attempt`, other prime."""
+        """Prime p number `attempt`, and the image of the integral generator in F_p."""
 
     def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> ExactMatrix:
         table = [[self.convert(x) for x in row] for row in rows_of(rows)]
@@ -79,7 +79,7 @@ class ExactField(Field["ExactMatrix"]):
         return self.from_entries([x for row in table for x in row], nrows, ncols)
 
     def from_entries(self, entries: Sequence[Scalar], nrows: int, ncols: int) -> ExactMatrix:
-        """The matrix with these field elements, row after row."""
+        """The matrix of shape (nrows, ncols) with these field elements, row after row."""
         if self.degree == 1:
             rationals: list[Any] = list(entries)
             numerators, common = flint.fmpq_mat(nrows, ncols, rationals).numer_denom()
@@ -90,7 +90,7 @@ class ExactField(Field["ExactMatrix"]):
         return ExactMatrix(self, tuple(a * (den // int(d)) for a, d in split), den)
 
     def from_integers(self, entries: Sequence[int | flint.fmpz], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
-        """The matrix with these integers over a common denominator, row after row."""
+        """The matrix of shape (nrows, ncols) with these integers, row after row, over a common denominator."""
         first = flint.fmpz_mat(nrows, ncols, entries if isinstance(entries, list) else list(entries))
         rest = tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree - 1))
         return ExactMatrix(self, (first, *rest), den).normalized()
@@ -98,7 +98,7 @@ class ExactField(Field["ExactMatrix"]):
     def from_parts(
         self, parts: Sequence[Sequence[int | flint.fmpz]], nrows: int, ncols: int, den: int = 1
     ) -> ExactMatrix:
-        """The matrix with these integer coordinates (one list per power of the generator) over a denominator."""
+        """The matrix with these integer coordinates, one list per power of the generator, over a common denominator."""
         made = tuple(flint.fmpz_mat(nrows, ncols, p if isinstance(p, list) else list(p)) for p in parts)
         return ExactMatrix(self, made, den).normalized()
 
@@ -205,7 +205,7 @@ class ExactMatrix(Matrix):
         return ExactMatrix(self._field, tuple(parts), self.den)
 
     def normalized(self) -> ExactMatrix:
-        """The same matrix with the least positive common denominator."""
+        """The matrix with its common denominator made as small as possible."""
         parts, den = cancelled(self.parts, self.den)
         return self if den == self.den else ExactMatrix(self._field, parts, den)
 
@@ -214,7 +214,7 @@ class ExactMatrix(Matrix):
         return self if self.den == 1 else ExactMatrix(self._field, self.parts, 1)
 
     def primitive(self) -> ExactMatrix:
-        """The positive multiple with integer coordinates that have no common factor; zero stays zero."""
+        """The positive multiple whose integer coordinates have no common factor; zero stays zero."""
         common = gcd(*(int(x) for a in self.parts for x in a.entries()))
         if common in (0, 1):
             return self.cleared()
@@ -273,7 +273,7 @@ class ExactMatrix(Matrix):
         return ExactMatrix(self._field, self._reduced(powers), den).normalized()
 
     def _reduced(self, powers: list[flint.fmpz_mat]) -> tuple[flint.fmpz_mat, ...]:
-        """Coefficient matrices of b^0 .. b^(2m-2), rewritten in b^0 .. b^(m-1)."""
+        """Coefficient matrices of b^0 .. b^(m-1), from those of b^0 .. b^(2m-2)."""
         m = self._field.degree
         parts = powers[:m]
         for r in range(m, len(powers)):
@@ -308,7 +308,7 @@ class ExactMatrix(Matrix):
 
     # -- linear algebra ----------------------------------------------------------------------------------
     def modulo(self, attempt: int = 0) -> flint.nmod_mat:
-        """The numerators modulo a prime (``flint.nmod_mat``); its rank is at most the true rank."""
+        """The numerators modulo a prime (``flint.nmod_mat``), a matrix of at most the true rank."""
         p, root = self._field.residue(attempt)
         image = flint.nmod_mat(self.parts[0], p)
         power = 1
@@ -333,7 +333,7 @@ class ExactMatrix(Matrix):
         return int(self._restricted().rank()) // self._field.degree
 
     def echelon(self) -> tuple[ExactMatrix, list[int]]:
-        """The non-zero rows of the reduced row echelon form, and the pivot columns."""
+        """The non-zero rows of the reduced row echelon form, and the list of pivot columns."""
         m, ncols = self._field.degree, self.ncols
         if 0 in self.shape:
             return self._field.zeros(0, ncols), []
@@ -349,7 +349,7 @@ class ExactMatrix(Matrix):
         return matrix, echelon_pivots(matrix.parts, rank)
 
     def _tall_echelon(self) -> tuple[ExactMatrix, list[int]] | None:
-        """The echelon form from rows that are independent modulo a prime, if the others are shown to depend on them."""
+        """The echelon form of rows that are independent modulo a prime, or None if they do not span all rows."""
         image, rank = self.modulo().transpose().rref()
         rows = echelon_pivots((image,), int(rank))
         if rank == self.ncols:  # independent modulo a prime, so independent
@@ -403,7 +403,7 @@ class ExactMatrix(Matrix):
         return self.solve(self._field.identity(n))
 
     def _integral_inverse(self) -> ExactMatrix | None:
-        """The inverse if it is integral up to the denominator, as for unimodular matrices: guessed modulo a prime."""
+        """The inverse, guessed modulo a prime and verified, or None; it succeeds for unimodular numerators."""
         guess = lifted_inverse(self.parts[0], self._field.residue()[0])
         if guess is None:
             return None
@@ -413,7 +413,7 @@ class ExactMatrix(Matrix):
         return candidate if self.den == 1 else candidate.scale(self.den)
 
     def characteristic_coefficients(self) -> list[Scalar]:
-        """The coefficients of det(t - A), ascending."""
+        """List of the coefficients of det(t - A), in ascending order."""
         n = self.nrows
         if self._field.degree == 1:
             if n == 0:
@@ -435,7 +435,7 @@ class ExactMatrix(Matrix):
 
     def signature(self) -> tuple[int, int, int]:
         if self != self.T:
-            raise FieldError("a signature is asked of a matrix that is not symmetric")
+            raise FieldError("only a symmetric matrix has a signature; this matrix is not symmetric")
         # All roots are real, so Descartes' rule of signs is exact.
         signs = [self._field.sign(c) for c in self.characteristic_coefficients()]
         zero = next(i for i, s in enumerate(signs) if s)
@@ -444,7 +444,7 @@ class ExactMatrix(Matrix):
 
 
 def as_exact(matrix: Matrix) -> ExactMatrix:
-    """The matrix itself, for code that only exact fields have; `FieldError` if it is over float64."""
+    """The given matrix, typed as an `ExactMatrix`; `FieldError` if it is over float64."""
     if not isinstance(matrix, ExactMatrix):
         raise FieldError(f"this is computed over an exact field only, not over {matrix.field.name}")
     return matrix

@@ -1,8 +1,8 @@
-"""Field: which numbers, and the linear algebra over them, as abstract interfaces.
+"""Field and Matrix: the interfaces of a scalar type and of the matrices over it.
 
-A `Field` converts, parses and prints numbers and makes matrices over itself; a `Matrix` is immutable and
-knows its field.  The algebra of liehom is written once over these two.  Exact fields are in `exact.py`
-(QQ and real number fields), numerical ones in `floating.py`.
+A `Field` converts, parses and prints numbers and makes matrices over itself; a `Matrix` is immutable and knows its
+field. The algebra of liehom is written once over these two. QQ and the real number fields implement them in
+`exact_field`, float64 in `floating`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ from liehom.typing import ScalarLike, VectorLike
 class Scalar(Protocol):
     """A number of a field: ``flint.fmpq`` over QQ, `AlgebraicNumber` over QQ(a), ``float`` over float64.
 
-    The operations below are those that all fields have; numbers of one field are combined with each other and with
-    integers.
+    Every field has the operations below, between its numbers and with integers.
     """
 
     def __neg__(self) -> Self: ...
@@ -45,12 +44,12 @@ class Scalar(Protocol):
 
 
 def rows_of(rows: MatrixLike) -> list[list[Any]]:
-    """Rows of numbers as lists: from nested sequences, from arrays and matrices of numpy, scipy and sympy.
+    """List of rows, each a list of numbers, from nested sequences or a matrix of numpy, scipy or sympy.
 
     Raises
     ------
     ShapeError
-        If this is no sequence of rows; names the row.
+        If the argument is not a sequence of rows; the message names the row.
 
     Examples
     --------
@@ -72,7 +71,7 @@ def rows_of(rows: MatrixLike) -> list[list[Any]]:
 
 
 class Matrix(ABC):
-    """An immutable matrix over a field; the interface that both exact and numerical matrices implement.
+    """An immutable matrix over a field: the interface of exact and numerical matrices.
 
     Vectors are rows: a subspace is given by the rows of a matrix, and ``null_space`` returns rows.
 
@@ -90,7 +89,7 @@ class Matrix(ABC):
     @property
     @abstractmethod
     def field(self) -> Field:
-        """The field of the entries."""
+        """Field of the entries."""
 
     @property
     @abstractmethod
@@ -112,10 +111,10 @@ class Matrix(ABC):
 
     @abstractmethod
     def to_rows(self) -> list[list[Scalar]]:
-        """The entries as a list of rows of field elements."""
+        """List of rows, each a list of field elements."""
 
     def to_strings(self) -> list[list[str]]:
-        """The entries in the grammar of values, as JSON files carry them."""
+        """List of rows of strings in the grammar of values, as in JSON files."""
         written = self.field.format
         zero = written(self.field.zero)
         return [[written(x) if x != 0 else zero for x in row] for row in self.to_rows()]
@@ -126,11 +125,11 @@ class Matrix(ABC):
 
     @abstractmethod
     def to_numpy(self) -> npt.NDArray[np.float64]:
-        """The entries rounded to float64."""
+        """Array of float64, shape (nrows, ncols), with the rounded entries."""
 
     @abstractmethod
     def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> Self:
-        """The submatrix of the given rows and columns (all where None)."""
+        """The submatrix of the given rows and columns; None selects all."""
 
     # -- arithmetic --------------------------------------------------------------------------------------
     @property
@@ -156,28 +155,28 @@ class Matrix(ABC):
 
     @abstractmethod
     def is_zero(self) -> bool:
-        """Whether every entry is zero (over floats: within the field's tolerance of the largest possible)."""
+        """Whether every entry is zero; over float64, whether no entry exceeds the tolerance of the field."""
 
     @abstractmethod
     def trace(self) -> Scalar:
-        """The sum of the diagonal."""
+        """Sum of the diagonal entries."""
 
     @abstractmethod
     def reshape(self, nrows: int, ncols: int) -> Self:
-        """The same entries row after row in another shape."""
+        """The matrix of shape (nrows, ncols) with these entries, row after row."""
 
     @abstractmethod
     def split_rows(self, nrows: int, ncols: int) -> list[Self]:
-        """Each row as a matrix of shape (nrows, ncols)."""
+        """List of matrices of shape (nrows, ncols), one from each row."""
 
     @abstractmethod
     def entries(self) -> list[Scalar]:
-        """The entries row after row."""
+        """List of the entries, row after row."""
 
     # -- linear algebra ----------------------------------------------------------------------------------
     @abstractmethod
     def rank(self) -> int:
-        """The rank."""
+        """Rank, an int."""
 
     @abstractmethod
     def row_space(self) -> Self:
@@ -193,11 +192,11 @@ class Matrix(ABC):
 
     @abstractmethod
     def solve(self, right: Self) -> Self:
-        """X with A X = right; `SingularError` if there is none (some X if there are several)."""
+        """Some X with A X = right; `SingularError` if no X exists."""
 
     @abstractmethod
     def inverse(self) -> Self:
-        """The inverse; `SingularError` if there is none."""
+        """The inverse; `SingularError` if the matrix is singular."""
 
     @abstractmethod
     def signature(self) -> tuple[int, int, int]:
@@ -213,7 +212,7 @@ if TYPE_CHECKING:
 
     M = TypeVar("M", bound=Matrix, covariant=True, default=Any)
 else:
-    from typing import TypeVar  # defaults, so that `Field` alone is a type, come with Python 3.13
+    from typing import TypeVar  # the default, for `Field` without a parameter, needs Python 3.13
 
     M = TypeVar("M")
 
@@ -238,11 +237,11 @@ class Field(ABC, Generic[M]):
     @property
     @abstractmethod
     def name(self) -> str:
-        """What the field is called in messages and reprs, such as 'QQ', 'QQ(sqrt(2))', 'float64'."""
+        """Name in messages and reprs, such as 'QQ', 'QQ(sqrt(2))', 'float64'."""
 
     @property
     def degree(self) -> int:
-        """The degree over QQ of an exact field; 1 for float64."""
+        """Degree over QQ of an exact field; 1 for float64."""
         return 1
 
     @property
@@ -257,15 +256,15 @@ class Field(ABC, Generic[M]):
 
     @abstractmethod
     def convert(self, value: ScalarLike) -> Scalar:
-        """The field element that `value` denotes; `FieldError` or `ParseError` if it denotes none."""
+        """The field element that `value` denotes; `FieldError` or `ParseError` if it denotes no element."""
 
     @abstractmethod
     def format(self, value: Scalar) -> str:
-        """The element in the grammar of values; ``convert`` reads it back."""
+        """The element as a string in the grammar of values, which ``convert`` reads back."""
 
     @abstractmethod
     def sign(self, value: Scalar) -> int:
-        """-1, 0 or 1."""
+        """Sign of an element: -1, 0 or 1."""
 
     @abstractmethod
     def to_float(self, value: Scalar) -> float:
@@ -277,12 +276,12 @@ class Field(ABC, Generic[M]):
 
     @abstractmethod
     def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> M:
-        """The matrix with these rows; give `shape` where it may have no rows or no columns."""
+        """The matrix with these rows; `shape` is needed if there may be no rows or no columns."""
 
     def read(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> M:
-        """Rows of numbers, or a matrix, as a matrix over this field.
+        """The matrix over this field with the given rows, or with the entries of a matrix over another field.
 
-        A matrix over another field is read again entry by entry; `FieldError` if an entry is not in this field.
+        Raises `FieldError` if an entry is not in this field.
         """
         given: Any = rows
         if not isinstance(rows, Matrix):
@@ -291,22 +290,22 @@ class Field(ABC, Generic[M]):
 
     @abstractmethod
     def from_entries(self, entries: Sequence[Any], nrows: int, ncols: int) -> M:
-        """The matrix with these field elements, row after row."""
+        """The matrix of shape (nrows, ncols) with these field elements, row after row."""
 
     @abstractmethod
     def zeros(self, nrows: int, ncols: int) -> M:
-        """The zero matrix."""
+        """Zero matrix of shape (nrows, ncols)."""
 
     @abstractmethod
     def identity(self, n: int) -> M:
-        """The identity matrix."""
+        """Identity matrix of shape (n, n)."""
 
     @abstractmethod
     def stack_rows(self, blocks: Sequence[Any], ncols: int) -> M:
-        """The blocks one below the other; all have `ncols` columns."""
+        """The matrix whose rows are those of the blocks, one block below the other; all have `ncols` columns."""
 
     def stack_columns(self, blocks: Sequence[Any], nrows: int) -> M:
-        """The blocks side by side; all have `nrows` rows."""
+        """The matrix whose columns are those of the blocks, side by side; all have `nrows` rows."""
         return self.stack_rows([b.T for b in blocks], nrows).T
 
     def unit(self, n: int, i: int) -> M:
@@ -318,7 +317,7 @@ class Field(ABC, Generic[M]):
 
 
 MatrixLike: TypeAlias = Sequence[VectorLike] | npt.NDArray[Any] | Matrix
-"""What a field reads as a matrix: rows of numbers, arrays of numpy, scipy and sympy, a `Matrix`."""
+"""Input that a field reads as a matrix: rows of numbers, arrays of numpy, scipy and sympy, a `Matrix`."""
 
 MatricesLike: TypeAlias = Sequence[MatrixLike] | npt.NDArray[Any]
 """Several matrices of one shape: a sequence of them, or an array of shape (k, m, n)."""

@@ -1,7 +1,7 @@
 """FloatField and FloatMatrix: float64 with a stated relative tolerance.
 
-Every rank is decided by singular values against ``rtol * largest``; `FloatMatrix.rank_decision` reports the
-gap that decided it.  Nothing here guesses exact values.
+Every rank is the number of singular values above ``rtol * largest``; `FloatMatrix.rank_decision` reports the gap at
+this tolerance. No exact value is guessed from floats.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from liehom.typing import Array, ScalarLike
 @final
 @dataclass(frozen=True, slots=True)
 class RankDecision:
-    """A numerical rank with the singular values that decided it.
+    """A numerical rank and the singular values on both sides of the tolerance.
 
     Attributes
     ----------
     rank : int
     kept, dropped : float
-        The smallest singular value counted and the largest one not counted (relative to the largest; 0 where
-        there is none).
+        The smallest singular value that counts and the largest that does not, relative to the largest singular
+        value; 0 if no such value exists.
     """
 
     rank: int
@@ -38,13 +38,13 @@ class RankDecision:
 
     @property
     def gap(self) -> float:
-        """kept / dropped, infinite where nothing was dropped."""
+        """Ratio kept / dropped, a float; infinite if no singular value was dropped."""
         return math.inf if self.dropped == 0 else self.kept / self.dropped
 
 
 @final
 class FloatField(Field["FloatMatrix"]):
-    """float64 with a relative tolerance for ranks.
+    """The field float64 with a relative tolerance for ranks.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class FloatField(Field["FloatMatrix"]):
 
 @final
 class FloatMatrix(Matrix):
-    """A float64 matrix with the tolerance of its field; made by ``FloatField().matrix(rows)``.
+    """A float64 matrix with the tolerance of its field, constructed by ``FloatField().matrix(rows)``.
 
     Examples
     --------
@@ -222,7 +222,7 @@ class FloatMatrix(Matrix):
         return float(np.trace(self.array))
 
     def rank_decision(self) -> RankDecision:
-        """The rank with the singular values on either side of the tolerance."""
+        """`RankDecision`: the rank and the singular values on both sides of the tolerance."""
         if self.array.size == 0:
             return RankDecision(0, 0.0, 0.0)
         values = np.linalg.svd(self.array, compute_uv=False)

@@ -1,11 +1,11 @@
-"""The grammar of values: how a text denotes a number, read without ever executing code.
+"""The grammar of values: how a string denotes a number, read without executing code.
 
     value  = term (("+" | "-") term)*          unary = ("+" | "-") unary | power
     term   = unary (("*" | "/") unary)*        power = atom ["**" unary]        (exponents are integers)
     atom   = integer | name | function "(" value ")" | "(" value ")"
 
-`parse` makes a tree of `Number`, `Name`, `Call` and `Operation` nodes; `evaluate` folds it over any objects
-with Python arithmetic.  Names and functions are whatever the caller allows, by default only ``sqrt``.
+`parse` returns a tree of `Number`, `Name`, `Call` and `Operation` nodes, and `evaluate` computes its value with any
+objects that have Python arithmetic. The caller chooses the allowed names and functions, by default only ``sqrt``.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Number:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A name standing for a number, such as the generator of a number field."""
+    """A name that denotes a number, such as the generator of a number field."""
 
     name: str
 
@@ -59,7 +59,7 @@ Node = Number | Name | Call | Operation
 
 
 class _Parser:
-    """Recursive descent over the tokens of one text."""
+    """Recursive descent over the tokens of one string."""
 
     __slots__ = ("functions", "names", "position", "text", "tokens")
 
@@ -147,14 +147,14 @@ class _Parser:
 
 
 def parse(text: str, names: Collection[str] = (), functions: Collection[str] = ("sqrt",)) -> Node:
-    """Read a value into a tree.
+    """The tree of a value.
 
     Parameters
     ----------
     text : str
         The value.
     names, functions : collection of str
-        The names and the one-argument functions that may occur.
+        The allowed names and one-argument functions.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def parse(text: str, names: Collection[str] = (), functions: Collection[str] = (
     Raises
     ------
     ParseError
-        If the text is not of the grammar; the message says where and why.
+        If the string is not in the grammar; the message says where and why.
 
     Examples
     --------
@@ -185,7 +185,7 @@ def parse(text: str, names: Collection[str] = (), functions: Collection[str] = (
 
 
 def _chain(tree: Node) -> tuple[Node, list[tuple[str, Node]]]:
-    """The first operand of a chain of + - * /, and its (operator, operand) pairs; chains may be very long."""
+    """The first operand of a chain of + - * /, which may be very long, and the (operator, operand) pairs after it."""
     steps: list[tuple[str, Node]] = []
     while isinstance(tree, Operation) and len(tree.operands) == 2 and tree.operator != "**":
         steps.append((tree.operator, tree.operands[1]))
@@ -194,7 +194,7 @@ def _chain(tree: Node) -> tuple[Node, list[tuple[str, Node]]]:
 
 
 def sqrt_arguments(tree: Node) -> list[Node]:
-    """The arguments of all ``sqrt`` in a tree, innermost first."""
+    """List of the arguments of all ``sqrt`` in a tree, innermost first."""
     first, steps = _chain(tree)
     if steps:
         return [found for operand in (first, *(right for _, right in steps)) for found in sqrt_arguments(operand)]
@@ -212,21 +212,21 @@ def evaluate(
     names: Mapping[str, Any],
     functions: Mapping[str, Callable[[Any], Any]],
 ) -> Any:
-    """Fold a tree over objects that know Python arithmetic.
+    """The value of a tree, computed with objects that have Python arithmetic.
 
     Parameters
     ----------
     tree : Node
-        What `parse` returned.
+        As returned by `parse`.
     number : callable
-        Makes an object of an integer (``flint.fmpz``).
+        Converts an integer (``flint.fmpz``) to an object.
     names, functions : mapping
-        What the names and functions stand for.
+        The values of the names and functions.
 
     Raises
     ------
     ParseError
-        On division by zero and on exponents that are no integers or too large.
+        On division by zero, and for exponents that are not integers or too large.
 
     Examples
     --------
@@ -275,7 +275,7 @@ def _power(base: Any, exponent: int) -> Any:
 
 
 def _bits(tree: Node) -> int:
-    """An upper estimate of the size of the value, so that towers of powers are refused before they are computed."""
+    """Upper bound for the bits of the value: towers of powers are rejected before they are computed."""
     first, steps = _chain(tree)
     if steps:
         return _bits(first) + sum(_bits(right) for _, right in steps)

@@ -44,7 +44,7 @@ def stacked_rows(blocks: Sequence[flint.fmpz_mat], ncols: int) -> flint.fmpz_mat
 
 
 def cancelled(parts: tuple[flint.fmpz_mat, ...], den: int) -> tuple[tuple[flint.fmpz_mat, ...], int]:
-    """Numerators and their common denominator without the factor that all share.
+    """Numerators and denominator of a matrix after cancelling their common factor.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def sign_changes(signs: Sequence[int]) -> int:
 
 
 def echelon_pivots(parts: Sequence[flint.fmpz_mat | flint.nmod_mat], rank: int) -> list[int]:
-    """The columns in which the rows of a reduced echelon form start, its entries given by one matrix or several.
+    """Pivot columns of a reduced echelon form, whose entries have their coordinates in one matrix or several.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def echelon_pivots(parts: Sequence[flint.fmpz_mat | flint.nmod_mat], rank: int) 
 
 
 def kernel_rows(reduced: flint.fmpz_mat, pivots: Sequence[int], unit: int) -> flint.fmpz_mat:
-    """Rows spanning the kernel of a reduced echelon form with these pivots; `unit` stands at the free columns.
+    """Rows that span the kernel of a reduced echelon form, with the integer `unit` in the free columns.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def interleaved(multiples: Sequence[Sequence[flint.fmpz_mat]]) -> flint.fmpz_mat
 
 
 def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint.fmpz_mat]:
-    """The coordinates of a matrix (nrows, ncols) over QQ(b), from the first row of each block of its restriction.
+    """Coordinate matrices of a matrix over QQ(b), from the first row of each block of its restriction of scalars.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint
 def _common_factor(number: flint.fmpz, matrix: flint.fmpz_mat) -> flint.fmpz:
     """gcd(number, all entries of an integer matrix).
 
-    It divides the gcd with the entries of one combination of rows, and nearly always is it; a quotient shows it.
+    It divides the gcd of the entries of one combination of rows, and nearly always equals it: a division proves it.
     """
     nrows, ncols = matrix.nrows(), matrix.ncols()
     if nrows * ncols <= SMALL_MATRIX:
@@ -191,6 +191,6 @@ def _gcd_of(number: flint.fmpz, entries: Sequence[flint.fmpz]) -> flint.fmpz:
 
 @functools.cache
 def _weights(n: int) -> flint.fmpz_mat:
-    """A row of n fixed integers without pattern."""
+    """Row of n fixed pseudo-random integers."""
     rng = random.Random(n)
     return flint.fmpz_mat(1, n, [rng.randint(1, 1 << 20) for _ in range(n)])

@@ -1,9 +1,8 @@
-"""Real number fields QQ(a), on python-flint.
+"""Real number fields QQ(a) and their elements, on python-flint.
 
-A real number field is QQ(a) for one real root a of an irreducible integer polynomial f, singled out by an
-isolating interval; signs are those of this embedding, found by ball arithmetic of growing precision.
-Elements are polynomials in the algebraic integer b = c a, c the leading coefficient of f, so that all
-products stay integral.
+A real number field is QQ(a) for one real root a of an irreducible integer polynomial f, given by an isolating
+interval. Signs are those of this embedding, found by ball arithmetic of growing precision. Elements are polynomials in
+the algebraic integer b = c a, where c is the leading coefficient of f, so all products stay integral.
 """
 
 from __future__ import annotations
@@ -93,7 +92,7 @@ class NumberField(ExactField):
         self._residues: list[tuple[int, int]] = []
 
     def _check_symbol(self) -> None:
-        """What `format` writes, `convert` must read as the same number."""
+        """Raise `FieldError` unless `convert` reads the symbol as the generator."""
         if not isinstance(self.symbol, str) or not _SYMBOL.fullmatch(self.symbol):
             raise FieldError(f"the symbol of a generator is {self.symbol!r}; expected an identifier such as 'a'")
         if not self.symbol.startswith("sqrt("):
@@ -119,12 +118,12 @@ class NumberField(ExactField):
 
     @property
     def generator(self) -> AlgebraicNumber:
-        """The number a."""
+        """The generator a, an element of the field."""
         return AlgebraicNumber(self, flint.fmpq_poly([0, flint.fmpq(1, self.leading)]))
 
     @property
     def modulus(self) -> flint.fmpz_poly:
-        """The monic minimal polynomial of b = c a, as ``flint.fmpz_poly``."""
+        """Monic minimal polynomial of b = c a, a ``flint.fmpz_poly``."""
         return self._modulus
 
     def convert(self, value: ScalarLike) -> AlgebraicNumber:
@@ -154,7 +153,7 @@ class NumberField(ExactField):
         return self.convert(made)
 
     def _from_sympy(self, expression: Any) -> AlgebraicNumber:
-        """A sympy number made of rationals, sums, products and rational powers."""
+        """The element equal to a sympy number made of rationals, sums, products and rational powers."""
         rational = rational_number(expression)
         if rational is not None:
             return self._embedded(rational)
@@ -220,13 +219,13 @@ class NumberField(ExactField):
         return total
 
     def generator_ball(self, precision: int) -> flint.arb:
-        """A ball around b = c a, found with the given working precision in bits."""
+        """Ball (``flint.arb``) around b = c a, found with the given working precision in bits."""
         if precision not in self._balls:
             self._balls[precision] = root_ball(self._modulus, self.root_index, precision)
         return self._balls[precision]
 
     def ball(self, value: Scalar, precision: int) -> flint.arb:
-        """A ball (``flint.arb``) around an element, found with the given working precision in bits."""
+        """Ball (``flint.arb``) around an element, found with the given working precision in bits."""
         with working_precision(precision):
             return self._value_ball(self.convert(value).polynomial, precision)
 
@@ -261,7 +260,7 @@ class NumberField(ExactField):
         return self._residues[attempt]
 
     def _residues_tried(self, index: int) -> int:
-        """Walk down the primes until one splits off a linear factor of the modulus; remember it."""
+        """Store the next prime modulo which the modulus has a linear factor; return the number of that prime."""
         start = [p for p, _ in self._residues]
         while True:
             index += 1
@@ -285,9 +284,9 @@ class NumberField(ExactField):
 
 @final
 class AlgebraicNumber(ExactNumber):
-    """An element of a real number field; made by arithmetic or ``field.convert``.
+    """An element of a real number field, constructed by arithmetic or ``field.convert``.
 
-    Comparisons are those of the field's real embedding.
+    Comparisons are those of the real embedding of the field.
 
     Examples
     --------
@@ -305,7 +304,7 @@ class AlgebraicNumber(ExactNumber):
 
     @property
     def coordinates(self) -> list[flint.fmpq]:
-        """Rational coordinates in powers of the integral generator."""
+        """List of rational coordinates (``flint.fmpq``) in powers of the integral generator."""
         return [self.polynomial[i] for i in range(self.field.degree)]
 
     def rational(self) -> flint.fmpq | None:
@@ -352,7 +351,7 @@ class AlgebraicNumber(ExactNumber):
     __rmul__ = __mul__
 
     def inverse(self) -> AlgebraicNumber:
-        """1 divided by the number; ZeroDivisionError for zero."""
+        """The inverse 1 / x; ``ZeroDivisionError`` for zero."""
         if self.polynomial.is_zero():
             raise ZeroDivisionError("division by zero in a number field")
         common, left, _ = self.polynomial.xgcd(flint.fmpq_poly(self.field.modulus))

@@ -1,6 +1,6 @@
-"""Making number fields from what a user writes: 'sqrt(2)', a polynomial with an interval, a sympy expression.
+"""Number fields from user input: 'sqrt(2)', a polynomial with an interval, a sympy expression.
 
-`number_field` makes the field, `common_field` finds one that holds all values of a list of texts.
+`number_field` constructs the field of one number, `common_field` one that contains all values of a list of strings.
 """
 
 from __future__ import annotations
@@ -35,21 +35,21 @@ def number_field(
         The number a ('sqrt(2)', 'sqrt(2 + sqrt(2))', ``sympy.root(2, 3)``), or the ascending rational
         coefficients of its minimal polynomial.
     interval : pair, optional
-        With a polynomial: rational ends of an interval that holds exactly one of its real roots.
+        With a polynomial: rational ends of an interval that contains exactly one of its real roots.
     name : str
-        How to write a generator that is not a plain square root.
+        Symbol of a generator that is not a plain square root.
 
     Returns
     -------
     RationalField or NumberField
-        QQ itself where a is rational.
+        QQ if a is rational.
 
     Raises
     ------
     FieldError
         If the number is not real algebraic, or the polynomial and interval do not define a real number.
     ParseError
-        If a text is not of the grammar of values.
+        If a string is not in the grammar of values.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def number_field(
         return _field_of_tree(grammar.parse(generator), name)
     if isinstance(generator, Sequence):
         if interval is None:
-            raise FieldError("a polynomial needs an interval that holds exactly one of its real roots")
+            raise FieldError("a polynomial needs an interval that contains exactly one of its real roots")
         return NumberField(name, generator, interval)
     if hasattr(generator, "free_symbols"):
         return _field_of_sympy(generator, name)
@@ -71,7 +71,7 @@ def number_field(
 
 
 def common_field(texts: Iterable[str]) -> RationalField | NumberField:
-    """The smallest field this library makes that holds all values: QQ, QQ(sqrt(d)), or one with several radicals.
+    """A field that contains all values: QQ, QQ(sqrt(d)), or a field with several radicals.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def common_field(texts: Iterable[str]) -> RationalField | NumberField:
 
 
 def exact_value(text: str) -> Scalar:
-    """The real algebraic number that a text denotes, in the smallest field `common_field` finds.
+    """The real algebraic number that a string denotes, in the field that `common_field` finds.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def _kernel(value: flint.fmpq) -> int:
 
 
 def _independent(radicals: list[int]) -> list[int]:
-    """Radicals none of which is in the field of the others: independent modulo squares (over F_2)."""
+    """Radicals that are independent modulo squares (over F_2), so that none is in the field of the others."""
     kept: list[int] = []
     products = {1}
     for d in radicals:
@@ -177,7 +177,7 @@ def _field_of_sympy(expression: Any, name: str) -> RationalField | NumberField:
     try:
         polynomial = sympy.minimal_polynomial(expression, polys=True)
     except (NotImplementedError, sympy.polys.polyerrors.BasePolynomialError) as error:
-        raise FieldError(f"{expression} is not recognised as an algebraic number: {error}") from None
+        raise FieldError(f"{expression} is not recognized as an algebraic number: {error}") from None
     coefficients = [flint.fmpq(int(c.p), int(c.q)) for c in reversed(polynomial.all_coeffs())]
     if len(coefficients) == 2:
         return QQ
@@ -192,4 +192,4 @@ def _field_of_sympy(expression: Any, name: str) -> RationalField | NumberField:
             inside = [b for b in balls if b > low and b < high]
         if len(inside) == 1:
             return NumberField(name, coefficients, (near - margin, near + margin))
-    raise FieldError(f"{expression} could not be told apart from its conjugates; give a polynomial and an interval")
+    raise FieldError(f"{expression} could not be distinguished from its conjugates; give a polynomial and an interval")

@@ -1,6 +1,6 @@
-"""How exact numbers are pickled, which python-flint leaves open: by integers; number fields by their definition.
+"""Pickling of exact numbers: python-flint's types by integers, number fields by their definition.
 
-So that whatever holds exact numbers can be sent to another process.
+Every object that contains exact numbers can so be sent to another process; python-flint does not define pickling.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Reduced = tuple[Callable[..., Any], tuple[Any, ...]]
 
 
 def register() -> None:
-    """Tell pickle (and with it copy, multiprocessing, cloudpickle) how the types of flint in use are made again.
+    """Register the types of flint with pickle, and so with copy, multiprocessing and cloudpickle.
 
     Examples
     --------
@@ -41,10 +41,10 @@ def _of_integer_matrix(matrix: flint.fmpz_mat) -> Reduced:
 
 
 def _of_rational_matrix(matrix: flint.fmpq_mat) -> Reduced:
-    # entries are pickled as themselves: few of these matrices are kept
+    # entry by entry, because few of these matrices are stored
     return flint.fmpq_mat, (matrix.nrows(), matrix.ncols(), matrix.entries())
 
 
 def _of_number_field(field: NumberField) -> Reduced:
-    # what it has computed so far is left behind: balls cannot be pickled, and are found again
+    # the cached enclosures are left out: balls cannot be pickled, and are computed again
     return NumberField, (field.symbol, field.minpoly, field.interval)

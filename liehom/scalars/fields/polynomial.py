@@ -1,8 +1,8 @@
-"""Polynomial: one variable, coefficients in QQ or a real number field, real and half-plane root counts.
+"""Polynomials in one variable over QQ or a real number field, with exact root counts and factorization.
 
-Counts are exact: Sturm sequences for real roots, the Cauchy index of f(c + i y) (Routh-Hurwitz) for roots
-with real part above a cut.  Factoring over QQ is flint's; over QQ(a) it is Trager's: shift until the norm is
-squarefree, factor the norm over QQ, take greatest common divisors.
+Real roots are counted by Sturm sequences, roots with real part above a cut by the Cauchy index of f(c + i y)
+(Routh-Hurwitz). Over QQ, flint factors. Over QQ(a), Trager's method shifts the polynomial until its norm is
+squarefree, factors the norm over QQ and takes greatest common divisors.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ class Polynomial:
 
     @property
     def degree(self) -> int:
-        """The degree; -1 for zero."""
+        """Degree, an int; -1 for the zero polynomial."""
         return len(self.coefficients) - 1
 
     @property
     def leading(self) -> Scalar:
-        """The leading coefficient (zero for the zero polynomial)."""
+        """Leading coefficient, a field element; zero for the zero polynomial."""
         return self.coefficients[-1] if self.coefficients else self.field.zero
 
     def __call__(self, value: Scalar | int) -> Scalar:
@@ -71,7 +71,7 @@ class Polynomial:
 
     # -- arithmetic --------------------------------------------------------------------------------------
     def _flint(self) -> flint.fmpq_poly:
-        """The polynomial over QQ as one of flint."""
+        """The polynomial over QQ as a ``flint.fmpq_poly``."""
         return flint.fmpq_poly([QQ.convert(c) for c in self.coefficients])
 
     def _made(self, coefficients: Sequence[ScalarLike]) -> Polynomial:
@@ -100,7 +100,7 @@ class Polynomial:
         return self._made(out)
 
     def divided(self, other: Polynomial) -> tuple[Polynomial, Polynomial]:
-        """Quotient and remainder; ZeroDivisionError for the zero divisor."""
+        """Quotient and remainder; ``ZeroDivisionError`` if the divisor is zero."""
         if other.degree < 0:
             raise ZeroDivisionError("division by the zero polynomial")
         if self.field.degree == 1:
@@ -149,7 +149,7 @@ class Polynomial:
 
     # -- factors -----------------------------------------------------------------------------------------
     def squarefree_parts(self) -> list[tuple[Polynomial, int]]:
-        """Pairs (squarefree monic part, multiplicity) with the polynomial their product up to a constant (Yun)."""
+        """Pairs (squarefree monic part, multiplicity) whose product is the polynomial up to a constant (Yun)."""
         parts = []
         derivative = self.derivative()
         common = self.gcd(derivative)
@@ -163,7 +163,7 @@ class Polynomial:
         return parts
 
     def factor(self) -> list[tuple[Polynomial, int]]:
-        """The monic irreducible factors over the field, with multiplicities, in order of degree.
+        """Pairs (monic irreducible factor, multiplicity), sorted by degree.
 
         Examples
         --------
@@ -197,7 +197,7 @@ class Polynomial:
         return factors
 
     def _norm(self) -> Polynomial:
-        """The product of the conjugates over QQ: the resultant with the field's modulus, by interpolation."""
+        """Norm over QQ, the product of the conjugates, as a resultant with the modulus of the field (interpolation)."""
         if self.field.degree == 1:
             return self
         size = self.degree * self.field.degree + 1
@@ -223,7 +223,7 @@ class Polynomial:
         return self._made([c / size for c in self.coefficients])
 
     def _variations(self, chain: list[Polynomial], at: Scalar | str) -> int:
-        """Sign changes of a chain at a number, or at +-infinity (at = '+' or '-')."""
+        """Number of sign changes of a chain of polynomials at a number, or at +-infinity (at = '+' or '-')."""
         signs = []
         for p in chain:
             if isinstance(at, str):
@@ -235,7 +235,7 @@ class Polynomial:
         return sum(1 for a, b in itertools.pairwise(signs) if a != b)
 
     def root_counter(self) -> RootCounter:
-        """The function `count_real_roots` with Sturm's chain computed once.
+        """The function `count_real_roots`, with Sturm's chain computed only once.
 
         Examples
         --------
@@ -254,7 +254,7 @@ class Polynomial:
     def count_real_roots(self, low: ScalarLike | None = None, high: ScalarLike | None = None) -> int:
         """Number of distinct real roots in the interval (low, high] (unbounded where None); Sturm's theorem.
 
-        The ends must not be roots of multiplicity above one.
+        The ends must not be multiple roots.
         """
         return self.root_counter()(low, high)
 
@@ -264,8 +264,8 @@ class Polynomial:
         Raises
         ------
         FieldError
-            If two roots of a squarefree part lie symmetric about the line Re = cut (on it, in particular):
-            the count is then not read off this cut; move it.
+            If two roots of a squarefree part are symmetric about the line Re = cut (or lie on it): the method
+            then does not give the count, and another cut is needed.
         """
         total = 0
         for part, multiplicity in self.squarefree_parts():
@@ -273,12 +273,12 @@ class Polynomial:
         return total
 
     def _count_right(self) -> int:
-        """Roots in the open right half plane: f(iy) = i^n (p(y) + i q(y))."""
+        """Number of roots in the open right half plane, by f(iy) = i^n (p(y) + i q(y))."""
         n, signs = self.degree, (1, -1, -1, 1)
         main = [self.field.zero] * (n + 1)
         side = [self.field.zero] * (n + 1)
         for k, c in enumerate(self.coefficients):
-            # i^k / i^n = i^(k-n): real for even n - k, imaginary for odd; the Cauchy index of q / p is right - left.
+            # i^(k-n) is real for even n - k; the Cauchy index of q / p is the number of roots right minus left.
             gap = n - k
             (main if gap % 2 == 0 else side)[k] = c * signs[gap % 4]
         first, second = self._made(main), self._made(side)

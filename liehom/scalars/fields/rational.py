@@ -1,4 +1,4 @@
-"""QQ: the rational numbers, as ``flint.fmpq``, and what denotes a rational number."""
+"""QQ: the rational numbers, as ``flint.fmpq``, and the conversion of other numbers and strings to them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ExactNumber:
 
 
 def rational_number(value: Any) -> flint.fmpq | None:
-    """The ``flint.fmpq`` that a Python, numpy, flint or sympy rational number is, else None."""
+    """The ``flint.fmpq`` equal to a rational number of Python, numpy, flint or sympy; None for other values."""
     if isinstance(value, flint.fmpq):
         return value
     if isinstance(value, (bool, np.bool_)):
@@ -52,7 +52,7 @@ def rational_number(value: Any) -> flint.fmpq | None:
 
 
 def rational_from_text(text: str) -> flint.fmpq | None:
-    """The rational that a plain integer or fraction denotes, else None (fast path of the grammar)."""
+    """The rational number that a string such as '-3' or '1/2' denotes, else None (fast path of the grammar)."""
     stripped = text.strip()
     if _INTEGER.fullmatch(stripped):
         return flint.fmpq(flint.fmpz(stripped.removeprefix("+")))
@@ -64,7 +64,7 @@ def rational_from_text(text: str) -> flint.fmpq | None:
 
 
 def refused(value: Any, field: Field) -> FieldError:
-    """The error for a value that is not in an exact field; a float is shown as the fraction to write."""
+    """The error for a value that is not in an exact field; for a float it proposes a fraction."""
     if isinstance(value, (float, np.floating, Decimal)) or getattr(value, "is_Float", False):
         shown = Fraction(float(value)).limit_denominator(1000) if np.isfinite(float(value)) else "p/q"
         return FieldError(

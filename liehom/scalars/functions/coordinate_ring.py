@@ -1,11 +1,12 @@
 """Polynomials on a variety: QQ[x_1, ..., x_n] modulo some polynomials, with normal forms, exactly.
 
-An element is represented by its normal form (remainder by a Groebner basis), which is zero if and only if the
-element is.
+An element is given by its normal form, the remainder by a Groebner basis, which is zero if and only if the element is
+zero.
 
-Where the only constraint is F = r with F homogeneous and r a number, as |m|^2 = 1, a function whose terms all have
-one degree modulo deg F is one homogeneous polynomial (multiply by powers of F/r): these are factorized and cancelled.
-Division by a sum a of an even and an odd function on a quadric is division of p a(-x) by a a(-x), which is even.
+If the only constraint is F = r with F homogeneous and r a number, such as |m|^2 = 1, a function whose terms all have
+the same degree modulo deg F equals a homogeneous polynomial (multiply by powers of F/r), which can be factorized and
+cancelled. Division of p by a sum a of an even and an odd function on a quadric is division of p a(-x) by a a(-x), which
+is even.
 """
 
 from __future__ import annotations
@@ -77,7 +78,7 @@ class CoordinateRing:
         self._form = self._homogeneous_form(given)
 
     def polynomial(self, terms: Mapping[tuple[int, ...], ScalarLike]) -> flint.fmpq_mpoly:
-        """The polynomial with these terms."""
+        """The polynomial with these terms, a ``flint.fmpq_mpoly``."""
         return self.context.from_dict({e: QQ.convert(c) for e, c in terms.items()})
 
     def reduce(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
@@ -104,7 +105,7 @@ class CoordinateRing:
 
     # -- the grading -------------------------------------------------------------------------------------
     def _homogeneous_form(self, given: list[flint.fmpq_mpoly]) -> tuple[flint.fmpq_mpoly, int] | None:
-        """F/r and its degree if the only constraint is F - r."""
+        """F/r and its degree if the only constraint is F - r, else None."""
         if len(given) != 1:
             return None
         parts = self._parts(given[0])
@@ -115,7 +116,7 @@ class CoordinateRing:
         return parts[degrees[1]] / -constant, degrees[1]
 
     def _parts(self, p: flint.fmpq_mpoly) -> dict[int, flint.fmpq_mpoly]:
-        """The homogeneous parts of a polynomial by degree."""
+        """The homogeneous parts of a polynomial, by degree."""
         terms: dict[int, dict[Any, Any]] = {}
         for e, c in p.terms():
             degree = sum(int(k) for k, w in zip(e, self.weights, strict=True) if w)
@@ -123,7 +124,7 @@ class CoordinateRing:
         return {degree: self.context.from_dict(part) for degree, part in terms.items()}
 
     def homogeneous(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
-        """The homogeneous polynomial that equals p on the variety, not divisible by F; None if there is none."""
+        """The homogeneous polynomial, not divisible by F, that equals p on the variety; None if it does not exist."""
         if self._form is None:
             return None if self.basis else p
         form, e = self._form
@@ -146,7 +147,7 @@ class CoordinateRing:
         return p
 
     def divide(self, p: flint.fmpq_mpoly, q: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
-        """The polynomial p/q in normal form, or None if q is not seen to divide p on the variety.
+        """The polynomial p/q in normal form, or None if no quotient on the variety is found.
 
         Examples
         --------
@@ -171,7 +172,7 @@ class CoordinateRing:
         return None if even is None else self._divide_parts(self.reduce(p * mirrored), even)
 
     def _divide_by_ansatz(self, p: flint.fmpq_mpoly, q: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
-        """A quotient of low degree by linear algebra: normal forms of degree have no unique factors."""
+        """A quotient of low degree, by linear algebra, since normal forms do not factor uniquely; None if not found."""
         least = max(0, int(p.total_degree()) - int(q.total_degree()))
         for degree in (least, least + 1):
             used = [i for i, d in enumerate(p.degrees()) if d]
@@ -202,7 +203,7 @@ class CoordinateRing:
         return None
 
     def _divide_parts(self, p: flint.fmpq_mpoly, divisor: flint.fmpq_mpoly) -> flint.fmpq_mpoly | None:
-        """Division by a homogeneous polynomial, separately for each class of degrees."""
+        """Quotient by a homogeneous polynomial, one class of degrees after another; None if it is not exact."""
         e = self._form[1] if self._form is not None else 1
         classes: dict[int, flint.fmpq_mpoly] = {}
         for degree, part in self._parts(p).items():
@@ -219,7 +220,7 @@ class CoordinateRing:
         return self.reduce(total)
 
     def shortest(self, p: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
-        """Of the polynomials that equal p on the variety and are seen, one with few terms; p if it is as short.
+        """A polynomial with few terms that equals p on the variety, possibly p itself.
 
         Examples
         --------

@@ -1,8 +1,8 @@
 """Rational functions on a variety: the field of fractions of its coordinate ring, exactly.
 
-An element is numerator / denominator. The numerator is a normal form modulo the constraints, so that an element is
-zero if and only if its numerator is; the denominator is a product of powers of known polynomials ("atoms"), so that
-fractions with denominators such as |X|^2, |X|^4 are added without a gcd.
+An element is numerator / denominator. The numerator is a normal form modulo the constraints, so an element is zero if
+and only if its numerator is zero. The denominator is a product of powers of known polynomials ("atoms"), so fractions
+with denominators such as |X|^2 and |X|^4 are added without a gcd.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class FunctionField:
 
     Notes
     -----
-    Equality in the ring is proved, whatever the ideal: an element is 0 if its numerator is in the ideal. Only
-    division asks for a prime ideal (a divisor of zero must not be a denominator).
+    Equality in the ring is proved for every ideal: an element is 0 if its numerator is in the ideal. Only division
+    requires a prime ideal, because a divisor of zero must not be a denominator.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class FunctionField:
 
     # -- denominators ------------------------------------------------------------------------------------
     def atom(self, p: flint.fmpq_mpoly) -> int:
-        """The number of the atom p, which is made one if it is not yet."""
+        """Index of the atom p, which is added if it is new."""
         for i, known in enumerate(self.atoms):
             if known == p:
                 return i
@@ -78,11 +78,11 @@ class FunctionField:
         return len(self.atoms) - 1
 
     def reduced_atom(self, i: int) -> flint.fmpq_mpoly:
-        """Atom i in normal form."""
+        """Normal form of atom i, a ``flint.fmpq_mpoly``."""
         return self._reduced[i]
 
     def denominator(self, powers: Powers) -> flint.fmpq_mpoly:
-        """The product of atoms as a polynomial, in normal form."""
+        """Normal form of a product of powers of atoms."""
         made = self.ring.context.constant(1)
         for i, k in powers:
             for _ in range(k):
@@ -110,7 +110,7 @@ class FunctionField:
         return RationalFunction(self, self.ring.context.constant(1) / content, tuple(sorted(powers.items())))
 
     def primitive(self, vector: Sequence[RationalFunction]) -> list[RationalFunction]:
-        """The vector times a function, so that it has no denominators and no common divisor that is seen.
+        """The multiple of a vector by a function that has no denominators and no known common divisor.
 
         The leading coefficient of the first component that is not zero is positive.
         """
@@ -132,12 +132,12 @@ class FunctionField:
 
     # -- numbers -----------------------------------------------------------------------------------------
     def convert(self, value: RationalFunction | Number | int) -> RationalFunction:
-        """A rational number, or an element, as an element.
+        """The element equal to a rational number or an element.
 
         Raises
         ------
         FieldError
-            If it is neither.
+            If the value is neither of these.
         """
         if isinstance(value, RationalFunction):
             return value
@@ -149,14 +149,14 @@ class FunctionField:
 
 @final
 class RationalFunction:
-    """An element of a `FunctionField`: arithmetic with rational numbers and with elements of the same field.
+    """An element of a `FunctionField`, with arithmetic with rational numbers and elements of the same field.
 
     Parameters
     ----------
     field : FunctionField
     numerator : flint polynomial, in normal form
     powers : tuple of (number of an atom, exponent)
-        The denominator.
+        The denominator, a product of powers of atoms.
 
     Examples
     --------
@@ -193,7 +193,7 @@ class RationalFunction:
     __radd__ = __add__
 
     def over(self, common: Powers) -> flint.fmpq_mpoly:
-        """The numerator over a multiple of the denominator."""
+        """The numerator of the function over `common`, a multiple of its denominator."""
         if common == self.powers:
             return self.numerator
         own = dict(self.powers)
@@ -237,7 +237,7 @@ class RationalFunction:
         return NotImplemented if left is None else left * self.inverse()
 
     def inverse(self) -> RationalFunction:
-        """1 / self."""
+        """The inverse function 1 / f."""
         below = RationalFunction(self.field, self.field.denominator(self.powers), ())
         made: RationalFunction = self.field.inverse(self.numerator) * below
         return made
@@ -263,7 +263,7 @@ class RationalFunction:
 
     # -- simplification ----------------------------------------------------------------------------------
     def cancelled(self) -> RationalFunction:
-        """The same function without the atoms of the denominator that are seen to divide the numerator."""
+        """The function after cancelling the atoms of the denominator that are found to divide the numerator."""
         if not self.powers:
             return self
         top, kept = self.numerator, []
@@ -275,7 +275,7 @@ class RationalFunction:
         return RationalFunction(self.field, top, tuple(kept))
 
     def factors(self) -> tuple[flint.fmpq, list[tuple[flint.fmpq_mpoly, int]]]:
-        """A number and polynomials with exponents of either sign, whose product equals the function on the variety."""
+        """A number and pairs (polynomial, exponent of either sign) whose product equals the function on the variety."""
         lifted = self.field.ring.homogeneous(self.numerator)
         top = self.numerator if lifted is None else lifted
         if top.is_zero():

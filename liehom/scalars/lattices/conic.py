@@ -1,9 +1,9 @@
-"""A rational zero of a ternary quadratic form, or the proof that there is none, by Legendre's theorem.
+"""A rational zero of a ternary quadratic form, or the proof that no zero exists, by Legendre's theorem.
 
-A diagonal form with squarefree, pairwise coprime a, b, c has a zero exactly if the signs differ and -bc, -ca, -ab are
-squares modulo a, b, c.  With the square roots r the vectors y = r_a z (mod a), z = r_b x (mod b), x = r_c y (mod c)
-form a lattice of index abc on which the form is a multiple of abc; its short vectors have the value 0 or +-abc
-(Cremona-Rusin), and from -abc a zero follows by an identity of Mordell.
+A diagonal form with squarefree, pairwise coprime a, b, c has a zero if and only if the signs differ and -bc, -ca, -ab
+are squares modulo a, b, c. Let r_a, r_b, r_c be the square roots. The vectors with y = r_a z (mod a), z = r_b x
+(mod b), x = r_c y (mod c) form a lattice of index abc on which the form is a multiple of abc. Its short vectors have
+the value 0 or +-abc (Cremona-Rusin), and an identity of Mordell turns the value -abc into a zero.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SHORT = 4
 
 
 def rational_zero(form: ExactMatrix) -> ExactMatrix | None:
-    """A row x (1, 3), not zero, with x form x^T = 0 for a symmetric form over QQ, or None: there is none.
+    """A row x (1, 3), not zero, with x form x^T = 0 for a symmetric form over QQ; None if no such x exists.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def rational_zero(form: ExactMatrix) -> ExactMatrix | None:
 
     Notes
     -----
-    The coefficients of a diagonal form are factored.
+    The coefficients of a diagonal form are factored, which limits their size.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def rational_zero(form: ExactMatrix) -> ExactMatrix | None:
 
 
 def legendre_zero(coefficients: Triple) -> Triple | None:
-    """Integers (x, y, z), not all zero, with a x^2 + b y^2 + c z^2 = 0, for a, b, c not zero; None: there are none.
+    """Integers (x, y, z), not all zero, with a x^2 + b y^2 + c z^2 = 0, where a, b, c are not zero; None if none exist.
 
     Examples
     --------
@@ -80,12 +80,12 @@ def legendre_zero(coefficients: Triple) -> Triple | None:
     common = gcd(x, y, z)
     a, b, c = coefficients
     if a * x * x + b * y * y + c * z * z or not common:
-        raise InternalError(f"{(x, y, z)} is no zero of the form {coefficients}")
+        raise InternalError(f"{(x, y, z)} is not a zero of the form {coefficients}")
     return x // common, y // common, z // common
 
 
 def _reduced(coefficients: Triple) -> tuple[Triple, Triple]:
-    """Squarefree, pairwise coprime coefficients, and s with the old unknowns x = new unknowns / s."""
+    """Squarefree, pairwise coprime coefficients, and factors s: the old unknowns are the new unknowns divided by s."""
     values, scale = list(coefficients), [1, 1, 1]
     changed = True
     while changed:
@@ -133,7 +133,7 @@ def _reduced_zero(coefficients: Triple) -> Triple | None:
 
 
 def _square_root(square: int, divisor: int, modulus: int) -> int | None:
-    """r with r^2 = square / divisor^2 modulo a squarefree number that is coprime to the divisor, or None."""
+    """Some r with r^2 = square / divisor^2 modulo a squarefree number coprime to the divisor, or None."""
     m = abs(modulus)
     total, seen = 0, 1
     for p in (int(factor) for factor, _ in flint.fmpz(m).factor()):
@@ -147,11 +147,11 @@ def _square_root(square: int, divisor: int, modulus: int) -> int | None:
 
 
 def _short_vectors(coefficients: Triple, roots: Triple) -> Iterator[Triple]:
-    """Short vectors of the lattice, for the norm |a| x^2 + |b| y^2 + |c| z^2."""
+    """Short vectors of the lattice in the norm |a| x^2 + |b| y^2 + |c| z^2, shorter ones earlier."""
     a, b, c = (abs(v) for v in coefficients)
     ra, rb, rc = roots
     index = a * b * c
-    # the conditions modulo coprime numbers, in the two unknowns that each leaves free, by the Chinese remainder theorem
+    # each condition leaves two unknowns free; the Chinese remainder theorem combines those modulo a, b and c
     rows = [[index, 0, 0], [0, index, 0], [0, 0, index]]
     rows += [[_crt(v, (a, b, c)) for v in zip(*images, strict=True)] for images in _local_bases(ra, rb, rc)]
     weights = [isqrt(v << 40) for v in (a, b, c)]
@@ -165,7 +165,7 @@ def _short_vectors(coefficients: Triple, roots: Triple) -> Iterator[Triple]:
 
 
 def _local_bases(ra: int, rb: int, rc: int) -> list[list[Triple]]:
-    """Pairs of generators of the conditions modulo a, b and c, one choice of pairs after the other."""
+    """Generators of the lattices modulo a, b and c, each with zeros for the other two moduli."""
     modulo_a = [(1, 0, 0), (0, ra, 1)]  # y = r_a z
     modulo_b = [(0, 1, 0), (1, 0, rb)]  # z = r_b x
     modulo_c = [(0, 0, 1), (rc, 1, 0)]  # x = r_c y

@@ -1,8 +1,9 @@
-"""Fixed-point integers with a chosen number of bits, where float64 is too coarse and exact fractions grow.
+"""Fixed-point integers with a chosen number of bits, for when float64 is too coarse and exact fractions grow.
 
-`balancing_rows` undoes an unknown change of basis: for matrices A_i without a common invariant subspace the map
-P -> sum A_i^T P A_i on symmetric forms has one positive definite eigenvector (Perron-Frobenius), which moves along
-under conjugation; a basis orthonormal for it does not depend on the conjugation.  Results only propose.
+`balancing_rows` undoes an unknown change of basis. For matrices A_i without a common invariant subspace, the map
+P -> sum A_i^T P A_i on symmetric forms has one positive definite eigenvector (Perron-Frobenius). Conjugation of the A_i
+transforms this form, so a basis that is orthonormal for it does not depend on the conjugation. Results are proposals
+that the caller verifies.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ STEPS = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 
 
 def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, flint.fmpq]:
-    """An integer matrix N over QQ and a rational s with matrix = s N nearly, the largest entry of N near 2^bits.
+    """An integer matrix N over QQ, its largest entry near 2^bits, and a rational s with matrix = s N approximately.
 
     Examples
     --------
@@ -41,7 +42,7 @@ def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, flint.fmpq
 
 
 def power_of_two(value: ScalarLike) -> flint.fmpq:
-    """A power of two within a factor 2 of a rational that is not negative; 1 for 0.
+    """A power of two within a factor 2 of a positive rational number; 1 for 0.
 
     Examples
     --------
@@ -59,14 +60,14 @@ def _rounded(value: flint.fmpq) -> flint.fmpz:
 
 
 def balancing_rows(matrices: Sequence[ExactMatrix], bits: int) -> ExactMatrix | None:
-    """Rows nearly orthonormal for the form P with sum A_i^T P A_i nearly a multiple of P; None if bits are short.
+    """Rows nearly orthonormal for the form P with sum A_i^T P A_i = c P approximately; None if `bits` is too small.
 
     Parameters
     ----------
     matrices : sequence of ExactMatrix
         Integer matrices (d, d) over QQ, at least one.
     bits : int
-        Of the entries of P; about twice the logarithm of the condition number of the rows, and some.
+        Bits of the entries of P: a little more than twice the logarithm of the condition number of the rows.
     """
     d = matrices[0].nrows
     pairs = [(a.parts[0].transpose(), a.parts[0]) for a in matrices]
@@ -77,7 +78,7 @@ def balancing_rows(matrices: Sequence[ExactMatrix], bits: int) -> ExactMatrix | 
             total = _trace(image)
             if total == 0:
                 return None
-            # adding a part of P itself keeps the iteration from oscillating
+            # a multiple of P is added so that the iteration does not oscillate
             mixed = [2 * x * size // total + y for x, y in zip(image.entries(), form.entries(), strict=True)]
             excess = max(int(abs(x)).bit_length() for x in mixed) - bits
             form = flint.fmpz_mat(d, d, [x >> excess if excess > 0 else x << -excess for x in mixed])
@@ -104,7 +105,7 @@ def _trace(matrix: flint.fmpz_mat) -> flint.fmpz:
 
 
 def _gram_schmidt(form: flint.fmpz_mat, bits: int) -> ExactMatrix | None:
-    """Orthogonal rows for a positive definite form, of length about 2^(bits/2); None if bits are short."""
+    """Orthogonal rows for a positive definite form, of length about 2^(bits/2); None if `bits` is too small."""
     d = form.nrows()
     table = [[int(x) for x in row] for row in form.tolist()]
     lower = [[0] * d for _ in range(d)]  # form = L D L^T, L in units of 2^-bits
@@ -127,7 +128,7 @@ def _gram_schmidt(form: flint.fmpz_mat, bits: int) -> ExactMatrix | None:
 
 
 def lattice_reduction(rows: ExactMatrix, bits: int) -> ExactMatrix:
-    """A change of basis C (k, k) with the rows of C @ rows shorter and more orthogonal (LLL), of length about 1.
+    """A change of basis C (k, k) for which the rows of C @ rows are LLL-reduced and have length about 1.
 
     Examples
     --------

@@ -1,8 +1,7 @@
 """Linear algebra modulo a prime: lower bounds for ranks, at machine speed.
 
-A rank modulo a prime (a residue map of the field onto F_p) is at most the true rank, so reaching a bound
-modulo p proves that it is reached.  Where it is not reached the prime may be to blame (numbers of the input
-may be multiples of it): then the exact rank decides.
+A rank modulo a prime (by a residue map of the field onto F_p) is at most the true rank, so a bound that is reached
+modulo p is reached. If it is not reached, numbers of the input may be multiples of p, and the exact rank decides.
 """
 
 from __future__ import annotations
@@ -16,12 +15,12 @@ from liehom.scalars.fields.integer_matrices import echelon_pivots
 
 
 def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
-    """A lower bound (nearly always sharp) for the dimension of the least space of rows closed under maps.
+    """A lower bound, nearly always sharp, for the dimension of the smallest invariant space that contains given rows.
 
     Parameters
     ----------
     span : ExactMatrix
-        Rows to start from, shape (k, n).
+        The given rows, shape (k, n).
     maps : sequence of ExactMatrix
         Matrices (n, n) acting on rows from the right.
 
@@ -42,9 +41,9 @@ def invariant_hull_rank(span: ExactMatrix, maps: Sequence[ExactMatrix]) -> int:
 
 
 def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
-    """Primes p < 2^22 with residue maps b -> r of the field, enough to recognise zero.
+    """Pairs (p, r): primes p < 2^22 and residue maps b -> r of the field, enough of them to recognize zero.
 
-    A sum of products of two elements of Z[b] that all of these maps kill is zero.
+    A sum of products of two elements of Z[b] is zero if all of these maps send it to 0.
 
     Parameters
     ----------
@@ -75,7 +74,7 @@ def small_residues(field: ExactField, bound: int) -> Iterator[tuple[int, int]]:
 
 
 def norm_bound(modulus: Sequence[int], bound: int) -> int:
-    """A bound for twice the norm of sums of products of two elements, given the bound for coordinates of size 1.
+    """Upper bound for twice the norm of sums of products of two elements, given the bound for coordinates of size 1.
 
     Every conjugate of the generator is at most 1 + max |coefficient| (Cauchy), so a conjugate of an element with
     coordinates of size s is at most s (1 + beta + ... + beta^(m-1)).
@@ -90,7 +89,7 @@ def norm_bound(modulus: Sequence[int], bound: int) -> int:
 
 
 def independent_rows(matrix: ExactMatrix) -> list[int]:
-    """Indices of rows that are a basis of the span of all, proved.
+    """List of the indices of rows that are a basis of the row space, with proof.
 
     Examples
     --------
@@ -102,10 +101,9 @@ def independent_rows(matrix: ExactMatrix) -> list[int]:
 
 
 def independent_columns(matrix: ExactMatrix) -> list[int]:
-    """Indices of columns that are a basis of the span of all, proved; the first column is among them if it can be.
+    """List of the indices of columns that are a basis of the column space, with proof; 0 is one unless column 0 is 0.
 
-    Pivots modulo a prime are independent; that there are as many as the rank is proved by the shape or by the
-    exact rank.
+    Pivots modulo a prime are independent. The shape or the exact rank proves that their number is the rank.
 
     Examples
     --------
@@ -121,7 +119,7 @@ def independent_columns(matrix: ExactMatrix) -> list[int]:
 
 
 def primitive_residues(rows: Sequence[ExactMatrix], ncols: int) -> flint.nmod_mat:
-    """Rows modulo a prime (``flint.nmod_mat``), each cleared of its denominator and common factor before.
+    """Rows modulo a prime (``flint.nmod_mat``), each first cleared of its denominator and common factor.
 
     Parameters
     ----------
@@ -142,7 +140,7 @@ def _primitive(row: ExactMatrix) -> ExactMatrix:
 
 
 def pivot_columns(image: flint.nmod_mat) -> list[int]:
-    """The pivot columns of a matrix modulo a prime (``flint.nmod_mat``)."""
+    """List of the pivot columns of a matrix modulo a prime."""
     reduced, rank = image.rref()
     return echelon_pivots((reduced,), int(rank))
 

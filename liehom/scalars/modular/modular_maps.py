@@ -1,9 +1,9 @@
 """Intertwining maps modulo a prime: all T with T A_g = B_g T, by spinning eigenvectors.
 
-T maps the kernel of a polynomial f(a) in the A_g into that of f(b), the same polynomial in the B_g.  A vector x of a
-small kernel is spun to a basis v_j = (word in A) x, with T v_j = (word in B) T x: the unknown is T x in the other
-kernel.  Random covectors give the conditions.  The space found contains every T modulo p, and so its dimension is at
-least that over the rationals.  Vectors are rows.
+T maps the kernel of a polynomial f(a) in the A_g into the kernel of f(b), the same polynomial in the B_g. Words in the
+A_g applied to a seed vector x of a small kernel give a basis v_j ("spinning"), and T v_j is the same word in the B_g
+applied to T x. The unknown is T x in the other kernel. Random covectors give the conditions. The space found contains
+every T modulo p, so its dimension is at least the dimension over the rationals. Vectors are rows.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ SEED_TRIALS = 12
 def intertwining_residues(
     source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], attempt: int = 0
 ) -> flint.nmod_mat | None:
-    """The maps T, shape (e, d), with T A_g = B_g T modulo a prime, as the reduced echelon rows of flattened matrices.
+    """The maps T, shape (e, d), with T A_g = B_g T modulo a prime: the reduced echelon rows of flattened matrices.
 
     Parameters
     ----------
     source, target : sequences of ExactMatrix
         The A_g (d, d) and the B_g (e, e) over QQ, equally many, at least one.
     attempt : int
-        Which prime.
+        The number of the prime.
 
     Returns
     -------
     flint.nmod_mat or None
-        Rows (k, e*d), k at least the dimension over QQ; None where the module has no small kernels to start from.
+        Rows (k, e*d), k at least the dimension over QQ; None if no small kernel gives a seed vector.
 
     Examples
     --------
@@ -67,7 +67,7 @@ def _matrix(nrows: int, ncols: int, entries: Sequence[int | flint.nmod], modulus
 
 
 def _kernel(matrix: flint.nmod_mat) -> flint.nmod_mat:
-    """Rows x with x M = 0."""
+    """Rows that span the kernel {x : x M = 0}."""
     vectors, nullity = matrix.transpose().nullspace()
     n = vectors.nrows()
     columns = vectors.transpose().entries()[: int(nullity) * n]
@@ -75,7 +75,7 @@ def _kernel(matrix: flint.nmod_mat) -> flint.nmod_mat:
 
 
 class _SpunModule:
-    """Rows v_j that are independent, each with its images T v_j for every unknown of its seed."""
+    """Independent rows v_j, and their images T v_j for every unknown of each seed vector."""
 
     def __init__(self, left: list[flint.nmod_mat], right: list[flint.nmod_mat]) -> None:
         self.left, self.right = left, right
@@ -90,7 +90,7 @@ class _SpunModule:
         return int(self.vectors.nrows())
 
     def seed(self, rng: random.Random) -> bool:
-        """Spin a vector of a small kernel; whether it was outside the span."""
+        """Spin a vector of a small kernel; return whether it was outside the span."""
         kernels = self._kernels(rng)
         if kernels is None:
             return False
@@ -114,11 +114,11 @@ class _SpunModule:
         return True
 
     def _kernels(self, rng: random.Random) -> tuple[flint.nmod_mat, flint.nmod_mat] | None:
-        """Kernels (rows) of one polynomial in a random element, in the source and in the target."""
+        """Kernels, as rows, of one polynomial in a random element, in source and target; None if they are large."""
         a, b = self._element(rng)
         polynomial = a.charpoly()
         if self.rank:
-            # an eigenvalue on the quotient by what is spun already belongs to a vector outside
+            # an eigenvalue on the quotient by the spanned space belongs to a vector outside it
             polynomial = polynomial // self._restricted(a).charpoly()
         factors = polynomial.factor()[1]
         f = min(factors, key=lambda pair: pair[0].degree() * pair[1])[0]
@@ -126,14 +126,14 @@ class _SpunModule:
         return (own, other) if max(own.nrows(), other.nrows()) <= LARGEST_KERNEL else None
 
     def _restricted(self, a: flint.nmod_mat) -> flint.nmod_mat:
-        """The matrix of an element (acting on rows) on the span of the vectors, which is invariant."""
+        """Matrix of an element, which acts on rows, restricted to the span of the vectors, an invariant space."""
         places = pivot_columns(self.vectors)
         turned = self.vectors.transpose()
         square, moved = selected_rows(turned, places), selected_rows((self.vectors * a).transpose(), places)
         return square.inv() * moved
 
     def _element(self, rng: random.Random) -> tuple[flint.nmod_mat, flint.nmod_mat]:
-        """A random sum of generators and products of two."""
+        """A random sum of generators and products of two generators, in the source and in the target."""
         words: list[tuple[int, ...]] = [(g,) for g in range(len(self.left))]
         words += [(rng.randrange(len(self.left)), rng.randrange(len(self.left))) for _ in range(2)]
         a, b = self.left[0] * 0, self.right[0] * 0
@@ -146,7 +146,7 @@ class _SpunModule:
         return a, b
 
     def solution(self, rng: random.Random) -> flint.nmod_mat:
-        """The echelon rows of all T, flattened."""
+        """The reduced echelon rows of all T, flattened."""
         inverse = self.vectors.inv()
         count = sum(len(images) for _, images in self.seeds)
         if count == 0:
@@ -169,12 +169,12 @@ class _SpunModule:
         return row_basis(_matrix(weights.nrows(), self.d * self.e, flat, self.p))
 
     def _applied(self, coefficients: flint.nmod_mat) -> list[flint.nmod_mat]:
-        """For each unknown the rows sum_j coefficients[., j] T v_j."""
+        """For each unknown, the rows sum_j coefficients[., j] T v_j."""
         turned = coefficients.transpose()
         return [selected_rows(turned, places).transpose() * w for places, images in self.seeds for w in images]
 
     def _combined(self, weights: flint.nmod_mat, i: int) -> flint.nmod_mat:
-        """The rows T v_j for the i-th solution."""
+        """The rows T v_j for solution number i."""
         blocks, c = [], 0
         for rows, images in self.seeds:
             total = _matrix(len(rows), self.e, [0] * (len(rows) * self.e), self.p)

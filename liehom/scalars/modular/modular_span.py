@@ -1,8 +1,8 @@
-"""Spans modulo a prime: a space of rows that grows, and the lift of an echelon basis to the rationals.
+"""Spans modulo a prime: a growing space of rows, and the lift of an echelon basis to the rationals.
 
-Elimination runs on float64 arrays modulo a prime below 2^22: products of residues, summed over up to 512 terms, stay
-below 2^53.  A basis modulo larger primes lifts entry by entry to the rationals with numerator and denominator below
-sqrt(p / 2), several primes together to larger ones (Wang).  A lift is a proposal: who takes it verifies it.
+Elimination uses float64 arrays modulo a prime below 2^22: sums of up to 512 products of residues stay below 2^53. A
+basis modulo a larger prime p lifts entry by entry to rationals with numerator and denominator below sqrt(p / 2), and
+several primes together give larger ones (Wang). A lift is a proposal that the caller verifies.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Residues = Array
 
 @final
 class ModularSpan:
-    """A space of rows modulo a small prime that grows.
+    """A growing space of rows modulo a small prime.
 
     Parameters
     ----------
@@ -52,11 +52,11 @@ class ModularSpan:
 
     @property
     def rank(self) -> int:
-        """The dimension."""
+        """Dimension, an int."""
         return len(self.pivots)
 
     def extend(self, rows: npt.ArrayLike) -> list[int]:
-        """Add rows; the numbers of those that are independent of all earlier ones."""
+        """Add rows; return the list of indices of the rows that are independent of all earlier rows."""
         p = self.modulus
         rest = remainders(np.array(rows, dtype=np.float64).reshape(-1, self.ncols), p)
         if self.rank:
@@ -167,7 +167,7 @@ def product(left: Residues, right: Residues, modulus: int) -> Residues:
 
 
 def residue_map(field: ExactField) -> tuple[int, int]:
-    """A prime below 2^22 and the image of the integral generator.
+    """A prime below 2^22 and the image of the integral generator modulo it.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def residue_map(field: ExactField) -> tuple[int, int]:
 
 
 def residues(matrix: ExactMatrix, modulus: int, root: int) -> Residues:
-    """The numerators of a matrix modulo a small prime, as float64.
+    """Array of float64 with the numerators of a matrix modulo a small prime.
 
     Examples
     --------
@@ -197,7 +197,7 @@ def residues(matrix: ExactMatrix, modulus: int, root: int) -> Residues:
 
 
 def flat_echelon(matrices: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
-    """The reduced echelon form of flattened matrices modulo a prime (``flint.nmod_mat``), non-zero rows only.
+    """The non-zero rows of the reduced echelon form of flattened matrices modulo a prime.
 
     Examples
     --------
@@ -210,12 +210,12 @@ def flat_echelon(matrices: Sequence[flint.nmod_mat]) -> flint.nmod_mat:
 
 
 def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -> Iterator[ExactMatrix]:
-    """Proposals for a matrix over QQ that is given modulo primes, from one prime, two, ...; wrong ones among them.
+    """Proposals, possibly wrong, for a matrix over QQ that is known modulo primes: from one prime, from two, ...
 
     Parameters
     ----------
     make : function of int
-        The matrix modulo the prime of that number (``flint.nmod_mat``), a reduced echelon form say.
+        The matrix (``flint.nmod_mat``) modulo the prime with that number, for example a reduced echelon form.
     field : RationalField
 
     Examples
@@ -245,7 +245,7 @@ def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -
 
 
 def lifted(values: Residues, modulus: int, field: Field) -> ExactMatrix | None:
-    """The matrix of small fractions that a matrix modulo one prime proposes, or None if an entry proposes none.
+    """The matrix of small fractions equal to a matrix modulo one prime, or None if some entry is not one.
 
     Examples
     --------
@@ -280,7 +280,7 @@ def _lifted(values: list[int], modulus: int) -> list[tuple[int, int]] | None:
 
 
 def _fraction(value: int, modulus: int, bound: int) -> tuple[int, int] | None:
-    """a / b = value modulo the modulus with |a|, b at most the bound, by the extended Euclidean algorithm."""
+    """(a, b) with a / b = value modulo the modulus and |a|, b at most the bound (extended Euclid), or None."""
     if value <= bound:
         return value, 1
     r, s, t, u = modulus, value, 0, 1

@@ -1,8 +1,8 @@
-"""Whether complex conjugation is one and the same automorphism of a number field in all its embeddings.
+"""Decision whether complex conjugation is the same automorphism of a number field in all its embeddings.
 
-K = QQ(theta), theta a root of f, integral and irreducible.  Conjugation is given by a polynomial c of degree < deg f
-with c(r) = conj(r) for every root r of f; there is one with real coefficients, by interpolation, and the question is
-whether they are rational.  Then disc(f) c has integer coefficients, so that balls decide.
+Let K = QQ(theta) for a root theta of f, integral and irreducible. Interpolation gives one polynomial c of degree
+< deg f with real coefficients and c(r) = conj(r) for every root r of f. The question is whether its coefficients are
+rational. In this case disc(f) c has integer coefficients, so balls decide.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ DOUBLINGS = 12
 
 
 def complex_conjugation(f: Polynomial) -> Polynomial | None:
-    """The polynomial c over QQ with c(r) = conj(r) for every complex root r of f, or None if there is none: proved.
+    """The polynomial c over QQ with c(r) = conj(r) for every complex root r of f; None if it is proved not to exist.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def complex_conjugation(f: Polynomial) -> Polynomial | None:
 
     Notes
     -----
-    It exists where the field of f is totally real, then c = t, or has complex multiplication, and nowhere else.
+    The polynomial exists if and only if the field of f is totally real (then c = t) or a CM field.
 
     Examples
     --------
@@ -57,11 +57,11 @@ def complex_conjugation(f: Polynomial) -> Polynomial | None:
             candidate = Polynomial(QQ, [QQ.convert(x) / discriminant for x in found])
             return candidate if found and _composed(f, candidate).degree < 0 else None
         bits *= 2
-    raise InternalError(f"the conjugates of the roots of {f!r} were not told apart with {bits // 2} bits")
+    raise InternalError(f"the conjugates of the roots of {f!r} were not distinguished with {bits // 2} bits")
 
 
 def _interpolated(f: flint.fmpz_poly) -> list[flint.acb]:
-    """The coefficients of the sum of conj(r) f / (t - r) / f'(r) over the roots r, as balls."""
+    """Balls around the coefficients of the sum of conj(r) f / (t - r) / f'(r) over the roots r."""
     n, derivative = f.degree(), flint.acb_poly(f.derivative())
     total = [flint.acb(0)] * n
     roots: Any = f.complex_roots()  # pairs of a root and its multiplicity
@@ -77,7 +77,7 @@ def _interpolated(f: flint.fmpz_poly) -> list[flint.acb]:
 
 
 def _integers(balls: list[flint.acb]) -> list[int] | None:
-    """The integers in the balls; empty if some ball holds none, None if some ball is too wide to tell."""
+    """The integers in the balls; [] if some ball contains no integer, None if some ball is too wide."""
     found = []
     for ball in balls:
         value = ball.real
@@ -92,7 +92,7 @@ def _integers(balls: list[flint.acb]) -> list[int] | None:
 
 
 def _composed(f: Polynomial, inner: Polynomial) -> Polynomial:
-    """f(inner) modulo f."""
+    """The polynomial f(inner) modulo f."""
     total = Polynomial(QQ, [])
     for c in reversed(f.coefficients):
         total = (total * inner + Polynomial(QQ, [c])) % f

@@ -1,8 +1,8 @@
-"""Extension: a real number field inside a larger one; adjoining a real root, factoring over the reals.
+"""Extensions of real number fields: adjoining a real root, and factorization over the reals.
 
-K = QQ(b) in F = QQ(c), c = alpha + s b for a root alpha of an irreducible f over K (Trager): the norm of
-f(t - s b) is the minimal polynomial of c, and b is the common root of its own minimal polynomial and of
-x -> f^x(c - s x).  The pair of roots alpha, conj(alpha) is adjoined through alpha + conj(alpha) or
+Let K = QQ(b) and F = QQ(c) with c = alpha + s b for a root alpha of an irreducible polynomial f over K (Trager). The
+norm of f(t - s b) is the minimal polynomial of c, and b is the common root of its own minimal polynomial and of
+x -> f^x(c - s x). A pair of roots alpha, conj(alpha) is adjoined through alpha + conj(alpha) or
 (alpha + k)(conj(alpha) + k), whose conjugates are the roots of a resolvent (Newton's identities).
 """
 
@@ -31,7 +31,7 @@ from liehom.scalars.roots.roots import complex_root_balls
 @final
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """A field K in a field F, both with their real embeddings, which agree.
+    """An embedding of a real number field K in a field F that respects the real embeddings.
 
     Attributes
     ----------
@@ -54,11 +54,11 @@ class Extension:
 
     @property
     def is_trivial(self) -> bool:
-        """Whether F is K itself."""
+        """Whether F equals K."""
         return self.base == self.field
 
     def embed(self, value: Scalar) -> Scalar:
-        """The image of an element of K."""
+        """Image in F of an element of K."""
         if self.is_trivial:
             return value
         total = self.field.zero
@@ -67,7 +67,7 @@ class Extension:
         return total
 
     def matrix(self, matrix: ExactMatrix) -> ExactMatrix:
-        """The image of a matrix over K."""
+        """Image over F of a matrix over K, an `ExactMatrix`."""
         if self.is_trivial:
             return matrix
         total = self.field.zeros(*matrix.shape)
@@ -77,16 +77,16 @@ class Extension:
         return total
 
     def polynomial(self, polynomial: Polynomial) -> Polynomial:
-        """The image of a polynomial over K."""
+        """Image over F of a polynomial over K."""
         return Polynomial(self.field, [self.embed(c) for c in polynomial.coefficients])
 
     def then(self, other: Extension) -> Extension:
-        """K in a third field, given the extension of this F in it."""
+        """The extension of K in a third field, given the extension `other` of F in it."""
         return Extension(self.base, other.field, tuple(other.embed(p) for p in self.powers))
 
 
 def trivial_extension(field: ExactField) -> Extension:
-    """A field in itself.
+    """The extension of a field that is the field itself.
 
     Examples
     --------
@@ -99,16 +99,16 @@ def trivial_extension(field: ExactField) -> Extension:
 
 
 def adjoin_root(f: Polynomial, index: int, name: str = "a") -> tuple[Extension, Scalar]:
-    """The field K(alpha) for a real root alpha of an irreducible polynomial over K, and alpha in it.
+    """The extension of K in K(alpha) and alpha, a real root of an irreducible polynomial over K.
 
     Parameters
     ----------
     f : Polynomial
         Irreducible over its field K.
     index : int
-        Which real root, counted from the left.
+        The number of the real root, counted from the left.
     name : str
-        How to write the new generator (square roots of rationals are written as such).
+        The symbol of the new generator, unless it is the square root of a rational number.
 
     Raises
     ------
@@ -141,10 +141,10 @@ def adjoin_root(f: Polynomial, index: int, name: str = "a") -> tuple[Extension, 
 
 
 def _quadratic(discriminant: Scalar, name: str) -> tuple[ExactField, Scalar]:
-    """QQ(sqrt(d)) and the positive square root of the discriminant in it."""
+    """The field QQ(sqrt(d)) and the positive square root of the discriminant in it."""
     try:
         field: Any = number_field(f"sqrt({discriminant})")
-    except FieldError:  # too large to find its squarefree part
+    except FieldError:  # the number is too large for its squarefree part
         field = field_of_root([-discriminant, 0, 1], flint.arb(QQ.convert(discriminant)).sqrt(), name)
         return field, field.generator
     return field, field.sqrt(field.convert(discriminant))
@@ -177,7 +177,7 @@ def _above(base: NumberField, f: Polynomial, index: int, name: str) -> tuple[Ext
     image = _image_of_generator(base, f, large, c, s)
     root = c - s * image
     den = lcm(*(int(x.q) for coefficient in f.coefficients for x in base.coordinates(coefficient)))
-    # b and den * alpha are integers: so is the ring that they generate
+    # b and den * alpha are algebraic integers, and so are the elements of the ring that they generate
     integers = [large.convert(image**i * (root * den) ** j) for i in range(base.degree) for j in range(f.degree)]
     field, up = smaller_generator(large, integers)
     below, above = (_carried(large.coordinates(x), up) for x in (image, root))
@@ -193,7 +193,7 @@ def _carried(coordinates: Sequence[flint.fmpq], generator: Scalar) -> Scalar:
 
 
 def _image_of_generator(base: NumberField, f: Polynomial, field: NumberField, c: Scalar, s: int) -> Scalar:
-    """The common root in F of the modulus of K and of x -> f^x(c - s x)."""
+    """Image of b: the common root in F of the modulus of K and of x -> f^x(c - s x)."""
     line = Polynomial(field, [c, -s])
     total = Polynomial(field, [])
     for coefficient in reversed(f.coefficients):
@@ -206,7 +206,7 @@ def _image_of_generator(base: NumberField, f: Polynomial, field: NumberField, c:
 
 # -- roots and factors ---------------------------------------------------------------------------------------
 def real_roots(f: Polynomial, precision: int) -> list[flint.arb]:
-    """Disjoint balls (``flint.arb``) around the real roots of a squarefree polynomial, in increasing order.
+    """List of disjoint balls (``flint.arb``) around the real roots of a squarefree polynomial, in increasing order.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def real_roots(f: Polynomial, precision: int) -> list[flint.arb]:
 
 
 def _sorted_roots(f: Polynomial, precision: int) -> tuple[list[flint.acb], list[flint.acb]]:
-    """The real roots in increasing order, and those in the upper half plane (by real, then imaginary part)."""
+    """Balls around the real roots, increasing, and around the roots in the upper half plane, by real part."""
     count = f.count_real_roots() if f.degree > 0 else 0
     while precision <= MAX_PRECISION:
         balls = complex_root_balls(f, precision)
@@ -229,13 +229,13 @@ def _sorted_roots(f: Polynomial, precision: int) -> tuple[list[flint.acb], list[
         if apart and not any(x.real.overlaps(y.real) for x, y in pairwise(ordered)):
             return ordered, sorted(upper, key=lambda r: (round(float(r.real.mid()), 9), float(r.imag.mid())))
         precision *= 2
-    raise FieldError(f"the real roots of {f} could not be told from the others with {MAX_PRECISION} bits")
+    raise FieldError(f"the real roots of {f} could not be distinguished with {MAX_PRECISION} bits")
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class RealFactor:
-    """A factor over the reals of a polynomial over K, over the least field that has it.
+    """A real factor of a polynomial over K, over the smallest field that contains its coefficients.
 
     Attributes
     ----------
@@ -250,12 +250,12 @@ class RealFactor:
 
 
 def real_factors(f: Polynomial, name: str = "a") -> list[RealFactor]:
-    """The factors over the reals of an irreducible polynomial over K, those of its real roots first.
+    """The real factors of an irreducible polynomial over K, the linear factors first.
 
     Returns
     -------
     list of RealFactor
-        t - alpha over K(alpha), real roots in increasing order; then t^2 - p t + q over K(p, q).
+        t - alpha over K(alpha) for the real roots alpha in increasing order, then t^2 - p t + q over K(p, q).
 
     Examples
     --------
@@ -279,7 +279,7 @@ def real_factors(f: Polynomial, name: str = "a") -> list[RealFactor]:
 
 
 def _quadratic_factor(f: Polynomial, near: flint.acb, name: str) -> RealFactor:
-    """The factor of the root in the upper half plane that a ball holds."""
+    """The quadratic factor whose root in the upper half plane is in a ball."""
     for shift, resolvent in _resolvents(f):
         factors = [g for part, _ in resolvent.squarefree_parts() for g, _ in part.factor()]
         g, index = _matching_root(f, near, shift, factors)
@@ -291,7 +291,7 @@ def _quadratic_factor(f: Polynomial, near: flint.acb, name: str) -> RealFactor:
 
 
 def _resolvents(f: Polynomial) -> Iterator[tuple[int | None, Polynomial]]:
-    """(None, the polynomial of all alpha_i + alpha_j), (k, that of all (alpha_i + k)(alpha_j + k)), i < j."""
+    """(None, polynomial with roots alpha_i + alpha_j), then (k, polynomial with roots (alpha_i + k)(alpha_j + k))."""
     size = f.degree * (f.degree - 1) // 2
     sums = _power_sums(f, size)
     pairs = []
@@ -306,7 +306,7 @@ def _resolvents(f: Polynomial) -> Iterator[tuple[int | None, Polynomial]]:
 
 
 def _power_sums(f: Polynomial, count: int) -> list[Scalar]:
-    """Sums of the 0th, ..., count-th powers of the roots of a monic polynomial."""
+    """List of the sums of the 0th, ..., count-th powers of the roots of a monic polynomial."""
     n = f.degree
     e = [f.coefficients[n - i] if i <= n else f.field.zero for i in range(count + 1)]  # signs included
     sums = [f.field.one * n]
@@ -319,7 +319,7 @@ def _power_sums(f: Polynomial, count: int) -> list[Scalar]:
 
 
 def _from_power_sums(field: ExactField, sums: list[Scalar]) -> Polynomial:
-    """The monic polynomial whose roots have these sums of the 1st, 2nd, ... powers."""
+    """The monic polynomial whose roots have these sums of 1st, 2nd, ... powers."""
     e = [field.one]
     for k in range(1, len(sums) + 1):
         total = field.zero
@@ -330,27 +330,27 @@ def _from_power_sums(field: ExactField, sums: list[Scalar]) -> Polynomial:
 
 
 def _refined(f: Polynomial, near: flint.acb, precision: int) -> flint.acb:
-    """The root of f in the ball, more precisely."""
+    """A smaller ball around the root of f in the ball `near`."""
     return next(r for r in _sorted_roots(f, precision)[1] if r.overlaps(near))
 
 
 def _matching_root(
     f: Polynomial, near: flint.acb, shift: int | None, factors: list[Polynomial]
 ) -> tuple[Polynomial, int]:
-    """The factor, and the number of its real root, at alpha + conj(alpha) or |alpha + shift|^2."""
+    """The factor with the real root alpha + conj(alpha) or |alpha + shift|^2, and the index of this root."""
     precision = 64
     while precision <= MAX_PRECISION:
         alpha = _refined(f, near, precision)
         with working_precision(precision):
             centre = alpha.real + (shift or 0)
-            # products, not powers: flint's power of a ball that holds 0 is no number
+            # products, because the power of a ball that contains 0 is NaN in flint
             value = 2 * alpha.real if shift is None else centre * centre + alpha.imag * alpha.imag
         roots = [(g, i, root) for g in factors for i, root in enumerate(real_roots(g, precision))]
         found = [(g, i) for g, i, root in roots if root.overlaps(value)]
         if len(found) == 1:
             return found[0]
         precision *= 2
-    raise FieldError(f"a root of {f} could not be told from the others with {MAX_PRECISION} bits")
+    raise FieldError(f"a root of {f} could not be distinguished with {MAX_PRECISION} bits")
 
 
 def _has_root(h: Polynomial, f: Polynomial, near: flint.acb) -> bool:
@@ -364,4 +364,4 @@ def _has_root(h: Polynomial, f: Polynomial, near: flint.acb) -> bool:
         if len(close) == 1:
             return bool(close[0].overlaps(near))
         precision *= 2
-    raise FieldError(f"a root of {f} could not be told from the others with {MAX_PRECISION} bits")
+    raise FieldError(f"a root of {f} could not be distinguished with {MAX_PRECISION} bits")

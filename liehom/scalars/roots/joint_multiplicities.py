@@ -1,9 +1,9 @@
-"""Joint eigenvalues of commuting semisimple matrices with their multiplicities, and integers that follow from them.
+"""Joint eigenvalues of commuting semisimple matrices with multiplicities, and pairings with coroots.
 
-One combination x of the matrices M_j separates the joint eigenspaces exactly if each M_j is a polynomial p_j(x).  These
-polynomials are found on the Krylov space of one vector and verified, exactly, on vectors that generate everything under
-x.  The joint eigenvalues are then p_j(mu) for the roots mu of the characteristic polynomial of x, enclosed in balls of
-any precision; multiplicities are those of its squarefree parts.
+A combination x of the matrices M_j separates the joint eigenspaces if and only if each M_j is a polynomial p_j(x).
+These polynomials are found on the Krylov space of one vector and verified exactly on vectors whose Krylov spaces span
+the whole space. The joint eigenvalues are then p_j(mu) for the roots mu of the characteristic polynomial of x, enclosed
+in balls of any precision. The multiplicities are those of its squarefree parts.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.fields.rational import QQ
-from liehom.scalars.roots.joint_spectrum import enclosure
+from liehom.scalars.roots.joint_spectrum import enclosure, preserved_blocks
 from liehom.scalars.roots.roots import complex_root_balls
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class _Block:
-    """A block that all matrices preserve.
+    """A coordinate block that all matrices preserve.
 
-    `parts`: squarefree factors of the characteristic polynomial of x with multiplicities; `polynomials`: p_j with
-    M_j = p_j(x).
+    `parts` are the squarefree factors of the characteristic polynomial of x with multiplicities, `polynomials` the p_j
+    with M_j = p_j(x).
     """
 
     parts: tuple[tuple[Polynomial, int], ...]
@@ -54,7 +54,7 @@ class JointMultiplicities:
     blocks: tuple[_Block, ...]
 
     def values(self, precision: int) -> list[tuple[tuple[flint.acb, ...], int]]:
-        """Joint eigenvalues as balls (``flint.acb``) with multiplicities; one may occur in several blocks."""
+        """Pairs (joint eigenvalue as balls, multiplicity); a joint eigenvalue may occur in several blocks."""
         found = []
         for block in self.blocks:
             for part, multiplicity in block.parts:
@@ -66,7 +66,7 @@ class JointMultiplicities:
 
 
 def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> JointMultiplicities | None:
-    """The joint eigenvalues of commuting semisimple matrices; None where the combination does not separate them.
+    """`JointMultiplicities` of commuting semisimple matrices; None if the combination does not separate eigenvalues.
 
     Parameters
     ----------
@@ -91,36 +91,6 @@ def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]
     return JointMultiplicities(tuple(found))
 
 
-def preserved_blocks(matrices: Sequence[ExactMatrix]) -> list[list[int]]:
-    """Indices of the finest blocks of coordinates that all matrices preserve as they stand.
-
-    Examples
-    --------
-    >>> from liehom.scalars import QQ
-    >>> preserved_blocks([QQ.matrix([[1, 0, 2], [0, 3, 0], [0, 0, 1]])])
-    [[0, 2], [1]]
-    """
-    n = matrices[0].nrows
-    label = list(range(n))
-
-    def top(i: int) -> int:
-        while label[i] != i:
-            label[i] = label[label[i]]
-            i = label[i]
-        return i
-
-    for a in matrices:
-        for part in a.parts:
-            for place, value in enumerate(part.entries()):
-                if value:
-                    i, j = sorted((top(place // n), top(place % n)))
-                    label[j] = i
-    blocks: dict[int, list[int]] = {}
-    for i in range(n):
-        blocks.setdefault(top(i), []).append(i)
-    return list(blocks.values())
-
-
 def _block(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> _Block | None:
     field, size = matrices[0].field, matrices[0].nrows
     x = field.zeros(size, size)
@@ -141,7 +111,7 @@ def _block(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> _Block | 
 
 
 def _generating_vectors(x: ExactMatrix, count: int, degree: int) -> tuple[list[ExactMatrix], list[ExactMatrix]]:
-    """Rows whose images under powers of x span everything, and for each the rows v, x v, ..., x^(degree - 1) v."""
+    """Rows v whose Krylov spaces together are everything, and for each the rows v, x v, ..., x^(degree - 1) v."""
     field, size = x.field, x.nrows
     rng = random.Random(size)
     starts: list[ExactMatrix] = []
@@ -153,8 +123,7 @@ def _generating_vectors(x: ExactMatrix, count: int, degree: int) -> tuple[list[E
             rows.append(rows[-1] @ x.T)
         starts.append(vector)
         spaces.append(field.stack_rows(rows, size))
-        # the first Krylov space must be as large as it can be, and all together everything; ranks modulo a prime
-        # prove it
+        # ranks modulo a prime prove that the first Krylov space is as large as possible and that all span everything
         if int(spaces[0].modulo().rank()) < degree:
             starts, spaces = [], []
         elif len(starts) >= count and int(field.stack_rows(spaces, size).modulo().rank()) == size:
@@ -185,15 +154,15 @@ def coroot_pairings(
     values : sequence of r balls
         The values of each linear form on a basis of the subalgebra.
     simple : sequence of r balls
-        Those of the simple roots.
+        The values of the simple roots.
     form : ExactMatrix
-        The Gram matrix (r, r) of the invariant form on the dual, the inverse of that on the subalgebra.
+        The Gram matrix (r, r) of the invariant form on the dual space, inverse to the form on the subalgebra.
     precision : int
 
     Returns
     -------
     list of tuple of int, or None
-        None where some ball does not hold exactly one integer.
+        None if some ball does not contain exactly one integer.
     """
     with working_precision(precision):
         r = len(simple)

@@ -1,8 +1,8 @@
-"""The joint spectrum of commuting exact matrices, as certain balls, and what integers follow from it.
+"""The joint spectrum of commuting exact matrices in rigorous enclosures, and Cartan integers from it.
 
-flint encloses the eigenvalues and eigenvectors of one generic combination in balls that are proved to hold them; each
-matrix then has its eigenvalue on each eigenvector in a ball.  The decision whether balls are small enough is left to
-the caller, who asks again with more bits.  Matrices act on rows.
+flint encloses the eigenvalues and eigenvectors of one generic combination in balls, with proof. For each eigenvector,
+this gives a ball around the eigenvalue of each matrix. The caller decides whether the balls are small enough, and calls
+again with more bits if not. Matrices act on rows.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class JointSpectrum:
     Attributes
     ----------
     values : tuple of tuples
-        For each joint eigenvector its eigenvalues on M_1, ..., M_r, as balls (``flint.acb``).
+        For each joint eigenvector, balls (``flint.acb``) around its eigenvalues for M_1, ..., M_r.
     conjugation : tuple of int
         The complex conjugate of joint eigenvalue i is number ``conjugation[i]``.
     precision : int
@@ -41,7 +41,7 @@ class JointSpectrum:
     precision: int
 
     def cartan_integers(self, form: ExactMatrix) -> npt.NDArray[np.int64] | None:
-        """2 (a, b) / (b, b) for all pairs of joint eigenvalues a, b if these are known to be integers.
+        """Integers 2 (a, b) / (b, b) for all pairs of joint eigenvalues a, b, or None if a ball is too large.
 
         Parameters
         ----------
@@ -51,7 +51,7 @@ class JointSpectrum:
         Returns
         -------
         (m, m) int64 array, or None
-            None if some ball does not hold exactly one integer.
+            None if some ball does not contain exactly one integer.
         """
         with working_precision(self.precision):
             m, r = len(self.values), len(self.values[0])
@@ -71,7 +71,7 @@ class JointSpectrum:
 
 
 def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], precision: int) -> JointSpectrum | None:
-    """The joint spectrum of commuting matrices, or None where the balls do not tell the eigenvalues apart.
+    """`JointSpectrum` of commuting matrices, or None if the balls do not separate the eigenvalues.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], prec
     with working_precision(precision):
         balls = [enclosure(a, precision) for a in matrices]
         try:
-            for block in _blocks(matrices):
+            for block in preserved_blocks(matrices):
                 size = len(block)
                 parts = [flint.acb_mat(size, size, [b[i, j] for i in block for j in block]) for b in balls]
                 for value, row in _eigenvalues(parts, weights):
@@ -107,7 +107,7 @@ def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], prec
 
 
 def enclosure(matrix: ExactMatrix, precision: int) -> flint.acb_mat:
-    """A matrix over an exact field as balls (``flint.acb_mat``), at the present working precision."""
+    """Enclosure (``flint.acb_mat``) of a matrix over an exact field, with the current working precision."""
     total = flint.arb_mat(matrix.parts[0])
     if len(matrix.parts) > 1:
         generator = matrix.field.generator_ball(precision)  # type: ignore[attr-defined]  # only QQ has none, and one part
@@ -119,7 +119,7 @@ def enclosure(matrix: ExactMatrix, precision: int) -> flint.acb_mat:
 
 
 def _eigenvalues(parts: list[flint.acb_mat], weights: Sequence[int]) -> list[tuple[flint.acb, Balls]]:
-    """The eigenvalue of the combination and those of each matrix; ValueError if balls do not separate them."""
+    """Eigenvalues of the combination, each with those of the matrices; ``ValueError`` if balls overlap."""
     size = parts[0].nrows()
     total = sum((p * w for p, w in zip(parts, weights, strict=True)), flint.acb_mat(size, size))
     if size == 1:
@@ -136,28 +136,38 @@ def _eigenvalues(parts: list[flint.acb_mat], weights: Sequence[int]) -> list[tup
     return found
 
 
-def _blocks(actions: Sequence[ExactMatrix]) -> list[list[int]]:
-    """Indices of the finest blocks that all matrices preserve as they stand."""
-    from scipy import sparse
+def preserved_blocks(matrices: Sequence[ExactMatrix]) -> list[list[int]]:
+    """Lists of indices: the finest partition of the coordinates into blocks that all matrices preserve.
 
-    size = actions[0].nrows
-    if size == 0:
-        return []
-    rows: list[int] = []
-    columns: list[int] = []
-    for a in actions:
-        places = [x for part in a.parts for x, v in enumerate(part.entries()) if v]
-        rows += [x // size for x in places]
-        columns += [x % size for x in places]
-    # int32: with wider indices connected_components of scipy 1.11 fails without an exception
-    entries = (np.array(rows, dtype=np.int32), np.array(columns, dtype=np.int32))
-    graph = sparse.coo_array((np.ones(len(rows)), entries), shape=(size, size))
-    count, labels = sparse.csgraph.connected_components(graph, directed=False)
-    return [np.flatnonzero(labels == c).tolist() for c in range(count)]
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> preserved_blocks([QQ.matrix([[1, 0, 2], [0, 3, 0], [0, 0, 1]])])
+    [[0, 2], [1]]
+    """
+    n = matrices[0].nrows
+    label = list(range(n))
+
+    def top(i: int) -> int:
+        while label[i] != i:
+            label[i] = label[label[i]]
+            i = label[i]
+        return i
+
+    for a in matrices:
+        for part in a.parts:
+            for place, value in enumerate(part.entries()):
+                if value:
+                    i, j = sorted((top(place // n), top(place % n)))
+                    label[j] = i
+    blocks: dict[int, list[int]] = {}
+    for i in range(n):
+        blocks.setdefault(top(i), []).append(i)
+    return list(blocks.values())
 
 
 def _conjugation(eigenvalues: list[flint.acb]) -> tuple[int, ...] | None:
-    """The place of the complex conjugate of each ball; None if not all are certain."""
+    """Index of the complex conjugate of each eigenvalue; None if the balls do not determine all of them."""
     middle = np.array([complex(x.mid()) for x in eigenvalues])
     order = []
     for x in eigenvalues:

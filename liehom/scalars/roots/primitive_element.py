@@ -1,8 +1,8 @@
 """A generator of a real number field with a small minimal polynomial.
 
-Algebraic integers are ordered by the sum of their conjugates' squares (T2-norm); an LLL-reduced basis of a lattice
-of them starts with small ones, and one of them, or the sum of two, generates the field.  Balls only propose: what is
-chosen is exact whatever their precision.
+The size of an algebraic integer is the sum of the squares of its conjugates (T2-norm). An LLL-reduced basis of a
+lattice of algebraic integers starts with small ones, and one of them, or the sum of two, generates the field. Balls
+only propose candidates: the chosen generator is exact for any precision.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ def field_of_root(f: Sequence[ScalarLike], near: flint.arb, name: str = "a") -> 
     f : sequence of rationals
         Ascending coefficients, of degree at least 2.
     near : flint.arb
-        A ball that meets one real root of f only.
+        A ball that meets exactly one real root of f.
     name : str
-        How to write the generator.
+        The symbol of the generator.
 
     Examples
     --------
@@ -50,11 +50,11 @@ def field_of_root(f: Sequence[ScalarLike], near: flint.arb, name: str = "a") -> 
         if interval is not None:
             return NumberField(name, [int(c) for c in integral.coeffs()], interval)
         precision *= 2
-    raise FieldError(f"the root of {integral} in {near} could not be told apart with {MAX_PRECISION} bits")
+    raise FieldError(f"the root of {integral} in {near} could not be isolated with {MAX_PRECISION} bits")
 
 
 def smaller_generator(field: NumberField, integers: Sequence[AlgebraicNumber]) -> tuple[NumberField, AlgebraicNumber]:
-    """The same field by a generator with a small minimal polynomial, and the image there of the integral generator.
+    """The field with a generator of small minimal polynomial, and the image in it of the old integral generator.
 
     Parameters
     ----------
@@ -89,7 +89,9 @@ def smaller_generator(field: NumberField, integers: Sequence[AlgebraicNumber]) -
             made = NumberField(field.symbol, [int(c) for c in best.coeffs()], interval)
             return made, made.from_coordinates(_generator_in_powers(chosen, whole))
         precision *= 2
-    raise FieldError(f"a generator of {field.name} could not be told from its conjugates with {MAX_PRECISION} bits")
+    raise FieldError(
+        f"a generator of {field.name} could not be distinguished from its conjugates with {MAX_PRECISION} bits"
+    )
 
 
 def _size(polynomial: flint.fmpz_poly) -> tuple[int, int]:
@@ -98,7 +100,7 @@ def _size(polynomial: flint.fmpz_poly) -> tuple[int, int]:
 
 
 def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[flint.fmpq_poly]:
-    """Polynomials in the integral generator with small conjugates."""
+    """Elements with small conjugates, as polynomials in the integral generator."""
     n = field.degree
     rows = [x.coordinates for x in integers]
     den = lcm(*(int(c.q) for row in rows for c in row))
@@ -108,7 +110,7 @@ def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[flin
         found: Any = field.modulus.complex_roots()  # pairs of a root and its multiplicity
         roots = [r for r, _ in found if r.imag.is_zero() or r.imag > 0]
         table = [[int(c * den) for c in row] + _embedded(row, roots, bits) for row in rows]
-    # the coordinates weigh little beside the scaled embeddings: they record the combination
+    # the coordinates, small compared with the scaled embeddings, record the combination
     reduced = [row[:n] for row in flint.fmpz_mat(table).lll().tolist() if any(row[:n])]
     if n <= SUMS_TRIED_DEGREE:
         pairs = list(combinations(reduced, 2))
@@ -117,7 +119,7 @@ def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[flin
 
 
 def _embedded(coordinates: list[flint.fmpq], roots: list[flint.acb], bits: int) -> list[int]:
-    """The conjugates, real and imaginary parts, times 2^bits, rounded."""
+    """Real and imaginary parts of the conjugates, times 2^bits, rounded."""
     found = []
     for root in roots:
         value = root * 0
@@ -148,7 +150,7 @@ def _common_scale(coefficients: list[flint.fmpz]) -> int:
 
 
 def _isolating(polynomial: flint.fmpz_poly, near: flint.arb, precision: int) -> tuple[flint.fmpq, flint.fmpq] | None:
-    """Simple rational ends around the one real root in a ball, or None where the precision is not enough."""
+    """Simple rational ends of an interval around the one real root in a ball, or None if the precision is too low."""
     roots = real_root_balls(polynomial, precision)
     close = [i for i, r in enumerate(roots) if r.overlaps(near)]
     if len(close) != 1:
@@ -161,7 +163,7 @@ def _isolating(polynomial: flint.fmpz_poly, near: flint.arb, precision: int) -> 
 
 
 def _generator_in_powers(element: flint.fmpq_poly, whole: flint.fmpq_poly) -> list[flint.fmpq]:
-    """The integral generator b in powers of an element that is given in powers of b."""
+    """Coordinates of the integral generator b in powers of an element that is given in powers of b."""
     n = whole.degree()
     rows, power = [], flint.fmpq_poly([1])
     for _ in range(n):

@@ -1,6 +1,6 @@
-"""Where the roots of a polynomial lie: balls of growing precision, rational numbers between them.
+"""Location of the roots of a polynomial: balls of growing precision, and rational numbers between them.
 
-Balls only choose cuts and intervals; what is chosen is then counted exactly (`Polynomial`).
+Balls only choose cuts and intervals. The roots on each side of a cut are then counted exactly (`Polynomial`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def complex_root_balls(f: Polynomial, precision: int) -> list[flint.acb]:
 
 
 def simplest_between(low: ScalarLike, high: ScalarLike) -> flint.fmpq:
-    """The rational number of least denominator strictly between two rationals (``flint.fmpq``), low < high.
+    """The rational number with the smallest denominator strictly between two rational numbers, low < high.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def simplest_between(low: ScalarLike, high: ScalarLike) -> flint.fmpq:
     low, high = QQ.convert(low), QQ.convert(high)
     floor = flint.fmpz(low.p // low.q)
     if floor + 1 < high:
-        # 0 is the simplest where it is allowed, else the integer nearest to it
+        # the simplest number is 0 or else the integer nearest to 0
         if low < 0 < high:
             return flint.fmpq(0)
         if low >= 0:
@@ -66,12 +66,12 @@ def simplest_between(low: ScalarLike, high: ScalarLike) -> flint.fmpq:
 
 
 def _above(value: flint.fmpq) -> flint.fmpz:
-    """The least integer strictly above a rational."""
+    """The smallest integer greater than a rational number."""
     return flint.fmpz(value.p // value.q) + 1
 
 
 def bounds(ball: flint.arb) -> tuple[flint.fmpq, flint.fmpq]:
-    """The exact rational ends of a real ball (``flint.arb``), whatever the working precision.
+    """The exact rational ends of a real ball, for any working precision.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def bounds(ball: flint.arb) -> tuple[flint.fmpq, flint.fmpq]:
 
 
 def cuts_between(balls: list[flint.arb]) -> list[flint.fmpq]:
-    """Simple rationals strictly between consecutive disjoint real balls, those in the widest gaps first."""
+    """Simple rational numbers in the gaps between consecutive disjoint real balls, widest gaps first."""
     intervals = sorted((bounds(b) for b in balls), key=lambda pair: pair[0])
     gaps = []
     reach = intervals[0][1]
@@ -115,7 +115,7 @@ def largest_real_root_interval(f: Polynomial) -> tuple[flint.fmpq, flint.fmpq]:
     bound = 1
     while count(-bound, bound) < total or f(bound) == 0 or f(-bound) == 0:
         bound *= 2
-    # f is squarefree: it changes its sign where it has one root, and bisection tells two roots apart in the end
+    # f is squarefree, so it changes sign at each root, and bisection separates any two roots
     low, high = flint.fmpq(-bound), flint.fmpq(bound)
     while count(low, high) != 1:
         middle = (low + high) / 2
@@ -134,9 +134,9 @@ def largest_real_root_interval(f: Polynomial) -> tuple[flint.fmpq, flint.fmpq]:
 
 
 def real_part_cut(f: Polynomial) -> flint.fmpq | None:
-    """A rational number strictly between two different real parts of roots, or None where none is found.
+    """A rational number strictly between two different real parts of roots, or None if none is found.
 
-    Exact: 0 < number of roots with larger real part < degree.
+    It is proved that 0 < number of roots with larger real part < degree.
     """
     for precision in (64, 128, 256):
         parts = [r.real for r in complex_root_balls(f, precision)]
@@ -148,7 +148,7 @@ def real_part_cut(f: Polynomial) -> flint.fmpq | None:
 
 
 def count_or_none(f: Polynomial, cut: ScalarLike) -> int:
-    """`Polynomial.count_right_of`, or -1 where two roots are symmetric about the cut."""
+    """`Polynomial.count_right_of`, or -1 if two roots are symmetric about the cut."""
     try:
         return f.count_right_of(cut)
     except FieldError:

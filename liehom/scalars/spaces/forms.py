@@ -7,7 +7,7 @@ from liehom.scalars.fields.field import Scalar
 
 
 def orthogonal_basis(form: ExactMatrix) -> tuple[list[ExactMatrix], list[Scalar]]:
-    """Rows u_i and values form(u_i, u_i) with form(u_i, u_j) = 0, by exact Gram-Schmidt; null rows allowed.
+    """An orthogonal basis: rows u_i with form(u_i, u_j) = 0, and the values form(u_i, u_i), by exact Gram-Schmidt.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ def orthogonal_basis(form: ExactMatrix) -> tuple[list[ExactMatrix], list[Scalar]
     Returns
     -------
     rows : list of ExactMatrix (1, d), a basis
-    values : list of field elements, zero exactly on the radical's part
+    values : list of field elements; a value is zero if and only if its row is in the radical of the form
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""Integral bases: the integer vectors of a rational subspace, by a basis with small entries.
+"""Integral bases: a basis with small entries of the integer vectors in a rational subspace.
 
-Echelon bases of scrambled subspaces have large entries, and clearing denominators leaves a sublattice of large
-index.  With the echelon form (1 | R / d) the integer vectors are the x (1 | R / d) with x in Z^k and x R = 0 mod d:
-x runs through the dual of the lattice that Z^k and the columns of R / d generate.
+Echelon bases of subspaces in general position have large entries, and clearing denominators leaves a sublattice of
+large index. With the echelon form (1 | R / d), the integer vectors are x (1 | R / d) for x in Z^k with x R = 0 mod d.
+These x form the dual of the lattice that Z^k and the columns of R / d generate.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def integral_basis(rows: ExactMatrix) -> ExactMatrix:
 
 
 def _coordinates(table: flint.fmpz_mat, den: int) -> flint.fmpz_mat:
-    """A basis (k, k) of the x in Z^k with x R = 0 modulo den."""
+    """Basis (k, k) of the lattice of x in Z^k with x R = 0 modulo den."""
     k, columns = table.nrows(), table.transpose().tolist()
     lattice: list[Any] = [[den * int(i == j) for j in range(k)] for i in range(k)]
     width = max(2 * k, 8)

@@ -1,8 +1,7 @@
 """LinearForms: matrices of linear forms in several variables, their minors, and proofs about their rank.
 
-M(x) = x_0 M_0 + ... + x_{m-1} M_{m-1} over QQ or a real number field.  A number field is worked with as one more
-variable, modulo its minimal polynomial.  Minors are computed by expansion along columns, subset after subset:
-no division.
+M(x) = x_0 M_0 + ... + x_{m-1} M_{m-1} over QQ or a real number field, whose generator is one more variable modulo its
+minimal polynomial. Minors are computed without division, by expansion along columns, one subset of rows after another.
 """
 
 from __future__ import annotations
@@ -70,27 +69,27 @@ class LinearForms:
 
     @property
     def variables(self) -> int:
-        """The number of variables x0, x1, ..."""
+        """Number of variables x0, x1, ..., an int."""
         return len(self.parts)
 
     def at(self, values: Sequence[ScalarLike]) -> ExactMatrix:
-        """The matrix M(x) at field elements x."""
+        """The matrix M(x) for field elements x, an `ExactMatrix`."""
         total = self.field.zeros(*self.shape)
         for value, part in zip(values, self.parts, strict=True):
             total = total + part.scale(value)
         return total
 
     def times(self, right: ExactMatrix) -> LinearForms:
-        """M(x) T for a constant matrix T."""
+        """The `LinearForms` M(x) T for a constant matrix T."""
         return LinearForms([part @ right for part in self.parts])
 
     # -- minors ------------------------------------------------------------------------------------------
     def minor(self, rows: Sequence[int], columns: Sequence[int]) -> flint.fmpq_mpoly:
-        """The determinant of the rows and columns, a ``flint.fmpq_mpoly`` (in b too over a number field)."""
+        """Determinant of the given rows and columns, a ``flint.fmpq_mpoly``; over QQ(b) in the variable b too."""
         return self._expanded(list(rows), list(columns)).get(tuple(rows), 0 * self._context.gens()[0])
 
     def _expanded(self, rows: list[int], columns: list[int]) -> dict[tuple[int, ...], flint.fmpq_mpoly]:
-        """For each choice of len(columns) of the rows, the minor with these columns."""
+        """The non-zero minors with these columns, by their rows."""
         one = 0 * self._context.gens()[0] + 1
         minors: dict[tuple[int, ...], flint.fmpq_mpoly] = {(): one}
         for size, column in enumerate(columns, start=1):
@@ -124,9 +123,9 @@ class LinearForms:
 
         Notes
         -----
-        For every further row the cofactors of the chosen columns give a covector phi(x), not zero, on the chosen rows
-        and the new one that kills the chosen columns.  The rank over the field of fractions is `rank` exactly where
-        these covectors kill all columns.
+        For every further row, the cofactors of the chosen columns give a non-zero covector phi(x) on the chosen rows
+        and the further row that annihilates the chosen columns. The rank over the field of fractions is `rank` if and
+        only if these covectors annihilate all columns.
         """
         nrows, ncols = self.shape
         for row in (i for i in range(nrows) if i not in set(rows)):
@@ -159,7 +158,7 @@ class LinearForms:
         Raises
         ------
         FieldError
-            Over a number field, where factoring is not available.
+            Over a number field, where polynomials in several variables cannot be factored.
         """
         if self._modulus is not None:
             raise FieldError(f"polynomials in several variables are factored over QQ only, not over {self.field.name}")

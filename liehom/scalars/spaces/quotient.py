@@ -1,8 +1,8 @@
 """Coordinates on a quotient K^n / U with small numbers.
 
-Over QQ an echelon basis of a scrambled subspace has huge entries.  Where that happens, the lattice of integer
-covectors that vanish on U is LLL-reduced together with a completion to a basis of Z^n: its first d members
-are the coordinate functions, the dual basis gives a complement and a basis of U.
+Over QQ, an echelon basis of a subspace in general position has huge entries. In that case the lattice of integer
+covectors that vanish on U is LLL-reduced together with a completion to a basis of Z^n. Its first d members are the
+coordinate functions, and the dual basis gives a complement and a basis of U.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def quotient(basis: Matrix) -> Quotient[Matrix]: ...
 
 
 def quotient(basis: Matrix) -> Quotient[ExactMatrix] | Quotient[FloatMatrix]:
-    """Coordinates for K^n modulo the span of independent rows.
+    """`Quotient` with coordinates on K^n modulo the span of independent rows.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def quotient(basis: Matrix) -> Quotient[ExactMatrix] | Quotient[FloatMatrix]:
 
 
 def echelon_quotient(basis: ExactMatrix) -> Quotient[ExactMatrix]:
-    """The same without the search for small numbers, for what is used once: the complement consists of unit vectors.
+    """`Quotient` by the echelon basis, whose complement consists of unit vectors: faster, with larger numbers.
 
     Examples
     --------
@@ -93,7 +93,7 @@ def _from_echelon(reduced: ExactMatrix, pivots: list[int]) -> Quotient[ExactMatr
 
 
 def _projection(reduced: ExactMatrix, pivots: list[int], free: list[int]) -> ExactMatrix:
-    """e_f goes to its unit vector, e_p to minus the free part of its echelon row."""
+    """Matrix (n, d): row f is a unit vector for a free column f, row p minus the free part of its echelon row."""
     n, d = reduced.ncols, len(free)
     parts = []
     for s, part in enumerate(reduced.parts):
@@ -131,7 +131,7 @@ def _by_lattice(basis: ExactMatrix) -> Quotient[ExactMatrix]:
         bits *= 2
     unimodular = flint.fmpz_mat([row[:n] for row in reduced])
     dual, sign = flint.fmpq_mat(unimodular).inv().numer_denom()
-    # T unimodular: the inverse is integral; its columns are the dual basis.
+    # the matrix is unimodular, so its inverse is integral, with the dual basis as columns
     whole = ExactMatrix(field, (dual.transpose(),), int(sign)).normalized()
     functions = ExactMatrix(field, (unimodular,), 1).select(rows=range(d)).T
     return Quotient(whole.select(rows=range(d, n)), whole.select(rows=range(d)), functions)

@@ -1,4 +1,4 @@
-"""Rows over several real number fields, side by side in R^n: independence, proved by balls."""
+"""Independence in R^n of rows over several real number fields, proved by rigorous enclosures."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def is_basis_of_reals(blocks: Sequence[ExactMatrix], n: int) -> bool:
     Returns
     -------
     bool
-        True is proved: a ball around the determinant excludes 0. False: the number of rows is not n, or the determinant
-        is 0 to 16384 bits.
+        True is proved, because a ball around the determinant excludes 0. False means that the number of rows is not n,
+        or that the determinant is 0 to 16384 bits.
 
     Examples
     --------

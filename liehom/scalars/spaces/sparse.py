@@ -1,7 +1,7 @@
 """SparseInteger: sparse integer matrices over a common denominator, with products that cannot overflow.
 
-Held as scipy.sparse int64 while a bound on every sum excludes overflow, else as dictionaries of Python
-integers.  Only what contractions of bracket tables need.
+Products use scipy.sparse with int64 if a bound on every sum excludes overflow, else dictionaries of Python integers.
+The class has only the operations that contractions of structure constants need.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class SparseInteger:
 
     @classmethod
     def from_matrix(cls, matrix: ExactMatrix) -> SparseInteger:
-        """The sparse form of a matrix over QQ."""
+        """The `SparseInteger` equal to a matrix over QQ."""
         entries = matrix.parts[0].entries()
         places = [x for x, v in enumerate(entries) if v]
         index = np.array(places, dtype=np.int64)
@@ -98,24 +98,24 @@ class SparseInteger:
         return SparseInteger([k[0] for k in kept], [k[1] for k in kept], [k[2] for k in kept], shape, den)
 
     def reshape(self, nrows: int, ncols: int) -> SparseInteger:
-        """The same entries row after row in another shape."""
+        """The matrix of shape (nrows, ncols) with these entries, row after row."""
         place = self.rows * self.shape[1] + self.columns
         return SparseInteger(place // ncols, place % ncols, self.values, (nrows, ncols), self.den)
 
     def regroup(self, p: int, q: int, r: int) -> SparseInteger:
-        """From shape (p, q*r) to (q, p*r): the first two of three indices exchanged."""
+        """The matrix of shape (q, p*r) with the first two of three indices exchanged, from shape (p, q*r)."""
         j, c = self.columns // r, self.columns % r
         return SparseInteger(j, self.rows * r + c, self.values, (q, p * r), self.den)
 
     def first_entry(self) -> tuple[int, int] | None:
-        """The position of a non-zero entry with least column, then row, or None."""
+        """Position (row, column) of the first non-zero entry by column, then row, or None."""
         if not len(self.values):
             return None
         place = int(np.lexsort((self.rows, self.columns))[0])
         return int(self.rows[place]), int(self.columns[place])
 
     def dense_blocks(self, field: ExactField, p: int, q: int, r: int) -> list[ExactMatrix]:
-        """The p matrices (q, r) that stand side by side in this one of shape (q, p*r)."""
+        """List of the p blocks of shape (q, r), side by side in this matrix of shape (q, p*r)."""
         tables = [[0] * (q * r) for _ in range(p)]
         for row, column, v in zip(self.rows.tolist(), self.columns.tolist(), self.values.tolist(), strict=True):
             a, c = divmod(column, r)
@@ -124,7 +124,7 @@ class SparseInteger:
 
 
 def _narrowed(values: Any) -> IntegerArray | ObjectArray:
-    """int64 where all values fit, else an object array of Python integers."""
+    """Array of int64 if all values fit, else an object array of Python integers."""
     if isinstance(values, np.ndarray) and values.dtype == np.int64:
         return values
     try:

@@ -1,7 +1,7 @@
-"""Subspace: a linear subspace of K^n by its canonical basis.
+"""Subspace: a linear subspace of K^n, given by its canonical basis.
 
-Over an exact field the basis is the reduced echelon form, so equal subspaces have equal bases; over floats
-it is orthonormal.  Vectors are rows.
+Over an exact field the basis is in reduced echelon form, so equal subspaces have equal bases. Over float64 it is
+orthonormal. Vectors are rows.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from liehom.typing import VectorLike
 
 @final
 class Subspace:
-    """The span of rows in K^n.
+    """The span of rows in K^n, with a canonical basis.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Subspace:
     rows : iterable of rows, or a matrix
         Spanning vectors, shape (k, n); they may be dependent.
     ambient : int
-        The dimension n of the space around.
+        The dimension n of the ambient space.
 
     Raises
     ------
@@ -51,7 +51,7 @@ class Subspace:
 
     @property
     def dimension(self) -> int:
-        """The dimension."""
+        """Dimension, an int."""
         return int(self.basis.nrows)
 
     def __contains__(self, vector: VectorLike) -> bool:
@@ -61,7 +61,7 @@ class Subspace:
         return int(self.field.stack_rows([self.basis, row], self.ambient).rank()) == self.dimension
 
     def includes(self, other: Subspace) -> bool:
-        """Whether `other` is a subspace of this one."""
+        """Whether this subspace contains `other`."""
         return (self + other).dimension == self.dimension
 
     def __add__(self, other: Subspace) -> Subspace:
@@ -72,17 +72,17 @@ class Subspace:
         return Subspace(self.field, self.annihilator_rows(other), self.ambient)
 
     def annihilator_rows(self, other: Subspace) -> Matrix:
-        """Rows spanning the intersection with `other`: the vectors of this one that its annihilator kills."""
+        """Rows that span the intersection with `other`: the vectors on which the annihilator of `other` is 0."""
         functionals = other.basis.null_space()
         rows: Matrix = (functionals @ self.basis.T).null_space() @ self.basis
         return rows
 
     def annihilator(self) -> Subspace:
-        """The covectors (as rows) that vanish on the subspace."""
+        """Subspace of the covectors, as rows, that vanish on the subspace."""
         return Subspace(self.field, self.basis.null_space(), self.ambient)
 
     def complement_indices(self) -> list[int]:
-        """Indices of standard basis vectors that span a complement, in increasing order."""
+        """List of indices, increasing, of standard basis vectors that span a complement."""
         if self.field.exact:
             pivots = set(as_exact(self.basis).echelon()[1])
             return [j for j in range(self.ambient) if j not in pivots]
@@ -96,13 +96,13 @@ class Subspace:
         return chosen
 
     def complement(self) -> Subspace:
-        """The complement spanned by standard basis vectors (`complement_indices`)."""
+        """The complement that is spanned by standard basis vectors (`complement_indices`)."""
         return Subspace(
             self.field, self.field.identity(self.ambient).select(rows=self.complement_indices()), self.ambient
         )
 
     def quotient_map(self) -> tuple[Matrix, Matrix]:
-        """A complement W, shape (d, n), and a matrix Q, shape (n, d), with x Q the coordinates of x mod U in W.
+        """A complement W, shape (d, n), and Q, shape (n, d), where x Q are the coordinates of x mod U in W.
 
         U Q = 0 and W Q = 1.
         """
@@ -121,7 +121,7 @@ class Subspace:
     __hash__ = None  # type: ignore[assignment]
 
     def rows(self) -> list[list[Scalar]]:
-        """The canonical basis as lists of field elements."""
+        """List of the rows of the canonical basis, each a list of field elements."""
         rows: list[list[Scalar]] = self.basis.to_rows()
         return rows
 

@@ -463,7 +463,7 @@ def test_the_embedding_decides() -> None:
 def test_an_interval_with_three_roots_is_no_field() -> None:
     field = {"name": "a", "minpoly": ["1", "-3", "0", "1"], "interval": ["-2", "2"]}
     data = Certificate("trivial", {}).to_json() | {"field": field}
-    with pytest.raises(CertificateFormatError, match="holds 3 real roots"):
+    with pytest.raises(CertificateFormatError, match="contains 3 real roots"):
         Certificate.from_json(data)
 
 

@@ -10,7 +10,8 @@ import pytest
 import liehom as lh
 from liehom.errors import FieldError, InputError
 from liehom.scalars import QQ
-from liehom.scalars.roots.joint_multiplicities import joint_multiplicities, preserved_blocks
+from liehom.scalars.roots.joint_multiplicities import joint_multiplicities
+from liehom.scalars.roots.joint_spectrum import preserved_blocks
 from liehom.testing import random_unimodular
 
 
