@@ -1,4 +1,12 @@
-"""Recording a computation as a graph of scalar operations, and machine code made of the graph."""
+"""Recording a computation as a graph of scalar operations, and compiling the graph.
+
+A *tracer* (`Expr`) is a number, or a boolean, whose value is known only when the compiled code runs.  `Traced` is an
+array of tracers, on which numpy code runs; a `Tape` records the operations.  A *lane* is one trajectory of an ensemble,
+and a *mask* a boolean in each lane; a lane that has nothing left to do is masked out, so it keeps its values.  An
+*ordinary step* has no output time, no end of the time span and no failure in it; compiled code takes ordinary steps
+only, numpy takes the others.  Users reach this folder through ``compile=`` of `liehom.integrate`; see
+docs/api/tracing.md.
+"""
 
 from liehom.tracing.array import Traced as Traced
 from liehom.tracing.expr import Expr as Expr

@@ -1,7 +1,8 @@
-"""Traced: an array of numbers that are not known yet, on which ordinary numpy code runs.
+"""Traced: an array of tracers, on which numpy code runs.
 
-The entries are `Expr` of one tape, in an array of objects.  Numpy's functions that only move entries, add and multiply
-run on that array; comparisons, extrema, `np.where` and linear systems are here.  What needs values is refused.
+The entries are `Expr` of one tape, in an array of objects.  Numpy functions that only move, add and multiply entries
+run on that array as they are; comparisons, extrema, `np.where` and linear systems are implemented here.  Functions
+that need the values of their arguments raise `TraceError`.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ Axis: TypeAlias = int | tuple[int, ...] | None
 
 @final
 class Traced(NDArrayOperatorsMixin):
-    """An array of numbers on a tape.
+    """An array of tracers.
 
     Parameters
     ----------
@@ -73,34 +74,34 @@ class Traced(NDArrayOperatorsMixin):
 
     @classmethod
     def inputs(cls, tape: Tape, first: int, count: int) -> Traced:
-        """The inputs first, ..., first + count - 1."""
+        """Array (count,) of the inputs first, ..., first + count - 1."""
         return cls(tape, [tape.input(first + i) for i in range(count)])
 
     # -- what arrays have --------------------------------------------------------------------------------
     @property
     def shape(self) -> tuple[int, ...]:
-        """As of an array."""
+        """Tuple of axis lengths, as for numpy arrays."""
         return tuple(self.entries.shape)
 
     @property
     def ndim(self) -> int:
-        """As of an array."""
+        """Number of axes."""
         return int(self.entries.ndim)
 
     @property
     def size(self) -> int:
-        """As of an array."""
+        """Number of entries."""
         return int(self.entries.size)
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """float64, or bool."""
+        """Type of the entries, float64 or bool."""
         boolean = self.entries.size and self.entries.flat[0].boolean
         return np.dtype(bool) if boolean else np.dtype(np.float64)
 
     @property
     def T(self) -> Traced:
-        """The transpose."""
+        """Array with the axes in reverse order."""
         return Traced(self.tape, self.entries.T)
 
     @property
@@ -111,12 +112,12 @@ class Traced(NDArrayOperatorsMixin):
 
     @property
     def real(self) -> Traced:
-        """Itself."""
+        """This array, as all entries are real."""
         return self
 
     @property
     def flat(self) -> Iterator[Traced]:
-        """The entries, one after the other."""
+        """Iterator over the entries, as arrays of shape ()."""
         return iter([Traced(self.tape, e) for e in self.entries.flat])
 
     def __getitem__(self, key: Key) -> Traced:
@@ -160,7 +161,7 @@ class Traced(NDArrayOperatorsMixin):
 
     # -- numpy's protocols -------------------------------------------------------------------------------
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
-        # as an array of objects; numbers that are not known are no floats, which they say themselves
+        # an array of objects; a tracer that is converted to a float raises TraceError
         return self.entries.copy() if dtype is None else self.entries.astype(dtype)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: Any) -> Any:
@@ -208,7 +209,7 @@ def _method(x: Traced, name: str, *args: Operand, **options: Operand) -> Operand
 
 
 def _converted(x: Traced, dtype: DTypeLike, **_: object) -> Traced:
-    """A copy with another type, where that changes no number."""
+    """Copy with another dtype; raises TraceError if that would change a number."""
     kind = np.dtype(dtype)
     if kind.kind == "b":
         return elementwise(x.tape, x.tape.truth, x)
@@ -218,7 +219,7 @@ def _converted(x: Traced, dtype: DTypeLike, **_: object) -> Traced:
 
 
 def expr_array(tape: Tape, x: Operand) -> ExprArray:
-    """An array of Expr."""
+    """x as an array of `Expr`, with broadcasting of numbers left to numpy."""
     if isinstance(x, Traced):
         return x.entries
     if isinstance(x, Expr):
@@ -240,7 +241,7 @@ def expr_array(tape: Tape, x: Operand) -> ExprArray:
 
 
 def _bare(tape: Tape, x: Operand) -> Operand:
-    """Arguments with the arrays of objects in place of traced arrays."""
+    """Arguments with traced arrays replaced by their arrays of `Expr`."""
     if isinstance(x, Traced):
         return x.entries
     if isinstance(x, list) and any(isinstance(e, Traced) for e in x) and all(np.ndim(e) == 0 for e in x):
@@ -266,7 +267,7 @@ def _checked_key(key: Key) -> Key:
 
 
 def elementwise(tape: Tape, function: Callable[..., Expr], *arrays: Operand, numbers: bool = False) -> Traced:
-    """function on the entries, with broadcasting; `numbers`: truth values count as 0 and 1."""
+    """Traced array of function(entries), with broadcasting; with `numbers`, booleans become 0 or 1."""
     made = np.broadcast_arrays(*[expr_array(tape, _numbers(tape, a) if numbers else a) for a in arrays])
     out = np.empty(made[0].shape, dtype=object)
     for index in np.ndindex(out.shape):
@@ -321,7 +322,7 @@ def _reduced(
 
 
 def _numbers(tape: Tape, a: Operand) -> Traced:
-    """Truth values as 0 and 1."""
+    """a as a traced array of numbers, booleans as 0 or 1."""
     made = Traced(tape, a)
     return elementwise(tape, tape.number, made) if any(e.boolean for e in made.entries.flat) else made
 
@@ -388,7 +389,7 @@ def _norm(tape: Tape, x: Operand, ord: float | str | None = None, axis: Axis = N
 
 
 def _solve(tape: Tape, a: Operand, b: Operand) -> Traced:
-    """Elimination with partial pivoting, the rows exchanged by selection."""
+    """Solution of a x = b by elimination with partial pivoting."""
     a, b = expr_array(tape, a), expr_array(tape, b)
     vector = b.ndim == 1
     b = b[..., None] if vector else b

@@ -1,4 +1,4 @@
-"""What numpy's functions of single numbers are on a tape, and the solution of linear equations there."""
+"""Tables of numpy's functions as operations on a tape, and linear equations by elimination on a tape."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _sign(tape: Tape, x: Expr) -> Expr:
 
 
 def _known_extremum(tape: Tape, a: Expr, b: Expr, *, least: bool = False) -> Expr:
-    """The larger number, or the smaller; where one of them is nan, the other."""
+    """The larger of two numbers, or the smaller if `least`; if one is NaN, the other."""
     larger = tape.select(tape.compare("lt", a, b) if least else tape.compare("lt", b, a), a, b)
     return tape.select(tape.compare("ne", b, b), a, larger)
 
@@ -78,7 +78,7 @@ ELEMENTS: dict[str, Callable[..., Expr]] = {
 
 
 def solve_linear(tape: Tape, a: ExprArray, b: ExprArray) -> ExprArray:
-    """The solution (n, k) of linear equations (n, n), (n, k), arrays of Expr: the rows are exchanged by selection.
+    """Solution (n, k) of a x = b for arrays of tracers a (n, n) and b (n, k), with partial pivoting by selection.
 
     Examples
     --------

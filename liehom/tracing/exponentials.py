@@ -11,7 +11,7 @@ from liehom.tracing.array import Operand, Traced, elementwise, expr_array
 
 
 def entire_function(name: str, x: Traced) -> Traced:
-    """An entire function of the entries: "sinq" is sin(r)/r and "cosq" is cos(r), with r^2 = x.
+    """Traced array of sin(r)/r ("sinq") or cos(r) ("cosq") of the entries x = r^2.
 
     Examples
     --------
@@ -23,7 +23,7 @@ def entire_function(name: str, x: Traced) -> Traced:
 
 
 def exponential_action(matrix: Operand, m: Operand) -> Traced:
-    """exp(A) m for a matrix (n, n) and a vector (n,), by a series whose length the running code finds.
+    """exp(A) m for a matrix A (n, n) and a vector m (n,), by a series; the compiled code decides its length.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Expr: a number that is not known yet, on a tape that records what is computed with it."""
+"""Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BOOLEAN = frozenset(["lt", "le", "eq", "ne", "and", "or", "not", "flag"])
 
 
 class Recorder(Protocol):
-    """What arithmetic on an `Expr` calls: the methods of `liehom.tracing.Tape`, which stands above `Expr`."""
+    """The methods of `liehom.tracing.Tape` that arithmetic on an `Expr` calls."""
 
     def of(self, x: NumberLike) -> Expr: ...
     def number(self, x: Expr) -> Expr: ...
@@ -43,7 +43,7 @@ class Recorder(Protocol):
 
 @final
 class Expr:
-    """A number, or a truth value, on a tape.
+    """A tracer: a symbolic number or boolean on a tape.
 
     Attributes
     ----------
@@ -52,11 +52,11 @@ class Expr:
         "const", "input", "add", ..., "get" for one of the results of a block.
     args : tuple of Expr
     value : float, int, str or None
-        Of a constant; the index of an input or result; the block of a result.
+        The value of a constant, the index of an input or of a block's result, data of other operations.
     index : int
-        Its number on the tape; arguments have smaller ones.
+        Position on the tape; arguments have smaller ones.
     boolean : bool
-        Whether it is a truth value.
+        Whether it is a boolean.
     """
 
     __slots__ = ("args", "boolean", "index", "op", "tape", "terms", "value")
@@ -74,7 +74,7 @@ class Expr:
 
     @property
     def constant(self) -> bool:
-        """Whether the number is known."""
+        """Whether the value is known while the step is traced."""
         return self.op == "const"
 
     def __add__(self, other: NumberLike) -> Expr:
@@ -110,7 +110,7 @@ class Expr:
         return self.tape.power(*self._with(other)[::-1])
 
     def __getattr__(self, name: str) -> Callable[..., Expr]:
-        # the functions of numpy call these on the entries of an array of objects
+        # numpy's functions call these methods on the entries of an array of objects
         if name in FOLDED and name not in ("pow", "abs"):
             return lambda *args: self.tape.call(name, self, *[self.tape.of(x) for x in args])
         raise AttributeError(f"a number of a compiled step has no attribute {name!r}")
@@ -119,12 +119,12 @@ class Expr:
         return self.tape.call("abs", self)
 
     def _with(self, other: NumberLike) -> tuple[Expr, Expr]:
-        """Both as numbers: truth values count as 0 and 1."""
+        """This tracer and `other` as a pair of numbers; booleans become 0 or 1."""
         other = self.tape.of(other)
         return self.tape.number(self) if self.boolean else self, self.tape.number(other) if other.boolean else other
 
     def conjugate(self) -> Expr:
-        """Itself: numbers are real."""
+        """This tracer, as all numbers are real."""
         return self
 
     def __bool__(self) -> bool:

@@ -1,7 +1,8 @@
-"""A graph of scalar operations, recorded as numbers are computed: equal ones are one, constants are folded.
+"""Tape: a graph of scalar operations, recorded and simplified while numpy code computes with tracers.
 
-An `Expr` stands for a number that is not known yet; arithmetic on it appends to its `Tape`.  What is recorded is
-simplified as it is recorded: products with 0 and 1, terms that cancel in a sum, quotients by the same divisor.
+Arithmetic on an `Expr` appends an operation to its tape, unless the same operation is there already.  Operations on
+constants are carried out.  Products with 0 and 1, terms that cancel in a sum, and quotients by the same divisor are
+simplified.
 """
 
 from __future__ import annotations
@@ -20,13 +21,14 @@ TrajectoryConstant: TypeAlias = Callable[[Any], Any]
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
 MAX_TERMS = 10
-"""Sums of so many terms at most are searched for terms that cancel."""
+"""Sums of at most this many terms are searched for terms that cancel."""
 CANCELLATION_RTOL = 4e-16
+"""Coefficients of a term cancel if their sum is at most this fraction of one of them."""
 
 
 @final
 class Tape:
-    """The numbers of one trace, in the order in which they were made.
+    """The operations of one trace, in the order in which they were recorded.
 
     Examples
     --------
@@ -41,36 +43,36 @@ class Tape:
         self._known: dict[tuple[Hashable, ...], Expr] = {}
         self.zero, self.one = self.constant(0.0), self.constant(1.0)
         self.false, self.true = self.constant(False), self.constant(True)
-        # truth values without which the numbers of a trajectory are not what they are to be
+        # booleans that must all hold for the compiled step to be valid; otherwise numpy takes the step
         self.required: list[Expr] = []
         self.constant_functions: list[TrajectoryConstant] = []
-        self.calls = self.zero  # of the function that is counted; in loops, in all iterations
+        self.calls = self.zero  # number of calls of psi, all iterations of loops included
 
     # -- making numbers ----------------------------------------------------------------------------------
     def constant(self, value: float) -> Expr:
-        """A known number or truth value."""
+        """Tracer of a known number or boolean."""
         return self._make("const", (), value, (type(value), value, math.copysign(1.0, value)))
 
     def input(self, index: int) -> Expr:
-        """A number that is given when the code runs."""
+        """Tracer of input number `index`, which is given when the compiled code runs."""
         return self._make("input", (), index)
 
     def trajectory_constant(self, function: TrajectoryConstant) -> Expr:
-        """A number that each trajectory has from its start on, as a function of the starts (L, N)."""
+        """Tracer of a number that is constant along each trajectory, a function of the initial points (L, N)."""
         self.constant_functions.append(function)
         return self.input(-len(self.constant_functions))
 
     def variable(self, name: Hashable, *, boolean: bool = False) -> Expr:
-        """A number, or truth value, that changes in a loop."""
+        """Tracer of a number, or boolean, that changes in a loop."""
         return self._make("flag" if boolean else "variable", (), name)
 
     def of(self, x: NumberLike) -> Expr:
-        """A number as an Expr.
+        """x as a tracer; numbers and booleans become constants.
 
         Raises
         ------
         TraceError
-            If it is no real number.
+            If x is not a real number.
         """
         if isinstance(x, Expr):
             return x
@@ -83,11 +85,11 @@ class Tape:
             raise TraceError(f"compiled code works on real numbers, got {x!r} in the step") from None
 
     def number(self, x: Expr) -> Expr:
-        """A truth value as 0 or 1; numbers as they are."""
+        """x as a number: 0 or 1 for a boolean."""
         return self.select(x, self.one, self.zero) if x.boolean else x
 
     def truth(self, x: Expr) -> Expr:
-        """Whether a number is not 0; truth values as they are."""
+        """x as a boolean: for a number, whether it is not 0."""
         return x if x.boolean else self.compare("ne", x, self.zero)
 
     def _make(self, op: str, args: tuple[Expr, ...], value: Payload = None, extra: Payload = None) -> Expr:
@@ -192,7 +194,7 @@ class Tape:
         return self.mul(a, self._make("div", (self.one, b)))
 
     def power(self, a: Expr, b: Expr) -> Expr:
-        """a ** b; by products where b is a small whole number, by roots where it is a half."""
+        """a ** b, by products and square roots if b is a small multiple of 1/2."""
         if b.constant:
             p = b.value
             if p == 0:
@@ -208,11 +210,11 @@ class Tape:
         return self.call("pow", a, b)
 
     def call(self, name: str, *args: Expr) -> Expr:
-        """An elementary function."""
+        """The elementary function of this name, computed at once if all arguments are constants."""
         if all(a.constant for a in args) and name in FOLDED:
             try:
                 return self.constant(float(FOLDED[name](*[float(a.value) for a in args])))
-            except (ValueError, OverflowError):  # infinite, or nan: as numpy has it
+            except (ValueError, OverflowError):  # numpy gives inf or NaN
                 with np.errstate(all="ignore"):
                     function = getattr(np, {"pow": "power"}.get(name, name), None)
                     return self.constant(float(function(*[a.value for a in args])) if function else math.nan)
@@ -221,7 +223,7 @@ class Tape:
         return self._make(name, args)
 
     def largest(self, a: Expr, b: Expr, *, least: bool = False) -> Expr:
-        """The larger of two numbers, or the smaller; nan where one of them is."""
+        """The larger of two numbers, or the smaller if `least`; NaN if one of them is NaN."""
         if a is b:
             return a
         a, b = (b, a) if a.constant else (a, b)
@@ -234,9 +236,9 @@ class Tape:
         first = self.select(self.compare("ne", a, a), a, b)
         return self.select(self.compare("lt", a, b) if least else self.compare("lt", b, a), a, first)
 
-    # -- truth values ------------------------------------------------------------------------------------
+    # -- booleans ----------------------------------------------------------------------------------------
     def compare(self, op: str, a: Expr, b: Expr) -> Expr:
-        """a < b, a <= b, a == b or a != b, for "lt", "le", "eq", "ne"."""
+        """The comparison a < b, a <= b, a == b or a != b, for op = "lt", "le", "eq", "ne"."""
         if a.constant and b.constant:
             x, y = a.value, b.value
             return self.of({"lt": x < y, "le": x <= y, "eq": x == y, "ne": x != y}[op])
@@ -249,10 +251,10 @@ class Tape:
         return self._make(op, (a, b))
 
     def _square(self, x: Expr) -> tuple[Expr, bool] | None:
-        """The square of a number that is certainly not negative, and whether it had a root; None of others."""
+        """(x^2, whether x contains a square root) if x >= 0 is certain, else None."""
         if x.constant:
             return (self.constant(x.value * x.value), False) if x.value >= 0 else None
-        if x.op == "sqrt":  # that of a negative number is nan
+        if x.op == "sqrt":  # the root of a negative number is NaN
             return (x.args[0], True) if _is_nonnegative(x.args[0]) else None
         if x.op == "abs":
             return self.mul(x.args[0], x.args[0]), False
@@ -263,7 +265,7 @@ class Tape:
         return None
 
     def both(self, a: Expr, b: Expr) -> Expr:
-        """a and b."""
+        """The conjunction of a and b, as booleans."""
         a, b = self.truth(a), self.truth(b)
         if a.constant:
             return b if a.value else self.false
@@ -272,18 +274,18 @@ class Tape:
         return a if a is b else self._make("and", (a, b))
 
     def either(self, a: Expr, b: Expr) -> Expr:
-        """a or b."""
+        """The disjunction of a and b, as booleans."""
         return self.negated(self.both(self.negated(a), self.negated(b)))
 
     def negated(self, a: Expr) -> Expr:
-        """not a."""
+        """The negation of a, as a boolean."""
         a = self.truth(a)
         if a.constant:
             return self.of(not a.value)
         return a.args[0] if a.op == "not" else self._make("not", (a,))
 
     def select(self, where: Expr, a: Expr, b: Expr) -> Expr:
-        """a where a condition holds, else b."""
+        """a in the lanes where the condition holds, b in the others."""
         where = self.truth(where)
         if a.boolean is not b.boolean:
             a, b = self.number(a), self.number(b)
@@ -297,13 +299,13 @@ class Tape:
 
     # -- blocks ------------------------------------------------------------------------------------------
     def block(self, name: str, args: Sequence[Expr], count: int, data: Payload) -> list[Expr]:
-        """The `count` results of an operation with loops of its own, such as "expv"."""
+        """The `count` results of one operation that contains loops, such as "expv"."""
         whole = self._make(name, tuple(args), data)
         return [self._make("get", (whole,), i) for i in range(count)]
 
     # -- sums in which terms cancel ----------------------------------------------------------------------
     def _cancelled(self, a: Expr, b: Expr, sign: float) -> Expr | None:
-        """a + sign b where terms of both cancel, else None."""
+        """a + sign b if terms of a and b cancel, else None."""
         first, second = self._terms(a), self._terms(b)
         if first is None or second is None or not any(x in first for x in second):
             return None
@@ -328,7 +330,7 @@ class Tape:
         return total
 
     def _terms(self, x: Expr) -> dict[Expr, float] | None:
-        """x as a sum of multiples of other numbers; None if it has too many terms."""
+        """x as a sum {tracer: coefficient}, or None if it has more than MAX_TERMS terms."""
         if x.terms is None:
             found = self._expanded(x)
             x.terms = found if found is not None and len(found) <= MAX_TERMS else False
@@ -354,7 +356,7 @@ class Tape:
 
 
 def _is_nonnegative(x: Expr) -> bool:
-    """Whether a number is certainly not negative, or nan: sums, products and quotients of squares, ..."""
+    """Whether x >= 0 or x = NaN is certain, as for sums, products and quotients of squares."""
     stack, seen = [x], set()
     while stack:
         y = stack.pop()
@@ -369,7 +371,7 @@ def _is_nonnegative(x: Expr) -> bool:
 
 
 def needed(outputs: Sequence[Expr]) -> list[Expr]:
-    """Everything that outputs depend on, in the order of the tape.
+    """All operations that the outputs depend on, in the order of the tape.
 
     Examples
     --------

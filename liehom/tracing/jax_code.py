@@ -15,13 +15,13 @@ JaxArray: TypeAlias = Any
 """A JAX array or tracer, a numpy array or a number."""
 
 EXP_SUBSTEPS, EXP_TERMS = 4, 18
-"""exp(A) m is summed in so many substeps and terms, which serves |A| up to 4; beyond that it gives nan."""
+"""Numbers of substeps and of terms in which exp(A) m is summed; enough for |A| <= 4, beyond that the result is NaN."""
 
 
 def evaluate_with_jax(
     outputs: Sequence[Expr], inputs: Mapping[int, JaxArray], *, differentiable: bool = False
 ) -> list[JaxArray]:
-    """The outputs of a graph, computed by jax.numpy.
+    """List of the outputs of a graph, computed by jax.numpy.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def evaluate_with_jax(
     inputs : dict
         Arrays, of shapes that broadcast, by the index of the input.
     differentiable : bool
-        Whether loops are to be differentiated backwards: they then have their largest number of iterations.
+        Whether loops must be differentiable backwards. They then run for their largest number of iterations.
 
     Raises
     ------
@@ -99,7 +99,7 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 
 
 def _rotation(jnp: ModuleType, q: JaxArray, first: int) -> JaxArray:
-    """sin(r)/r or cos(r) with r^2 = q; of the branch that is not taken not even the derivative overflows."""
+    """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
     near = jnp.abs(q) < SHORT_SERIES_REACH
     total: Any = 0.0
     for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
@@ -115,7 +115,7 @@ def _rotation(jnp: ModuleType, q: JaxArray, first: int) -> JaxArray:
 
 
 def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], whole: bool) -> list[JaxArray]:
-    """The numbers after a loop."""
+    """The values of the variables after a loop."""
     from jax import lax
 
     loop = x.value

@@ -1,8 +1,9 @@
-"""The loop over steps and lanes around a traced step, in LLVM assembly; and machine code of it, kept on disk.
+"""Kernel: machine code of a traced step in a loop over steps and lanes, with a cache on disk.
 
-Lanes are trajectories; W of them are stepped together, block by block, all steps of a block before the next block.
-A lane rests as soon as its next step would not be a plain one: the last before a limit, one that is not finite, one
-over which the clock does not run.  Where sizes are adapted, a step that is not accepted changes only the size.
+Blocks of W lanes (trajectories) are stepped together, all steps of a block before the next block.  A lane is masked out
+as soon as its next step would not be an ordinary one.  That is the last step before its limit, a step to a point that
+is not finite, and a step over which its clock is not increasing at an admissible rate.  With adaptive step sizes, a step that is
+not accepted changes only the step size.
 """
 
 from __future__ import annotations
@@ -31,22 +32,23 @@ TargetMachine: TypeAlias = Any
 """A target machine of llvmlite."""
 
 TIME_SLACK = 1e-9
+"""A lane stops if less than this fraction of a step is left to its limit."""
 ARRAY_ARGUMENTS = 12
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """How the size of a traced step is adapted; input N + 1 is then the size that is proposed, without a sign.
+    """Outputs of an adaptive traced step; input N + 1 of its graph is then the proposed size, without sign.
 
     Attributes
     ----------
     tried : Expr
-        The size of the step, signed.
+        Size of the step that was tried, signed.
     accepted : Expr
-        Whether the step is made.
+        Boolean: whether the step is taken.
     proposal : Expr
-        What is proposed next, whether it is made or not.
+        Size proposed for the next step, whether this one is taken or not.
     """
 
     tried: Expr
@@ -57,28 +59,29 @@ class Sizes:
 @final
 @dataclass(frozen=True, slots=True)
 class StepGraph:
-    """A traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, -1, -2, ... constants.
+    """Graph of a traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, -1, -2, ... constants.
 
     Attributes
     ----------
     point : list of Expr
-        After the step.
+        Coordinates of the point after the step.
     elapsed : Expr or None
-        The time that passes; None if it is the step size.
+        Time that passes in the step; None if it is the step size.
     ordinary : Expr or None
-        Whether the step is certainly a plain one: its clock runs over it, its equations were solved; None if always.
+        Boolean: whether the step is certainly an ordinary one, that is, its clock is increasing at an admissible rate
+        and its equations were solved. None if it always is.
     largest, summed : dict of str to Expr
-        Numbers of which the run keeps the largest, or the sum, of the steps that are made, by their names.
+        Numbers by name; the run records their largest value, or their sum, over the steps taken.
     constant_functions : tuple of callable
-        Inputs -1, -2, ...: numbers of the trajectories, which do not change, as functions of their starts (L, N).
+        Inputs -1, -2, ...: numbers that are constant along a trajectory, as functions of the initial points (L, N).
     clock : tuple of (int, Expr)
-        k and c_k: in a step of size h the time h + c_2 h^2 + ... passes.
+        (k, c_k): the time h + c_2 h^2 + ... passes in a step of size h.
     solved : Expr or None
-        Whether all equations of the step were solved (`runs` says so too); None where there are none.
+        Boolean: whether all equations of the step were solved (`ordinary` implies it); None if there are none.
     sizes : Sizes or None
-        None if the size is fixed.
+        None if the step size is fixed.
     calls : int or None
-        Of psi in a step; None where that depends on values, it is then summed up as "calls".
+        Calls of psi in a step. None if their number depends on values; `summed["calls"]` then counts them.
     """
 
     point: list[Expr]
@@ -94,16 +97,16 @@ class StepGraph:
 
     @property
     def size(self) -> int:
-        """N."""
+        """N, the number of coordinates."""
         return len(self.point)
 
     def constants(self, points: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
-        """The further inputs, (count, L), for points (L, N)."""
+        """Values of inputs -1, -2, ...: a list of arrays (L,), for initial points (L, N)."""
         return [number(points) for number in self.constant_functions]
 
     @property
     def outputs(self) -> list[Expr]:
-        """All results."""
+        """All outputs: point, time, booleans, step sizes, recorded numbers."""
         extra = [x for x in (self.elapsed, self.ordinary) if x is not None]
         sizes = self.sizes
         adapted = [] if sizes is None else [sizes.tried, sizes.accepted, sizes.proposal]
@@ -111,7 +114,7 @@ class StepGraph:
 
 
 def llvm_module(graph: StepGraph, width: int) -> str:
-    """The module with the function `run` for blocks of so many lanes."""
+    """LLVM assembly of a module with the function `run`, for blocks of `width` lanes."""
     w = Writer(width)
     v, n = w.vector, graph.size
     _head(w, n)
@@ -165,7 +168,7 @@ def _pointer(w: Writer, base: str, row: str | int) -> str:
 
 
 def _loop_head(w: Writer, graph: StepGraph) -> list[tuple[str, str]]:
-    """Load the state of a block and begin the loop over steps; the names and places of what is kept."""
+    """Load the state of a block and begin the loop over steps; (name, pointer) of the state variables."""
     v, n = w.vector, graph.size
     kept = [(f"x{i}", _pointer(w, "%m", i)) for i in range(n)]
     kept += [("t", _pointer(w, "%t.in", 0)), ("count", _pointer(w, "%count.in", 0))]
@@ -192,7 +195,7 @@ def _loop_head(w: Writer, graph: StepGraph) -> list[tuple[str, str]]:
 
 
 def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
-    """Decide where the step is made, keep what is new, store it, and go on."""
+    """Decide in which lanes the step is taken, update their state, store it, and continue the loop."""
     v = w.vector
     more = w.emit(f"fadd {v} %count, {w.splat(1.0)}")
     if graph.elapsed is None:  # by counting, so that round-off does not add up; the limit is a number of steps
@@ -227,7 +230,7 @@ def _loop_end(w: Writer, graph: StepGraph, body: Body) -> None:
         go = w.emit(f"and {w.mask} {go}, {body.name(sizes.accepted)}")
         new |= {"h": body.name(sizes.proposal), "tries": w.emit(f"fadd {v} %tries, {w.splat(1.0)}")}
         new["size"], old["size"] = body.name(sizes.tried), w.splat(0.0)
-    # a branch that is foreseen costs nothing, selections would stand in the chain from step to step
+    # a predicted branch costs nothing; selections would lengthen the dependency chain from step to step
     w.lines += [f"  br i1 {w.all(go)}, label %made, label %mixed, !prof !1", "mixed:"]
     for name, value in new.items():
         where = tried if name in ("h", "tries") else go
@@ -260,7 +263,7 @@ def _store_path(w: Writer, graph: StepGraph) -> None:
 # -- machine code ------------------------------------------------------------------------------------------
 @final
 class Kernel:
-    """Machine code of a traced step for blocks of a width.
+    """Machine code of a traced step for blocks of `width` lanes.
 
     Parameters
     ----------
@@ -270,9 +273,9 @@ class Kernel:
     Attributes
     ----------
     cached : bool
-        Whether the code was found on disk.
+        Whether the code was found in the cache.
     cost : int
-        How long an operation takes, 1.
+        Relative time of an operation, 1; the JAX kernel has another.
     """
 
     cost = 1
@@ -292,10 +295,10 @@ class Kernel:
         steps: int,
         time: tuple[float, float],
     ) -> None:
-        """Step the blocks first..last-1 at most so many times; `arrays` are changed in place, None is no path.
+        """Take at most `steps` steps in the blocks first..last-1, changing `arrays` in place.
 
-        They are m, t, h, limit, count, alive, extra, constants, path, path_t; where sizes are adapted also tries (how
-        many steps were tried) and path_h.
+        The arrays are m, t, h, limit, count, alive, extra, constants, path, path_t; for adaptive step sizes also tries
+        (the number of steps tried) and path_h. Without a path to store, path and path_t are None.
         """
         places = [None if a is None else a.ctypes.data for a in arrays]
         self._run(*places, *[None] * (ARRAY_ARGUMENTS - len(places)), lanes, *blocks, steps, *time)
@@ -305,7 +308,7 @@ _ENGINES: dict[str, Engine] = {}
 
 
 def cache_directory() -> Path | None:
-    """Where machine code is kept: LIEHOM_CACHE_DIR, else a folder of the user's cache; None if that is empty."""
+    """Folder of the cached machine code, LIEHOM_CACHE_DIR or ~/.cache/liehom; None if that variable is empty."""
     given = os.environ.get("LIEHOM_CACHE_DIR")
     if given is not None:
         return Path(given) if given else None
@@ -314,7 +317,7 @@ def cache_directory() -> Path | None:
 
 
 def _engine(text: str) -> tuple[Engine, bool]:
-    """The engine with the code of a module, and whether it was made before."""
+    """(engine with the code of a module, whether the code was cached)."""
     try:
         import llvmlite.binding as llvm
     except ImportError:
@@ -371,7 +374,7 @@ def _read(key: str) -> bytes | None:
 
 
 def _write(key: str, code: bytes) -> None:
-    """Keep the code, in one move; where that is not possible it is compiled again next time."""
+    """Cache the code, by renaming a complete file; if that fails, it is compiled again next time."""
     folder = cache_directory()
     if folder is None:
         return
@@ -384,12 +387,12 @@ def _write(key: str, code: bytes) -> None:
         with os.fdopen(handle, "wb") as file:
             file.write(hashlib.sha256(code).digest() + code)
         os.replace(name, folder / f"{key}.o")
-    except OSError:  # of a full disk nothing is left behind
+    except OSError:  # leave no partial file on a full disk
         Path(name).unlink(missing_ok=True)
 
 
 def padded(count: int, width: int) -> int:
-    """The number of lanes in whole blocks.
+    """Number of lanes, rounded up to whole blocks.
 
     Examples
     --------

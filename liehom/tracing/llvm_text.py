@@ -1,7 +1,7 @@
 """A graph as LLVM assembly for vectors of W lanes: straight-line code, one instruction per operation.
 
-`Body` writes the operations of a graph inside a function; what needs branches or loops (sin(r)/r near 0 and far from
-it, exp(A) m by a series) becomes functions of its own, which branch for all lanes together.
+`Body` writes the operations of a graph inside a function.  Operations that need branches or loops become separate
+functions, which branch for all lanes of a block together: sin(r)/r near 0 and far from 0, exp(A) m by a series.
 """
 
 from __future__ import annotations
@@ -23,12 +23,13 @@ LIBM = {
 }  # fmt: skip
 COMPARED = {"lt": "olt", "le": "ole", "eq": "oeq", "ne": "une"}
 SHORT_SERIES_REACH, LONG_SERIES_REACH = 0.25, 4.0
-"""Up to these |q| sin(r)/r and cos(r), r^2 = q, are short and long polynomials in q; beyond them they call libm."""
+"""Largest |q| for which sin(r)/r and cos(r), r^2 = q, are a short and a long polynomial in q; above, libm is used."""
 MAX_SUBSTEPS = 16.0
+"""Largest number of substeps of exp(A) m; for |A| above twice this number the result is NaN."""
 
 
 def number(x: float) -> str:
-    """A float as LLVM writes it, to the bit.
+    """A float in LLVM's hexadecimal notation, exactly.
 
     Examples
     --------
@@ -40,7 +41,7 @@ def number(x: float) -> str:
 
 @final
 class Writer:
-    """The lines of a function, and the functions that it needs.
+    """Lines of a function in LLVM assembly, and the functions that it calls.
 
     Parameters
     ----------
@@ -64,18 +65,18 @@ class Writer:
         self._count = 0
 
     def fresh(self) -> str:
-        """A new name."""
+        """A new name for a value, "%v1", "%v2", ..."""
         self._count += 1
         return f"%v{self._count}"
 
     def emit(self, text: str) -> str:
-        """A line that gives a value; its name."""
+        """Name of the value of a line that is appended."""
         name = self.fresh()
         self.lines.append(f"  {name} = {text}")
         return name
 
     def splat(self, x: float | bool) -> str:
-        """A constant in all lanes."""
+        """Vector constant with x in all lanes."""
         if isinstance(x, bool):
             one = "true" if x else "false"
             return one if self.width == 1 else "<" + ", ".join([f"i1 {one}"] * self.width) + ">"
@@ -83,11 +84,11 @@ class Writer:
         return one if self.width == 1 else "<" + ", ".join([f"double {one}"] * self.width) + ">"
 
     def binary(self, op: str, a: str, b: str) -> str:
-        """fadd, fsub, fmul, fdiv."""
+        """Name of a op b, for op = "fadd", "fsub", "fmul", "fdiv"."""
         return self.emit(f"{op} {FLAGS} {self.vector} {a}, {b}")
 
     def polynomial(self, coefficients: Sequence[float], x: str) -> str:
-        """From the constant term on, by Horner's rule for even and odd terms, which run side by side."""
+        """Name of the polynomial with these coefficients, constant term first; even and odd terms run in parallel."""
         if len(coefficients) > 3:
             square = self.binary("fmul", x, x)
             odd = self.binary("fmul", self.polynomial_in(coefficients[1::2], square), x)
@@ -95,20 +96,20 @@ class Writer:
         return self.polynomial_in(coefficients, x)
 
     def polynomial_in(self, coefficients: Sequence[float], x: str) -> str:
-        """By Horner's rule."""
+        """Name of the polynomial with these coefficients, by Horner's rule."""
         total = self.splat(coefficients[-1])
         for c in reversed(coefficients[:-1]):
             total = self.binary("fadd", self.binary("fmul", total, x), self.splat(c))
         return total
 
     def intrinsic(self, name: str, *args: str) -> str:
-        """llvm.sqrt, llvm.fabs, llvm.maxnum, ..., on all lanes."""
+        """Name of an intrinsic function such as llvm.sqrt on all lanes."""
         full = f"llvm.{name}.{self.suffix}"
         self.declared[full] = f"declare {self.vector} @{full}({', '.join([self.vector] * len(args))})"
         return self.emit(f"call {self.vector} @{full}({', '.join(f'{self.vector} {a}' for a in args)})")
 
     def library(self, name: str, *args: str) -> str:
-        """A function of libm, lane by lane."""
+        """Name of a function of libm, called lane by lane."""
         self.declared[name] = f"declare double @{name}({', '.join(['double'] * len(args))}) memory(none)"
         if self.width == 1:
             return self.emit(f"call double @{name}({', '.join(f'double {a}' for a in args)})")
@@ -120,21 +121,21 @@ class Writer:
         return made
 
     def any(self, mask: str) -> str:
-        """Whether a mask holds in a lane."""
+        """Name of the i1 that is true if a mask holds in some lane."""
         if self.width == 1:
             return mask
         self.declared[f"any{self.width}"] = f"declare i1 @llvm.vector.reduce.or.v{self.width}i1({self.mask})"
         return self.emit(f"call i1 @llvm.vector.reduce.or.v{self.width}i1({self.mask} {mask})")
 
     def all(self, mask: str) -> str:
-        """Whether a mask holds in all lanes."""
+        """Name of the i1 that is true if a mask holds in all lanes."""
         if self.width == 1:
             return mask
         self.declared[f"all{self.width}"] = f"declare i1 @llvm.vector.reduce.and.v{self.width}i1({self.mask})"
         return self.emit(f"call i1 @llvm.vector.reduce.and.v{self.width}i1({self.mask} {mask})")
 
     def maximum(self, x: str) -> str:
-        """The largest over the lanes, a double."""
+        """Name of the maximum over the lanes, a double."""
         if self.width == 1:
             return x
         name = f"llvm.vector.reduce.fmax.{self.suffix}"
@@ -142,7 +143,7 @@ class Writer:
         return self.emit(f"call double @{name}({self.vector} {x})")
 
     def spread(self, x: str) -> str:
-        """A double in all lanes."""
+        """Name of the vector with the double x in all lanes."""
         if self.width == 1:
             return x
         first = self.emit(f"insertelement {self.vector} poison, double {x}, i32 0")
@@ -152,13 +153,13 @@ class Writer:
 
 @final
 class Body:
-    """Writes the operations of graphs; what was written once is used again.
+    """Writer of the operations of graphs, each of them once.
 
     Parameters
     ----------
     writer : Writer
     inputs : dict
-        The names of the inputs by their index.
+        Names of the inputs, by their index.
     """
 
     def __init__(self, writer: Writer, inputs: dict[int, str]) -> None:
@@ -168,13 +169,13 @@ class Body:
         self._loops: dict[int, list[str]] = {}
 
     def write(self, exprs: Sequence[Expr]) -> None:
-        """Write expressions of which the arguments stand before them."""
+        """Write operations; each must come after its arguments."""
         for x in exprs:
             if x.index not in self._names:
                 self._names[x.index] = self._written(x)
 
     def name(self, x: Expr) -> str:
-        """The name of what was written."""
+        """Name of the value of an operation that was written."""
         return self.writer.splat(x.value) if x.constant else self._names[x.index]
 
     def _written(self, x: Expr) -> str:
@@ -213,7 +214,7 @@ class Body:
         raise TraceError(f"the operation {x.op} has no machine code here")
 
     def _iterated(self, x: Expr) -> str:
-        """A loop as basic blocks of their own; it goes on as long as a lane wants it."""
+        """Write a loop as basic blocks; it ends when no lane wants another iteration."""
         w, loop, before = self.writer, x.value, self.writer.label
         name = f"loop{x.index}"
         w.lines += [f"  br label %{name}", f"{name}:"]
@@ -237,7 +238,7 @@ class Body:
         return ""
 
     def _rotation(self, q: Expr, name: str) -> tuple[str, str]:
-        """sin(r)/r and cos(r), together."""
+        """Names of sin(r)/r and cos(r), computed together."""
         if q.index not in self._pairs:
             w = self.writer
             _define_rotation(w)
@@ -251,7 +252,7 @@ class Body:
 
 # -- sin(r)/r and cos(r) of r^2 ----------------------------------------------------------------------------
 def rotation_series(reach: float, first: int) -> list[float]:
-    """The Taylor coefficients of sin(r)/r (first = 1) or cos(r) (first = 0) in r^2, enough for r^2 up to `reach`.
+    """Taylor coefficients of sin(r)/r (first = 1) or cos(r) (first = 0) in r^2, enough for double precision to `reach`.
 
     Examples
     --------
@@ -296,12 +297,12 @@ def _define_rotation(w: Writer) -> None:
 
 
 def _by_library(f: Writer, size: str) -> list[str]:
-    """By sin, cos, sinh, cosh, with the series where r is small in some lanes."""
+    """Names of sin(r)/r and cos(r) by libm; lanes with small r use the series."""
     v = f.vector
     r = f.intrinsic("sqrt", size)
     turns = f.emit(f"fcmp ogt {v} %q, {f.splat(0.0)}")
     near = f.emit(f"fcmp olt {v} {size}, {f.splat(SHORT_SERIES_REACH)}")
-    # sinh of a large r of a rotation would overflow
+    # sinh of the large r of a rotation would overflow
     grown = f.emit(f"select {f.mask} {turns}, {v} {f.splat(0.0)}, {v} {r}")
     made = []
     for k, names in ((0, ("sin", "sinh")), (1, ("cos", "cosh"))):
@@ -328,7 +329,7 @@ def _call_series(w: Writer, x: Expr, args: list[str]) -> str:
 
 
 def _define_series(w: Writer, name: str, places: tuple[tuple[int, int], ...], n: int) -> None:
-    """exp(A) m by the Taylor series of the increment, in substeps of norm at most 2; as many terms as are felt."""
+    """exp(A) m by the Taylor series of the increment, in substeps of norm at most 2, until a term is negligible."""
     f = Writer(w.width)
     v, result = f.vector, "{" + ", ".join([f.vector] * n) + "}"
     square = f.splat(0.0)
@@ -343,7 +344,7 @@ def _define_series(w: Writer, name: str, places: tuple[tuple[int, int], ...], n:
     least = f.emit(f"call double @llvm.maxnum.f64(double {up}, double {number(1.0)})")
     parts = f.emit(f"call double @llvm.minnum.f64(double {least}, double {number(MAX_SUBSTEPS)})")
     share = f.spread(f.emit(f"fdiv double {number(1.0)}, {parts}"))
-    fine = f.emit(f"fcmp ole {v} {norm}, {f.splat(2 * MAX_SUBSTEPS)}")  # beyond, and for nan: not computed here
+    fine = f.emit(f"fcmp ole {v} {norm}, {f.splat(2 * MAX_SUBSTEPS)}")  # beyond, and for NaN, the result is NaN
     good = f.emit(f"select {f.mask} {fine}, {v} {f.splat(1.0)}, {v} {f.splat(math.nan)}")
     scaled = [f.binary("fmul", f"%a{p}", share) for p in range(len(places))]
     f.lines += ["  br label %substep", "substep:"]

@@ -1,6 +1,6 @@
-"""Loops in a traced step: iterations until nothing changes, for every trajectory as long as it needs.
+"""Loops in a traced step: each lane iterates until its own numbers no longer change.
 
-What does not depend on the numbers that change stands before the loop.
+Operations that do not depend on the changing numbers are moved before the loop.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from liehom.tracing.graph import Tape, needed
 @final
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Loop:
-    """A loop: from the variables to their new values, at least once, as long as it is wanted in any lane.
+    """A loop that replaces variables by new values, at least once and until no lane wants another iteration.
 
     Attributes
     ----------
     variables, new : tuple of Expr
     again : Expr
-        A truth value: whether a lane wants another iteration.
+        Boolean: whether a lane wants another iteration.
     inside : tuple of Expr
-        What is computed in every iteration, in the order of the tape.
+        The operations of one iteration, in the order of the tape.
     limit : int
         The most iterations.
     """
@@ -39,7 +39,7 @@ class Loop:
     limit: int
 
     def __repr__(self) -> str:
-        # the same for loops of the same operations
+        # equal loops must print equally: the repr is part of the compile-cache key
         rows = [(x.op, *[a.index for a in x.args], x.value) for x in self.inside]
         ends = [x.index for x in (*self.variables, *self.new, self.again)]
         return f"Loop({ends}, {rows}, {self.limit})"
@@ -48,9 +48,9 @@ class Loop:
 def scalar_while_loop(
     tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int
 ) -> list[Expr]:
-    """The numbers after a loop.
+    """Tracers of the variables after a loop.
 
-    A lane that has what it wants goes on as long as others iterate: the body keeps its numbers by selection.
+    A lane that has converged iterates along with the others; `body` must keep its numbers, by `Tape.select`.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def scalar_while_loop(
     tape.calls = tape.zero
     variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
     new, again = body(list(variables))
-    if tape.calls is not tape.zero:  # the iterations of each lane are counted, with what is called in one
+    if tape.calls is not tape.zero:  # count the calls of psi in each lane's own iterations
         start = [*start, tape.zero, tape.true]
         total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
         new = [*new, total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
@@ -100,7 +100,7 @@ def scalar_while_loop(
 def while_loop(
     function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int
 ) -> list[Traced]:
-    """The same for arrays.
+    """Traced arrays after a loop: the array version of `scalar_while_loop`.
 
     Parameters
     ----------
