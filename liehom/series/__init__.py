@@ -1,8 +1,12 @@
-"""Truncated Taylor series and series in Lie algebras.
+"""Truncated Taylor series on which numpy code runs, and series in Lie algebras; see docs/api/series.md.
 
-In reading order: `node` (coefficients on demand), `recurrences`, `jet` (with `jet_ufuncs`, `jet_functions`,
-`jet_views`: what numpy does with it), `assembly` (one Jet from lists), `bilinear`, `lie_series`; `arrays` knows the
-kinds of numbers.
+In reading order:
+
+- `arrays`: which kind of numbers an array holds;
+- `node`, `recurrences`: coefficients on demand, and their formulas;
+- `jet`, `jet_views`: the class `Jet`, and assignment into Jets;
+- `assembly`, `jet_ufuncs`, `jet_functions`: numpy's functions on Jets, which `jet_dispatch` hands to the class;
+- `bilinear`, `lie_series`: brackets and actions, Magnus and Baker-Campbell-Hausdorff series.
 """
 
 import liehom.series.jet_functions  # noqa: F401 (enters itself in `jet_dispatch`)

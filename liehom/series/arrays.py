@@ -1,9 +1,9 @@
-"""Which arrays a computation runs on: numpy of any dtype, JAX, or numpy arrays of exact scalars.
+"""The kinds of arrays that series have as coefficients: numpy of any dtype, JAX, traced, arrays of exact numbers.
 
-`namespace` gives the module whose functions fit an array, `elementary` applies a function such as ``exp`` to the
-values of an array: numerically, or exactly to objects (sympy expressions; field elements where the value is in
-the field), and says so where it cannot.  JAX is never imported, only recognised; traced arrays are of `liehom.tracing`
-and are handled by numpy's own functions.
+`namespace` is the module whose functions fit an array.  `elementary` applies a function such as ``exp`` to the entries,
+in floats or exactly: to sympy expressions, and to field elements if the value is in the field, else it raises
+`FieldError`.  JAX is never imported here, only recognized.  Traced arrays are those of `liehom.tracing`, on which
+numpy's own functions run.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def is_jax(x: object) -> TypeGuard[Any]:
 
 
 def is_lazy(x: object) -> TypeGuard[Any]:
-    """Whether x is an array whose values may not be looked at: of JAX, or traced to be compiled.
+    """Whether x is a JAX array or a traced array, whose values must not decide what is computed.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def is_lazy(x: object) -> TypeGuard[Any]:
 
 
 def is_traced(x: object) -> bool:
-    """Whether x stands for a value that is not known yet, inside ``jax.jit``, ``jax.grad`` or a trace of our own.
+    """Whether x is a tracer, inside ``jax.jit`` or ``jax.grad`` or while a step is traced.
 
     Examples
     --------
@@ -93,7 +93,7 @@ def is_exact(x: object) -> bool:
 
 
 def namespace(*arrays: object) -> ModuleType:
-    """``jax.numpy`` if one of the arrays is a JAX array, else ``numpy``.
+    """The module ``jax.numpy`` if one of the arrays is a JAX array, else ``numpy``.
 
     Examples
     --------
@@ -105,12 +105,12 @@ def namespace(*arrays: object) -> ModuleType:
 
 
 def as_values(x: NumbersLike) -> npt.NDArray[Any]:
-    """x as an array whose arithmetic is a field's: integers become floats, exact integers become fractions.
+    """x as an array with the arithmetic of a field: machine integers become floats, exact integers fractions.
 
     Raises
     ------
     SeriesError
-        If an entry is no number, or floats stand beside exact rational numbers.
+        If an entry is not a number, or floats are mixed with exact rational numbers.
 
     Examples
     --------
@@ -160,7 +160,7 @@ def _is_number(value: object) -> bool:
 
 
 def constant_like(like: Values, value: NumbersLike) -> npt.NDArray[Any]:
-    """A constant as an array that can stand in one formula with arrays like `like`; the caller's array is copied.
+    """A copy of a constant as an array of the same kind of numbers as `like`.
 
     A number takes the type of `like`, as in numpy; next to exact scalars it must be exact.
 
@@ -190,7 +190,7 @@ def constant_like(like: Values, value: NumbersLike) -> npt.NDArray[Any]:
 
 
 def owned(x: T) -> T:
-    """x, copied if it is an array that its owner may change; None stays.
+    """A copy of x if it is a numpy array, which the caller might change later; else x itself.
 
     Examples
     --------
@@ -203,7 +203,7 @@ def owned(x: T) -> T:
 
 
 def zeros(like: Values, shape: tuple[int, ...]) -> npt.NDArray[Any]:
-    """An array of zeros of the kind of `like`; over exact scalars they are the zero of their kind.
+    """Array of zeros of this shape, with the dtype of `like`; for exact numbers, their own zero.
 
     Examples
     --------
@@ -226,7 +226,7 @@ def zeros(like: Values, shape: tuple[int, ...]) -> npt.NDArray[Any]:
 
 
 def in_lanes(x: V) -> V:
-    """x (..., N), copied if need be so that each component lies contiguous in memory, the last axis outermost.
+    """x (..., N) with each component contiguous in memory, the last axis outermost; a copy if x has another layout.
 
     Values and shape are those of x. Arithmetic of numpy keeps the layout, and with few components is several times
     faster in it: the inner loops run over the ensemble.
@@ -249,7 +249,7 @@ def in_lanes(x: V) -> V:
 
 
 def across_lanes(x: Values, matrix: Values) -> Values:
-    """x @ matrix for x (..., n) and a matrix (n, k) that all share, in the layout of x.
+    """x @ matrix for x (..., n) and one matrix (n, k) for all trajectories, in the memory layout of x.
 
     Examples
     --------
@@ -270,7 +270,7 @@ def across_lanes(x: Values, matrix: Values) -> Values:
 
 
 def elementary(name: str, x: Values) -> npt.NDArray[Any]:
-    """The numpy function of this name on the values of an array.
+    """The numpy function of this name applied to the entries of an array.
 
     Raises
     ------
@@ -331,7 +331,7 @@ def _symbolic(library: ModuleType, name: str, x: ExactNumber) -> ExactNumber:
 
 
 def power(x: Values, exponent: Fraction) -> npt.NDArray[Any]:
-    """x ** exponent for arrays of exact scalars: roots of squares, and of whatever sympy and mpmath can do.
+    """x ** exponent for arrays of exact numbers: square roots of squares, and all powers in sympy and mpmath.
 
     Examples
     --------
@@ -362,7 +362,7 @@ def _power_scalar(x: ExactNumber, exponent: Fraction) -> ExactNumber:
 
 
 def solve(a: Values, b: Values) -> npt.NDArray[Any]:
-    """The solution of a x = b for matrices a (..., n, n), b (..., n, k): also of long doubles and exact scalars.
+    """Solution of a x = b for matrices a (..., n, n), b (..., n, k), also of long doubles and exact numbers.
 
     Raises
     ------
@@ -390,7 +390,7 @@ def solve(a: Values, b: Values) -> npt.NDArray[Any]:
 
 
 def _eliminate(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> None:
-    """Gauss-Jordan elimination in place: b becomes the solution."""
+    """Solve a x = b in place by Gauss-Jordan elimination; b becomes x."""
     n = a.shape[0]
     for i in range(n):
         column = a[i:, i]

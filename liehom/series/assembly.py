@@ -1,4 +1,4 @@
-"""One Jet from what users return: nested lists and arrays of objects that hold Jets and numbers.
+"""One Jet from the nested lists and arrays of objects that generators return, with Jets and numbers as entries.
 
 numpy makes ``np.array([m[0] * m[1], 0.0])`` an array of objects; `as_jet` makes it one Jet again.
 """
@@ -47,19 +47,19 @@ def as_jet(x: Operand, order: int | None = None) -> Jet:
     x : Jet, array_like, or nested list or array of objects that holds Jets and numbers
         The entries of a list have one shape, except that numbers stand for constant arrays of that shape.
     order : int, optional
-        The order of the result where no Jet is in x.
+        The order of the result if x holds no Jet.
 
     Returns
     -------
     Jet
-        With the entries along the first axes; of the lowest order among the Jets.
+        The entries along the first axes, to the lowest order among the Jets.
 
     Raises
     ------
     ShapeError
         If the entries of a list do not have one shape.
     SeriesError
-        If there is no Jet and no order, or an entry is no number.
+        If there is no Jet and no order, or an entry is not a number.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def as_jet(x: Operand, order: int | None = None) -> Jet:
 
 
 def _array(parts: list[Values], shape: tuple[int, ...]) -> npt.NDArray[Any]:
-    """Numbers as an array of this shape, which numpy must not look into."""
+    """Numbers as an array of this shape, without numpy looking into them."""
     dtype = np.result_type(*[getattr(part, "dtype", np.dtype(object)) for part in parts])
     out = np.empty(len(parts), dtype=dtype)
     for i, part in enumerate(parts):
@@ -103,14 +103,14 @@ def _array(parts: list[Values], shape: tuple[int, ...]) -> npt.NDArray[Any]:
 
 
 def _plain(x: Operand) -> Operand:
-    """An array; numpy must not look into the values of JAX arrays in a list."""
+    """x, with a list of JAX arrays stacked by JAX, as numpy would look into their values."""
     if isinstance(x, list | tuple) and any(is_lazy(entry) for entry in x):
         return namespace(*x).stack([namespace(*x).asarray(entry) for entry in x])
     return x
 
 
 def _flattened(x: Operand) -> tuple[tuple[int, ...], list[Operand]]:
-    """The outer shape and the entries in order."""
+    """(outer shape, entries in order) of a nested list or array of objects."""
     if isinstance(x, np.ndarray):
         return x.shape, list(x.flat)
     parts = [_flattened(entry) if isinstance(entry, list | tuple) else ((), [entry]) for entry in x]
@@ -122,7 +122,7 @@ def _flattened(x: Operand) -> tuple[tuple[int, ...], list[Operand]]:
 
 
 def nodes(*values: Operand, like: Jet | None = None) -> list[Node]:
-    """The nodes of Jets and constants, at the lowest order among the Jets; a constant becomes of the kind of `like`.
+    """Nodes of Jets and constants, to the lowest order among the Jets; constants become numbers of the kind of `like`.
 
     Examples
     --------
@@ -140,14 +140,14 @@ def nodes(*values: Operand, like: Jet | None = None) -> list[Node]:
 
 
 def on_series(function: Callable[..., T], *arguments: object) -> T:
-    """``function(*arguments)``, with numpy's own complaint about a Jet in a float array replaced by the reason.
+    """The value ``function(*arguments)``; if numpy fails because of a Jet in a float array, `SeriesError` says so.
 
     Writing a Jet into an entry of a float array ends in numpy's "setting an array element with a sequence".
 
     Raises
     ------
     SeriesError
-        Where that happens, and wherever a Jet refuses something.
+        If that happens, or if an operation on a Jet raises it.
 
     Examples
     --------

@@ -22,11 +22,13 @@ from liehom.series.jet import Jet
 
 DENSE_UP_TO_ENTRIES = 4096
 DENSE_FROM_FRACTION = 0.2
+"""A map is applied as one dense matrix if a b c is at most DENSE_UP_TO_ENTRIES, or more than this fraction of its
+entries is not 0."""
 
 
 @final
 class Bilinear:
-    """A bilinear map K^a x K^b -> K^c with constant coefficients.
+    """Bilinear map K^a x K^b -> K^c with constant coefficients.
 
     Parameters
     ----------
@@ -64,7 +66,7 @@ class Bilinear:
         self._cache: dict[Hashable, npt.NDArray[Any]] = {}
 
     def tensor(self) -> npt.NDArray[Any]:
-        """The coefficients as an array of shape (a, b, c): floats, or objects if one of them is no float or integer.
+        """Coefficients as an array of shape (a, b, c), of floats, or of objects if a coefficient is exact or symbolic.
 
         Examples
         --------
@@ -75,7 +77,7 @@ class Bilinear:
         return self._filled(self._values.astype(np.float64) if plain else self._values)
 
     def __call__(self, x: NumbersLike, y: NumbersLike) -> Any:
-        """B(x, y) for x (..., a) and y (..., b): shape (..., c); Jets give a Jet.
+        """B(x, y), array of shape (..., c), for x (..., a) and y (..., b); a Jet if x or y is one.
 
         Raises
         ------
@@ -142,7 +144,7 @@ class Bilinear:
         return self._collected(products, kind)
 
     def _collected(self, products: npt.NDArray[Any], kind: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """The sums of the products that belong to one component."""
+        """Array (..., c) of the sums of the products that belong to each component."""
         shape = (*products.shape[:-1], self.shape[2])
         if is_jax(products):
             whole: Any = zeros(products, shape)
@@ -154,7 +156,7 @@ class Bilinear:
         return out
 
     def _coefficients(self, like: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """The coefficients in the kind of numbers of an array."""
+        """Coefficients as numbers of the kind of `like`."""
         if like.dtype == object:
             return constant_like(like, self._values)
         dtype = np.zeros((), like.dtype).real.dtype
@@ -164,7 +166,7 @@ class Bilinear:
             return self._values
 
     def _cached(self, name: str, like: npt.NDArray[Any], make: Callable[[], npt.NDArray[Any]]) -> npt.NDArray[Any]:
-        """What depends on the kind of numbers alone."""
+        """The value of make(), cached by its name and the kind of numbers in `like`."""
         if like.dtype != object:
             key: Hashable = (name, np.dtype(like.dtype))
         else:

@@ -1,4 +1,4 @@
-"""Jet: a truncated Taylor series with array values, on which ordinary numpy code runs.
+"""Jet: a truncated Taylor series with array values, on which numpy code runs.
 
 A Jet of order n stands for y(t) = y_0 + y_1 t + ... + y_n t^n + O(t^(n+1)) with arrays y_k of one shape; it
 has the shape of its values, and numpy functions of it are Jets.  Coefficients are Taylor coefficients (no
@@ -44,8 +44,8 @@ class Jet(NDArrayOperatorsMixin):
     -----
     Numpy's arithmetic, elementary functions, indexing, and functions such as ``np.einsum``, ``np.stack``,
     ``np.cross``, ``np.linalg.norm`` work on Jets (``__array_ufunc__``, ``__array_function__``); over JAX arrays they
-    call their twins of ``jax.numpy``. Entries of results may be assigned, as those of arrays, which does not
-    change what was computed from them before; given Jets and their parts are read-only.
+    call the functions of the same name of ``jax.numpy``. Entries of results may be assigned, as for arrays; series that
+    were computed from them before do not change. Jets that a function receives, and their slices, are read-only.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class Jet(NDArrayOperatorsMixin):
     # -- constructors ------------------------------------------------------------------------------------
     @classmethod
     def from_node(cls, node: Node, *, writable: bool = False) -> Jet:
-        """The Jet of a node: the door for new recurrences.
+        """Jet with the coefficients of a node, for new recurrences.
 
         Examples
         --------
@@ -91,7 +91,7 @@ class Jet(NDArrayOperatorsMixin):
 
     @classmethod
     def variable(cls, value: NumbersLike, order: int, direction: NumbersLike | None = None) -> Jet:
-        """value + direction t (direction 1 by default).
+        """Jet value + direction t (direction 1 by default).
 
         Examples
         --------
@@ -106,7 +106,7 @@ class Jet(NDArrayOperatorsMixin):
 
     @classmethod
     def constant(cls, value: NumbersLike, order: int) -> Jet:
-        """A series without t.
+        """Jet with this value and all other coefficients 0.
 
         Examples
         --------
@@ -117,9 +117,9 @@ class Jet(NDArrayOperatorsMixin):
 
     @classmethod
     def growing(cls, value: NumbersLike, order: int, *, zero: bool = False) -> Jet:
-        """A series of which only the value at 0 is given; `extend` gives the next coefficients.
+        """Jet of which only the value at 0 is given; `extend` appends the next coefficients.
 
-        Functions of it can be asked for the coefficients that are determined so far.
+        The coefficients of functions of it are available as far as they are determined.
 
         Parameters
         ----------
@@ -145,7 +145,7 @@ class Jet(NDArrayOperatorsMixin):
         return cls.from_node(Node(_checked(order), first, [first]))
 
     def extend(self, coefficient: Coefficient) -> None:
-        """Give the next coefficient of a growing series; None is zero.
+        """Append the next coefficient of a growing series; None is zero.
 
         Raises
         ------
@@ -163,12 +163,12 @@ class Jet(NDArrayOperatorsMixin):
         return owned(coefficient)
 
     def replace(self, k: int, coefficient: Coefficient, *results: Jet) -> None:
-        """Replace coefficient k >= 1 of a growing series, and let `results` forget what depended on it.
+        """Replace coefficient k >= 1 of a growing series; coefficients of `results` that depend on it are recomputed.
 
         Raises
         ------
         SeriesError
-            If coefficient k has not been given.
+            If coefficient k has not been appended by `extend`.
 
         Examples
         --------
@@ -196,33 +196,33 @@ class Jet(NDArrayOperatorsMixin):
 
     @property
     def order(self) -> int:
-        """The last index of the coefficients."""
+        """Index of the last coefficient."""
         return self.node.order
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the values."""
+        """Tuple of axis lengths of the values."""
         return tuple(np.shape(self.node.value))
 
     @property
     def ndim(self) -> int:
-        """The number of axes of the values."""
+        """Number of axes of the values."""
         return len(self.shape)
 
     @property
     def size(self) -> int:
-        """The number of entries of the values."""
+        """Number of entries of the values."""
         return int(np.prod(self.shape, dtype=int))
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """The dtype of the values."""
+        """Type of the entries of the values."""
         value = self.node.value
         return value.dtype if hasattr(value, "dtype") else np.dtype(type(value))
 
     @property
     def value(self) -> npt.NDArray[Any]:
-        """The value at t = 0."""
+        """Value at t = 0, a read-only array of the shape of the values."""
         found: npt.NDArray[Any] = _read_only(self.node.value)
         return found
 
@@ -237,21 +237,21 @@ class Jet(NDArrayOperatorsMixin):
 
     @property
     def T(self) -> Jet:
-        """The transpose of the values."""
+        """Jet of the transposed values."""
         return self.part(lambda x: x.T)
 
     @property
     def real(self) -> Jet:
-        """The real part, for real t."""
+        """Jet of the real part, for real t."""
         return self.part(lambda x: x.real)
 
     @property
     def imag(self) -> Jet:
-        """The imaginary part, for real t."""
+        """Jet of the imaginary part, for real t."""
         return self.part(lambda x: x.imag)
 
     def coefficient(self, k: int) -> npt.NDArray[Any]:
-        """Taylor coefficient k, an array of the shape of the values (a structural zero as an array of zeros)."""
+        """Taylor coefficient k, a read-only array of the shape of the values."""
         found = self.node.coefficient(k)
         if found is None:
             return zeros(self.node.value, self.shape)
@@ -259,7 +259,7 @@ class Jet(NDArrayOperatorsMixin):
         return made
 
     def __call__(self, t: Real) -> npt.NDArray[Any]:
-        """The polynomial at t, by Horner's rule; t broadcasts against the values."""
+        """Value of the polynomial at t, by Horner's rule; t broadcasts against the values."""
         total = self.coefficient(self.order)
         for k in range(self.order - 1, -1, -1):
             total = total * t + self.coefficient(k)
@@ -300,7 +300,7 @@ class Jet(NDArrayOperatorsMixin):
     __hash__ = object.__hash__
 
     def _sympy_(self) -> Never:
-        """Tells sympy that this is no expression, so that ``symbol * jet`` comes here."""
+        """Raise `SympifyError`, so that sympy leaves ``symbol * jet`` to Jet."""
         from sympy import SympifyError
 
         raise SympifyError(self)
@@ -342,20 +342,20 @@ class Jet(NDArrayOperatorsMixin):
             self._view.owner._node = jet_views.written(self._view, key, part)
 
     def shares(self) -> bool:
-        """Whether entries of this Jet, or of the one that it is a view of, may be assigned."""
+        """Whether entries of this Jet, or of the Jet that it is a view of, may be assigned."""
         return self._writable or self._view is not None
 
     def part(self, function: Callable[[Any], Any], *, key: Key = None, writable: bool = False) -> Jet:
-        """A linear function of the values that shares entries with this Jet, such as a slice or a transpose.
+        """Jet of a linear function of the values, such as a slice or a transpose, that shares entries with this Jet.
 
         Parameters
         ----------
         function : callable
             From arrays to arrays.
         key : index, optional
-            Such that function(x) is x[key].
+            If function(x) is x[key].
         writable : bool
-            Whether `key` is given, so that writing into the view writes here.
+            Whether assignment into the result assigns to entries of this Jet; needs `key`.
 
         Examples
         --------
@@ -387,7 +387,7 @@ class Jet(NDArrayOperatorsMixin):
         return Jet, (self.coefficients,)
 
     def __getattr__(self, name: str) -> Any:
-        # the other methods of arrays; numpy itself calls x.sin() for the entries of arrays of objects
+        # other methods of arrays; numpy calls x.sin() for the entries of arrays of objects
         return dispatch.method(self, name)
 
     def __repr__(self) -> str:
@@ -395,7 +395,7 @@ class Jet(NDArrayOperatorsMixin):
 
 
 def _read_only(x: Coefficient) -> Any:
-    """An array of coefficients as it is handed out: writing into it would change the series."""
+    """x, made read-only if it is a numpy array, as assignment into it would change the series."""
     if isinstance(x, np.ndarray):
         x.flags.writeable = False
     return x

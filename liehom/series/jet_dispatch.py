@@ -1,7 +1,7 @@
-"""What numpy's protocols, and the methods of arrays, do with Jets: the functions that the class `Jet` calls.
+"""Table of the functions that `Jet` calls for numpy's protocols and the methods of arrays.
 
-They are written in terms of Jets, so they stand above the class (`assembly`, `jet_ufuncs`, `jet_functions`) and enter
-themselves here when `liehom.series` is loaded.  The class imports this module only.
+These functions are written in terms of Jets.  Their modules (`assembly`, `jet_ufuncs`, `jet_functions`) therefore
+import `jet`, and enter the functions here when `liehom.series` is loaded; `jet` imports only this module.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Operand: TypeAlias = Any
 
 @final
 class Dispatch:
-    """The functions behind the methods of `Jet`.
+    """Functions that implement methods of `Jet`.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Dispatch:
     apply_function : callable
         `liehom.series.jet_functions.apply_function`, for ``__array_function__``.
     method : callable
-        `liehom.series.jet_functions.method`, for methods that the class does not have.
+        `liehom.series.jet_functions.method`, for methods of arrays that the class does not define.
     """
 
     __slots__ = ("apply_function", "apply_ufunc", "method", "nodes")

@@ -1,8 +1,8 @@
-"""What numpy's functions of arrays, and the methods of arrays, do with Jets.
+"""Numpy's functions of arrays, and the methods of arrays, for Jets.
 
-A function is linear in its first argument, bilinear, linear in a list of arrays, a function that returns a list of
-parts, or special.  Options that would add something, such as ``initial=``, are refused, as is every function that
-is not in a table.
+Each function in the tables is linear in its first argument, bilinear, linear in a list of arrays, one that returns a
+list of parts, or special.  Functions that are in no table, and options that would add something, such as
+``initial=``, raise `SeriesError`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from liehom.typing import Values
 
 Axis: TypeAlias = int | tuple[int, ...] | None
 
-# name -> how many positional arguments are understood, the array included
+# name -> number of positional arguments that are supported, the array included
 LINEAR: dict[str, int] = {
     "roll": 3, "cumsum": 2, "diff": 3, "take": 3, "take_along_axis": 3, "delete": 3, "tile": 2, "repeat": 3, "sum": 2,
     "mean": 2, "average": 2, "trace": 4, "tril": 2, "triu": 2, "ediff1d": 1, "trapezoid": 4, "cumulative_sum": 1,
@@ -61,7 +61,7 @@ REFUSED_METHODS = [
 def apply_function(
     function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]
 ) -> Jet | list[Jet] | Any:
-    """What a numpy function returns for Jets among its arguments.
+    """The result of a numpy function with Jets among its arguments.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def _listed(jet: Jet) -> Any:
 
 # -- the kinds of functions --------------------------------------------------------------------------------
 def _linear(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> Jet:
-    """A function that is linear in its first argument."""
+    """Jet of a function that is linear in its first argument."""
     name = function.__name__
     if not args:
         found = [key for key, value in options.items() if holds_jets(value)]
@@ -161,7 +161,7 @@ def _linear(function: Callable[..., Any], args: tuple[Operand, ...], options: di
 
 
 def _bilinear(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> Jet:
-    """A function that is linear in each of its first two arguments; the constant one may come as an option."""
+    """Jet of a function that is linear in each of its first two arguments; a constant one may be an option."""
     names = {"dot": ("a", "b"), "cross": ("a", "b"), "tensordot": ("a", "b"), "inner": ("a", "b"), "outer": ("a", "b")}
     options = dict(options)
     for key in names.get(function.__name__, ())[len(args) :]:
@@ -179,7 +179,7 @@ def _bilinear(function: Callable[..., Any], args: tuple[Operand, ...], options: 
 
 
 def _joined(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> Jet:
-    """A function of a sequence of arrays that is linear in all of them together."""
+    """Jet of a function of a sequence of arrays that is jointly linear in them."""
     options = {key: value for key, value in options.items() if value is not None}
     members = options.pop("arrays", None) or options.pop("tup", None) or args[0]
     if "out" in options or "dtype" in options or len(args) > 2:
@@ -197,7 +197,7 @@ def _joined(function: Callable[..., Any], args: tuple[Operand, ...], options: di
 
 
 def _parted(function: Callable[..., Any], args: tuple[Operand, ...], options: dict[str, Any]) -> list[Jet]:
-    """A function that cuts an array into a list of parts."""
+    """List of Jets, the parts into which a function cuts an array."""
     first, rest = args[0], frozen(args[1:])
     if not isinstance(first, Jet) or holds_jets(rest):
         raise refused(f"np.{function.__name__} with a series as an option")
@@ -308,7 +308,7 @@ def _matrix_power(a: Jet, n: int) -> Jet:
 
 
 def _determinant(a: Jet) -> Operand:
-    """By the recursion of the characteristic polynomial, which divides by integers only."""
+    """Determinant of matrices (..., n, n), by the recursion for the characteristic polynomial."""
     n, one = a.shape[-1], _identity(a)
     power, coefficient = Jet.constant(zeros(a.value, a.shape), a.order), zeros(a.value, a.shape[:-2]) + 1
     for k in range(1, n + 1):
@@ -320,7 +320,7 @@ def _determinant(a: Jet) -> Operand:
 def _prod(
     a: Jet, axis: Axis = None, dtype: DTypeLike | None = None, out: object = None, keepdims: bool = False
 ) -> Operand:
-    """The product of entries, in halves."""
+    """Product of the entries, by repeated halving."""
     if dtype is not None or out is not None or isinstance(axis, tuple):
         raise refused("np.prod with these options")
     array: Any = a

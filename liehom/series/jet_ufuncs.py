@@ -1,6 +1,7 @@
-"""What numpy's ufuncs (arithmetic and elementary functions) do with Jets.
+"""Numpy's ufuncs (arithmetic and elementary functions) for Jets.
 
-Elementary functions are the table of the recurrences, the others the table here.  Anything else is refused by name.
+Elementary functions are in the table of `recurrences`, operators in the table here.  All others raise `SeriesError`
+with their name.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ PRODUCTS = ["matmul", "vecdot", "matvec", "vecmat"]
 
 
 def apply_ufunc(ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...], options: dict[str, Any]) -> Any:
-    """What a numpy ufunc returns for Jets among its inputs.
+    """The result of a numpy ufunc with Jets among its inputs.
 
     Raises
     ------
@@ -80,7 +81,7 @@ def _called(ufunc: np.ufunc, name: str, inputs: tuple[Operand, ...]) -> Jet:
 def _in_place(
     ufunc: np.ufunc, method: str, inputs: tuple[Operand, ...], options: dict[str, Any], out: tuple[Any, ...]
 ) -> Any:
-    """x += y: for a Jet the entries are replaced; a number is not changed, x then names another one."""
+    """The result of x += y, which replaces the entries of a Jet x; for a number, the Jet x + y."""
     target = out[0]
     if not isinstance(target, Jet) or len(out) != 1:
         raise SeriesError(f"np.{ufunc.__name__} cannot write a series into an array: use x = x + y in place of x += y")
@@ -94,7 +95,7 @@ def _in_place(
 
 
 def refused(name: str) -> SeriesError:
-    """The error for a function without a recurrence."""
+    """The `SeriesError` for a function without a Taylor recurrence."""
     return SeriesError(
         f"{name} has no Taylor recurrence here (it branches on values, or is not known): write the generator with "
         "arithmetic, sqrt exp log sin cos tan sinh cosh tanh arctan and linear algebra, or as sympy expressions"
@@ -102,12 +103,12 @@ def refused(name: str) -> SeriesError:
 
 
 def fresh(node: Node) -> Jet:
-    """The Jet of a node, as numpy returns a new array: its entries may be assigned, unless it is a number."""
+    """New Jet of a node; its entries may be assigned unless it is a number."""
     return Jet.from_node(node, writable=bool(np.ndim(node.value)))
 
 
 def jax_counterpart(function: Callable[..., Any], *values: object) -> Callable[..., Any]:
-    """The same function of jax.numpy where a value is a JAX array."""
+    """The function of jax.numpy with the same name if a value is a JAX array, else the function itself."""
     if not any(is_jax(v) for v in values):
         return function
     xp = namespace(*values)
@@ -117,7 +118,7 @@ def jax_counterpart(function: Callable[..., Any], *values: object) -> Callable[.
 
 
 def _product(ufunc: np.ufunc, x: Operand, y: Operand) -> Jet:
-    """matmul and its kind; the constant factor on the right may be a sparse matrix."""
+    """Jet of matmul, vecdot, matvec or vecmat; a constant right factor may be a sparse matrix."""
     if hasattr(y, "tocsr"):
         if ufunc is not np.matmul:
             raise refused(f"np.{ufunc.__name__} with a sparse matrix")
@@ -126,7 +127,7 @@ def _product(ufunc: np.ufunc, x: Operand, y: Operand) -> Jet:
 
 
 def bilinear(function: Callable[..., Any], x: Operand, y: Operand, **options: object) -> Jet:
-    """A function that is linear in each of two arguments, one or both of them Jets."""
+    """Jet of function(x, y), linear in each argument; one or both are Jets."""
     factors = nodes(x, y)
     shared = function is np.matmul and not options and len(np.shape(factors[1].value)) == 2
 
@@ -170,7 +171,7 @@ def _power(x: Operand, y: Operand) -> Node:
 
 
 def _powers(x: Jet, exponents: npt.NDArray[Any]) -> Jet:
-    """x ** array: one power of the entries with that exponent for each different exponent."""
+    """x ** exponents for an array of exponents; entries with the same exponent are computed together."""
     shape = np.broadcast_shapes(x.shape, exponents.shape)
     base: Any = np.broadcast_to(x, shape)
     made, places = base.copy(), np.broadcast_to(exponents, shape)
@@ -181,7 +182,7 @@ def _powers(x: Jet, exponents: npt.NDArray[Any]) -> Jet:
 
 
 def _arctan2(y: Operand, x: Operand) -> Node:
-    """The angle of (x, y): its derivative is (x y' - y x') / (x^2 + y^2)."""
+    """Node of the angle of (x, y)."""
     above, right = (Jet.from_node(node) for node in nodes(y, x))
     if object in (above.dtype, right.dtype):
         raise refused("np.arctan2 of exact numbers")
@@ -200,7 +201,7 @@ def _hypot(x: Operand, y: Operand) -> Node:
 
 def _logaddexp(x: Operand, y: Operand) -> Node:
     a, b = (Jet.from_node(node) for node in nodes(x, y))
-    larger = namespace(a.value, b.value).maximum(a.value, b.value)  # a shift against overflow, any constant would do
+    larger = namespace(a.value, b.value).maximum(a.value, b.value)  # a constant shift, against overflow
     return (larger + np.log(np.exp(a - larger) + np.exp(b - larger))).node  # type: ignore[no-any-return]
 
 

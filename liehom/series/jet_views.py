@@ -1,7 +1,7 @@
-"""Writing into Jets: entries are replaced by new series, so that what was computed before stays as it was.
+"""Assignment into Jets: entries are replaced by new series, so results computed before do not change.
 
-A Jet that numpy would hand out as a new array may be written into.  Its slices and transposes see what is written
-into it later, and slices pass on what is written into them, as views of numpy arrays do.
+Entries of a Jet may be assigned if numpy would return a new array in its place.  Its slices and transposes are views:
+they show what is assigned to it later, and assignment into a slice assigns to it, as for numpy arrays.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from liehom.typing import Key, Values
 
 
 class ViewOperation(NamedTuple):
-    """How a view is made of the array: a linear function, and its index if it is one."""
+    """One step from an array to a view of it: a linear function, and its index if it is indexing."""
 
     function: Callable[[Any], Values]
     key: Key
@@ -27,7 +27,7 @@ class ViewOperation(NamedTuple):
 
 
 class View(NamedTuple):
-    """Where a Jet is a view: the Jet that owns the entries, the way to it, and the owner's node at that time."""
+    """The origin of a view: the Jet that owns the entries, the operations from it, its node when last seen."""
 
     owner: Any
     operations: tuple[ViewOperation, ...]
@@ -35,7 +35,7 @@ class View(NamedTuple):
 
 
 def frozen(x: Key) -> Key:
-    """An index or option, copied so that the caller may change it later.
+    """Copy of an index or option, as the caller may change it later.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def frozen(x: Key) -> Key:
 
 
 def checked_index(key: Key, x: Values) -> Key:
-    """An index of the array x, copied; lists become arrays, and JAX, which clips, gets no index out of range.
+    """Copy of an index of the array x, with lists as arrays, checked against the shape (JAX would clip it).
 
     Raises
     ------
@@ -80,7 +80,7 @@ def _copied_index(part: Key) -> Key:
 
 
 def kind_of_index(key: Key, ndim: int) -> str:
-    """What numpy's indexing of an array with `ndim` axes gives: a "number", a "view" or a "copy".
+    """The result of indexing an array with `ndim` axes in numpy: "number", "view" or "copy".
 
     Examples
     --------
@@ -96,7 +96,7 @@ def kind_of_index(key: Key, ndim: int) -> str:
 
 
 def followed(view: View) -> list[Node]:
-    """The nodes of the owner, of the first view, ..., of the view itself, as they are now."""
+    """Current nodes of the owner, of the views in between, and of the view itself."""
     nodes = [view.owner.node]
     for operation in view.operations:
         nodes.append(recurrences.linear(operation.function, [nodes[-1]]))
@@ -104,7 +104,7 @@ def followed(view: View) -> list[Node]:
 
 
 def written(view: View, key: Key, value: Node) -> Node:
-    """The owner's new node after value was written into a view at `key`."""
+    """Node of the owner after assignment of `value` to the view at `key`."""
     nodes = followed(view)
     new = replaced(nodes[-1], key, value)
     for operation, below in zip(reversed(view.operations), reversed(nodes[:-1]), strict=True):
@@ -115,7 +115,7 @@ def written(view: View, key: Key, value: Node) -> Node:
 
 
 def replaced(whole: Node, key: Key, part: Node) -> Node:
-    """The series with the entries at `key` replaced."""
+    """Node of the series with the entries at `key` replaced by those of `part`."""
     return recurrences.linear(lambda x, y: _replaced(x, key, y), [whole, part])
 
 

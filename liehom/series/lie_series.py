@@ -7,8 +7,8 @@ cay(x) = (1 - x/2)^-1 (1 + x/2), if and only if x' = (1 - x/2) a (1 + x/2).  For
 
     z' = dexp_z^-1 (dexp_x x') + dexp_(-z)^-1 (dexp_(-y) y').
 
-All series are built coefficient by coefficient: a coefficient asks for no more of the operands than it needs.
-They run on floats, JAX arrays and exact scalars.
+All series are computed coefficient by coefficient, each from as few coefficients of the operands as possible, in
+floats, in JAX arrays or exactly.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def dexp(bracket: Bracket, x: NumbersLike, y: NumbersLike, terms: int | None = N
         Bilinear, on arrays: a `Bilinear` on coefficient vectors (..., dim), or `commutator` on matrices.
     x, y : array_like or Jet
     terms : int, optional
-        None, for a Jet x with x(0) = 0, means all that the order needs.
+        Number of terms. Default: as many as the order needs, for a Jet x with x(0) = 0.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def dexp(bracket: Bracket, x: NumbersLike, y: NumbersLike, terms: int | None = N
     Raises
     ------
     SeriesError
-        If `terms` is missing and x is no series without a constant term.
+        If `terms` is missing and x is not a series without a constant term.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def dexp_inverse(bracket: Bracket, x: NumbersLike, y: NumbersLike, terms: int | 
 
 
 def _count(x: NumbersLike, y: NumbersLike, terms: int | None) -> int:
-    """How many terms: ad_x^k y begins at t^k if x does at t."""
+    """Number of terms; ad_x^k y begins at t^k if x begins at t."""
     if terms is not None:
         if terms < 1:
             raise SeriesError(f"a series in ad_x has at least one term, got terms={terms}")
@@ -117,7 +117,7 @@ def _count(x: NumbersLike, y: NumbersLike, terms: int | None) -> int:
 
 
 def _series_in_ad(bracket: Bracket, x: NumbersLike, y: NumbersLike, weights: list[Fraction]) -> Values:
-    """sum_k weights[k] ad_x^k y."""
+    """The sum over k of weights[k] ad_x^k y."""
     while len(weights) > 1 and not weights[-1]:
         weights = weights[:-1]
     if isinstance(x, Jet) or isinstance(y, Jet):
@@ -137,7 +137,7 @@ def _series_in_ad(bracket: Bracket, x: NumbersLike, y: NumbersLike, weights: lis
 
 
 def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Values | None = None) -> Node:
-    """sum_i weights[i] nodes[i], with coefficient 0 replaced by `first` if that is given."""
+    """Node of sum_i weights[i] nodes[i], with coefficient 0 replaced by `first` if given."""
     used = [(node, weight) for node, weight in zip(nodes, weights, strict=True) if weight]
 
     def rule(k: int) -> Coefficient:
@@ -158,7 +158,7 @@ def _weighted(nodes: Sequence[Node], weights: Sequence[Fraction], first: Values 
 
 
 def _scaled(x: Values, weight: Fraction) -> Values:
-    """weight x, exact or rounded once in the type of x."""
+    """weight * x, exact, or with the weight rounded once in the type of x."""
     if weight == 1:
         return x
     top, bottom = weight.numerator, weight.denominator
@@ -227,13 +227,13 @@ def cayley_magnus(a: Jet) -> Jet:
     Parameters
     ----------
     a : Jet of matrices (..., n, n)
-        In an algebra that is closed under y -> x y x, as those of the quadratic groups are. It may be growing:
+        In an algebra that is closed under y -> x y x, such as the algebra of a quadratic group. It may be growing:
         coefficient k + 1 of the result needs a up to coefficient k.
 
     Returns
     -------
     Jet
-        Of one order more than a, with coefficient 0 structurally zero.
+        Its order is that of a plus 1; coefficient 0 is structurally zero.
 
     Examples
     --------
@@ -319,7 +319,7 @@ def magnus(bracket: Bracket, a: Jet) -> Jet:
 
 
 def _integral(a: Jet, slope: Callable[[Jet], Any]) -> Jet:
-    """x with x(0) = 0 and x' = slope(x), shaped as a."""
+    """Jet x with x(0) = 0 and x' = slope(x), of the shape of a."""
     made = Node(a.order + 1, zeros(a.value, a.shape), [None])
     derivative = slope(Jet.from_node(made)).node
 
@@ -414,7 +414,7 @@ def without_constant(x: Jet, *, check: bool = False) -> Jet:
     ----------
     x : Jet
     check : bool
-        Refuse an x(0) that is not zero. Traced values must then be structurally zero.
+        Raise `SeriesError` if x(0) is not zero; traced values must then be structurally zero.
 
     Raises
     ------
@@ -441,7 +441,7 @@ def _square_matrices(x: Jet) -> Jet:
 
 
 def _identity(like: Values) -> npt.NDArray[Any]:
-    """The identity matrix of the kind of `like`, broadcast to its shape."""
+    """Identity matrix with numbers of the kind of `like`, broadcast to its shape."""
     shape = tuple(like.shape)
     eye = namespace(like).eye(shape[-1])
     found: npt.NDArray[Any] = zeros(like, shape) + eye.astype(int if like.dtype == object else like.dtype)

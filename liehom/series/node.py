@@ -1,10 +1,10 @@
 """Node: a power series that computes its Taylor coefficients one after the other, on demand.
 
-A node knows its coefficients so far, the nodes they depend on, and a rule for the next one.  Coefficient k of a
+A node holds its coefficients so far, the nodes they depend on, and a rule for the next coefficient.  Coefficient k of a
 sum or product needs coefficients up to k of the operands; of an integral or a recurrence, up to k - 1 (its lag).
-So a series may depend on itself with a lag, which is how the solution of a differential equation is expanded:
-nothing is computed twice, and an expansion to order n costs O(n^2) products.  A coefficient that is None is a
-structural zero.
+So a series may depend on itself with a lag; this is how the solution of a differential equation is expanded.  No
+coefficient is computed twice, and an expansion to order n costs O(n^2) products.  A coefficient None is a structural
+zero.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ Rule: TypeAlias = Callable[[int], Coefficient]
 
 @final
 class Node:
-    """A series with coefficients on demand; `Jet` is its public face.
+    """A series with coefficients on demand; users see it as a `Jet`.
 
     Parameters
     ----------
     order : int
         The last index that may be asked for.
     value : array
-        The value at 0, also where coefficient 0 is a structural zero: it carries shape and dtype.
+        The value at 0. If coefficient 0 is a structural zero, it still gives shape and dtype.
     known : list
         Coefficients from 0 on, None for a structural zero; at least the first.
     operands : tuple of (Node, lag)
     rule : callable, optional
-        k -> coefficient k, for k = len(known), .... Without one the coefficients are appended by the owner.
+        k -> coefficient k, for k = len(known), .... Without a rule the coefficients are appended from outside.
 
     Examples
     --------
@@ -68,7 +68,7 @@ class Node:
         self.operands, self.rule = operands, rule
 
     def coefficient(self, k: int) -> Coefficient:
-        """Coefficient k, None if it is a structural zero; operands are advanced without recursion."""
+        """Coefficient k, or None if it is a structural zero; missing coefficients of operands are computed first."""
         if 0 <= k < len(self.known):
             found: Coefficient = self.known[k]
             return found
@@ -98,7 +98,7 @@ def rewind(root: Node, source: Node, k: int) -> None:
     """Forget the coefficients of the nodes under `root` that depend on coefficient k of `source`.
 
     Called after coefficient k >= 1 of a growing `source` was replaced. A node that needs `source` with lag l
-    forgets its coefficients from k + l on, and what depends on it follows.
+    forgets its coefficients from k + l on, and so do the nodes that depend on it.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """Recurrences for Taylor coefficients: linear and multilinear maps, quotients, powers, elementary functions.
 
-All are one formula each.  A multilinear map B has B(a, b)_k = sum_i B(a_i, b_(k-i)).  An elementary function F
+Each is one formula.  A multilinear map B has B(a, b)_k = sum_i B(a_i, b_(k-i)).  An elementary function F
 with F' = G has k F_k = sum_i i u_i G_(k-i), where G is again a series: exp' = exp, tan' = 1 + tan^2 and so on.
 """
 
@@ -19,7 +19,7 @@ from liehom.typing import Number, Values
 
 
 def constant(value: Values, order: int) -> Node:
-    """A series without t."""
+    """Node of a constant series."""
     return Node(order, value, [value], (), _nothing)
 
 
@@ -28,7 +28,7 @@ def _nothing(k: int) -> None:
 
 
 def linear(function: Callable[..., Values], operands: Sequence[Node]) -> Node:
-    """function(a, b, ...) jointly linear in the operands, such as a sum, a stack, a transpose, an index."""
+    """Node of function(a, b, ...), jointly linear in the operands, such as a sum, a stack, a transpose, an index."""
     order = min(o.order for o in operands)
 
     def rule(k: int) -> Coefficient:
@@ -42,7 +42,7 @@ def linear(function: Callable[..., Values], operands: Sequence[Node]) -> Node:
 
 
 def add(a: Node, b: Node, sign: int = 1) -> Node:
-    """a + b or a - b, with broadcasting."""
+    """Node of a + b, or of a - b for sign = -1, with broadcasting."""
     value = a.value + b.value if sign > 0 else a.value - b.value
     shape = _shape(value)
 
@@ -60,9 +60,10 @@ def add(a: Node, b: Node, sign: int = 1) -> Node:
 
 
 def multilinear(function: Callable[..., Values], operands: Sequence[Node]) -> Node:
-    """function(a, b, ...) linear in each operand: (...)_k = sum over i + j + ... = k of function(a_i, b_j, ...).
+    """Node of function(a, b, ...), linear in each operand.
 
-    Where another operand begins with a structural zero, coefficient k needs an operand only up to k - 1.
+    Coefficient k is the sum of function(a_i, b_j, ...) over i + j + ... = k. If another operand begins with a
+    structural zero, it needs an operand only up to k - 1.
     """
     if len(operands) == 2:
         return bilinear(function, operands[0], operands[1])
@@ -84,7 +85,7 @@ def multilinear(function: Callable[..., Values], operands: Sequence[Node]) -> No
 
 
 def bilinear(function: Callable[[Any, Any], Values], a: Node, b: Node, value: Values | None = None) -> Node:
-    """The case of two operands, in which most of the work is done; `value`, at 0, where it is known."""
+    """Node of function(a, b), linear in both, the most frequent operation; `value` is its value at 0, if known."""
     first, second = a.known, b.known
     start, end = (1 if first[0] is None else 0), (0 if second[0] is None else 1)
 
@@ -104,7 +105,7 @@ def bilinear(function: Callable[[Any, Any], Values], a: Node, b: Node, value: Va
 
 
 def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[Values, ...]]:
-    """All tuples of non-zero coefficients whose indices add up to k."""
+    """Iterator over the tuples of non-zero coefficients whose indices add up to k."""
     if len(known) == 1:
         if k >= starts[0] and known[0][k] is not None:
             yield (known[0][k],)
@@ -116,12 +117,12 @@ def _parts(known: list[list[Any]], starts: list[int], k: int) -> Iterator[tuple[
 
 
 def quotient(a: Node, b: Node) -> Node:
-    """a / b, with q_k = (a_k - sum_(i >= 1) b_i q_(k-i)) / b_0."""
+    """Node of q = a / b, with q_k = (a_k - sum_(i >= 1) b_i q_(k-i)) / b_0."""
     return solution(a, b, _times, lambda y, x: y / x)
 
 
 def solution(a: Node, b: Node, product: Callable[[Any, Any], Values], divide: Callable[[Any, Any], Values]) -> Node:
-    """q with product(b, q) = a, where divide(y, b_0) solves product(b_0, q) = y."""
+    """Node of q with product(b, q) = a, where divide(y, b_0) solves product(b_0, q) = y."""
     value = divide(a.value, b.value)
     shape = _shape(value)
     node = Node(min(a.order, b.order), value, [None if a.known[0] is None else value])
@@ -139,7 +140,7 @@ def solution(a: Node, b: Node, product: Callable[[Any, Any], Values], divide: Ca
 
 
 def chain(u: Node, value: Values, derivative: Callable[[Node], Node]) -> Node:
-    """F(u) with F(u_0) = value and F' = derivative(node of F(u))."""
+    """Node of F(u) with F(u_0) = value and F' = derivative(node of F(u))."""
     node = Node(u.order, value, [value])
     slope = derivative(node)
     node.depends((u, 0), (slope, 1), rule=_chain_rule(u, slope))
@@ -147,7 +148,7 @@ def chain(u: Node, value: Values, derivative: Callable[[Node], Node]) -> Node:
 
 
 def _chain_rule(u: Node, slope: Node, sign: int = 1) -> Callable[[int], Coefficient]:
-    """k -> (sign / k) sum_i i u_i slope_(k-i)."""
+    """The rule k -> (sign / k) sum_i i u_i slope_(k-i)."""
 
     def rule(k: int) -> Coefficient:
         total = None
@@ -162,7 +163,7 @@ def _chain_rule(u: Node, slope: Node, sign: int = 1) -> Callable[[int], Coeffici
 
 
 def product(a: Node, b: Node) -> Node:
-    """The product of the entries."""
+    """Node of the product of a and b, entry by entry."""
     return multilinear(_times, [a, b])
 
 
@@ -171,7 +172,7 @@ def _times(x: Values, y: Values) -> Values:
 
 
 def integer_power(u: Node, n: int) -> Node:
-    """u ** n for n >= 0, by repeated squaring: zeros of u do no harm."""
+    """Node of u ** n for n >= 0, by repeated squaring, so that u may vanish."""
     if n == 0:
         return constant(u.value**0, u.order)
     result: Node | None = None
@@ -185,15 +186,15 @@ def integer_power(u: Node, n: int) -> Node:
 
 
 def real_power(u: Node, exponent: Fraction | Number | float, value: Values | None = None) -> Node:
-    """u ** (p / q) for u_0 != 0: q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i).
+    """Node of y = u ** (p / q) for u_0 != 0, by q k u_0 y_k = sum_i (p i - q (k - i)) u_i y_(k-i).
 
     Parameters
     ----------
     u : Node
     exponent : Fraction or number
-        One number; a Fraction where the values are exact.
+        One number; a Fraction if the values are exact.
     value : array, optional
-        u_0 ** exponent, where it has been computed better.
+        u_0 ** exponent, if it has been computed more precisely.
     """
     p: Any = exponent
     q = 1
@@ -223,17 +224,17 @@ def real_power(u: Node, exponent: Fraction | Number | float, value: Values | Non
 
 
 def _root(u: Node, exponent: Fraction, name: str) -> Node:
-    """A root, with its value by the numpy function of this name."""
+    """Node of a root, with its value at 0 by the numpy function of this name."""
     return real_power(u, exponent, elementary(name, u.value))
 
 
 def _inverse_root(u: Node) -> Node:
-    """u ** (-1/2)."""
+    """Node of u ** (-1/2)."""
     return _over_one(_root(u, Fraction(1, 2), "sqrt"))
 
 
 def _multiple(u: Node, name: str, argument: int, divide: bool = False) -> Node:
-    """u times name(argument), such as log 2, or divided by it."""
+    """Node of u times, or divided by, the number name(argument), such as log 2."""
     number = elementary(name, _one(u.value) * argument)
     return linear((lambda x: x / number) if divide else (lambda x: x * number), [u])
 
@@ -259,7 +260,7 @@ def _square(node: Node) -> Node:
 
 
 def _pair(u: Node, first: str, second: str, sign: int) -> tuple[Node, Node]:
-    """sin and cos (sign -1), sinh and cosh (sign 1): first' = second, second' = sign first."""
+    """Nodes of sin and cos (sign -1) or sinh and cosh (sign 1), for which first' = second, second' = sign first."""
     values = elementary(first, u.value), elementary(second, u.value)
     one, other = Node(u.order, values[0], [values[0]]), Node(u.order, values[1], [values[1]])
     one.depends((u, 0), (other, 1), rule=_chain_rule(u, other))

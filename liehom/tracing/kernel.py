@@ -2,8 +2,8 @@
 
 Blocks of W lanes (trajectories) are stepped together, all steps of a block before the next block.  A lane is masked out
 as soon as its next step would not be an ordinary one.  That is the last step before its limit, a step to a point that
-is not finite, and a step over which its clock is not increasing at an admissible rate.  With adaptive step sizes, a step that is
-not accepted changes only the step size.
+is not finite, and a step over which its clock is not increasing at an admissible rate.  With adaptive step sizes, a
+step that is not accepted changes only the step size.
 """
 
 from __future__ import annotations
