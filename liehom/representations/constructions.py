@@ -1,6 +1,6 @@
-"""Representations made from a Lie algebra alone: defining, adjoint, coadjoint, trivial; conjugation on Sym(k).
+"""Representations constructed from a Lie algebra: defining, adjoint, coadjoint, trivial, conjugation of matrices.
 
-What is made from a representation (dual, sums, products, powers, restriction) are methods of `Representation`.
+Constructions from a representation (dual, sums, products, powers, restriction) are methods of `Representation`.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     Returns
     -------
     Representation
-        Of that very algebra. C^n is R^(2n) and H^n is R^(4n).
+        A representation of this algebra. C^n is R^(2n) and H^n is R^(4n).
 
     Raises
     ------
     InputError, CatalogError
         If the name is not known.
     RepresentationError
-        If the algebra does not have the basis of the standard matrices (after a change of basis, say).
+        If the algebra does not have the basis of the standard matrices, for example after a change of basis.
 
     Notes
     -----
     The forms of f4 and e6 act on the Albert algebra of dimension 27; spin(p, q) acts on a real spin representation.
-    The exceptional algebras that `liehom.simple` makes without matrices have their modules of least dimension: e6(2),
+    The exceptional algebras that `liehom.simple` constructs without matrices have modules of smallest dimension: e6(2),
     e6(-14) and e6 on R^54, e7(7) and e7(-25) on R^56, e7(-5) and e7 on R^112, and the forms of e8 on themselves.
 
     Examples
@@ -87,7 +87,7 @@ def defining(algebra: LieAlgebra | str) -> Representation:
 
 
 def _of_algebra(rho: Representation, algebra: LieAlgebra | str) -> Representation:
-    """The same matrices for an equal algebra, which may be over a larger field."""
+    """The representation with the same matrices for an equal algebra, which may be over a larger field."""
     if isinstance(algebra, str):
         return rho
     made = rho if algebra.field == rho.field else rho.over(algebra.field)
@@ -115,7 +115,7 @@ _LEAST_MODULES: dict[str, Callable[[], Representation]] = {
 
 
 def standard_matrices(name: str | None) -> IntegerArray:
-    """The integer matrices, shape (dim, N, N), that a name stands for.
+    """The standard basis of a named matrix algebra, integer matrices of shape (dim, N, N).
 
     Raises
     ------
@@ -146,7 +146,7 @@ def adjoint(algebra: LieAlgebra) -> Representation:
     Raises
     ------
     InputError
-        If it is no `LieAlgebra`, but for example a name.
+        If the argument is not a `LieAlgebra`, for example a name.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def _adjoint_matrices(algebra: LieAlgebra) -> list[Matrix]:
     table = algebra.table
     made = [QQ.zeros(n, n) for _ in range(n)]
     for (i, j), terms in table.by_pair().items():
-        (numerators,) = made[i].parts  # of a matrix that nobody else has seen: written to, entry by entry
+        (numerators,) = made[i].parts  # of a new matrix, which is written to entry by entry
         for k, value in terms:
             numerators[k, j] = value
     return [*made] if table.den == 1 else [a.scale(QQ.one / table.den) for a in made]
@@ -183,7 +183,7 @@ def coadjoint(algebra: LieAlgebra) -> Representation:
     Raises
     ------
     InputError
-        As `adjoint`.
+        If the argument is not a `LieAlgebra`.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def coadjoint(algebra: LieAlgebra) -> Representation:
 
 
 def trivial(algebra: LieAlgebra, n: int = 1) -> Representation:
-    """The representation of g on K^n by zero.
+    """The trivial representation of g on K^n: all matrices are zero.
 
     Examples
     --------
@@ -213,7 +213,7 @@ def trivial(algebra: LieAlgebra, n: int = 1) -> Representation:
 
 
 def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation:
-    """so(k) on the symmetric matrices Sym(k) by S -> A S - S A.
+    """The representation of so(k) on the symmetric matrices Sym(k) by S -> A S - S A.
 
     Parameters
     ----------
@@ -225,8 +225,8 @@ def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation
     Returns
     -------
     Representation
-        On K^(k (k + 1) / 2); coordinates are the entries S[i, j], i <= j, in lexicographic order of (i, j), as
-        `symmetric_to_vector` and `vector_to_symmetric` have them.
+        On K^(k (k + 1) / 2). The coordinates are the entries S[i, j], i <= j, in lexicographic order of (i, j), as in
+        `symmetric_to_vector` and `vector_to_symmetric`.
 
     Examples
     --------
@@ -240,13 +240,13 @@ def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation
     induced = congruence_map(k)
     # A^T = -A: S -> A S + S A^T, and (A S + S A^T) is the restriction of A (x) 1 + 1 (x) A to symmetric tensors.
     if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.size != k:
-        raise InputError(f"conjugation on Sym({k}) needs so({k}) by skew matrices")
+        raise InputError(f"conjugation on Sym({k}) needs so({k}) by skew-symmetric matrices")
     made = [induced(a) for a in rho.matrices]
     return Representation(rho.algebra, made, size=induced.target, name=f"conjugation on Sym({k})", check=False)
 
 
 def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation:
-    """su(k) on the Hermitian k x k matrices by H -> A H - H A.
+    """The representation of su(k) on the Hermitian k x k matrices by H -> A H - H A.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Represen
     Returns
     -------
     Representation
-        On K^(k^2); coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
+        On K^(k^2). The coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""What a given representation is made of: decomposition over the reals, equivalence, submodules, weights.
+"""Analysis of a representation: decomposition over the reals, equivalence, submodules, weights, symbolic isotropy.
 
-Each file answers one question about a `Representation` and is reached as a method of it; `symbolic` gives the
-isotropy at points with free symbols. See docs/theory/representations.md.
+Each module implements some methods of `Representation`, and users call these methods. See
+docs/theory/representations.md.
 """
 
 from liehom.representations.analysis.decomposition import Component as Component

@@ -1,21 +1,25 @@
-"""The type of an irreducible representation: what commutes with it over the reals is R, C or H.
+"""The type R, C or H of an irreducible representation: its commutant over the reals.
 
-By Schur's lemma and Frobenius' theorem the commutant over R is a division algebra, of dimension 1, 2 or 4, which is
-its dimension over the field.
+By Schur's lemma and Frobenius' theorem the commutant over the reals is a division algebra, of dimension 1, 2 or 4,
+which equals the dimension of the commutant over the field.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 from liehom.errors import InputError, InternalError
-from liehom.representations.analysis.isotypic import CommutantType
 from liehom.representations.invariants.intertwiners import commutant
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, reduction, traceless
 from liehom.scalars import ExactMatrix, Field, Scalar
 from liehom.scalars.spaces.forms import orthogonal_basis
 
-KINDS: dict[int, CommutantType] = {1: "R", 2: "C", 4: "H"}
+CommutantType = Literal["R", "C", "H"]
+"""Type of an irreducible representation: its commutant over the reals is R, C or H."""
+
+COMMUTANT_DIMENSIONS: dict[CommutantType, int] = {"R": 1, "C": 2, "H": 4}
+"""Real dimensions of the commutants."""
 
 
 def commutant_type(
@@ -26,7 +30,7 @@ def commutant_type(
     *,
     semisimple: bool = False,
 ) -> CommutantType:
-    """The type of an irreducible action of a linear Lie algebra on R^N; the arguments are those of `reduction`.
+    """Type, 'R', 'C' or 'H', of an irreducible action of a linear Lie algebra on R^N; arguments as for `reduction`.
 
     Raises
     ------
@@ -51,7 +55,8 @@ def commutant_type(
             f"the type R, C or H belongs to an irreducible representation, and this one is reducible over the reals "
             f"({why}): use decomposition(), whose components have types"
         )
-    return KINDS[len(commutant(matrices if generating is None else generating, size, over))]
+    dimension = len(commutant(matrices if generating is None else generating, size, over))
+    return next(kind for kind, d in COMMUTANT_DIMENSIONS.items() if d == dimension)
 
 
 def complex_structure(matrices: Sequence[ExactMatrix], size: int, over: Field) -> tuple[ExactMatrix, Scalar]:
@@ -79,7 +84,7 @@ def complex_structure(matrices: Sequence[ExactMatrix], size: int, over: Field) -
 
 
 def imaginary_units(matrices: Sequence[ExactMatrix], size: int, over: Field) -> list[tuple[ExactMatrix, Scalar]]:
-    """Anticommuting matrices J_i with J_i^2 = -d_i, a basis of the traceless part of the commutant: 0, 1 or 3 of them.
+    """Anticommuting matrices J_i and numbers d_i, J_i^2 = -d_i: a basis of the traceless commutant (0, 1 or 3).
 
     Raises
     ------

@@ -1,9 +1,10 @@
 """The socle of a representation, the largest completely reducible subspace; complete reducibility decided exactly.
 
-For matrices L on V: [L, rad L] acts nilpotently and is the radical of tr(x y) on [L, L] (a semisimple linear algebra
-has a nondegenerate trace form).  It kills a subspace W, not zero by Engel's theorem, which contains every irreducible
-one.  On W the radical of L is central, L is reductive, and a vector is in the socle exactly if every central z acts
-on it semisimply: f(z) v = 0, f the squarefree part of the characteristic polynomial.
+Let L be a Lie algebra of matrices on V.  [L, rad L] acts nilpotently and is the radical of tr(x y) on [L, L], because a
+semisimple linear algebra has a nondegenerate trace form.  The subspace W annihilated by [L, rad L] is not zero by
+Engel's theorem, and contains every irreducible subspace.  On W the radical of L is central and L is reductive.  A
+vector v of W is in the socle if and only if every central z acts on it semisimply: f(z) v = 0, f the squarefree part of
+the characteristic polynomial of z.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def is_completely_reducible(rho: Representation) -> bool:
 
 
 def is_visibly_semisimple(rho: Representation) -> bool:
-    """Whether the Killing form is nondegenerate modulo a prime: then everything is completely reducible (Weyl).
+    """Whether the Killing form is nondegenerate modulo a prime, which proves complete reducibility (Weyl).
 
     Examples
     --------
@@ -55,7 +56,7 @@ def is_visibly_semisimple(rho: Representation) -> bool:
 
 
 def nilpotent_rows(rho: Representation) -> ExactMatrix:
-    """Rows spanning the row spaces of [L, rad L], L the matrices of a representation."""
+    """Rows that span the row spaces of [L, rad L], L the matrices of a representation."""
     field, size = rho.field, rho.size
     none: ExactMatrix = field.zeros(0, size)
     flat = field.stack_rows([a.reshape(1, size * size) for a in rho.matrices], size * size)

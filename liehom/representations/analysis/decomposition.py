@@ -1,8 +1,8 @@
 """Decomposition: a completely reducible representation as a sum of irreducible ones over the reals, exactly.
 
-V = V^g + gV; the isotypic components of gV belong to the real places of the centre of its commutant (`isotypic`), each
-is split by zero divisors (`splitting`).  A component lives over the least real number field that its isotypic
-component needs, or over a larger one where multiplicity cannot be split there.
+V = V^g + gV.  The isotypic components of gV correspond to the real places of the centre of its commutant (`isotypic`);
+zero divisors of the commutant split each of them (`splitting`).  A component is defined over the smallest real number
+field of its isotypic component, or over a larger field if the multiplicity cannot be split over that field.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import numpy as np
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import CertificateError, NotCompletelyReducibleError
+from liehom.representations.analysis.commutant_type import COMMUTANT_DIMENSIONS, CommutantType
 from liehom.representations.analysis.complete_reducibility import socle
-from liehom.representations.analysis.isotypic import CommutantType, isotypic_pieces
+from liehom.representations.analysis.isotypic import isotypic_pieces
 from liehom.representations.analysis.splitting import irreducible_pieces
 from liehom.representations.analysis.submodules import restricted
 from liehom.representations.core.generating_matrices import exact_matrices, generating_matrices
@@ -43,11 +44,11 @@ class Component:
     representation : Representation
         The restriction, in the canonical basis of the subspace, over the same field.
     type : {'R', 'C', 'H'}
-        What commutes with it over the reals.
+        The commutant over the reals.
     isotypic : int
-        The number of the isotypic component that it belongs to.
+        Index of the isotypic component to which it belongs.
     extension : Extension
-        The field of the representation inside that of the component.
+        The embedding of the field of the representation in the field of the component.
 
     Examples
     --------
@@ -70,25 +71,25 @@ class Component:
 
     @property
     def dimension(self) -> int:
-        """The dimension."""
+        """Dimension of the component, an int."""
         return self.subspace.dimension
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class IsotypicComponent:
-    """The sum of all irreducible subspaces that are equivalent (over the reals) to one of them.
+    """The sum of all irreducible subspaces of one equivalence class (over the reals).
 
     Attributes
     ----------
     subspace : Subspace
-        Over the least real number field that has it.
+        Over the smallest real number field over which it is defined.
     type : {'R', 'C', 'H'}
     multiplicity : int
     components : tuple of int
-        The numbers of its irreducible components.
+        Indices of its irreducible components.
     extension : Extension
-        The field of the representation inside that of the component.
+        The embedding of the field of the representation in the field of the component.
 
     Examples
     --------
@@ -112,7 +113,7 @@ class IsotypicComponent:
 
     @property
     def dimension(self) -> int:
-        """The dimension."""
+        """Dimension of the component, an int."""
         return self.subspace.dimension
 
     @property
@@ -130,14 +131,14 @@ class Decomposition:
     ----------
     representation : Representation
     components : tuple of Component
-        Grouped by isotypic component; their sum is direct and the whole space (over the reals).
+        Grouped by isotypic component. Their sum is direct, and is the whole space (over the reals).
     isotypic : tuple of IsotypicComponent
         In order of the dimension of the irreducible representation, then of the degree of the field.
 
     Notes
     -----
-    The isotypic components are unique, and each is given over the least field that has it. The irreducible ones in a
-    component of multiplicity above one are a choice.
+    The isotypic components are unique, and each is given over the smallest field over which it is defined. The
+    irreducible components of an isotypic component of multiplicity above one are a choice.
 
     Examples
     --------
@@ -161,21 +162,21 @@ class Decomposition:
         return len(self.components)
 
     def dimensions(self) -> list[int]:
-        """The dimensions of the irreducible components, in order."""
+        """List of the dimensions of the irreducible components, in order."""
         return [c.dimension for c in self.components]
 
     def basis(self) -> Array:
-        """The rows of all components as one matrix of floats (N, N): a basis that shows the block form."""
+        """The rows of all components as a float matrix (N, N): a basis in which the representation has block form."""
         blocks = [c.subspace.basis.to_numpy() for c in self.components]
         return np.concatenate(blocks) if blocks else np.zeros((0, 0))
 
     def signatures(self, form: MatrixLike) -> list[tuple[int, int, int]]:
-        """The signatures (positive, negative, zero) of a symmetric form on the isotypic components.
+        """List of the signatures (positive, negative, zero) of a symmetric form on the isotypic components.
 
         Parameters
         ----------
         form : Matrix, or (N, N) array_like
-            Symmetric; an invariant one is meant, for which components that are not dual to each other are orthogonal.
+            A symmetric form, usually invariant: then components that are not dual to each other are orthogonal.
 
         Examples
         --------
@@ -190,7 +191,7 @@ class Decomposition:
         return [(rows @ over @ rows.T).signature() for rows, over in pairs]
 
     def verify(self) -> bool:
-        """Prove again that this is a decomposition into irreducible representations over the reals.
+        """Whether this is a decomposition into irreducible representations over the reals, proved again.
 
         Returns
         -------
@@ -205,7 +206,7 @@ class Decomposition:
         """
         rho = self.representation
         if not is_basis_of_reals([c.subspace.basis for c in self.components], rho.size):
-            raise CertificateError("sum", "the components are no basis of the space")
+            raise CertificateError("sum", "the components are not a basis of the space")
         for number, component in enumerate(self.components):
             self._verify_component(number, component)
         return True
@@ -219,7 +220,7 @@ class Decomposition:
         generating = generating_matrices(component.representation)
         if not is_irreducible(matrices, dimension, field, generating):
             raise CertificateError("irreducible", f"component {number} is reducible")
-        if len(commutant(generating, dimension, field)) != {"R": 1, "C": 2, "H": 4}[component.type]:
+        if len(commutant(generating, dimension, field)) != COMMUTANT_DIMENSIONS[component.type]:
             raise CertificateError("type", f"component {number} is not of type {component.type}")
         first = self.components[self.isotypic[component.isotypic].components[0]]
         if matrices and first.field == field:
@@ -263,7 +264,7 @@ def decomposition(rho: Representation) -> Decomposition:
 @final
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """An isotypic component, split: rows over fields, in the coordinates of the whole space."""
+    """A split isotypic component: rows over their fields, in the coordinates of the whole space."""
 
     type: CommutantType
     whole: ExactMatrix
@@ -273,7 +274,7 @@ class _Group:
 
 
 def _groups(rho: Representation) -> Iterator[_Group]:
-    """V^g, which needs no splitting, and the isotypic components of gV."""
+    """The groups of V^g, which is not split by its commutant, and of the isotypic components of gV."""
     field, size = cast(ExactField, rho.field), rho.size
     fixed = rho.invariant_vectors().basis if rho.matrices else field.identity(size)
     base = trivial_extension(field)
@@ -282,7 +283,7 @@ def _groups(rho: Representation) -> Iterator[_Group]:
         yield _Group("R", fixed, base, single, (base,) * len(single))
     if fixed.nrows == size:
         return
-    # [x, y] V lies in x V + y V: gV is the sum over generators
+    # [x, y] V lies in x V + y V, so gV is the sum over generators
     generating = generating_matrices(rho)
     moved = field.stack_rows([a.T for a in generating], size).row_space() if fixed.nrows else field.identity(size)
     inside = restricted(generating, moved)
@@ -294,7 +295,7 @@ def _groups(rho: Representation) -> Iterator[_Group]:
 
 
 class _Restrictions:
-    """Restrictions of a representation to subspaces over several fields, each field visited once."""
+    """Restrictions of a representation to subspaces over several fields, with one base change for each field."""
 
     def __init__(self, rho: Representation) -> None:
         self.rho = rho

@@ -1,9 +1,9 @@
 """Equivalence of representations: an invertible intertwiner, or the proof that there is none.
 
-Over an infinite field it does not matter whether the intertwiner is real or over the field (Noether-Deuring).  For
-completely reducible V = sum m_i V_i and W = sum n_i V_i with End(V_i) of dimension d_i,
-dim End V + dim End W - 2 dim Hom(V, W) = sum d_i (m_i - n_i)^2 vanishes exactly if V and W are equivalent.  In general
-Hom(V, W) is a module over End V; if T generates it and is not invertible, no T u is.
+Over an infinite field there is an invertible intertwiner over the field if there is a real one (Noether-Deuring).  For
+completely reducible V = sum m_i V_i and W = sum n_i V_i with End(V_i) of dimension d_i, dim End V + dim End W - 2 dim
+Hom(V, W) = sum d_i (m_i - n_i)^2 is zero if and only if V and W are equivalent.  In general Hom(V, W) is a module over
+End V; if T generates it and is not invertible, then no T u is invertible.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Invariant Hermitian forms of a representation with a complex or quaternionic structure.
 
-With J in the commutant and J^2 = -1 a Hermitian form is h(u, v) = s(u, v) + i s(u, J v), linear in u and antilinear in
-v for i u = J u: s is symmetric and J is s-skew, s(J u, v) = -s(u, J v).  With three anticommuting units the same
-gives h = s(u, v) + i s(u, I v) + j s(u, J v) + k s(u, K v), s symmetric for the Hermitian and skew for the
-skew-Hermitian forms.  Invariance of h is that of s.  Units need only satisfy J^2 = -d, d > 0.
+For J in the commutant with J^2 = -1, a Hermitian form is h(u, v) = s(u, v) + i s(u, J v), linear in u and antilinear in
+v with i u = J u.  Here s is symmetric and s(J u, v) = -s(u, J v).  Three anticommuting units I, J, K give h = s(u, v) +
+i s(u, I v) + j s(u, J v) + k s(u, K v), with s symmetric for Hermitian and skew-symmetric for skew-Hermitian forms.  h
+is invariant if and only if s is.  Units need only satisfy J^2 = -d, d > 0.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class HermitianForms:
     hermitian : tuple of Matrix
         A basis of the real parts s (symmetric) of the Hermitian forms: a real vector space.
     skew_hermitian : tuple of Matrix
-        A basis of the real parts (skew) of the skew-Hermitian forms. In the complex case these are the forms i h.
+        A basis of the real parts (skew-symmetric) of the skew-Hermitian forms; in the complex case these are the i h.
 
     Examples
     --------
@@ -51,7 +51,7 @@ class HermitianForms:
     skew_hermitian: tuple[ExactMatrix, ...]
 
     def signature(self, form: ExactMatrix) -> tuple[int, int, int]:
-        """The signature (positive, negative, zero) over C or H of a Hermitian form, given by its real part."""
+        """Signature (positive, negative, zero) over C or H of a Hermitian form, given by its real part."""
         per = 2 if self.kind == "complex" else 4
         positive, negative, zero = form.signature()
         return positive // per, negative // per, zero // per
@@ -59,7 +59,7 @@ class HermitianForms:
     def imaginary_part(self, form: ExactMatrix, unit: int = 0) -> ExactMatrix:
         """The matrix of the part s(u, J v) / sqrt(d) at the unit i (0), j (1) or k (2).
 
-        It is over the field of the representation, or over the one that has sqrt(d).
+        The matrix is over the field of the representation, or over its extension by sqrt(d).
 
         Examples
         --------

@@ -1,9 +1,9 @@
-"""From an isotypic piece to irreducible ones: zero divisors of M_m(R), M_m(C), M_m(H), over the field where possible.
+"""Splitting of an isotypic piece by zero divisors of M_m(R), M_m(C), M_m(H), over the field where possible.
 
 A commuting matrix t whose characteristic polynomial has two factors, or which is not semisimple, splits the piece over
-its field F.  Small elements are tried first (for a maximal order of M_m(Q) the shortest is a zero divisor); for a
-quaternion algebra over QQ a conic decides.  Where nothing splits over F, a real root of one t is adjoined, or a pair
-of complex ones.
+its field F.  Small elements are tried first (for a maximal order of M_m(Q) the shortest element is a zero divisor).
+For a quaternion algebra over QQ a conic decides.  If nothing splits over F, a real root of one t is adjoined, or a pair
+of complex roots.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ from itertools import islice
 from typing import final
 
 from liehom.errors import InternalError
-from liehom.representations.analysis.isotypic import CommutantType, IsotypicPiece, Piece
+from liehom.representations.analysis.commutant_type import COMMUTANT_DIMENSIONS, CommutantType
+from liehom.representations.analysis.isotypic import IsotypicPiece, Piece, exact_square_root
 from liehom.representations.invariants.irreducibility import anticommutator_gram, combination, evaluated, traceless
 from liehom.scalars import ExactMatrix, Polynomial
 from liehom.scalars.lattices.conic import rational_zero
 from liehom.scalars.roots.extension import real_factors
 from liehom.scalars.spaces.forms import orthogonal_basis
 
-CANDIDATES = 40
+CANDIDATES = 40  # commuting matrices that are tried, beyond twice the dimension of the commutant
 
 
 @final
@@ -35,7 +36,7 @@ class _Root:
 
 
 def irreducible_pieces(component: IsotypicPiece) -> list[Piece]:
-    """Irreducible pieces over the reals whose sum is an isotypic component, as many as its multiplicity."""
+    """The irreducible pieces over the reals of an isotypic component, as many as its multiplicity."""
     waiting, found = [component.piece], []
     while waiting:
         piece = waiting.pop(0)
@@ -50,12 +51,11 @@ def irreducible_pieces(component: IsotypicPiece) -> list[Piece]:
 
 
 def _multiplicity(piece: Piece, kind: CommutantType) -> int:
-    square = piece.commuting.dimension // {"R": 1, "C": 2, "H": 4}[kind]
-    return next(m for m in range(1, square + 1) if m * m >= square)
+    return exact_square_root(piece.commuting.dimension // COMMUTANT_DIMENSIONS[kind])
 
 
 def _split(piece: Piece, kind: CommutantType) -> list[Piece]:
-    """Two or more summands, over the field of the piece if one is found there."""
+    """Two or more summands of a piece, over its field if they are found there."""
     roots: list[_Root] = []
     for element in islice(_tried(piece, kind), CANDIDATES + 2 * piece.commuting.dimension):
         found = _split_by(piece, element, roots)
@@ -75,7 +75,7 @@ def _split(piece: Piece, kind: CommutantType) -> list[Piece]:
 
 
 def _tried(piece: Piece, kind: CommutantType) -> Iterator[ExactMatrix]:
-    """Commuting matrices, small ones first; with a complex structure also their products with it."""
+    """Candidates t: commuting matrices, small ones first, and for type C their products with the complex structure."""
     structure = None
     if kind == "C":
         center = piece.commuting.center()
@@ -87,7 +87,7 @@ def _tried(piece: Piece, kind: CommutantType) -> Iterator[ExactMatrix]:
 
 
 def _split_by(piece: Piece, t: ExactMatrix, roots: list[_Root]) -> list[Piece]:
-    """The summands that t shows over the field; none, and perhaps a further entry of `roots`, if it shows none."""
+    """The summands given by t over the field, or an empty list and perhaps a further entry of `roots`."""
     factors = piece.commuting.minimal_polynomial_power(t).factor()
     if len(factors) > 1:
         size = piece.dimension
@@ -106,7 +106,7 @@ def _split_by(piece: Piece, t: ExactMatrix, roots: list[_Root]) -> list[Piece]:
 
 
 def _power(matrix: ExactMatrix, size: int) -> ExactMatrix:
-    """A power high enough that its kernel does not grow any more."""
+    """A power of the matrix whose kernel is the kernel of all higher powers."""
     exponent = 1
     while exponent < size:
         matrix, exponent = matrix @ matrix, 2 * exponent
@@ -114,9 +114,9 @@ def _power(matrix: ExactMatrix, size: int) -> ExactMatrix:
 
 
 def _with_complement(piece: Piece, rows: ExactMatrix) -> list[ExactMatrix]:
-    """The rows and a complement of their span, both invariant: the kernel of a commuting projection onto the span."""
+    """The rows and an invariant complement of their span, the kernel of a commuting projection onto the span."""
     field, size = piece.field, piece.dimension
-    away = rows.null_space().T  # kills exactly the span
+    away = rows.null_space().T  # its left kernel is the span
     conditions = [
         field.stack_columns([(t.T @ away).reshape(1, size * away.ncols), (rows @ t.T).reshape(1, rows.nrows * size)], 1)
         for t in piece.commuting.basis
@@ -135,7 +135,7 @@ def _nilpotent(piece: Piece, kind: CommutantType) -> ExactMatrix | None:
     imaginary = traceless(piece.commuting.basis, piece.dimension, piece.field)
     gram = anticommutator_gram(imaginary, piece.dimension, piece.field)
     if gram is None:
-        raise InternalError("the traceless part of a quaternion algebra has an anticommutator that is no scalar")
+        raise InternalError("the traceless part of a quaternion algebra has an anticommutator that is not a scalar")
     row = rational_zero(gram)
     return None if row is None else combination(imaginary, row.row(0))
 
@@ -155,7 +155,7 @@ def _indefinite(piece: Piece) -> list[ExactMatrix]:
 
 
 def _split_above(piece: Piece, root: _Root) -> list[Piece]:
-    """The kernel of a factor over a larger field, and that of its cofactor."""
+    """The summands over a larger field: the kernels of a factor and of its cofactor."""
     factor = real_factors(root.polynomial)[0]
     whole = piece.over(factor.extension)
     t = factor.extension.matrix(root.matrix)

@@ -1,4 +1,4 @@
-"""Invariant subspaces: the one that vectors generate, sub- and quotient representations, invariant complements.
+"""Invariant subspaces: generated submodules, sub- and quotient representations, invariant complements.
 
 Subspaces are given by rows b, on which a matrix A acts as b A^T.
 """
@@ -70,14 +70,14 @@ def invariant_complement(rho: Representation, rows: Subspace | MatrixLike) -> Su
 
 
 def restricted(matrices: Sequence[ExactMatrix], basis: ExactMatrix, *, check: bool = True) -> list[ExactMatrix]:
-    """The matrices (k, k) by which maps act on the invariant span of independent rows (k, N), on columns.
+    """The matrices (k, k), acting on columns, of the restrictions of maps to the span of independent rows (k, N).
 
-    With ``check=False`` the invariance is the caller's knowledge.
+    With ``check=False`` the invariance of the span is not checked.
 
     Raises
     ------
     NotInvariantError
-        If it is not invariant.
+        If the span is not invariant.
     """
     field, k = basis.field, basis.nrows
     if k == 0:

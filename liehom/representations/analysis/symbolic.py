@@ -1,6 +1,6 @@
-"""Isotropy at points with free symbols: the generic answer, and where it is valid.
+"""Isotropy at points with free symbols: the generic isotropy, and a condition under which it is valid.
 
-The coordinates are rational functions of the symbols; linear algebra is over the field of fractions, by sympy's
+The coordinates are rational functions of the symbols.  Linear algebra over their field of fractions uses sympy's
 DomainMatrix.
 """
 
@@ -28,15 +28,15 @@ class SymbolicIsotropy:
     point : tuple of sympy expressions
     symbols : tuple of sympy symbols
     dimension : int
-        The dimension of the isotropy where the symbols are generic (algebraically independent).
+        Dimension of the isotropy for generic (algebraically independent) symbols.
     orbit_dimension : int
         dim g - dimension: the generic rank of x -> rho(x) point, which no value of the symbols exceeds.
     basis : sympy.Matrix
-        Rows (dimension, dim g) of coefficients, polynomials in the symbols without common divisor. Every row
-        lies in the isotropy at every value of the symbols (where the point is defined).
+        Rows (dimension, dim g) of coefficients, polynomials in the symbols without common divisor. Every row lies in
+        the isotropy at all values of the symbols at which the point is defined.
     nonvanishing : sympy expression
-        A polynomial: where it is not zero (and the point is defined), the isotropy has exactly `dimension` and
-        `basis` is a basis. It is one maximal minor, so its zeros need not all be exceptional.
+        A polynomial. At values where it is not zero and the point is defined, the isotropy has exactly `dimension` and
+        `basis` is a basis. It is one maximal minor, so not all of its zeros need be exceptional.
     matrix : sympy.Matrix
         The matrix (N, dim g) with columns rho(e_i) point.
     """
@@ -54,12 +54,12 @@ class SymbolicIsotropy:
         return f"<isotropy of dimension {self.dimension} at {self.point}, where {self.nonvanishing} != 0>"
 
     def rank_conditions(self, limit: int = 2000) -> list[Expression]:
-        """The minors of size `orbit_dimension`, whose common zeros are exactly where the isotropy is larger.
+        """List of the minors of size `orbit_dimension`; the isotropy is larger exactly at their common zeros.
 
         Parameters
         ----------
         limit : int
-            Refuse to compute more minors than this.
+            Largest admissible number of minors.
 
         Returns
         -------
@@ -87,7 +87,7 @@ class SymbolicIsotropy:
         return list(found)
 
     def at(self, values: Mapping[Expression, Expression]) -> Expression:
-        """The matrix `basis` with values for the symbols (a mapping), a basis where `nonvanishing` is not zero."""
+        """The matrix `basis` at given values of the symbols; its rows are a basis where `nonvanishing` is not 0."""
         return self.basis.subs(values)
 
 
@@ -143,7 +143,7 @@ def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
         if not algebraic or (symbols and not made.is_rational_function(*symbols)):
             raise InputError(
                 f"coordinate {i}, {made}, is not a rational function of its symbols; "
-                "parametrise, for example cos and sin by a rational parameter"
+                "parametrize, for example cos and sin by a rational parameter"
             )
         values.append(made)
     return values
@@ -184,7 +184,7 @@ def _over_fractions(matrix: Expression, symbols: tuple[Expression, ...]) -> Any:
 
 
 def _cleared(row: Expression, symbols: tuple[Expression, ...]) -> list[Expression]:
-    """A row of rational functions as polynomials without common divisor."""
+    """A multiple of a row of rational functions: polynomials without common divisor."""
     import sympy
 
     entries = [sympy.fraction(sympy.cancel(v)) for v in row]

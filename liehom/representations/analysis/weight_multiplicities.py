@@ -1,7 +1,7 @@
 """The weights of a representation of a semisimple algebra, in any basis, and its irreducible parts over C.
 
-On a rational Cartan subalgebra h, which need not split, rho(h) is a commuting family of semisimple matrices; its joint
-eigenvalues are the weights, certain balls, and their values on the coroots are integers.
+On a rational Cartan subalgebra h, which need not split, rho(h) is a commuting family of semisimple matrices.  Its joint
+eigenvalues, the weights, are computed as rigorous enclosures; their values on the coroots are integers.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def weight_multiplicities(rho: Representation) -> dict[Weight, int]:
             for w, (_, m) in zip(weights, values, strict=True):
                 counted[tuple(w[i] for i in order)] += m
             return {w: counted[w] for w in sorted(counted, reverse=True)}
-    raise InternalError("the weights could not be told from their neighbours")
+    raise InternalError("the weights could not be distinguished")
 
 
 def highest_weights(rho: Representation) -> dict[Weight, int]:

@@ -1,7 +1,7 @@
-"""A few matrices of a representation that generate all of them: what commutes with these commutes with all.
+"""A few matrices of a representation that generate the others: matrices that commute with these commute with all.
 
-Random elements of the algebra generate it if the least space that holds them and is closed under their brackets is
-everything, which a rank modulo a prime proves.
+Random elements generate the algebra if the smallest space that contains them and is closed under brackets with them is
+the whole algebra.  A rank modulo a prime proves this.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from liehom.representations.core.representation import Representation
 from liehom.scalars import ExactMatrix
 from liehom.scalars.modular.modular import invariant_hull_rank
 
-SMALL = 20_000
-MOST = 4
+SMALL_SIZE = 20_000  # entries of all matrices up to which all of them are used
+MAX_ELEMENTS = 4
 
 
 def generating_matrices(rho: Representation, size: int | None = None) -> tuple[ExactMatrix, ...]:
@@ -25,14 +25,14 @@ def generating_matrices(rho: Representation, size: int | None = None) -> tuple[E
     rho : Representation
         Over an exact field.
     size : int, optional
-        Decide as for a representation of this size: with one size, representations of one algebra are given by
+        Size used in the choice (default: of rho). With equal sizes, representations of one algebra are given by the
         matrices of the same elements.
 
     Returns
     -------
     tuple of Matrix
-        All matrices of the basis where they are few and small, or where two to four random elements do not generate;
-        else those of such elements.
+        All matrices of the basis if they are few and small or if two to four random elements do not generate the
+        algebra, else the matrices of these random elements.
 
     Examples
     --------
@@ -41,12 +41,12 @@ def generating_matrices(rho: Representation, size: int | None = None) -> tuple[E
     (3, 2)
     """
     n = rho.algebra.dimension
-    if n <= MOST or n * (rho.size if size is None else size) ** 2 <= SMALL:
+    if n <= MAX_ELEMENTS or n * (rho.size if size is None else size) ** 2 <= SMALL_SIZE:
         return exact_matrices(rho)
     rng = random.Random(n)
     rows: list[ExactMatrix] = []
     adjoints: list[ExactMatrix] = []
-    for _ in range(MOST):
+    for _ in range(MAX_ELEMENTS):
         x = rho.field.matrix([[rng.choice((-1, 0, 0, 1)) for _ in range(n)]])
         rows.append(x)
         adjoints.append(rho.algebra.ad(x.row(0)).T)

@@ -1,4 +1,4 @@
-"""Pair: a Lie algebra with a subalgebra, the infinitesimal homogeneous space G/H."""
+"""Pair: a Lie algebra with a subalgebra, the infinitesimal description of a homogeneous space G/H."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Pair:
     ------
     NotASubalgebraError, DependentRowsError, ShapeError
     InputError
-        If the first argument is no Lie algebra, or the subalgebra belongs to another one.
+        If the first argument is not a Lie algebra, or if the subalgebra belongs to a different algebra.
 
     Notes
     -----
-    The tangent space of G/H at the base point is V = g/h; h acts on it by the isotropy representation
+    The tangent space of G/H at the base point is V = g/h, on which h acts by the isotropy representation
     rho(z) (x + h) = [z, x] + h.
 
     Examples
@@ -65,7 +65,7 @@ class Pair:
 
     @property
     def dimension(self) -> int:
-        """The dimension of G/H: dim g - dim h."""
+        """Dimension of G/H, dim g - dim h."""
         return self.subalgebra.codimension
 
     def isotropy_matrices(self) -> list[Matrix]:
@@ -99,7 +99,7 @@ class Pair:
         return Representation(self.subalgebra.as_algebra(), matrices, size=self.dimension, check=False)
 
     def coordinates(self, x: VectorLike) -> Matrix:
-        """The coordinates of x mod h in the complement of ``subalgebra.quotient()``, a row matrix (1, d)."""
+        """The coordinates of x mod h, a row matrix (1, d), in the complement of ``subalgebra.quotient()``."""
         made: Matrix = self.algebra.row(x) @ self.subalgebra.quotient().projection
         return made
 

@@ -31,9 +31,9 @@ from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
 if TYPE_CHECKING:
+    from liehom.representations.analysis.commutant_type import CommutantType
     from liehom.representations.analysis.decomposition import Decomposition
     from liehom.representations.analysis.hermitian_forms import HermitianForms
-    from liehom.representations.analysis.isotypic import CommutantType
     from liehom.representations.analysis.symbolic import SymbolicIsotropy
 
 
@@ -800,7 +800,7 @@ class Representation:
     def _proved(
         self, algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, name: str | None = None
     ) -> Representation:
-        """A representation whose identity the caller has proved (the reason stands where this is called)."""
+        """A representation whose identity the caller has proved; a comment there gives the reason."""
         return Representation(algebra, matrices, size=size, name=name, check=False)
 
     def _require_same_algebra(self, other: Representation) -> None:

@@ -1,13 +1,14 @@
 """The admissible lattice of an irreducible module: integer matrices of the Chevalley generators, weight by weight.
 
-V(lambda) has the lattice spanned by all f_i^(k) f_j^(l) ... v, f^(k) = f^k / k! and v a highest weight vector; the
+All f_i^(k) f_j^(l) ... v, with f^(k) = f^k / k! and v a highest weight vector, span a lattice in V(lambda), and the
 generators e_i, f_i map it to itself.  Going down from v, the vectors f_i^(k) b, b in the basis at mu + k alpha_i, span
-the lattice at the weight mu.  What the raising operators do to them is known from above,
+the lattice at the weight mu.  Their images under the raising operators are known from the higher weights,
 
     e_j f_i^(k) b = f_i^(k) e_j b + delta_ij (<mu + k alpha_i, alpha_i^vee> - k + 1) f_i^(k-1) b,
 
-and a vector of weight mu other than lambda is zero if and only if all e_j kill it, because V(lambda) is irreducible.
-So the images under (e_1, ..., e_r) tell which of these vectors are a basis and what the others are.
+and a vector of weight mu other than lambda is zero if and only if all e_j annihilate it, because V(lambda) is
+irreducible.  The images under (e_1, ..., e_r) therefore determine a basis among these vectors and the coordinates of
+the others.
 """
 
 from __future__ import annotations
@@ -29,12 +30,12 @@ Vector = dict[int, int]
 @final
 @dataclass(frozen=True, slots=True)
 class AdmissibleLattice:
-    """A basis of weight vectors of V(lambda), and the generators in it.
+    """A basis of weight vectors of V(lambda), and the Chevalley generators in this basis.
 
     Attributes
     ----------
     weights : tuple of Weight
-        Of the basis vectors; the highest weight comes first, and they fall in height.
+        The weights of the basis vectors, by decreasing height; the first is the highest weight.
     raising, lowering : tuples of tuples of Vector
         raising[i][b] is e_i applied to basis vector b, lowering[i][b] is f_i applied to it.
     recipes : tuple of tuples of (coefficient, i, k, b)
@@ -69,7 +70,7 @@ def admissible_lattice(system: RootSystem | str, weight: Sequence[int]) -> Admis
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If the weight is not dominant and integral.
     CatalogError
         If there is no such type.
 
@@ -84,7 +85,7 @@ def admissible_lattice(system: RootSystem | str, weight: Sequence[int]) -> Admis
 
 
 def lattice_of(space: WeightSpace, top: Weight) -> AdmissibleLattice:
-    """The admissible lattice of the module with a highest weight that has been checked."""
+    """The admissible lattice of the module with a given highest weight, which is not checked."""
     builder = _Builder(space, top)
     level = [top]
     while level:
@@ -96,7 +97,7 @@ def lattice_of(space: WeightSpace, top: Weight) -> AdmissibleLattice:
 @final
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """The vector f_i^(power) b and its images under e_1, ..., e_r, added up: their weights differ."""
+    """The vector f_i^(power) b and the sum of its images under e_1, ..., e_r, whose weights differ."""
 
     i: int
     power: int
@@ -105,7 +106,7 @@ class _Candidate:
 
 
 class _Builder:
-    """The basis found so far, and the generators on it; the lowering ones as far as the basis reaches."""
+    """The basis found so far, and the generators on it; lowering operators as far as the basis reaches."""
 
     def __init__(self, space: WeightSpace, top: Weight) -> None:
         self.space = space
@@ -120,7 +121,7 @@ class _Builder:
         return AdmissibleLattice(tuple(self.weights), raising, lowering, tuple(self.recipes))
 
     def add_weight(self, mu: Weight) -> bool:
-        """Find the lattice at a weight below those found; whether there is any."""
+        """Whether a weight below the known weights occurs; its lattice is added."""
         candidates = [candidate for candidate in self._candidates(mu) if candidate.image]
         if not candidates:
             return False
@@ -144,7 +145,7 @@ class _Builder:
             self.lowering[j].append({})
 
     def _candidates(self, mu: Weight) -> list[_Candidate]:
-        """High powers first, so that a divided power is preferred to its multiples."""
+        """The candidates at a weight, by decreasing power: a divided power is preferred to its multiples."""
         found = []
         for i in range(self.space.rank):
             power, nu = 1, _moved(self.space, mu, i, 1)
@@ -159,15 +160,15 @@ class _Builder:
     def _image(self, i: int, power: int, b: int) -> Vector:
         total: Vector = {}
         for j in range(self.space.rank):
-            _add(total, divided_power(self.lowering[i], self.raising[j][b], power), 1)
+            add_multiple(total, divided_power(self.lowering[i], self.raising[j][b], power), 1)
         factor = self.weights[b][i] - power + 1
         if factor:
-            _add(total, divided_power(self.lowering[i], {b: 1}, power - 1), factor)
+            add_multiple(total, divided_power(self.lowering[i], {b: 1}, power - 1), factor)
         return {c: v for c, v in total.items() if v}
 
 
 def divided_power(columns: Sequence[Vector], vector: Vector, power: int) -> Vector:
-    """x^power / power! applied to a vector of the admissible lattice, x a root vector given by its columns.
+    """The vector x^power / power! b for b in the admissible lattice, x a root vector given by its columns.
 
     Examples
     --------
@@ -178,7 +179,7 @@ def divided_power(columns: Sequence[Vector], vector: Vector, power: int) -> Vect
     for _ in range(power):
         image: Vector = {}
         for b, v in vector.items():
-            _add(image, columns[b], v)
+            add_multiple(image, columns[b], v)
         vector = image
     divisor = factorial(power)  # the lattice contains the quotient
     return {b: v // divisor for b, v in vector.items() if v}
@@ -188,17 +189,26 @@ def _moved(space: WeightSpace, mu: Weight, i: int, times: int) -> Weight:
     return tuple(m + times * a for m, a in zip(mu, space.cartan[i], strict=True))
 
 
-def _add(total: Vector, vector: Vector, factor: int) -> None:
+def add_multiple(total: Vector, vector: Vector, factor: int) -> None:
+    """Add factor * vector to a total, in place.
+
+    Examples
+    --------
+    >>> total = {0: 1}
+    >>> add_multiple(total, {0: 2, 3: 1}, -1)
+    >>> total
+    {0: -1, 3: -1}
+    """
     for b, v in vector.items():
         total[b] = total.get(b, 0) + factor * v
 
 
 def _lattice_basis(vectors: list[Vector]) -> tuple[list[tuple[Vector, Vector]], list[Vector]]:
-    """A basis of the lattice that non-zero integer vectors span, and the coordinates of each of them in it.
+    """A basis of the lattice spanned by non-zero integer vectors, and the coordinates of these vectors.
 
-    A basis vector comes with its coefficients in the given ones.  The first independent vectors are a
-    basis of the space.  While a given vector has a coordinate that is no integer, its difference to the nearest
-    combination replaces a basis vector; the index of the lattice falls by half or more each time.
+    Each basis vector comes with its coefficients in the given vectors.  The first independent vectors are a basis of
+    the space.  While a given vector has a coordinate that is not an integer, its difference to the nearest combination
+    replaces a basis vector; the index of the lattice falls at least by half each time.
     """
     if len(vectors) == 1:
         return [(vectors[0], {0: 1})], [{0: 1}]
@@ -213,15 +223,15 @@ def _lattice_basis(vectors: list[Vector]) -> tuple[list[tuple[Vector, Vector]], 
         shift = [c - n for c, n in zip(table[x], nearest, strict=True)]
         new: tuple[Vector, Vector] = (dict(vectors[x]), {x: 1})
         for old, n in zip(basis, nearest, strict=True):
-            _add(new[0], old[0], -n)
-            _add(new[1], old[1], -n)
+            add_multiple(new[0], old[0], -n)
+            add_multiple(new[1], old[1], -n)
         basis[k] = ({b: v for b, v in new[0].items() if v}, new[1])
         table = [_exchanged(row, shift, k) for row in table]
     return basis, [{k: int(c) for k, c in enumerate(row) if c} for row in table]
 
 
 def _not_integral(table: list[list[Fraction]]) -> tuple[int, int] | None:
-    """The first row with a fraction in it, and the place of the fraction nearest to an integer without being one."""
+    """The first row with a fraction, and the index of its fraction nearest to an integer, or None."""
     for x, row in enumerate(table):
         fractions = [(abs(c - round(c)), k) for k, c in enumerate(row) if c.denominator > 1]
         if fractions:

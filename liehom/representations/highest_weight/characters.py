@@ -1,8 +1,9 @@
 """Characters of irreducible modules: dimensions, multiplicities, tensor products, decompositions.
 
-dim V(lambda) = prod (lambda + rho, alpha) / (rho, alpha) over the positive roots; multiplicities by Freudenthal's
-recursion, one per dominant weight, with the roots grouped under the stabiliser of that weight; products by reflecting
-weights into the dominant chamber.  A character is a mapping {weight: multiplicity}.
+dim V(lambda) = prod (lambda + rho, alpha) / (rho, alpha) over the positive roots.  Multiplicities are computed by
+Freudenthal's recursion, one per dominant weight, with the roots grouped under the stabilizer of that weight.  Tensor
+products are decomposed by reflecting weights into the dominant chamber.  A character is a mapping
+{weight: multiplicity}.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def weyl_dimension(system: RootSystem | str, weight: Sequence[int]) -> int:
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If the weight is not dominant and integral.
 
     Notes
     -----
@@ -56,12 +57,12 @@ def dominant_character(system: RootSystem | str, weight: Sequence[int]) -> dict[
     Returns
     -------
     dict
-        {dominant weight: multiplicity}, the highest weight first, falling in height.
+        {dominant weight: multiplicity}, by decreasing height.
 
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If the weight is not dominant and integral.
 
     Notes
     -----
@@ -90,12 +91,12 @@ def character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, i
     Returns
     -------
     dict
-        {weight: multiplicity}, falling in height.
+        {weight: multiplicity}, by decreasing height.
 
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If the weight is not dominant and integral.
 
     Examples
     --------
@@ -110,7 +111,7 @@ def character(system: RootSystem | str, weight: Sequence[int]) -> dict[Weight, i
 
 
 def decompose_character(system: RootSystem | str, character: Mapping[Sequence[int], int]) -> dict[Weight, int]:
-    """The irreducible modules whose characters add up to a given one.
+    """The highest weights, with multiplicities, of the irreducible modules whose characters add up to a given one.
 
     Parameters
     ----------
@@ -121,16 +122,17 @@ def decompose_character(system: RootSystem | str, character: Mapping[Sequence[in
     Returns
     -------
     dict
-        {highest weight: how often}, falling in height.
+        {highest weight: multiplicity}, by decreasing height.
 
     Raises
     ------
     InputError
-        If it is the character of no module: a multiplicity is negative, no integer, or not the same on a Weyl orbit.
+        If the mapping is not the character of a module: a multiplicity is negative, not an integer, or not constant on
+        a Weyl orbit.
 
     Notes
     -----
-    A weight of greatest height is a highest weight; its character is taken off, and so on.
+    A weight of greatest height is a highest weight; its character is subtracted, and so on.
 
     Examples
     --------
@@ -156,7 +158,7 @@ def decompose_character(system: RootSystem | str, character: Mapping[Sequence[in
 def tensor_product_decomposition(
     system: RootSystem | str, left: Sequence[int], right: Sequence[int]
 ) -> dict[Weight, int]:
-    """The irreducible modules in the tensor product of two of them.
+    """The highest weights, with multiplicities, of the irreducible parts of the tensor product of two modules.
 
     Parameters
     ----------
@@ -167,17 +169,17 @@ def tensor_product_decomposition(
     Returns
     -------
     dict
-        {highest weight: how often}, falling in height.
+        {highest weight: multiplicity}, by decreasing height.
 
     Raises
     ------
     ShapeError, InputError
-        If they are not dominant integral weights.
+        If a weight is not dominant and integral.
 
     Notes
     -----
     The product is the sum over the weights nu of the smaller factor of sign(w) V(w(nu + mu + rho) - rho), where mu
-    is the other highest weight and w takes nu + mu + rho to the dominant chamber; weights on a wall are left out.
+    is the other highest weight and w takes nu + mu + rho to the dominant chamber; weights on a wall do not contribute.
 
     Examples
     --------
@@ -235,7 +237,7 @@ def _dominant_multiplicities(space: WeightSpace, top: Weight) -> dict[Weight, in
 def _dominant_weights(space: WeightSpace, top: Weight) -> dict[Weight, Root]:
     """The dominant weights mu of V(top), with top - mu in the simple roots.
 
-    Two neighbours in the order of dominant weights differ by a positive root, so that steps by these reach them all.
+    Neighbours in the order of dominant weights differ by a positive root, so steps by positive roots reach all of them.
     """
     steps = [(alpha, space.as_weight(alpha)) for alpha in space.positive_roots]
     found: dict[Weight, Root] = {top: (0,) * space.rank}
@@ -251,7 +253,7 @@ def _dominant_weights(space: WeightSpace, top: Weight) -> dict[Weight, Root]:
 
 
 def _roots_under_stabilizer(space: WeightSpace, walls: Weight) -> list[tuple[Root, Weight, int]]:
-    """The positive roots up to the group generated by the reflections in the walls: (root, as weight, how many).
+    """Representatives (root, as weight, number) of the positive roots under the reflections in the walls.
 
     The group permutes the positive roots outside its own root system, and each of its own is conjugate to a
     positive one; the terms of Freudenthal's sum agree on conjugates because the group fixes the weight.
@@ -274,12 +276,12 @@ def _character(space: WeightSpace, top: Weight) -> dict[Weight, int]:
 
 
 def _falling(space: WeightSpace, weights: Mapping[Weight, object]) -> list[Weight]:
-    """By falling height, then lexicographically from above."""
+    """The weights by decreasing height, then in decreasing lexicographic order."""
     return sorted(weights, key=lambda mu: (-space.height(mu), *(-x for x in mu)))
 
 
 def _dominant_part(space: WeightSpace, character: Mapping[Sequence[int], int]) -> dict[Weight, int]:
-    """The multiplicities of the dominant weights of a mapping that is the same on Weyl orbits."""
+    """The multiplicities of the dominant weights of a mapping that must be constant on Weyl orbits."""
     given = {checked_weight(space, mu, dominant=False): m for mu, m in character.items()}
     for mu, m in given.items():
         if isinstance(m, bool) or not isinstance(m, int) or m < 0:

@@ -1,8 +1,8 @@
 """Irreducible modules by their highest weight, as integer matrices of the split algebra in its Chevalley basis.
 
-The generators e_i, f_i act on the admissible lattice by integer matrices (`admissible_lattice`), the simple coroots by
-the weights; the other root vectors are commutators, rho(e_(a+b)) = [rho(e_a), rho(e_b)] / N_ab with the constants
-[e_a, e_b] = N_ab e_(a+b) of the algebra.
+The generators e_i, f_i act on the admissible lattice by integer matrices (`admissible_lattice`), and the simple coroots
+act by the weights.  The other root vectors are commutators, rho(e_(a+b)) = [rho(e_a), rho(e_b)] / N_ab with the
+constants [e_a, e_b] = N_ab e_(a+b) of the algebra.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from liehom.algebra.roots.chevalley import chevalley, chevalley_constants
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.errors import InputError, RepresentationError
 from liehom.representations.core.representation import Representation
-from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, lattice_of
+from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, add_multiple, lattice_of
 from liehom.representations.highest_weight.characters import weyl_dimension
 from liehom.representations.highest_weight.weights import Weight, checked_weight, root_system_of, weight_space
 from liehom.representations.invariants.generator_proof import SparseStack, failing_generator_pair
@@ -62,7 +62,7 @@ class HighestWeightModule:
         return len(self.weights)
 
     def character(self) -> dict[Weight, int]:
-        """The weights with their multiplicities, falling in height.
+        """The weights with their multiplicities, by decreasing height.
 
         Examples
         --------
@@ -89,18 +89,18 @@ def highest_weight_module(
     Parameters
     ----------
     system : RootSystem or str
-        A type such as 'E8' or 'A2 + G2', numbered as Bourbaki does, or a root system with a numbering of its own.
+        A type such as 'E8' or 'A2 + G2', in Bourbaki's numbering, or a root system with its own numbering.
     weight : sequence of int
         Dominant, in fundamental coordinates.
     check : bool, optional
-        Prove the identity of the matrices once more, for the generators with all basis elements (default). They are
-        a representation by their construction, so that the proof guards against errors of the program only.
+        Prove the identity of the matrices again, for the generators with all basis elements (default). The matrices are
+        a representation by construction, so the proof only guards against errors of the program.
 
     Returns
     -------
     HighestWeightModule
-        Its ``representation`` is one of ``liehom.chevalley(type)`` on a basis of weight vectors, the highest weight
-        vector first; ``weights`` are theirs.
+        Its ``representation`` is a representation of ``liehom.chevalley(type)`` on a basis of weight vectors, the
+        highest weight vector first; ``weights`` are their weights.
 
     Raises
     ------
@@ -110,13 +110,12 @@ def highest_weight_module(
     CatalogError
         If there is no such type.
 
-    Notes
-    -----
-    V(lambda) exists, and in it a vector of another weight than lambda vanishes if all e_j kill it: so the recursion
-    of `admissible_lattice` computes the matrices of e_i and f_i in V(lambda), and the brackets of the Chevalley basis
-    leave no choice for the other elements. The basis spans the lattice that all e_i^k / k! and f_i^k / k! keep, hence
-    integers. A representation holds dim g dense matrices: 0.13 GB for the module 248 of E8; for modules with
-    thousands of dimensions `admissible_lattice` gives the sparse matrices of the generators alone.
+    Notes ----- V(lambda) exists, and a vector of a weight other than lambda is zero in it if all e_j annihilate it. The
+    recursion of `admissible_lattice` therefore computes the matrices of e_i and f_i in V(lambda), and the brackets of
+    the Chevalley basis determine those of the other elements. The matrices are integer because the basis spans the
+    lattice that all e_i^k / k! and f_i^k / k! preserve. A representation has dim g dense matrices, 0.13 GB for the
+    module 248 of E8. For modules with thousands of dimensions `admissible_lattice` gives the sparse matrices of the
+    generators only.
 
     Examples
     --------
@@ -142,14 +141,14 @@ def highest_weight_module(
     size = len(lattice.weights)
     if check:
         _prove(algebra.table, columns, size, roots)
-    # The matrices of V(lambda), as explained above, and proved if that was asked for.
+    # The matrices of V(lambda), see the Notes; proved if `check`.
     name = f"V({', '.join(map(str, top))})"
     rho = Representation(algebra, [sparse_matrix(c, size) for c in columns], size=size, name=name, check=False)
     return HighestWeightModule(roots, top, lattice.weights, rho)
 
 
 def require_room(count: int, size: int, hint: str) -> None:
-    """Refuse modules whose dense matrices would not fit; `hint` says what there is instead.
+    """Raise `InputError` if the dense matrices of a module have more than 2^28 entries; `hint` names an alternative.
 
     Raises
     ------
@@ -158,7 +157,7 @@ def require_room(count: int, size: int, hint: str) -> None:
     """
     entries = count * size**2
     if entries > MAX_ENTRIES:
-        # The logarithm of an integer of any length is finite; the integer itself may be none of the floats.
+        # The logarithm of an integer of any length is a float; the integer itself may be too large.
         gigabytes = f"{entries * 8 / 1e9:.3g}" if entries < 10**15 else f"about 10^{int(log10(entries)) - 8}"
         shown = str(size) if size < 10**15 else f"about 10^{int(log10(size))}"
         raise InputError(f"{count} dense matrices of size {shown} are {gigabytes} GB; {hint}")
@@ -184,7 +183,7 @@ def chevalley_matrices(roots: RootSystem, lattice: AdmissibleLattice) -> list[Co
 
 
 def _prove(table: StructureConstants, columns: list[Columns], size: int, roots: RootSystem) -> None:
-    """The identity for the e_i, f_i with all basis elements; brackets of these gave all other root vectors."""
+    """Raise if the identity fails for the e_i, f_i with all basis elements; brackets of these give the others."""
     rank, count = roots.rank, len(roots.positive_roots)
     generators = [*range(rank, 2 * rank), *range(rank + count, 2 * rank + count)]
     failure = failing_generator_pair(table, SparseStack(size, columns), generators)
@@ -200,16 +199,14 @@ def _lowered(alpha: tuple[int, ...], i: int) -> tuple[int, ...]:
 
 
 def _commutator(left: Columns, right: Columns, divisor: int) -> list[Vector]:
-    """(left right - right left) / divisor: the admissible lattice contains the quotient."""
+    """The columns of (left right - right left) / divisor, which the admissible lattice contains."""
     made = []
     for x, y in zip(left, right, strict=True):
         total: Vector = {}
         for middle, v in y.items():
-            for b, w in left[middle].items():
-                total[b] = total.get(b, 0) + v * w
+            add_multiple(total, left[middle], v)
         for middle, v in x.items():
-            for b, w in right[middle].items():
-                total[b] = total.get(b, 0) - v * w
+            add_multiple(total, right[middle], -v)
         made.append({b: v // divisor for b, v in total.items() if v})
     return made
 
@@ -217,7 +214,7 @@ def _commutator(left: Columns, right: Columns, divisor: int) -> list[Vector]:
 def sparse_matrix(columns: Columns, size: int) -> ExactMatrix:
     """The square matrix over QQ with these columns."""
     matrix: ExactMatrix = QQ.zeros(size, size)
-    (numerators,) = matrix.parts  # of a matrix that nobody else has seen: written to, entry by entry
+    (numerators,) = matrix.parts  # of a new matrix, which is written to entry by entry
     for c, column in enumerate(columns):
         for b, v in column.items():
             numerators[b, c] = v

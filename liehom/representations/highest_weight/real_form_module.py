@@ -1,8 +1,8 @@
 """Irreducible real modules of real forms, by a highest weight of the complexification and integer matrices.
 
 A real form is spanned by elements of the compact form, H_j = i h_j, X_a = e_a - f_a, Y_a = i (e_a + f_a), and by
-i times such elements; each acts on the complex module V by an integer matrix M or by i M.  If V has an invariant real
-subspace (`real_structure`), that is the module; otherwise V, as a real space of twice the dimension.
+i times such elements.  Each acts on the complex module V by an integer matrix M or by i M.  The real module is the
+invariant real subspace of V if there is one (`real_structure`), otherwise V as a real space of twice the dimension.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.errors import InputError, RepresentationError, ShapeError
 from liehom.representations.core.representation import Representation
-from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, lattice_of
+from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, add_multiple, lattice_of
 from liehom.representations.highest_weight.characters import weyl_dimension
 from liehom.representations.highest_weight.highest_weight import (
     OTHER_WAYS,
@@ -40,9 +40,9 @@ class RealModule:
     ----------
     form : RealForm
     highest_weight : tuple of int
-        Of the complexified module, or of one of its two parts.
+        The highest weight of the complexified module, or of one of its two parts.
     division_algebra : str
-        'R', 'C' or 'H': the matrices that commute with the representation.
+        'R', 'C' or 'H', the commutant of the representation.
     representation : Representation
         Of ``liehom.algebra.real_form_of(form.vogan)``.
 
@@ -60,7 +60,7 @@ class RealModule:
 
     @property
     def dimension(self) -> int:
-        """The dimension over the reals."""
+        """Dimension over the reals, an int."""
         return self.representation.size
 
     def __repr__(self) -> str:
@@ -70,7 +70,7 @@ class RealModule:
 
 
 def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
-    """'R', 'C' or 'H': the commutant of the irreducible real module of a real form with a given highest weight.
+    """Commutant, 'R', 'C' or 'H', of the irreducible real module of a real form with a given highest weight.
 
     Parameters
     ----------
@@ -78,8 +78,8 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
         Such as 'so(4,1)', 'e6(-26)', 'sl(2,C)'.
     weight : sequence of int
         Dominant, in fundamental coordinates of the complexification, in Bourbaki's numbering for ``form.type``, the
-        type of the canonical form whatever the name given: 'sp(4,R)' is 'so(3,2)' of type B2, not C2. For a complex
-        algebra those of its two factors, one after the other.
+        type of the canonical form: 'sp(4,R)' is 'so(3,2)' of type B2, not C2. For a complex algebra: the coordinates
+        for its two factors, one after the other.
 
     Raises
     ------
@@ -88,11 +88,9 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
     CatalogError
         If there is no such real form.
 
-    Notes
-    -----
-    'C' if lambda' differs from -w_0(lambda), where lambda' is the image under the automorphism of the Vogan diagram.
-    Otherwise lambda - w_0(lambda) = sum_i n_i alpha_i, and the sign of T^2 is that of (-1)^(sum of n_i over the nodes
-    that are not painted): 'R' for 1, 'H' for -1.
+    Notes ----- Let lambda' be the image of lambda under the automorphism of the Vogan diagram. The commutant is 'C' if
+    lambda' differs from -w_0(lambda). Otherwise lambda - w_0(lambda) = sum_i n_i alpha_i, and with n the sum of n_i
+    over the nodes that are not painted the commutant is 'R' for even n and 'H' for odd n.
 
     Examples
     --------
@@ -114,15 +112,15 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     form : RealForm or str
         Such as 'so(4,1)', 'e6(-26)', 'e8', 'sl(2,C)'.
     weight : sequence of int
-        As for `real_module_type`: numbered by ``RealForm.of_name(form).type``, see the examples.
+        As in `real_module_type`, numbered by ``RealForm.of_name(form).type``; see the examples.
     check : bool, optional
         Prove the identity of the matrices, for generators with all basis elements (default).
 
     Returns
     -------
     RealModule
-        Its ``representation`` is one of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices; the dimension
-        is that of the complex module where the commutant is R, else twice it.
+        Its ``representation`` is a representation of ``liehom.algebra.real_form_of(form.vogan)`` by integer matrices.
+        Its dimension is the dimension of the complex module if the commutant is R, else twice as large.
 
     Raises
     ------
@@ -131,11 +129,9 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     CatalogError
         If there is no such real form.
 
-    Notes
-    -----
-    Every irreducible real module arises in this way, from one highest weight if its commutant is R or H and from two
-    conjugate ones if it is C. Coordinates for the commutant R are those of the vectors u + T u, i (u - T u) in the
-    admissible lattice; otherwise the real and then the imaginary parts.
+    Notes ----- Every irreducible real module is constructed in this way, from one highest weight if its commutant is R
+    or H, and from two conjugate ones if it is C. For the commutant R the coordinates refer to the vectors u + T u, i (u
+    - T u) in the admissible lattice; otherwise they are the real and then the imaginary parts.
 
     Examples
     --------
@@ -177,7 +173,7 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
         if failure is not None:
             raise RepresentationError(failure, f"not a representation: the bracket of {failure} is not respected")
     name = f"V({', '.join(map(str, top))})"
-    # A homomorphism restricted to the real form, on an invariant real subspace; proved if that was asked for.
+    # A homomorphism restricted to the real form, on an invariant real subspace; proved if `check`.
     rho = Representation(algebra, [sparse_matrix(m, size) for m in matrices], size=size, name=name, check=False)
     return RealModule(made, top, kind, rho)
 
@@ -198,7 +194,7 @@ def _weight(form: RealForm, space: WeightSpace, weight: Sequence[int]) -> Weight
 
 # -- the basis of the real form -------------------------------------------------------------------------------
 def _operators(vogan: VoganDiagram, roots: RootSystem, lattice: AdmissibleLattice) -> tuple[list[Operator], list[int]]:
-    """The basis k_1, ..., p_1, ... of `real_form_of` on the complex module, and which of them generate.
+    """Operators of the basis k_1, ..., p_1, ... of `real_form_of` on the complex module, and indices of generators.
 
     In the compact form H_j = i h_j, X_a = e_a - f_a and Y_a = i (e_a + f_a); theta permutes these up to signs.
     """
@@ -229,7 +225,7 @@ def _operators(vogan: VoganDiagram, roots: RootSystem, lattice: AdmissibleLattic
 
 
 def _involution(vogan: VoganDiagram, roots: RootSystem) -> tuple[list[int], list[int]]:
-    """theta on H_1, ..., X_1, ..., Y_1, ...: place and sign of each image."""
+    """The involution theta on H_1, ..., X_1, ..., Y_1, ...: index and sign of each image."""
     rank, count = roots.rank, len(roots.positive_roots)
     moved = [roots.index(tuple(alpha[i] for i in vogan.automorphism)) for alpha in roots.positive_roots]
     signs = vogan.signs()[:count].tolist()
@@ -241,14 +237,13 @@ def _sum(left: Columns, right: Columns, factor: int) -> list[Vector]:
     made = []
     for x, y in zip(left, right, strict=True):
         total = dict(x)
-        for b, v in y.items():
-            total[b] = total.get(b, 0) + factor * v
+        add_multiple(total, y, factor)
         made.append({b: v for b, v in total.items() if v})
     return made
 
 
 def _realified(operator: Operator, size: int) -> list[Vector]:
-    """The matrix on the real parts and then the imaginary parts."""
+    """The columns of an operator on the real parts and then the imaginary parts."""
     imaginary, columns = operator
     if not imaginary:
         return [*(dict(c) for c in columns), *({b + size: v for b, v in c.items()} for c in columns)]

@@ -8,7 +8,7 @@ integer matrix T of the admissible lattice with
     T e_i = -s_i f_i' T,   T f_i = -s_i e_i' T,   T v_highest = v_lowest,   T^2 = 1 or -1,
 
 and J(v) = T conj(v) commutes with the real form.  For T^2 = 1 the vectors with J(v) = v are a real module of dimension
-dim V; for T^2 = -1, as where there is no T, the real space V of twice the dimension is irreducible.
+dim V.  For T^2 = -1, and if there is no T, the real space V of twice the dimension is irreducible.
 """
 
 from __future__ import annotations
@@ -17,7 +17,12 @@ from fractions import Fraction
 from typing import final
 
 from liehom.algebra.roots.vogan import VoganDiagram
-from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, divided_power
+from liehom.representations.highest_weight.admissible_lattice import (
+    AdmissibleLattice,
+    Vector,
+    add_multiple,
+    divided_power,
+)
 from liehom.representations.highest_weight.highest_weight import Columns
 from liehom.representations.highest_weight.weights import Weight, weight_space
 from liehom.scalars import QQ, Scalar
@@ -27,15 +32,16 @@ Operator = tuple[bool, Columns]
 """(imaginary, M): the operator M on V, or i M."""
 
 Reader = dict[int, int | Fraction]
-"""What a coordinate in the old basis contributes to those in the new one."""
+"""Contributions of a coordinate in the old basis to the coordinates in the new basis."""
 
 
 def commutant_letter(vogan: VoganDiagram, top: Weight) -> str:
-    """'R' for T^2 = 1, 'H' for T^2 = -1, 'C' where there is no T.
+    """Commutant of the real module: 'R' for T^2 = 1, 'H' for T^2 = -1, 'C' if there is no T.
 
-    With lambda - w_0(lambda) = sum_i n_i alpha_i, T^2 = (-1)^(sum of n_i over the nodes that are not painted): along a
-    reduced word of w_0 the lowest vector is made of divided powers of the f_i, n_i in all, and T turns each into
-    -s_i times a power of e_i', which lead back to the highest vector.
+    With lambda - w_0(lambda) = sum_i n_i alpha_i, T^2 = (-1)^n, where n is the sum of n_i over the nodes that are not
+    painted. Along a reduced word of w_0 the lowest vector is a product of divided powers of the f_i, with n_i factors
+    f_i in all, applied to the highest vector. T turns each factor into -s_i e_i', and these lead back to the highest
+    vector.
 
     Examples
     --------
@@ -61,9 +67,7 @@ def conjugation(vogan: VoganDiagram, lattice: AdmissibleLattice) -> list[Vector]
         for coefficient, i, power, source in recipe:
             # T f_i^(k) = (-s_i)^k e_i'^(k) T
             factor = coefficient * (1 if i in vogan.painted else (-1) ** power)
-            image = divided_power(lattice.raising[vogan.automorphism[i]], columns[source], power)
-            for b, v in image.items():
-                total[b] = total.get(b, 0) + factor * v
+            add_multiple(total, divided_power(lattice.raising[vogan.automorphism[i]], columns[source], power), factor)
         columns.append({b: v for b, v in total.items() if v})
     return columns
 
@@ -72,14 +76,15 @@ def conjugation(vogan: VoganDiagram, lattice: AdmissibleLattice) -> list[Vector]
 class RealBasis:
     """A basis of the integer vectors x + i y with T x = x and T y = -y: the x first, then the i y.
 
-    T exchanges the spaces of the weights mu and -mu'.  Where they differ, u + T u and u - T u for the basis vectors u
-    at the first; where they agree, bases of the two eigenspaces there.  Coordinates are read at the first weight.
+    T exchanges the spaces of the weights mu and -mu'.  If they differ, the basis has u + T u and u - T u for the basis
+    vectors u at the first weight; if they agree, it has bases of the two eigenspaces of T.  Coordinates are read at the
+    first weight.
 
     Parameters
     ----------
     vogan : VoganDiagram
     lattice : AdmissibleLattice
-        Of a module with T^2 = 1.
+        The lattice of a module with T^2 = 1.
 
     Examples
     --------
@@ -127,11 +132,11 @@ class RealBasis:
                 self.vectors[side].append({b: int(QQ.convert(v)) for b, v in zip(block, row, strict=True) if v != 0})
 
     def matrices(self, operators: list[Operator]) -> list[list[Vector]]:
-        """The operators on the real subspace."""
+        """The matrices of operators on the real subspace."""
         return [self._matrix(operator) for operator in operators]
 
     def _matrix(self, operator: Operator) -> list[Vector]:
-        """M keeps V+ and V-, i M exchanges them: i M (i y) = -M y."""
+        """The matrix of M, which maps V+ and V- to themselves, or of i M, which exchanges them: i M (i y) = -M y."""
         imaginary, columns = operator
         starts = (0, len(self.vectors[0]))
         made = []
@@ -142,8 +147,7 @@ class RealBasis:
                 total: Reader = {}
                 image: Vector = {}
                 for b, v in vector.items():
-                    for c, w in columns[b].items():
-                        image[c] = image.get(c, 0) + v * w
+                    add_multiple(image, columns[b], v)
                 for b, v in image.items():
                     for k, f in self.readers[target].get(b, {}).items():
                         total[k] = total.get(k, 0) + sign * v * f

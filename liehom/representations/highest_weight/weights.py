@@ -1,4 +1,4 @@
-"""Weights in fundamental coordinates: the walls, the Weyl orbit, the dominant conjugate, the dual weight.
+"""Weights in fundamental coordinates: Weyl orbits, dominant conjugates, dual weights.
 
 A weight is the tuple of its values <mu, alpha_i^vee> on the simple coroots, so that alpha_i is row i of the Cartan
 matrix and s_i(mu) = mu - mu_i alpha_i.  Roots are tuples of coefficients in the simple roots.
@@ -31,7 +31,7 @@ class WeightSpace:
     norms : tuple of int
         (alpha_i, alpha_i) / 2, so that (mu, alpha_i) = norms[i] mu_i.
     positive_roots : tuple of Root
-        By height.
+        The positive roots, by height.
     heights : tuple of int
         heights[i] = <omega_i, 2 rho^vee>, so that mu has the height sum_i heights[i] mu_i and alpha_i has 2.
 
@@ -49,7 +49,7 @@ class WeightSpace:
 
     @property
     def rank(self) -> int:
-        """The number of simple roots."""
+        """Number of simple roots."""
         return len(self.cartan)
 
     def as_weight(self, root: Root) -> Weight:
@@ -61,7 +61,7 @@ class WeightSpace:
         return sum(m * c * d for m, c, d in zip(weight, root, self.norms, strict=True))
 
     def height(self, weight: Weight) -> int:
-        """<mu, 2 rho^vee>: falls by 2 with every simple root that is taken off."""
+        """The height <mu, 2 rho^vee>, which falls by 2 with every simple root that is subtracted."""
         return sum(m * h for m, h in zip(weight, self.heights, strict=True))
 
     def reflected(self, weight: Weight, i: int) -> Weight:
@@ -79,11 +79,11 @@ class WeightSpace:
             weight, sign = self.reflected(weight, i), -sign
 
     def orbit(self, dominant: Weight) -> Iterator[Weight]:
-        """The Weyl orbit of a dominant weight, that one first, falling in height."""
+        """The Weyl orbit of a dominant weight, by decreasing height."""
         level = {dominant: None}
         while level:
             yield from level
-            # nu is reached from the one conjugate s_j(nu) only with j the first place where nu is negative.
+            # nu is reached only from s_j(nu), with j the first index at which nu is negative.
             below: dict[Weight, None] = {}
             for mu in level:
                 for i, m in enumerate(mu):
@@ -95,7 +95,7 @@ class WeightSpace:
 
 
 def weight_space(system: RootSystem | str) -> WeightSpace:
-    """The weights of a root system, or of a type such as 'B3' or 'A2 + G2'.
+    """The weight lattice of a root system, or of a type such as 'B3' or 'A2 + G2'.
 
     Raises
     ------
@@ -109,12 +109,12 @@ def weight_space(system: RootSystem | str) -> WeightSpace:
 
 
 def root_system_of(system: RootSystem | str) -> RootSystem:
-    """A root system, or that of a type.
+    """The root system of a type; a root system is returned unchanged.
 
     Raises
     ------
     CatalogError, InputError
-        If there is no such type, or if it is neither.
+        If there is no such type, or if the argument is neither.
     """
     roots = root_system(system) if isinstance(system, str) else system
     if not isinstance(roots, RootSystem):
@@ -123,14 +123,14 @@ def root_system_of(system: RootSystem | str) -> RootSystem:
 
 
 def checked_weight(space: WeightSpace, weight: Sequence[int], *, dominant: bool = True) -> Weight:
-    """A weight as a tuple of ints.
+    """A weight as a tuple of ints, after a check.
 
     Raises
     ------
     ShapeError
         If it does not have one coordinate per simple root.
     InputError
-        If a coordinate is no integer, or negative where a dominant weight is needed.
+        If a coordinate is not an integer, or if it is negative and a dominant weight is needed.
     """
     values: list[Any] = list(weight)
     if len(values) != space.rank:
@@ -144,7 +144,7 @@ def checked_weight(space: WeightSpace, weight: Sequence[int], *, dominant: bool 
 
 
 def weyl_orbit(system: RootSystem | str, weight: Sequence[int]) -> list[Weight]:
-    """The orbit of a weight under the Weyl group, its dominant member first, falling in height.
+    """The orbit of a weight under the Weyl group, by decreasing height; the dominant weight is first.
 
     Parameters
     ----------
@@ -185,11 +185,11 @@ def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If the weight is not dominant and integral.
 
     Notes
     -----
-    It is -w_0(lambda), w_0 the longest element of the Weyl group; the lowest weight is minus it.
+    The dual weight is -w_0(lambda), w_0 the longest element of the Weyl group; the lowest weight is w_0(lambda).
 
     Examples
     --------
@@ -202,7 +202,7 @@ def dual_weight(system: RootSystem | str, weight: Sequence[int]) -> Weight:
 
 
 def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -> int:
-    """1, -1 or 0: the complex module of a highest weight is real, quaternionic or neither for the compact form.
+    """Frobenius-Schur indicator 1, -1 or 0: the module is real, quaternionic or complex for the compact form.
 
     Parameters
     ----------
@@ -214,17 +214,17 @@ def frobenius_schur_indicator(system: RootSystem | str, weight: Sequence[int]) -
     -------
     int
         1 if the module has an invariant symmetric form (it is then the complexification of a real module of the
-        compact form), -1 if an invariant skew form (it is then quaternionic, or pseudo-real), 0 if it is not
+        compact form), -1 if an invariant skew-symmetric form (it is then quaternionic, or pseudo-real), 0 if it is not
         isomorphic to its dual (it is then complex).
 
     Raises
     ------
     ShapeError, InputError
-        If it is not a dominant integral weight.
+        If the weight is not dominant and integral.
 
     Notes
     -----
-    A self-dual module has an invariant form that is symmetric for <lambda, 2 rho^vee> even and skew for it odd.
+    A self-dual module has an invariant form that is symmetric for even and skew-symmetric for odd <lambda, 2 rho^vee>.
     The module of the split form is real, whatever the indicator.
 
     Examples

@@ -1,8 +1,8 @@
 """The proof that matrices respect a bracket: rho([x, y]) = rho(x) rho(y) - rho(y) rho(x), exactly and quickly.
 
-Sparse rational matrices: every commutator, by dictionaries.  Dense ones: the elements x that satisfy the identity
-for all y form a subalgebra (of a Lie algebra, by the Jacobi identity on both sides), so a few x that generate
-are enough; that they generate is shown by a rank modulo a prime.
+For sparse rational matrices every commutator is computed by dictionaries.  For dense matrices a few elements x that
+generate the algebra are enough, because the elements x that satisfy the identity for all y form a subalgebra (by the
+Jacobi identity on both sides).  A rank modulo a prime proves that they generate.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ RANDOM_ELEMENTS = 4
 
 
 def failing_pair(algebra: LieAlgebra, matrices: tuple[Matrix, ...]) -> tuple[int, int] | None:
-    """The first (i, j) with rho([e_i, e_j]) different from the commutator of the matrices, or None.
+    """The first pair (i, j) for which rho([e_i, e_j]) differs from the commutator of the matrices, or None.
 
-    Over floats entries may differ by the field's rtol times the square of the largest entry (or times 1).
+    Over floats, entries may differ by the field's rtol times the square of the largest entry (at least 1).
 
     Examples
     --------
@@ -52,7 +52,7 @@ def _is_sparse(matrices: tuple[Matrix, ...]) -> bool:
 
 
 class _Stack:
-    """The matrices side by side, one below the other, and flattened."""
+    """The matrices side by side (`wide`), one below the other (`tall`), and as rows (`flat`)."""
 
     def __init__(self, algebra: LieAlgebra, matrices: tuple[Matrix, ...]) -> None:
         field, self.size = algebra.field, matrices[0].nrows
@@ -66,7 +66,7 @@ class _Stack:
         self.bound = getattr(field, "rtol", 0.0) * max(1.0, float(np.abs(entries).max(initial=0.0))) ** 2
 
     def defects(self, x: Matrix) -> tuple[Matrix, Matrix]:
-        """Rows rho([x, e_j]) - [rho(x), rho(e_j)], flattened, for all j; and the rows [x, e_j]."""
+        """The rows rho([x, e_j]) - [rho(x), rho(e_j)], flattened, for all j, and the rows [x, e_j]."""
         n, d = self.size, self.count
         image = (x @ self.flat).reshape(n, n)
         left = (image @ self.wide).reshape(n * d, n).select(rows=self._order)
@@ -82,7 +82,7 @@ class _Stack:
 
 
 def _proved_by_generators(algebra: LieAlgebra, stack: _Stack) -> bool:
-    """Whether the identity holds for all y with random x that are shown to generate."""
+    """Whether the identity holds for all y and random x that are proved to generate."""
     n = algebra.dimension
     rng = random.Random(n)
     elements: list[Any] = []

@@ -1,8 +1,8 @@
 """The proof that sparse integer matrices respect a bracket, from generators of the algebra alone.
 
-The elements x with rho([x, y]) = [rho(x), rho(y)] for all y form a subalgebra: by the Jacobi identity, on both sides,
-with x and x' it holds [x, x'].  So it is enough to take x from generators and y from the basis: 2 r times dim g
-commutators of sparse matrices instead of dim g (dim g - 1) / 2.
+The elements x with rho([x, y]) = [rho(x), rho(y)] for all y form a subalgebra: if it contains x and x', the Jacobi
+identity on both sides shows that it contains [x, x'].  It is therefore enough to take x from 2 r generators and y from
+the basis: 2 r dim g commutators of sparse matrices instead of dim g (dim g - 1) / 2.
 """
 
 from __future__ import annotations
@@ -55,26 +55,26 @@ class SparseStack:
         self.flat: SparseInteger = SparseInteger(j, b * size + c, values, (d, size * size))
 
     def matrix(self, j: int) -> SparseInteger:
-        """A_j."""
-        kept = self.flat.rows == j
-        places = self.flat.columns[kept]
+        """The sparse matrix A_j."""
+        chosen = self.flat.rows == j
+        places = self.flat.columns[chosen]
         shape = (self.size, self.size)
-        return SparseInteger(places // self.size, places % self.size, self.flat.values[kept], shape)
+        return SparseInteger(places // self.size, places % self.size, self.flat.values[chosen], shape)
 
 
 def failing_generator_pair(
     table: StructureConstants, stack: SparseStack, generators: Iterable[int]
 ) -> tuple[int, int] | None:
-    """The first (i, j), i a generator, with [A_i, A_j] different from sum_k c[i, j, k] A_k, or None: a proof.
+    """The first pair (i, j), i a generator, for which [A_i, A_j] differs from sum_k c[i, j, k] A_k; None is a proof.
 
     Parameters
     ----------
     table : StructureConstants
-        Of a Lie algebra, over QQ.
+        The structure constants c of a Lie algebra over QQ.
     stack : SparseStack
         One matrix per basis element.
     generators : iterable of int
-        Numbers of basis elements that generate the algebra; the caller knows that they do.
+        Numbers of basis elements that generate the algebra, which is not checked.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def failing_generator_pair(
 
 
 def _first_row_of_sum(terms: list[tuple[SparseInteger, int]]) -> int | None:
-    """The least row in which a combination of sparse matrices is not zero, or None."""
+    """The first row in which a combination of sparse matrices is not zero, or None."""
     width = terms[0][0].shape[1]
     places = np.concatenate([a.rows * width + a.columns for a, _ in terms])
     if not len(places):
@@ -114,7 +114,7 @@ def _first_row_of_sum(terms: list[tuple[SparseInteger, int]]) -> int | None:
 
 
 def _times(values: IntegerArray | ObjectArray, factor: int) -> IntegerArray | ObjectArray:
-    """Multiples of integers, as Python integers where a sum of three of them might overflow."""
+    """The multiples of integers, as Python integers where a sum of three of them might overflow."""
     if values.dtype != object and len(values) and int(np.abs(values).max()) * abs(factor) > SUM_LIMIT:
         values = values.astype(object)
     return values * factor

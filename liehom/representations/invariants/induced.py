@@ -1,8 +1,7 @@
-"""Matrices induced on duals, sums, tensor products and powers, as integral linear maps of the entries.
+"""Matrices induced on duals, sums, tensor products and powers, as linear maps of the entries with integer coefficients.
 
-Every construction here sends a matrix A to a matrix whose entries are integer combinations of those of A, so it
-is applied to the integer coordinates of exact matrices and to float arrays alike.  Bases are documented on the
-functions.
+Every construction here sends a matrix A to a matrix whose entries are integer combinations of the entries of A.  It is
+therefore applied both to the integer coordinates of exact matrices and to float arrays.  The functions document bases.
 """
 
 from __future__ import annotations
@@ -68,24 +67,24 @@ class EntryMap:
 
 
 def dual_map(n: int) -> EntryMap:
-    """A -> -A^T.  Of the commutator: -[A, B]^T = [-A^T, -B^T]."""
+    """The map A -> -A^T to the dual; -[A, B]^T = [-A^T, -B^T]."""
     return EntryMap(n, n, (((j, i), (i, j), -1) for i in range(n) for j in range(n)))
 
 
 def block_map(n: int, total: int, start: int) -> EntryMap:
-    """A -> the (total, total) matrix with A as a diagonal block from `start` on."""
+    """The map from A to the (total, total) matrix with A as a diagonal block from index `start` on."""
     return EntryMap(n, total, (((start + i, start + j), (i, j), 1) for i in range(n) for j in range(n)))
 
 
 def left_factor_map(n: int, m: int) -> EntryMap:
-    """A -> A (x) 1_m, basis e_i (x) f_j in lexicographic order: position i m + j."""
+    """The map A -> A (x) 1_m, in the basis e_i (x) f_j with index i m + j."""
     return EntryMap(
         n, n * m, (((i * m + k, j * m + k), (i, j), 1) for i in range(n) for j in range(n) for k in range(m))
     )
 
 
 def right_factor_map(n: int, m: int) -> EntryMap:
-    """B -> 1_n (x) B for B of size m, in the basis of `left_factor_map`."""
+    """The map B -> 1_n (x) B for B of size m, in the basis of `left_factor_map`."""
     return EntryMap(
         m, n * m, (((k * m + i, k * m + j), (i, j), 1) for k in range(n) for i in range(m) for j in range(m))
     )
@@ -114,21 +113,21 @@ def wedges(n: int, k: int) -> list[tuple[int, ...]]:
 
 
 def symmetric_power_map(n: int, k: int) -> EntryMap:
-    """A -> its action as a derivation on Sym^k, in the basis `monomials`."""
+    """The map from A to its action on Sym^k as a derivation, in the basis `monomials`."""
     _require_degree(k)
     return _derivation(n, monomials(n, k), alternating=False)
 
 
 def exterior_power_map(n: int, k: int) -> EntryMap:
-    """A -> its action as a derivation on Lambda^k, in the basis `wedges` (of size 0 where k > n)."""
+    """The map from A to its action on Lambda^k as a derivation, in the basis `wedges` (empty for k > n)."""
     _require_degree(k)
     return _derivation(n, wedges(n, k), alternating=True)
 
 
 def congruence_map(n: int) -> EntryMap:
-    """A -> (S -> A S + S A^T) on symmetric matrices, coordinates S[i, j], i <= j, in lexicographic order.
+    """The map A -> (S -> A S + S A^T) on symmetric matrices, coordinates S[i, j], i <= j, in lexicographic order.
 
-    For skew A this is the conjugation S -> A S - S A.
+    For skew-symmetric A this is the conjugation S -> A S - S A.
     """
     places = monomials(n, 2)
     position = {place: x for x, place in enumerate(places)}
@@ -142,9 +141,10 @@ def congruence_map(n: int) -> EntryMap:
 
 
 def hermitian_map(k: int) -> EntryMap:
-    """A -> (H -> A H - H A) on Hermitian k x k matrices; A and H as real (2k, 2k) matrices with blocks [x, -y; y, x].
+    """The map A -> (H -> A H - H A) on Hermitian k x k matrices.
 
-    Coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
+    A and H are real (2k, 2k) matrices with blocks [x, -y; y, x]. The coordinates are H[i, i], and
+    Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
     """
     places = [(i, j, part) for i in range(k) for j in range(i, k) for part in range(1 + (i < j))]
     terms: list[Term] = []
@@ -172,7 +172,7 @@ def _hermitian_entries(i: int, j: int, part: int) -> list[tuple[int, int, int]]:
 
 
 def _derivation(n: int, words: Sequence[tuple[int, ...]], *, alternating: bool) -> EntryMap:
-    """Letter after letter is replaced, e_i by sum_j A[j, i] e_j."""
+    """The derivation that replaces one letter after the other, e_i by sum_j A[j, i] e_j."""
     position = {word: index for index, word in enumerate(words)}
     terms: list[Term] = []
     for column, word in enumerate(words):

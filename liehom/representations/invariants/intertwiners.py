@@ -1,9 +1,9 @@
-"""Intertwiners: all T with T A_i = B_i T; hence commutant, invariant forms, invariant vectors, irreducibility.
+"""Intertwiners, all T with T A_i = B_i T, and with them the commutant, invariant forms and invariant vectors.
 
-A map that intertwines is fixed by its values on vectors that generate the space under the A_i.  Spinning a
-random vector gives a basis v_j = (word in A) x, and T v_j = (same word in B) T x: the unknown is T x alone,
-of dimension e instead of d e.  Candidates are verified exactly against every A_i, so nothing rests on the
-random choices.  Large spaces over QQ are found modulo a prime, where they are at least as large, and lifted.
+An intertwiner is determined by its values on seed vectors, vectors that generate the space under the A_i.  Words in the
+A_i applied to a random seed x give a basis v_j = (word in A) x, and T v_j = (same word in B) T x: the unknown is T x,
+of dimension e instead of d e.  Candidates are verified exactly against every A_i, so the result does not depend on the
+random choices.  Large spaces over QQ are computed modulo a prime, where they are at least as large, and lifted.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from liehom.scalars.modular.modular import extending_rows, pivot_columns, primit
 from liehom.scalars.modular.modular_maps import intertwining_residues
 from liehom.scalars.modular.modular_span import rational_lifts
 
-BATCH = 8
-LIFTED_SIZE = 150
-MIXED = 3
-ROW_ENTRIES = 8
-ROUNDS = 4
+BATCH = 8  # matrices in a random combination
+LIFTED_SIZE = 150  # from this number of unknowns e d on, residues are lifted
+MIXED = 3  # random combinations that replace more matrices
+ROW_ENTRIES = 8  # non-zero entries that a combination should have in each row
+ROUNDS = 4  # attempts of lifting
 
 
 def intertwiners(
@@ -42,7 +42,7 @@ def intertwiners(
     Returns
     -------
     list of Matrix
-        Proved: every T intertwines all A_i, and no other does (the conditions used are necessary).
+        Proved to be a basis: every T intertwines all A_i, and the conditions used are necessary.
 
     Examples
     --------
@@ -82,9 +82,9 @@ def intertwiners(
 def _lifted(
     source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], shape: tuple[int, int], over: Field
 ) -> list[ExactMatrix] | None:
-    """The intertwiners from their residues; None where there is no small kernel, or the numbers are too large.
+    """The intertwiners from their residues, or None if there is no small kernel or the numbers are too large.
 
-    Their dimension modulo a prime is an upper bound, also where only some combinations of the A_i are used.
+    The dimension modulo a prime is an upper bound, also if only some combinations of the A_i are used.
     """
     rng = random.Random(11)
     pairs = list(zip(source, target, strict=True))
@@ -104,7 +104,7 @@ def _lifted(
             if failing is None:
                 return candidates
             if _first_failing(candidates, left, right) is None:
-                break  # the combinations do not generate: one that is violated is used next
+                break  # the combinations do not generate: a violated A_i is used next
         else:
             return None
         if failing is not None:
@@ -127,7 +127,7 @@ def _first_failing(
 
 
 def _enough(matrices: Sequence[ExactMatrix], d: int) -> int:
-    """How many matrices of such few entries a combination needs for several entries in each of d rows."""
+    """Number of these matrices in a combination that has several non-zero entries in each of d rows."""
     entries = max(1, *(sum(map(bool, a.entries())) for a in (matrices[0], matrices[-1])))
     return max(BATCH, -(-ROW_ENTRIES * d // entries))
 
@@ -135,7 +135,7 @@ def _enough(matrices: Sequence[ExactMatrix], d: int) -> int:
 def _mixed(
     source: Sequence[ExactMatrix], target: Sequence[ExactMatrix], rng: random.Random, batch: int = BATCH
 ) -> tuple[ExactMatrix, ExactMatrix]:
-    """A random small combination of a few A_i and the same one of the B_i."""
+    """A random combination of a few A_i with small coefficients, and the same combination of the B_i."""
     if not source:
         raise InternalError("no matrices to combine")
     chosen = rng.sample(range(len(source)), min(batch, len(source)))
@@ -149,7 +149,10 @@ def _mixed(
 @final
 @dataclass(slots=True)
 class _WordBasis:
-    """A basis v_j of the source made by words in the A_i, with T v_j = images[j] t for the unknown t."""
+    """A basis v_j of the source by words in the A_i applied to seed vectors, with T v_j = images[j] t.
+
+    t, shape (e * seeds,), has the unknown values T x of the seed vectors x.
+    """
 
     over: Field
     shape: tuple[int, int]
@@ -168,7 +171,7 @@ class _WordBasis:
         return total
 
     def condition(self, a: ExactMatrix, b: ExactMatrix, rng: random.Random) -> ExactMatrix:
-        """The rows on t that T a y = b T y imposes for a random y."""
+        """The linear conditions on t, as rows, that T a y = b T y imposes for a random y."""
         d = self.shape[1]
         weights = [rng.randint(-2, 2) for _ in range(d)]
         y: ExactMatrix = self.over.zeros(d, 1)
@@ -179,7 +182,7 @@ class _WordBasis:
         return self.value(a @ y) - b @ image
 
     def map(self, t: ExactMatrix) -> ExactMatrix:
-        """The map T with the values t (1, e * seeds)."""
+        """The map T for a row t, shape (1, e * seeds)."""
         e = self.shape[0]
         columns = [(m @ t.T).T for m in self.images]
         values: ExactMatrix = self.over.stack_rows(columns, e).T
@@ -196,7 +199,7 @@ def _word_basis(
     seeds = 0
     while len(vectors) < d:
         start = over.matrix([[rng.randint(-3, 3) for _ in range(d)]]).T if seeds < 3 else None
-        if start is None:  # a stubborn module: take unit vectors in turn
+        if start is None:  # after three random seeds: unit vectors in turn
             start = over.unit(d, seeds % d).T
         if not _extends(vectors, start, d):
             seeds_left = seeds >= 3
@@ -218,7 +221,7 @@ def _inverse(over: Field, vectors: list[ExactMatrix], d: int) -> ExactMatrix:
 
 
 def _residues(vectors: Sequence[ExactMatrix], d: int) -> Any:
-    """The columns as rows modulo a prime; a common factor or denominator of one of them does no harm."""
+    """The columns as rows modulo a prime, each without common factors and denominators."""
     return primitive_residues([v.T for v in vectors], d)
 
 
@@ -241,7 +244,7 @@ def _grow(
     d: int,
     rng: random.Random,
 ) -> list[int]:
-    """Append images of the frontier that extend the span; return their places."""
+    """The indices of appended vectors: images of the frontier that extend the span."""
     pairs = [(g, p) for p in frontier for g in range(len(source))]
     rng.shuffle(pairs)
     added: list[int] = []
@@ -271,7 +274,7 @@ def _images(
 
 
 def commutant(matrices: Sequence[ExactMatrix], size: int, over: Field) -> list[ExactMatrix]:
-    """A basis of the maps that commute with all matrices (the identity among their combinations).
+    """A basis of the matrices that commute with all given matrices.
 
     Examples
     --------
@@ -295,7 +298,7 @@ class InvariantForms:
     Attributes
     ----------
     symmetric, skew : tuple of Matrix
-        Bases of the symmetric and of the skew ones.
+        Bases of the symmetric and of the skew-symmetric forms.
     """
 
     symmetric: tuple[ExactMatrix, ...]
@@ -303,7 +306,7 @@ class InvariantForms:
 
 
 def invariant_forms(matrices: Sequence[ExactMatrix], size: int, over: Field) -> InvariantForms:
-    """The invariant symmetric and skew forms of matrices A (A^T P + P A = 0 for all A).
+    """Bases of the symmetric and of the skew-symmetric forms P with A^T P + P A = 0 for all matrices A.
 
     Examples
     --------
@@ -327,7 +330,7 @@ def _independent(over: Field, matrices: list[ExactMatrix], size: int) -> tuple[E
 
 
 def invariant_vectors(matrices: Sequence[ExactMatrix], size: int, over: Field) -> Subspace:
-    """The vectors that all matrices kill.
+    """The subspace of vectors v with A v = 0 for all matrices A.
 
     Examples
     --------

@@ -1,9 +1,10 @@
-"""Irreducibility over the reals, decided exactly; a reducible action comes with what splits it.
+"""Irreducibility over the reals, decided exactly; a reducible action comes with a matrix that splits it.
 
-A linear Lie algebra L is irreducible over R iff (1) the ideal [R, L] is zero, R the radical of the trace form
-on L, which acts nilpotently, and (2) its commutant is a division algebra over R.  (If [R, L] = 0 then R is
-central, so it lies in the commutant; an element A of R has tr A^2 = 0, which in R, C or H forces A = 0: the
-trace form is nondegenerate, L is reductive and acts completely reducibly.)
+A linear Lie algebra L is irreducible over the reals if and only if (1) the ideal [R, L] is zero, R the radical of
+the trace form on L, which acts nilpotently, and (2) the commutant of L is a division algebra over the reals.  Proof of
+"if": [R, L] = 0 means that R is central, so R lies in the commutant.  An element A of R has tr A^2 = 0, which in a
+division algebra R, C or H forces A = 0.  Hence the trace form is nondegenerate, and L is reductive and acts completely
+reducibly.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ MAX_EIGENVALUE_DEGREE = 8
 @final
 @dataclass(frozen=True, slots=True)
 class Reduction:
-    """Why an action is reducible over the reals: a matrix and how an invariant subspace is read off it.
+    """The reason why an action is reducible over the reals: a matrix that determines an invariant subspace.
 
     Attributes
     ----------
@@ -52,7 +53,7 @@ def reduction(
     *,
     semisimple: bool = False,
 ) -> Reduction | None:
-    """What splits the action of a linear Lie algebra on R^N, or None: it is irreducible over the reals.
+    """A `Reduction` that splits the action of a linear Lie algebra on R^N, or None: it is irreducible over the reals.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def reduction(
     generating : sequence of Matrix, optional
         Matrices that generate the Lie algebra (default: the basis).
     semisimple : bool
-        The caller knows that the action is completely reducible: no nilpotent ideal is looked for.
+        Whether the action is known to be completely reducible; the nilpotent ideal is then not computed.
 
     Examples
     --------
@@ -103,7 +104,7 @@ def is_irreducible(
 
 
 def trace_form(matrices: Sequence[ExactMatrix]) -> ExactMatrix:
-    """The Gram matrix tr(A_i A_j) of at least one matrix."""
+    """The Gram matrix of the trace form, tr(A_i A_j), for at least one matrix."""
     field, size = matrices[0].field, matrices[0].nrows ** 2
     flat: ExactMatrix = field.stack_rows([a.reshape(1, size) for a in matrices], size)
     turned = field.stack_rows([a.T.reshape(1, size) for a in matrices], size)
@@ -111,7 +112,7 @@ def trace_form(matrices: Sequence[ExactMatrix]) -> ExactMatrix:
 
 
 def nilpotent_ideal_rows(matrices: Sequence[ExactMatrix], size: int, over: Field) -> ExactMatrix:
-    """Rows spanning the row spaces of [R, L]; their common kernel is invariant, and not zero by Engel's theorem."""
+    """Rows that span the row spaces of [R, L]; the common kernel is invariant, and not zero by Engel's theorem."""
     none: ExactMatrix = over.zeros(0, size)
     if not matrices:
         return none
@@ -140,7 +141,7 @@ def combination(matrices: Sequence[ExactMatrix], coefficients: Sequence[ScalarLi
 
 
 def traceless(basis: Sequence[ExactMatrix], size: int, over: Field) -> list[ExactMatrix]:
-    """A basis of the traceless parts of matrices."""
+    """A basis of the span of the traceless parts of matrices."""
     if not basis:
         return []
     reduced = [t - over.identity(size).scale(t.trace() / size) for t in basis]
@@ -149,7 +150,7 @@ def traceless(basis: Sequence[ExactMatrix], size: int, over: Field) -> list[Exac
 
 
 def split_by_commutant(imaginary: Sequence[ExactMatrix], size: int, over: Field) -> Reduction | None:
-    """What splits the action, given a basis of its traceless commutant; None if that is R, C or H over the reals."""
+    """A reduction from a basis of the traceless commutant, or None if the commutant is R, C or H over the reals."""
     candidates = [*imaginary, *(s + t for i, s in enumerate(imaginary) for t in imaginary[:i])]
     for t in candidates:
         found = split_by(t)
@@ -181,7 +182,7 @@ def anticommutator_gram(imaginary: Sequence[ExactMatrix], size: int, over: Field
 
 
 def split_by(t: ExactMatrix) -> Reduction | None:
-    """What one matrix of the commutant splits, or None if it is scalar or generates a copy of C."""
+    """A reduction from one matrix of the commutant, or None if it is scalar or generates a copy of C."""
     f = Polynomial(t.field, t.characteristic_coefficients()).factor()[0][0]
     value = evaluated(f, t)
     if not value.is_zero():
@@ -195,7 +196,7 @@ def split_by(t: ExactMatrix) -> Reduction | None:
     cut = real_part_cut(f)
     if cut is not None:
         return Reduction("cut", t, cut=cut)
-    # All real parts agree, so the eigenvalues of the centred matrix are imaginary and those of its square real.
+    # All real parts agree: the centred matrix has imaginary eigenvalues, and its square has real eigenvalues.
     centred = t - t.field.identity(t.nrows).scale(t.trace() / t.nrows)
     return split_by(centred @ centred)
 

@@ -1,7 +1,7 @@
-"""MatrixAlgebra: an associative algebra of matrices with one, by a basis; its centre, and generators of the centre.
+"""MatrixAlgebra: an associative algebra of matrices with 1, given by a basis, with its centre and generators of it.
 
-Coordinates in the span of k matrices are read from k entries that determine them.  Over QQ the basis is that of the
-integral matrices of the span, LLL-reduced: its first members are small.
+Coordinates in the span of k matrices are read from k entries that determine them.  Over QQ the basis is an LLL-reduced
+basis of the integer matrices of the span, so that its first members are small.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from liehom.scalars import ExactField, ExactMatrix, Polynomial
 from liehom.scalars.spaces.integral_basis import integral_basis
 from liehom.typing import ScalarLike
 
-PAIRS = 60
-REDUCED = 40
+MAX_PAIRS = 60
+MAX_REDUCED = 40
 
 
 @final
@@ -31,7 +31,7 @@ class MatrixAlgebra:
     size : int
         N for matrices (N, N).
     matrices : sequence of Matrix
-        They span the algebra; they may be dependent. Closure under products is the caller's knowledge.
+        They span the algebra and may be dependent. Closure under products is not checked.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class MatrixAlgebra:
     def __init__(self, field: ExactField, size: int, matrices: Sequence[ExactMatrix]) -> None:
         self.field, self.size = field, size
         flat = field.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
-        reducible = field.degree == 1 and len(matrices) <= REDUCED
+        reducible = field.degree == 1 and len(matrices) <= MAX_REDUCED
         self._flat = integral_basis(flat) if reducible else flat.row_space()
         self.basis: tuple[ExactMatrix, ...] = tuple(self._flat.split_rows(size, size))
         self._places = self._flat.echelon()[1]
@@ -55,17 +55,17 @@ class MatrixAlgebra:
 
     @property
     def dimension(self) -> int:
-        """The dimension."""
+        """Dimension of the algebra, an int."""
         return len(self.basis)
 
     def coordinates(self, matrices: Sequence[ExactMatrix]) -> ExactMatrix:
-        """The coefficients (k, dimension) of k elements in the basis."""
+        """The matrix (k, dimension) of coefficients of k elements in the basis."""
         n = self.size
         flat = self.field.stack_rows([m.reshape(1, n * n) for m in matrices], n * n)
         return flat.select(columns=self._places) @ self._inverse
 
     def element(self, coefficients: Sequence[ScalarLike]) -> ExactMatrix:
-        """The combination of the basis with these coefficients."""
+        """The element with these coefficients in the basis."""
         row = self.field.matrix([coefficients], (1, self.dimension))
         return (row @ self._flat).reshape(self.size, self.size)
 
@@ -74,7 +74,7 @@ class MatrixAlgebra:
         return self.coordinates([element @ t for t in self.basis]).T
 
     def center(self) -> MatrixAlgebra:
-        """The centre: what commutes with a few random elements, verified against all."""
+        """The centre: the elements that commute with a few random elements, verified against the basis."""
         k = self.dimension
         rng = random.Random(k)
         tests = [self.element([rng.randint(-3, 3) for _ in range(k)]) for _ in range(2)]
@@ -89,9 +89,9 @@ class MatrixAlgebra:
         raise InternalError("the centre of a matrix algebra was not found")
 
     def elements(self) -> Iterator[ExactMatrix]:
-        """Elements to try: the basis, sums and differences of two, then random combinations (without end)."""
+        """Candidate elements, without end: the basis, sums and differences of two, then random combinations."""
         yield from self.basis
-        for s, t in list(combinations(self.basis, 2))[:PAIRS]:
+        for s, t in list(combinations(self.basis, 2))[:MAX_PAIRS]:
             yield s + t
             yield s - t
         rng, bound = random.Random(self.dimension), 1
@@ -100,16 +100,16 @@ class MatrixAlgebra:
             bound += 1
 
     def minimal_polynomial_power(self, element: ExactMatrix) -> Polynomial:
-        """A polynomial with the irreducible factors of the minimal polynomial of an element (a characteristic one)."""
+        """A characteristic polynomial, with the irreducible factors of the minimal polynomial of an element."""
         matrix = self.multiplication(element) if self.dimension < self.size else element
         return Polynomial(self.field, matrix.characteristic_coefficients())
 
     def generator(self) -> tuple[ExactMatrix, Polynomial]:
-        """A generator of a commutative algebra without nilpotent elements, and its (squarefree) minimal polynomial."""
+        """A generator of a commutative algebra without nilpotent elements, and its squarefree minimal polynomial."""
         for tried, element in enumerate(self.elements()):
             polynomial = Polynomial(self.field, self.multiplication(element).characteristic_coefficients())
             if polynomial.gcd(polynomial.derivative()).degree == 0:
                 return element, polynomial
-            if tried > 2 * PAIRS + self.dimension + 40:
+            if tried > 2 * MAX_PAIRS + self.dimension + 40:
                 break
         raise InternalError("a commutative algebra without nilpotents has no generator")

@@ -1,4 +1,4 @@
-"""The isotropy subalgebra of a point under matrices."""
+"""Isotropy subalgebras and orbit dimensions of points under the matrices of a representation."""
 
 from __future__ import annotations
 
@@ -41,5 +41,5 @@ def stabilizer(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point
 
 
 def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> int:
-    """The rank of x -> rho(x) point."""
+    """Dimension of the orbit of a point: the rank of x -> rho(x) point."""
     return int(moved_point(algebra, matrices, size, point).rank())
