@@ -1,8 +1,8 @@
 """Lie algebras by structure constants, subalgebras, homomorphisms, and the proofs of their axioms.
 
-`LieAlgebra` is the table of contents of the folder: its methods delegate to the wings above, which is the only import
-that points upwards. `tables` reads what a user writes, `jacobi` proves the identity. Every layer above uses this
-wing; the conventions are in docs/notation.md.
+`LieAlgebra` is the table of contents of the folder: its methods delegate to the wings above, and only it and
+`Subalgebra` may import upwards. `tables` reads structure constants in any form, `jacobi` proves the Jacobi identity.
+Every layer above uses this wing; the conventions are in docs/notation.md.
 """
 
 from liehom.algebra.core.homomorphism import Homomorphism as Homomorphism

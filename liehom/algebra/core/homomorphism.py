@@ -5,7 +5,7 @@ The matrix acts on columns of coefficients.
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy.typing as npt
 
@@ -156,7 +156,7 @@ class Homomorphism:
             return NotImplemented
         return self.source == other.source and self.target == other.target and bool(self.matrix == other.matrix)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         ends = [g.name or f"a Lie algebra of dimension {g.dimension}" for g in (self.source, self.target)]

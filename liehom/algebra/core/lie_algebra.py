@@ -10,7 +10,7 @@ module that implements it, in this wing or in one above, by an import inside the
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar, final, overload
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -1067,7 +1067,7 @@ class LieAlgebra:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, LieAlgebra) and self._constants == other._constants
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         title = f"{self.name} " if self.name else ""

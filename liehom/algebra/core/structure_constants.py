@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
-from typing import Any, TypeVar, cast, final
+from typing import Any, ClassVar, TypeVar, cast, final
 
 import numpy as np
 
@@ -40,12 +40,15 @@ class StructureConstants:
 
     def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
         ordered = sorted(entries, key=lambda e: e[:3])
-        self.field = field
+        self.field: Field = field
         self.dimension: int = dimension
         index = np.array([e[:3] for e in ordered], dtype=np.int64).reshape(len(ordered), 3)
-        self.i, self.j, self.k = index[:, 0], index[:, 1], index[:, 2]
-        values = [e[3] for e in ordered]
-        self.parts, self.den = _integers(field, values)
+        self.i: IntegerArray = index[:, 0]
+        self.j: IntegerArray = index[:, 1]
+        self.k: IntegerArray = index[:, 2]
+        self.parts: tuple[Any, ...]
+        self.den: int
+        self.parts, self.den = _integers(field, [e[3] for e in ordered])
         self._dense: Matrix | None = None
         self._flat: Matrix | None = None
         self._sparse: SparseInteger | None = None
@@ -122,7 +125,7 @@ class StructureConstants:
             return False
         return list(self) == list(other)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     def exact_field(self) -> ExactField:
         """The field of a table over an exact field; `TypeError` over floats."""

@@ -7,7 +7,7 @@ below the class implement the methods of `LieAlgebra` that return subalgebras.
 from __future__ import annotations
 
 import random
-from typing import TYPE_CHECKING, Any, TypeVar, final
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
@@ -127,7 +127,7 @@ class Subalgebra:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Subalgebra) and self.algebra == other.algebra and self.subspace == other.subspace
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     # -- ideals, quotients, images -------------------------------------------------------------------------
     def intersection(self, other: Subalgebra) -> Subalgebra:

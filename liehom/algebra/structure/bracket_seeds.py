@@ -1,4 +1,4 @@
-"""Seed vectors of a Lie algebra g: a few elements v with sum of [v, g] = [g, g], and a complement of [g, g].
+"""Seed vectors of a Lie algebra g: a few elements v whose brackets [v, g] span [g, g], and a complement of [g, g].
 
 For a semisimple algebra two random elements are enough.  Every vector of g is a sum of brackets [v, w] with seed
 vectors v and of multiples of seed vectors, so a linear map that commutes with all ad x is determined by its values on
