@@ -48,7 +48,7 @@ fields = st.sampled_from(FIELDS)
 
 
 @given(data=st.data(), field=fields)
-def test_rank_and_kernels(data: st.DataObject, field: Any) -> None:
+def test_rank_plus_nullity_is_the_number_of_columns(data: st.DataObject, field: Any) -> None:
     a = data.draw(matrices(field))
     kernel, left = a.null_space(), a.left_null_space()
     assert a.rank() + kernel.nrows == a.ncols and a.rank() + left.nrows == a.nrows
@@ -60,7 +60,7 @@ def test_rank_and_kernels(data: st.DataObject, field: Any) -> None:
 
 
 @given(data=st.data(), field=fields)
-def test_solve(data: st.DataObject, field: Any) -> None:
+def test_solution_satisfies_the_system(data: st.DataObject, field: Any) -> None:
     a = data.draw(matrices(field))
     x = data.draw(matrices(field, a.ncols, 2))
     solution = a.solve(a @ x)
@@ -74,7 +74,7 @@ def test_solve(data: st.DataObject, field: Any) -> None:
 
 
 @given(data=st.data(), field=fields)
-def test_inverse_and_determinant(data: st.DataObject, field: Any) -> None:
+def test_inverse_exists_if_and_only_if_the_determinant_is_not_zero(data: st.DataObject, field: Any) -> None:
     n = data.draw(st.integers(0, 4))
     a, b = data.draw(matrices(field, n, n)), data.draw(matrices(field, n, n))
     assert (a @ b).determinant() == a.determinant() * b.determinant()
@@ -88,7 +88,7 @@ def test_inverse_and_determinant(data: st.DataObject, field: Any) -> None:
 
 
 @given(data=st.data(), field=fields)
-def test_characteristic_polynomial(data: st.DataObject, field: Any) -> None:
+def test_matrix_is_a_zero_of_its_characteristic_polynomial(data: st.DataObject, field: Any) -> None:
     """Cayley-Hamilton, the trace, and similarity."""
     n = data.draw(st.integers(1, 4))
     a, b = data.draw(matrices(field, n, n)), data.draw(matrices(field, n, n))
@@ -102,14 +102,14 @@ def test_characteristic_polynomial(data: st.DataObject, field: Any) -> None:
 
 
 @given(data=st.data(), field=fields)
-def test_products(data: st.DataObject, field: Any) -> None:
+def test_matrix_products_are_associative_and_distributive(data: st.DataObject, field: Any) -> None:
     a, b, c = (data.draw(matrices(field, 3, 3)) for _ in range(3))
     assert (a @ b) @ c == a @ (b @ c) and a @ (b + c) == a @ b + a @ c and (a @ b).T == b.T @ a.T
     assert (a - a).is_zero() and a.scale("2/3").scale("3/2") == a
 
 
 @given(data=st.data(), field=fields)
-def test_signature(data: st.DataObject, field: Any) -> None:
+def test_signature_counts_the_signs_of_an_orthogonal_basis(data: st.DataObject, field: Any) -> None:
     """Sylvester: T^T D T has the signs of D; orthogonal bases show them."""
     n = data.draw(st.integers(1, 4))
     signs = data.draw(st.lists(st.sampled_from([-1, 0, 1]), min_size=n, max_size=n))
@@ -127,7 +127,7 @@ def test_signature(data: st.DataObject, field: Any) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_signature_against_numpy(seed: int) -> None:
+def test_signature_equals_that_of_numpy_eigenvalues(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n = int(rng.integers(1, 9))
     half = rng.integers(-4, 5, (n, n))
@@ -137,7 +137,7 @@ def test_signature_against_numpy(seed: int) -> None:
     assert QQ.matrix(form.tolist()).signature() == (int((values > 1e-9).sum()), int((values < -1e-9).sum()), zero)
 
 
-def test_signature_of_what_is_not_symmetric() -> None:
+def test_signature_of_a_nonsymmetric_matrix_raises_field_error() -> None:
     with pytest.raises(FieldError, match="not symmetric"):
         QQ.matrix([[0, 1], [0, 0]]).signature()
 
@@ -154,7 +154,7 @@ def test_independent_rows_are_a_basis(data: st.DataObject, field: Any) -> None:
         assert columns[0] == 0
 
 
-def test_ranks_where_the_prime_divides() -> None:
+def test_ranks_are_exact_if_the_prime_divides_entries() -> None:
     a = QQ.matrix([[MERSENNE, 0], [0, 1]])
     assert int(a.modulo().rank()) == 1 and a.rank() == 2 and independent_rows(a) == [0, 1]
     assert int(primitive_residues([a.select(rows=[0]), a.select(rows=[1])], 2).rank()) == 2
@@ -165,7 +165,7 @@ def test_ranks_where_the_prime_divides() -> None:
 
 # -- coordinates on a quotient -----------------------------------------------------------------------------
 @given(data=st.data(), field=fields)
-def test_quotient(data: st.DataObject, field: Any) -> None:
+def test_quotient_coordinates_vanish_on_the_subspace_only(data: st.DataObject, field: Any) -> None:
     a = data.draw(matrices(field)).row_space()
     n, d = a.ncols, a.ncols - a.nrows
     made = quotient(a)
@@ -174,7 +174,7 @@ def test_quotient(data: st.DataObject, field: Any) -> None:
     assert (made.subspace @ made.projection).is_zero() and made.lift @ made.projection == field.identity(d)
 
 
-def test_quotient_of_a_scrambled_subspace_has_small_numbers() -> None:
+def test_quotient_of_a_subspace_in_general_position_has_small_numbers() -> None:
     scrambled = [QQ.matrix(random_unimodular(n, random.Random(n), 8 * n)) for n in (7, 12)]
     basis = scrambled[0] @ scrambled[1].select(rows=range(7))
     made = quotient(basis)
@@ -185,7 +185,7 @@ def test_quotient_of_a_scrambled_subspace_has_small_numbers() -> None:
 
 # -- sparse integers ---------------------------------------------------------------------------------------
 @given(data=st.data())
-def test_sparse_products(data: st.DataObject) -> None:
+def test_sparse_products_equal_dense_products(data: st.DataObject) -> None:
     """Against dense products, with entries on both sides of what 64 bits hold."""
     entry = st.sampled_from([0, 0, 0, 1, -1, 3, 2**31, -(2**32), 2**61, -(2**62), 10**30])
     p, q, r = (data.draw(st.integers(1, 4)) for _ in range(3))
@@ -197,7 +197,7 @@ def test_sparse_products(data: st.DataObject) -> None:
 
 # -- fixed point -------------------------------------------------------------------------------------------
 @given(data=st.data(), field=fields)
-def test_fixed_point(data: st.DataObject, field: Any) -> None:
+def test_fixed_point_approximates_to_the_given_bits(data: st.DataObject, field: Any) -> None:
     a = data.draw(matrices(field, 2, 3))
     integers, scale = fixed_point(a, 100)
     assert all(x.q == 1 for x in integers.entries())
@@ -207,7 +207,7 @@ def test_fixed_point(data: st.DataObject, field: Any) -> None:
 
 
 @given(st.fractions(min_value="1/10000", max_value=10**6))
-def test_powers_of_two(value: Any) -> None:
+def test_power_of_two_is_within_a_factor_two(value: Any) -> None:
     power = power_of_two(QQ.convert(value))
     assert QQ.convert(value) / 2 <= power <= QQ.convert(value) * 2
     assert power.p * power.q == flint.fmpz(2) ** (int(power.p * power.q).bit_length() - 1)
@@ -227,7 +227,7 @@ def test_balancing_undoes_a_conjugation(size: int) -> None:
         assert np.abs((rows.T.inverse() @ m @ rows.T).to_numpy()).max() < 10
 
 
-def test_balancing_without_enough_bits() -> None:
+def test_balancing_without_enough_bits_is_none() -> None:
     change = QQ.matrix([[1, 10**60], [0, 1]])
     maps = [change.inverse() @ QQ.matrix(m) @ change for m in ([[0, -1], [1, 0]], [[1, 0], [0, -1]])]
     assert balancing_rows([fixed_point(m, 64)[0] for m in maps], 64) is None
@@ -235,7 +235,7 @@ def test_balancing_without_enough_bits() -> None:
     assert balancing_rows([QQ.zeros(2, 2)], 64) is None
 
 
-def test_lattice_reduction() -> None:
+def test_lattice_reduction_shortens_rows() -> None:
     rows = QQ.matrix([[1, 0, 0], [10**20, 1, 0], [1, 10**25, "1/1000"]])
     made = (lattice_reduction(rows, 300) @ rows).to_numpy()
     assert np.linalg.cond(made) < 10

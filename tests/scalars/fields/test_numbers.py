@@ -29,7 +29,7 @@ def elements(draw: st.DrawFn) -> tuple[Any, float]:
 
 
 @given(elements())
-def test_floats_signs_and_texts(case: tuple[Any, float]) -> None:
+def test_floats_signs_and_strings_agree_with_the_value(case: tuple[Any, float]) -> None:
     number, value = case
     field = number.field
     assert float(number) == pytest.approx(value, rel=1e-9, abs=1e-9)
@@ -42,7 +42,7 @@ def test_floats_signs_and_texts(case: tuple[Any, float]) -> None:
 
 
 @given(elements())
-def test_square_roots(case: tuple[Any, float]) -> None:
+def test_square_roots_square_to_the_number(case: tuple[Any, float]) -> None:
     number, value = case
     root = number.field.sqrt(number * number)
     assert root == (number if number.field.sign(number) >= 0 else -number)

@@ -68,14 +68,14 @@ def with_known_roots(draw: st.DrawFn) -> tuple[Polynomial, list[Any], list[tuple
 
 # -- arithmetic --------------------------------------------------------------------------------------------
 @given(data=st.data(), field=st.sampled_from(FIELDS))
-def test_division(data: st.DataObject, field: Any) -> None:
+def test_quotient_times_divisor_plus_remainder_is_the_polynomial(data: st.DataObject, field: Any) -> None:
     f, g = data.draw(polynomials(field, 0)), data.draw(polynomials(field, 0, 3))
     quotient, remainder = f.divided(g)
     assert quotient * g + remainder == f and remainder.degree < g.degree
 
 
 @given(data=st.data(), field=st.sampled_from(FIELDS))
-def test_greatest_common_divisor(data: st.DataObject, field: Any) -> None:
+def test_gcd_divides_both_and_contains_common_factors(data: st.DataObject, field: Any) -> None:
     f, g, h = (data.draw(polynomials(field, 0, 3)) for _ in range(3))
     common = (f * h).gcd(g * h)
     assert (f * h % common).degree == -1 and (g * h % common).degree == -1
@@ -83,12 +83,12 @@ def test_greatest_common_divisor(data: st.DataObject, field: Any) -> None:
 
 
 @given(data=st.data(), field=st.sampled_from(FIELDS))
-def test_shift_and_value(data: st.DataObject, field: Any) -> None:
+def test_shifted_polynomial_has_the_shifted_values(data: st.DataObject, field: Any) -> None:
     f, by, at = data.draw(polynomials(field, 0)), data.draw(numbers(field)), data.draw(numbers(field))
     assert f.shifted(by)(at) == f(at + by)
 
 
-def test_zero() -> None:
+def test_zero_polynomial_has_degree_minus_one() -> None:
     zero = Polynomial(QQ, [0, 0])
     assert zero.degree == -1 and zero.leading == 0 and repr(zero) == "0" and zero.count_real_roots() == 0
     with pytest.raises(ZeroDivisionError):
@@ -98,7 +98,7 @@ def test_zero() -> None:
 
 # -- factors -----------------------------------------------------------------------------------------------
 @given(data=st.data(), field=st.sampled_from(FIELDS))
-def test_factors(data: st.DataObject, field: Any) -> None:
+def test_factors_multiply_to_the_monic_polynomial(data: st.DataObject, field: Any) -> None:
     parts = data.draw(st.lists(polynomials(field, 1, 2), min_size=1, max_size=3))
     f = product(field, parts)
     factors = f.factor()
@@ -115,7 +115,7 @@ def test_factors(data: st.DataObject, field: Any) -> None:
 
 
 @given(data=st.data(), field=st.sampled_from(FIELDS))
-def test_squarefree_parts(data: st.DataObject, field: Any) -> None:
+def test_squarefree_parts_multiply_to_the_polynomial_and_are_coprime(data: st.DataObject, field: Any) -> None:
     f = product(field, [p for p in data.draw(st.lists(polynomials(field, 1, 2), min_size=1, max_size=3)) for _ in "ab"])
     parts = f.squarefree_parts()
     assert product(field, [p for p, m in parts for _ in range(m)]) == f.monic()
@@ -137,7 +137,7 @@ def test_squarefree_parts(data: st.DataObject, field: Any) -> None:
         (QQ, ["-1/4", 0, 1], [1, 1]),
     ],
 )
-def test_known_factors(field: Any, coefficients: list[Any], degrees: list[int]) -> None:
+def test_known_factors_have_the_expected_degrees(field: Any, coefficients: list[Any], degrees: list[int]) -> None:
     assert [f.degree for f, _ in Polynomial(field, coefficients).factor()] == degrees
 
 
@@ -149,7 +149,7 @@ def test_factors_of_norms_that_are_not_squarefree() -> None:
 
 # -- counts ------------------------------------------------------------------------------------------------
 @given(known=with_known_roots(), data=st.data())
-def test_real_roots(known: Any, data: st.DataObject) -> None:
+def test_real_root_counts_equal_known_roots(known: Any, data: st.DataObject) -> None:
     f, roots, _ = known
     assert f.count_real_roots() == len({*roots})
     low, high = sorted(data.draw(st.tuples(small, small)))
@@ -159,7 +159,7 @@ def test_real_roots(known: Any, data: st.DataObject) -> None:
 
 
 @given(known=with_known_roots(), cut=st.fractions(-7, 7, max_denominator=5))
-def test_half_plane(known: Any, cut: Any) -> None:
+def test_half_plane_counts_equal_known_roots(known: Any, cut: Any) -> None:
     f, roots, pairs = known
     cut = f.field.convert(cut)
     parts = [*roots, *(x for x, _ in pairs for _ in range(2))]
@@ -174,7 +174,7 @@ def test_half_plane(known: Any, cut: Any) -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_counts_against_numpy(seed: int) -> None:
+def test_root_counts_equal_those_of_numpy(seed: int) -> None:
     rng = np.random.default_rng(seed)
     coefficients = [int(c) for c in rng.integers(-9, 10, int(rng.integers(2, 14)))]
     coefficients[-1] = 1
@@ -221,7 +221,7 @@ def test_roots_closer_than_floats(offset: int) -> None:
     assert low > offset - flint.fmpq(1, 10**99) * 2 and high > offset
 
 
-def test_no_real_root() -> None:
+def test_largest_root_of_a_polynomial_without_real_roots_raises_field_error() -> None:
     with pytest.raises(FieldError, match="no real root"):
         largest_real_root_interval(Polynomial(QQ, [1, 0, 1]))
 
@@ -246,7 +246,7 @@ def test_the_simplest_number_between(low: Any, width: Any) -> None:
     [("-1", "1", "0"), ("0", "1", "1/2"), ("1", "2", "3/2"), ("-3", "-1", "-2"), ("-1/2", "-1/3", "-2/5"),
      ("0", "1/7", "1/8"), ("-1/7", "0", "-1/8"), ("5/2", "7/2", "3"), ("-7/2", "-5/2", "-3"), ("2", "1000", "3")],
 )  # fmt: skip
-def test_simple_numbers(low: str, high: str, expected: str) -> None:
+def test_simplest_number_between_examples(low: str, high: str, expected: str) -> None:
     assert simplest_between(QQ.convert(low), QQ.convert(high)) == QQ.convert(expected)
 
 

@@ -20,7 +20,7 @@ from liehom.errors import FieldError
         sympy.sqrt(2 + sympy.sqrt(2)),
     ],
 )
-def test_value_survives(value: sympy.Expr) -> None:
+def test_sympy_value_survives_conversion(value: sympy.Expr) -> None:
     algebra = lh.LieAlgebra({(0, 1): {1: value}}, dimension=2)
     (_, _, _, constant) = next(algebra.structure_constants())
     assert algebra.field.exact
@@ -36,7 +36,7 @@ def test_two_values_in_one_given_field() -> None:
 
 
 @pytest.mark.parametrize("value", [sympy.pi, sympy.Symbol("x"), sympy.I, sympy.sqrt(-2)])
-def test_what_is_no_real_algebraic_number_is_refused(value: sympy.Expr) -> None:
+def test_other_than_real_algebraic_numbers_raise_field_error(value: sympy.Expr) -> None:
     with pytest.raises(FieldError):
         lh.LieAlgebra({(0, 1): {1: value}}, dimension=2)
 

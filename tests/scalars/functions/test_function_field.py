@@ -103,7 +103,7 @@ def test_what_is_not_divisible_is_not_divided() -> None:
     assert ((x**2 + z**2) * a / (1 - y)).cancelled().powers == ()
 
 
-def test_several_constraints() -> None:
+def test_division_modulo_several_constraints() -> None:
     """The curve of the rank one symmetric 2 x 2 matrices of trace one, where quotients are found by an ansatz."""
     field = FunctionField(["x", "y", "z"], [{(1, 0, 1): 1, (0, 2, 0): -1}, {(1, 0, 0): 1, (0, 0, 1): 1, (0, 0, 0): -1}])
     x, y, z = field.variables
@@ -112,7 +112,7 @@ def test_several_constraints() -> None:
     assert ((x - x**2) / y).cancelled() == y
 
 
-def test_primitive_vectors() -> None:
+def test_primitive_vectors_have_no_common_divisor() -> None:
     x, y = FunctionField(["x", "y"]).variables
     field = x.field
     assert field.primitive([-x / 2, x * y / 3]) == [field.convert(3), -2 * y]
@@ -120,7 +120,7 @@ def test_primitive_vectors() -> None:
     assert field.primitive([1 / x, 1 / y]) == [y, x]
 
 
-def test_wrong_input() -> None:
+def test_contradictory_constraints_division_by_zero_and_floats_are_refused() -> None:
     with pytest.raises(FieldError, match="no common zero"):
         FunctionField(["x"], [{(1,): 1}, {(1,): 1, (0,): 1}])
     field = FunctionField(["x"], [])

@@ -24,11 +24,11 @@ def test_the_polynomial_conjugates_every_root(coefficients: list[int]) -> None:
 
 
 @pytest.mark.parametrize("coefficients", NEITHER)
-def test_there_is_none(coefficients: list[int]) -> None:
+def test_conjugation_without_a_rational_polynomial_is_none(coefficients: list[int]) -> None:
     assert complex_conjugation(Polynomial(QQ, coefficients)) is None
 
 
 @pytest.mark.parametrize("coefficients", [[1, 0, 2], [QQ.one / 2, 0, 1]])
-def test_only_integral_polynomials(coefficients: list[object]) -> None:
+def test_conjugation_of_non_integral_polynomials_raises_input_error(coefficients: list[object]) -> None:
     with pytest.raises(InputError, match="monic"):
         complex_conjugation(Polynomial(QQ, coefficients))

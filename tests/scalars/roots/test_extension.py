@@ -54,7 +54,9 @@ def check(f: Polynomial) -> None:
         ([-7, 0, 4, 0, 1], [4, 4, 2]),
     ],
 )  # fmt: skip
-def test_over_the_rationals(coefficients: list[int], degrees: list[int]) -> None:
+def test_fields_of_real_factors_over_the_rationals_have_known_degrees(
+    coefficients: list[int], degrees: list[int]
+) -> None:
     """The degrees of the least fields: those of the real subfields of cyclotomic fields, d(d - 1)/2 in general."""
     f = Polynomial(QQ, coefficients)
     assert len(f.factor()) == 1
@@ -63,14 +65,14 @@ def test_over_the_rationals(coefficients: list[int], degrees: list[int]) -> None
 
 
 @pytest.mark.parametrize("field", [ROOT2, MINUS_ROOT2, CUBIC])
-def test_over_a_number_field(field: Any) -> None:
+def test_real_factors_over_a_number_field_multiply_to_the_polynomial(field: Any) -> None:
     a = field.generator
     for coefficients in ([-a, 0, 1], [-3, 0, 1], [a, 1, 0, 1], [1, 0, 1], [1, a, 0, 0, 1]):
         for f, _ in Polynomial(field, coefficients).factor():
             check(f)
 
 
-def test_the_embedding_decides() -> None:
+def test_adjoined_root_depends_on_the_real_embedding() -> None:
     """t^2 - a has real roots for a = sqrt(2), not for its conjugate."""
     for field, real in ((ROOT2, 2), (MINUS_ROOT2, 0)):
         factors = real_factors(Polynomial(field, [-field.generator, 0, 1]))
@@ -80,12 +82,12 @@ def test_the_embedding_decides() -> None:
 
 @settings(deadline=None, max_examples=examples(15))
 @given(st.lists(st.integers(-6, 6), min_size=2, max_size=4))
-def test_random_polynomials(coefficients: list[int]) -> None:
+def test_real_factors_of_random_polynomials_multiply_to_the_polynomial(coefficients: list[int]) -> None:
     for f, _ in Polynomial(QQ, [*coefficients, 1]).factor():
         check(f)
 
 
-def test_small_generators() -> None:
+def test_adjoined_fields_have_small_minimal_polynomials() -> None:
     """The field of a root is found again behind a disguise of large coefficients."""
     for shift, scale in ((7, 10), (-3, 6), (1, 35)):
         f = Polynomial(QQ, [1, -3, 0, 1])
@@ -96,7 +98,7 @@ def test_small_generators() -> None:
     assert large(adjoin_root(large, 0)[1]) == 0
 
 
-def test_towers_and_refusals() -> None:
+def test_extensions_compose_and_missing_roots_raise_field_error() -> None:
     up, root = adjoin_root(Polynomial(QQ, [-2, 0, 1]), 0)
     over, second = adjoin_root(Polynomial(up.field, [root, 0, 1]), 1)
     assert second**2 == -over.embed(root) and over.field.degree == 4
@@ -111,7 +113,7 @@ def test_towers_and_refusals() -> None:
 
 @settings(deadline=None, max_examples=examples(40))
 @given(st.lists(st.integers(-9, 9), min_size=6, max_size=6))
-def test_zeros_of_ternary_forms(entries: list[int]) -> None:
+def test_rational_zero_is_isotropic_or_absent_by_search(entries: list[int]) -> None:
     a, b, c, d, e, f = entries
     form = QQ.matrix([[a, b, c], [b, d, e], [c, e, f]])
     found = rational_zero(form)
@@ -123,7 +125,7 @@ def test_zeros_of_ternary_forms(entries: list[int]) -> None:
         assert not any((p @ form @ p.T).is_zero() for p in itertools.islice(points, 1000, None))
 
 
-def test_legendre() -> None:
+def test_legendre_zero_satisfies_the_equation() -> None:
     """Against a search; sums made to have a zero; equal and common factors, negative ones, the prime 2."""
     rng = random.Random(5)
     squares = [x * x for x in range(25)]
@@ -141,7 +143,7 @@ def test_legendre() -> None:
     assert legendre_zero((-1, 7, 7)) is None and legendre_zero((7, 7, -1)) is None
 
 
-def test_rows_over_several_fields() -> None:
+def test_rows_over_several_number_fields_are_a_basis_if_the_determinant_is_not_zero() -> None:
     one, two = ROOT2.matrix([["a", 1]]), MINUS_ROOT2.matrix([["a", 1]])
     assert is_basis_of_reals([one, two], 2) and is_basis_of_reals([], 0)
     assert not is_basis_of_reals([one], 2) and not is_basis_of_reals([one, one.scale(2)], 2)
