@@ -1,8 +1,8 @@
-"""Systems of the paper and beside it, as instances of the generic code: nothing here re-implements it.
+"""Systems of the paper and related ones, all of them uses of the generic code.
 
-In reading order: `sphere` (SO(k) on spheres; `sphere_frame`: order conditions on S^2), `rigid_body` (with its exact
-motion, the updates of Figure 6 by the corrector and in closed form, and the step on the orbit itself),
-`sym_conjugation` (symmetric matrices with given eigenvalues, isospectral flows), `landau_lifshitz` (spins).
+`spheres` has SO(k) on spheres and the order conditions on S^2, `rigid_body` the exact motion and the updates of
+Figure 6, `sym_conjugation` and `isospectral` the symmetric matrices with given eigenvalues and their flows, and `spins`
+the Landau-Lifshitz-Gilbert equation. Users, `liehom.paper` and the examples may use them; see docs/api/instances.md.
 """
 
 from liehom.instances.isospectral import double_bracket_flow as double_bracket_flow

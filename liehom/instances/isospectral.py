@@ -1,39 +1,45 @@
-"""Isospectral flows on Sym(k): the double bracket flow, the Toda flow, QR flows, and the solution of the latter.
+"""Isospectral flows on Sym(k): the double bracket flow, the Toda flow, and QR flows with their solution.
 
     S' = [S, [S, N]]                                              double bracket flow: sorts as N is sorted
     S' = [S, P(f(S))],  P(X) = L - L^T, L the part of X below the diagonal            f(x) = x: Toda flow
 
-(R. W. Brockett, Linear Algebra Appl. 146, 1991; W. W. Symes, Physica D 4, 1982).  With exp(t f(S_0)) = Q(t) R(t),
-R upper triangular with positive diagonal, the second one is solved by S(t) = Q(t)^T S_0 Q(t): at integer times these
-are the iterates of the QR algorithm for exp(f(S_0)), and for f = log those for S_0 itself.
+(R. W. Brockett, Linear Algebra Appl. 146, 1991; W. W. Symes, Physica D 4, 1982). With exp(t f(S_0)) = Q(t) R(t),
+R upper triangular with positive diagonal, S(t) = Q(t)^T S_0 Q(t) solves the second equation. At integer times S(t) is
+an iterate of the QR algorithm for exp(f(S_0)), and for f = log of the QR algorithm for S_0 itself.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.instances.sym_conjugation import SymmetricMatrices
 from liehom.series.jet import Jet
+from liehom.typing import Array, Values
+
+SpectralFunction: TypeAlias = Callable[[Any], Any]
+"""A function of an array of eigenvalues, entry by entry, such as `numpy.log`."""
 
 MAX_SPREAD = 4.0
-"""A factorization is made of exp(X) for eigenvalues of X at most this far apart: of a condition number of e^4."""
+"""exp(X) is factorized for eigenvalues of X at most this far apart, so for condition numbers up to e^4."""
 SPECTRUM_RTOL = 1e-6
+"""Relative tolerance for the invariants of a point, which must be those of the matrix that a QR flow is made for."""
 
 
-def double_bracket_flow(n: Any) -> GeneratorField:
-    """S' = [S, [S, N]], the gradient flow of tr(S N) on the orbit: A(S) = [N, S].
+def double_bracket_flow(n: npt.ArrayLike) -> GeneratorField:
+    """The field S' = [S, [S, N]], the gradient flow of tr(S N) on the orbit, with A(S) = [N, S].
 
     Parameters
     ----------
     n : (..., k, k) array_like
-        Symmetric. For a diagonal one with different entries the flow brings S to the diagonal matrix whose entries
-        are sorted as those of N (but for starts on lower-dimensional sets). Leading axes: one for each trajectory.
+        Symmetric. For a diagonal N with different entries, S tends to the diagonal matrix whose entries are sorted as
+        those of N (except for initial points on lower-dimensional sets). Leading axes: one N for each trajectory.
 
     Raises
     ------
@@ -51,19 +57,19 @@ def double_bracket_flow(n: Any) -> GeneratorField:
     >>> np.diag(end).round(6).tolist()
     [0.585786, 3.414214, 2.0]
     """
-    space, n = _space(n)
-    space.to_vector(n)  # is it symmetric?
-    return space.flow(lambda s: n @ s - s @ n)
+    space, matrix = _space(n)
+    space.to_vector(matrix)  # raises unless it is symmetric
+    return space.flow(lambda s: matrix @ s - s @ matrix)
 
 
 def toda_flow(k: int) -> GeneratorField:
-    """S' = [S, P(S)], P(S) = L - L^T with the part L of S below the diagonal.
+    """The field S' = [S, P(S)], P(S) = L - L^T with the part L of S below the diagonal.
 
     Notes
     -----
     On tridiagonal S, which stay tridiagonal, it is the Toda lattice of k particles in Flaschka's variables: with
-    diagonal a and b beside it, a_i' = 2 (b_i^2 - b_{i-1}^2) and b_i' = b_i (a_{i+1} - a_i). For t to infinity S tends
-    to the diagonal matrix of the eigenvalues in decreasing order, for almost all starts.
+    diagonal a and off-diagonal b, a_i' = 2 (b_i^2 - b_{i-1}^2) and b_i' = b_i (a_{i+1} - a_i). As t tends to infinity,
+    S tends to the diagonal matrix of the eigenvalues in decreasing order, for almost all initial points.
 
     Examples
     --------
@@ -76,22 +82,23 @@ def toda_flow(k: int) -> GeneratorField:
     return space.flow(lambda s: _upper_minus_lower(space, s))
 
 
-def qr_flow(start: Any, function: Callable[[Any], Any] = np.log) -> GeneratorField:
-    """S' = [S, P(f(S))] through S_0: for f = log at integer times the iterates of the QR algorithm.
+def qr_flow(start: npt.ArrayLike, function: SpectralFunction = np.log) -> GeneratorField:
+    """The field S' = [S, P(f(S))] through S_0; for f = log, S(1), S(2), ... are the iterates of the QR algorithm.
 
     Parameters
     ----------
     start : (..., k, k) array_like
-        S_0; the eigenvalues are constant, so that f(S) is the polynomial in S which interpolates f there, and the
-        field can be expanded for any f. It belongs to this spectrum (leading axes: to those of these trajectories).
+        S_0. The eigenvalues are constant, so f(S) is the polynomial in S that interpolates f at the eigenvalues, and
+        the field can be expanded for any f. The field is valid for points with this spectrum only (leading axes: one
+        spectrum for each trajectory).
     function : callable
         f, on an array of eigenvalues (default: the logarithm, for positive definite S_0).
 
     Raises
     ------
     ShapeError, InputError
-        If S_0 is not symmetric, or f not finite at its eigenvalues; when it is evaluated, if a point has another
-        spectrum.
+        If S_0 is not symmetric, or f is not finite at its eigenvalues. The field raises InputError at a point with
+        another spectrum.
 
     Examples
     --------
@@ -103,20 +110,20 @@ def qr_flow(start: Any, function: Callable[[Any], Any] = np.log) -> GeneratorFie
     >>> bool(np.allclose(np.abs(space.to_matrix(sol.y[:, -1])), np.abs(r @ q), atol=1e-10))
     True
     """
-    space, start = _space(start)
-    matrix = space.to_matrix(space.to_vector(start))
-    spectrum = np.linalg.eigvalsh(matrix)
+    space, given = _space(start)
+    matrix: Any = space.to_matrix(space.to_vector(given))
+    spectrum: Array = np.linalg.eigvalsh(matrix)
     nodes, coefficients = _interpolated(spectrum, _values(function, spectrum))
     sums, squares = spectrum.sum(axis=-1), (spectrum**2).sum(axis=-1)
 
-    def generator(s: Any) -> Any:
+    def generator(s: Values) -> Values:
         if not isinstance(s, Jet) and s.dtype.kind == "f":
-            other = np.abs(np.trace(s, axis1=-2, axis2=-1) - sums) > SPECTRUM_RTOL * np.sqrt(squares)
+            other: Any = np.abs(np.trace(s, axis1=-2, axis2=-1) - sums) > SPECTRUM_RTOL * np.sqrt(squares)
             other |= np.abs((s * s).sum(axis=(-1, -2)) - squares) > SPECTRUM_RTOL * squares
             if bool(np.any(other)):
                 raise InputError("the point has other eigenvalues than the matrix that the QR flow was made for")
         identity = np.eye(space.k)
-        total = coefficients[..., -1, None, None] * identity
+        total: Values = coefficients[..., -1, None, None] * identity
         for i in range(space.k - 2, -1, -1):
             total = total @ (s - nodes[..., i, None, None] * identity) + coefficients[..., i, None, None] * identity
         return _upper_minus_lower(space, total)
@@ -124,7 +131,7 @@ def qr_flow(start: Any, function: Callable[[Any], Any] = np.log) -> GeneratorFie
     return space.flow(generator)
 
 
-def qr_solution(start: Any, t: Any, function: Callable[[Any], Any] | None = None) -> Any:
+def qr_solution(start: npt.ArrayLike, t: npt.ArrayLike, function: SpectralFunction | None = None) -> Array:
     """The solution S(t) = Q^T S_0 Q of `toda_flow` or `qr_flow`, exp(t f(S_0)) = Q R, in closed form.
 
     Parameters
@@ -132,7 +139,7 @@ def qr_solution(start: Any, t: Any, function: Callable[[Any], Any] | None = None
     start : (..., k, k) array_like
         S_0.
     t : float or array_like
-        Times, one for all matrices or of a shape that broadcasts against their leading axes.
+        Times: one for all matrices, or of a shape that broadcasts against their leading axes.
     function : callable, optional
         f, on an array of eigenvalues (default: f(x) = x, the Toda flow).
 
@@ -143,12 +150,12 @@ def qr_solution(start: Any, t: Any, function: Callable[[Any], Any] | None = None
     Raises
     ------
     ShapeError, InputError
-        If S_0 is not symmetric, f not finite at its eigenvalues, or t not finite.
+        If S_0 is not symmetric, f is not finite at its eigenvalues, or t is not finite.
 
     Notes
     -----
-    exp(t f(S_0)) is factorized in so many parts of t that none has a condition number above e^4: no overflow, and no
-    column of Q is lost.
+    exp(t f(S_0)) is factorized in equal parts of t, as many as are needed for condition numbers of at most e^4, so that
+    there is no overflow and every column of Q is accurate.
 
     Examples
     --------
@@ -156,18 +163,18 @@ def qr_solution(start: Any, t: Any, function: Callable[[Any], Any] | None = None
     >>> np.round(np.diag(qr_solution([[1.0, 1.0], [1.0, 3.0]], 20.0)) - 2, 9)
     array([ 1.41421356, -1.41421356])
     """
-    space, start = _space(start)
-    t = np.asarray(t, dtype=float)
-    if not bool(np.isfinite(t).all()):
-        raise InputError(f"the time is {t}, expected finite numbers")
+    space, given = _space(start)
+    times = np.asarray(t, dtype=float)
+    if not bool(np.isfinite(times).all()):
+        raise InputError(f"the time is {times}, expected finite numbers")
     try:
-        lead = np.broadcast_shapes(t.shape, start.shape[:-2])
+        lead = np.broadcast_shapes(times.shape, given.shape[:-2])
     except ValueError:
-        raise ShapeError(f"times of shape {t.shape} for matrices of shape {start.shape}") from None
-    s = np.broadcast_to(space.to_matrix(space.to_vector(start)), (*lead, space.k, space.k))
+        raise ShapeError(f"times of shape {times.shape} for matrices of shape {given.shape}") from None
+    s: Any = np.broadcast_to(space.to_matrix(space.to_vector(given)), (*lead, space.k, space.k))
     eigenvalues, vectors = np.linalg.eigh(s)
     values = _values((lambda x: x) if function is None else function, eigenvalues)
-    exponents = t[..., None] * values
+    exponents = times[..., None] * values
     exponents = exponents - exponents.max(axis=-1, keepdims=True)
     parts = max(1, ceil(float(-exponents.min(initial=0.0)) / MAX_SPREAD))
     sizes = np.exp(exponents / parts)[..., None, :]
@@ -175,26 +182,29 @@ def qr_solution(start: Any, t: Any, function: Callable[[Any], Any] | None = None
         q, r = np.linalg.qr(vectors * sizes @ np.swapaxes(vectors, -1, -2))
         diagonal = np.diagonal(r, axis1=-2, axis2=-1)
         vectors = np.swapaxes(q * np.where(diagonal < 0, -1.0, 1.0)[..., None, :], -1, -2) @ vectors
-    return vectors * eigenvalues[..., None, :] @ np.swapaxes(vectors, -1, -2)
+    solution: Array = vectors * eigenvalues[..., None, :] @ np.swapaxes(vectors, -1, -2)
+    return solution
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _space(matrix: Any) -> tuple[SymmetricMatrices, Any]:
-    matrix = np.asarray(matrix)
-    if matrix.ndim < 2 or matrix.shape[-1] != matrix.shape[-2] or matrix.shape[-1] < 2:
-        raise ShapeError(f"expected square matrices of size at least 2, got shape {matrix.shape}")
-    if matrix.dtype.kind not in "iuf" or not bool(np.isfinite(matrix).all()):
-        raise InputError(f"expected a matrix of finite real numbers, got {matrix!r}")
-    return SymmetricMatrices(matrix.shape[-1]), matrix
+def _space(matrix: npt.ArrayLike) -> tuple[SymmetricMatrices, npt.NDArray[Any]]:
+    """The space of symmetric matrices of the size of given ones, and these as an array (..., k, k)."""
+    given = np.asarray(matrix)
+    if given.ndim < 2 or given.shape[-1] != given.shape[-2] or given.shape[-1] < 2:
+        raise ShapeError(f"expected square matrices of size at least 2, got shape {given.shape}")
+    if given.dtype.kind not in "iuf" or not bool(np.isfinite(given).all()):
+        raise InputError(f"expected a matrix of finite real numbers, got {given!r}")
+    return SymmetricMatrices(given.shape[-1]), given
 
 
-def _upper_minus_lower(space: SymmetricMatrices, x: Any) -> Any:
+def _upper_minus_lower(space: SymmetricMatrices, x: Values) -> Values:
     """L^T - L for the part L of a symmetric X below the diagonal: S' = [A, S] with A = -P(X)."""
     signs = np.triu(np.ones((space.k, space.k), dtype=int), 1)
     return x * (signs - signs.T)
 
 
-def _values(function: Callable[[Any], Any], spectrum: Any) -> Any:
+def _values(function: SpectralFunction, spectrum: Array) -> Array:
+    """f at the eigenvalues, checked."""
     with np.errstate(all="ignore"):
         values = np.asarray(function(spectrum), dtype=float)
     if values.shape != spectrum.shape:
@@ -205,11 +215,11 @@ def _values(function: Callable[[Any], Any], spectrum: Any) -> Any:
     return values
 
 
-def _interpolated(spectrum: Any, values: Any) -> tuple[Any, Any]:
+def _interpolated(spectrum: Array, values: Array) -> tuple[Array, Array]:
     """Nodes and coefficients of Newton's interpolation polynomial, (..., k) each.
 
-    The nodes are taken in Leja's order, each as far from those before it as possible; eigenvalues that differ by
-    round-off count once.
+    The nodes are in Leja order, each as far from the previous ones as possible. Eigenvalues that differ by round-off
+    count once.
     """
     k = spectrum.shape[-1]
     nodes, coefficients = spectrum.copy(), np.zeros_like(values)

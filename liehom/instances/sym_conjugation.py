@@ -2,17 +2,18 @@
 
     rho(A) S = A S - S A,    g_S = so(m_1) + ... + so(m_r)  for eigenvalues of multiplicities m_1, ..., m_r
 
-The isotropy of S is full exactly where one eigenvalue is simple and the others are equal (projective space), or all
-are equal (a point): the paper's remark on Sym(k) in section 6.  Every field on an orbit is S' = [A(S), S] with A(S)
-skew: an isospectral flow, see `isospectral`.
+The isotropy of S is full if and only if one eigenvalue is simple and the others are equal (projective space), or all
+are equal (a point): the paper's remark on Sym(k) in section 6. Every field on an orbit is S' = [A(S), S] with A(S)
+skew-symmetric, an isospectral flow: see `isospectral`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import Any, TypeAlias, final, overload
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra import Subalgebra
 from liehom.algebra.closure.closure import square_matrices
@@ -21,9 +22,15 @@ from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.components import joined, takes_time
 from liehom.representations import Pair, Representation, sym_conjugation
 from liehom.scalars import ExactMatrix, Polynomial
+from liehom.scalars.fields.field import MatrixLike
 from liehom.series.jet import Jet
+from liehom.typing import IntegerArray, Real, ScalarLike, Values
+
+ArrayOrJet: TypeAlias = npt.ArrayLike | Jet
+"""Points or matrices as an array, as lists, or as a Taylor series."""
 
 RTOL = 1e-10
+"""Relative tolerance for symmetry, and default tolerance for equal eigenvalues."""
 
 
 @final
@@ -56,7 +63,7 @@ class SymmetricMatrices:
     liehom.errors.ShapeError: a point of Sym(4) has 10 coordinates on its last axis, got shape (3,)
     """
 
-    __slots__ = ("_columns", "_place", "_rows", "k", "representation")
+    __slots__ = ("_columns", "_index", "_rows", "k", "representation")
 
     def __init__(self, k: int) -> None:
         if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
@@ -66,13 +73,17 @@ class SymmetricMatrices:
         # standard basis of so(k): for i < j the matrix with entry 1 at (j, i)
         self._columns, self._rows = (x.copy() for x in np.triu_indices(self.k, 1))
         upper = np.triu_indices(self.k)
-        self._place = np.zeros((self.k, self.k), dtype=int)
-        self._place[upper] = np.arange(upper[0].size)
-        self._place = np.maximum(self._place, self._place.T)
+        index: IntegerArray = np.zeros((self.k, self.k), dtype=int)
+        index[upper] = np.arange(upper[0].size)
+        self._index: IntegerArray = np.maximum(index, index.T)  # of the coordinate that is the entry (i, j)
 
     # -- coordinates -------------------------------------------------------------------------------------
-    def to_matrix(self, m: Any) -> Any:
-        """The matrices (..., k, k) of points (..., k (k + 1) / 2), arrays or Jets.
+    @overload
+    def to_matrix(self, m: Jet) -> Jet: ...
+    @overload
+    def to_matrix(self, m: npt.ArrayLike) -> npt.NDArray[Any]: ...
+    def to_matrix(self, m: ArrayOrJet) -> Any:
+        """Matrices (..., k, k) of points (..., k (k + 1) / 2), arrays or Jets.
 
         Raises
         ------
@@ -84,16 +95,20 @@ class SymmetricMatrices:
         >>> SymmetricMatrices(2).to_matrix([1.0, 2.0, 3.0]).tolist()
         [[1.0, 2.0], [2.0, 3.0]]
         """
-        m = m if hasattr(m, "shape") else np.asarray(m)
-        if m.shape[-1:] != (self.representation.size,):
+        point: Any = m if hasattr(m, "shape") else np.asarray(m)
+        if point.shape[-1:] != (self.representation.size,):
             raise ShapeError(
                 f"a point of Sym({self.k}) has {self.representation.size} coordinates on its last axis, got shape "
-                f"{m.shape}"
+                f"{point.shape}"
             )
-        return m[..., self._place]
+        return point[..., self._index]
 
-    def to_vector(self, matrix: Any) -> Any:
-        """The points (..., k (k + 1) / 2) of symmetric matrices (..., k, k), arrays or Jets; the upper half is read.
+    @overload
+    def to_vector(self, matrix: Jet) -> Jet: ...
+    @overload
+    def to_vector(self, matrix: npt.ArrayLike) -> npt.NDArray[Any]: ...
+    def to_vector(self, matrix: ArrayOrJet) -> Any:
+        """Points (..., k (k + 1) / 2) of symmetric matrices (..., k, k), arrays or Jets; the upper half is read.
 
         Raises
         ------
@@ -107,16 +122,20 @@ class SymmetricMatrices:
         >>> SymmetricMatrices(2).to_vector([[[1.0, 2.0], [2.0, 3.0]]]).tolist()
         [[1.0, 2.0, 3.0]]
         """
-        matrix = self._square(matrix)
-        if not isinstance(matrix, Jet) and matrix.dtype.kind in "iuf":
-            gap = np.abs(matrix - np.swapaxes(matrix, -1, -2)).max(initial=0.0)
-            if not gap <= RTOL * np.abs(matrix).max(initial=0.0):
+        square = self._square(matrix)
+        if not isinstance(square, Jet) and square.dtype.kind in "iuf":
+            gap = np.abs(square - np.swapaxes(square, -1, -2)).max(initial=0.0)
+            if not gap <= RTOL * np.abs(square).max(initial=0.0):
                 raise InputError(f"the matrix is not symmetric: entries differ by {gap:.3g} from their mirror images")
         upper = np.triu_indices(self.k)
-        return matrix[..., upper[0], upper[1]]
+        return square[..., upper[0], upper[1]]
 
-    def to_generator(self, skew: Any) -> Any:
-        """The coefficients (..., k (k - 1) / 2) in so(k) of skew matrices (..., k, k); the lower half is read.
+    @overload
+    def to_generator(self, skew: Jet) -> Jet: ...
+    @overload
+    def to_generator(self, skew: npt.ArrayLike) -> npt.NDArray[Any]: ...
+    def to_generator(self, skew: ArrayOrJet) -> Any:
+        """Coefficients (..., k (k - 1) / 2) in so(k) of skew-symmetric matrices (..., k, k); the lower half is read.
 
         Examples
         --------
@@ -126,20 +145,20 @@ class SymmetricMatrices:
         return self._square(skew)[..., self._rows, self._columns]
 
     # -- isotropy ----------------------------------------------------------------------------------------
-    def point(self, multiplicities: Sequence[int], eigenvalues: Sequence[Any] | None = None) -> list[Any]:
-        """The diagonal matrix with eigenvalues of these multiplicities, as a point.
+    def point(self, multiplicities: Sequence[int], eigenvalues: Sequence[ScalarLike] | None = None) -> list[ScalarLike]:
+        """The diagonal matrix with eigenvalues of given multiplicities, as a point, a list of coordinates.
 
         Parameters
         ----------
         multiplicities : sequence of int
             Positive, with sum k.
         eigenvalues : sequence, optional
-            One for each, all different (default: 1, 2, ..., exact).
+            One for each multiplicity, all different (default: 1, 2, ..., exact).
 
         Raises
         ------
         InputError
-            If the multiplicities or the eigenvalues are not so.
+            If the multiplicities do not have the sum k, or the eigenvalues are not different.
 
         Examples
         --------
@@ -175,11 +194,11 @@ class SymmetricMatrices:
         return self.representation.pair(self.point(multiplicities))
 
     def is_full(self, multiplicities: Sequence[int]) -> bool:
-        """Whether isotropy and clock raise a step to any order there: multiplicities (k - 1, 1), or a single value.
+        """Whether isotropy and τ raise a step to any order on the orbit: multiplicities (k - 1, 1) or (k,).
 
         Notes
         -----
-        A theorem; for each k it is what ``liehom.decide_fullness(space.pair(multiplicities))`` proves.
+        This is a theorem. ``liehom.decide_fullness(space.pair(multiplicities))`` proves it for each k.
 
         Examples
         --------
@@ -189,20 +208,20 @@ class SymmetricMatrices:
         parts = sorted(self._parts(multiplicities))
         return len(parts) == 1 or (len(parts) == 2 and parts[0] == 1)
 
-    def multiplicities(self, matrix: Any, *, rtol: float = RTOL) -> tuple[int, ...]:
-        """The multiplicities of the eigenvalues of one symmetric matrix, in decreasing order.
+    def multiplicities(self, matrix: MatrixLike, *, rtol: float = RTOL) -> tuple[int, ...]:
+        """Multiplicities of the eigenvalues of one symmetric matrix, in decreasing order.
 
         Parameters
         ----------
         matrix : (k, k) array_like
-            Exact entries (integers, fractions, ...) are decided exactly, by the characteristic polynomial.
+            For exact entries (integers, fractions, ...) the result is exact, by the characteristic polynomial.
         rtol : float
             For floats: eigenvalues closer than this, relative to the largest, count as equal.
 
         Raises
         ------
         ShapeError, InputError
-            If it is not one symmetric matrix of size k.
+            If the argument is not one symmetric matrix of size k.
 
         Examples
         --------
@@ -230,12 +249,13 @@ class SymmetricMatrices:
 
     # -- fields ------------------------------------------------------------------------------------------
     def flow(self, generator: Callable[..., Any], *, time_dependent: bool | None = None) -> GeneratorField:
-        """The isospectral flow S' = [A(S), S] or S' = [A(S, t), S] of a skew matrix A.
+        """The isospectral flow S' = [A(S), S] or S' = [A(S, t), S] of a skew-symmetric matrix A, a GeneratorField.
 
         Parameters
         ----------
         generator : callable
-            S (..., k, k), and t (...,) if it takes it, to skew matrices (..., k, k), written with numpy functions.
+            A(S) or A(S, t), from S (..., k, k) and t (...,) to skew-symmetric matrices (..., k, k), written with numpy
+            functions.
         time_dependent : bool, optional
             As for `GeneratorField`.
 
@@ -251,18 +271,18 @@ class SymmetricMatrices:
         """
         timed = takes_time(generator) if time_dependent is None else bool(time_dependent)
 
-        def psi(m: Any, t: Any) -> Any:
+        def psi(m: Values, t: Real) -> Any:
             s = self.to_matrix(m)
             return self.to_generator(joined(generator(s, t) if timed else generator(s), s))
 
         return GeneratorField(self.representation, psi if timed else lambda m: psi(m, 0.0), time_dependent=timed)
 
     # -- private -----------------------------------------------------------------------------------------
-    def _square(self, matrix: Any) -> Any:
-        matrix = matrix if hasattr(matrix, "shape") else np.asarray(matrix)
-        if matrix.shape[-2:] != (self.k, self.k):
-            raise ShapeError(f"expected matrices of shape (..., {self.k}, {self.k}), got shape {matrix.shape}")
-        return matrix
+    def _square(self, matrix: ArrayOrJet) -> Any:
+        square: Any = matrix if hasattr(matrix, "shape") else np.asarray(matrix)
+        if square.shape[-2:] != (self.k, self.k):
+            raise ShapeError(f"expected matrices of shape (..., {self.k}, {self.k}), got shape {square.shape}")
+        return square
 
     def _parts(self, multiplicities: Sequence[int]) -> tuple[int, ...]:
         given = list(multiplicities)

@@ -1,6 +1,6 @@
-"""The free rigid body: its exact motion, the updates of Figure 6, closed forms, the attitude.
+"""The free rigid body: its exact motion, the updates of Figure 6 by the corrector and in closed form, the attitude.
 
-`RigidBody` is the field that everything here is about. See docs/reproduction.md for what the paper does with it.
+Users start from `RigidBody`, whose methods return the other objects. See docs/reproduction.md for its use in the paper.
 """
 
 from liehom.instances.rigid_body.closed_forms import ClosedFormUpdate as ClosedFormUpdate

@@ -1,7 +1,8 @@
 """The attitude of a free rigid body: Q' = Q hat(Om m) in SO(3) along m' = m x Om m.
 
-With the generator omega_b = -Om m both equations read y' = omega_b x y, for y = m and for each row of Q: one rotation
-moves them all, and the momentum in space, Q m, is constant to round-off.  Four copies of R^3 under so(3).
+With the generator omega_b = -Om m both equations read y' = omega_b x y, for y = m and for each row of Q. So one
+rotation moves all of them, points of four copies of R^3 under so(3), and the momentum in space, Q m, is constant to
+round-off.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra import so
 from liehom.errors import ConvergenceError, InputError, ShapeError
@@ -18,6 +20,7 @@ from liehom.homogeneous import GeneratorField
 from liehom.integrators.integration import integrate
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.representations import Representation, adjoint
+from liehom.typing import Array
 
 ORDER = 14
 RTOL = 1e-14
@@ -26,13 +29,13 @@ ROTATION_ATOL = 1e-8
 
 @cache
 def _copies() -> Representation:
-    """so(3) on m and the three rows of Q."""
+    """The representation of so(3) on m and the three rows of Q."""
     rho = adjoint(so(3))
     return rho.direct_sum(rho).direct_sum(rho).direct_sum(rho)
 
 
-def attitude(apply: Callable[[Any], Any], m0: Any, t: Any, start: Any = None) -> Any:
-    """Q(t) for the body with m -> Om m given as a function; see `RigidBody.attitude`.
+def attitude(apply: Callable[[Any], Any], m0: Array, t: npt.ArrayLike, start: npt.ArrayLike | None = None) -> Array:
+    """Rotations Q(t), shape (..., k, 3, 3), of the body with m -> Om m given as a function: see `RigidBody.attitude`.
 
     Examples
     --------
@@ -48,10 +51,11 @@ def attitude(apply: Callable[[Any], Any], m0: Any, t: Any, start: Any = None) ->
     if q.shape != (3, 3):
         raise ShapeError(f"the attitude at time 0 has shape {q.shape}, expected (3, 3)")
     if not np.allclose(q @ q.T, np.eye(3), rtol=0, atol=ROTATION_ATOL) or np.linalg.det(q.astype(float)) < 0:
-        raise InputError("the attitude at time 0 is no rotation matrix")
+        raise InputError("the attitude at time 0 is not a rotation matrix")
     rows = np.broadcast_to(q.reshape(9), (*m0.shape[:-1], 9)).astype(m0.dtype)
     field = GeneratorField(_copies(), lambda y: -apply(y[..., :3]))
     end = times[-1] if times[-1] != 0 else times[0]
+    made: Array
     if end == 0:
         made = np.repeat(rows[..., None], len(times), axis=-1)
     else:

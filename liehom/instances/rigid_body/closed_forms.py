@@ -1,10 +1,10 @@
-"""The updates of the rigid body in closed form: what the base schemes and the corrector amount to.
+"""Updates of the rigid body in closed form: the base schemes and corrections as formulas.
 
 At n = m/|m| with the step size |m| dt (the field is quadratic), X = n x Om n, v = |X|, h = <n, Om n>, k = <n, Om^2 n>,
 
     R = <X, Om X>/v^2,   D = <X, Om^2 n>,   q = D/v^2,   sigma_i = R - h = det(h - Om)/v^2
 
-and e_1, e_2, e_3 the elementary symmetric functions of Om.  Where X = 0: R = h and q = 0.
+and e_1, e_2, e_3 the elementary symmetric functions of Om. At X = 0, R = h and q = 0.
 """
 
 from __future__ import annotations
@@ -13,21 +13,26 @@ from math import factorial
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.updates import checked_name, scheme, step_sizes
+from liehom.instances.spheres.sphere import dot
 from liehom.integrators.run.points import points_of
+from liehom.typing import Array, Values
 
 
 @final
 class Ingredients:
-    """The numbers of which the closed forms are made, at unit vectors n (..., 3); numbers have the shape (..., 1).
+    """The numbers in the closed forms, at unit vectors n (..., 3).
 
     Attributes
     ----------
     h, k, v2, R, D, q : arrays of shape (..., 1)
+        See the formulas of this module; v2 is v^2.
+    X : array of shape (..., 3)
     e : (e_1, e_2, e_3)
 
     Examples
@@ -39,7 +44,7 @@ class Ingredients:
     True
     """
 
-    def __init__(self, body: FreeBody, n: Any) -> None:
+    def __init__(self, body: FreeBody, n: Values) -> None:
         self.body, self.n = body, n
         once = body.apply(n)
         self.h = dot(n, once)
@@ -57,11 +62,11 @@ class Ingredients:
 
     @property
     def sigma_i(self) -> Any:
-        """R - h, (4.3)."""
+        """R - h, (4.3), shape (..., 1)."""
         return self.R - self.h
 
     def derivatives(self, kind: str, count: int) -> list[Any]:
-        """omega, omega', ... along the flow, `count` of them, for omega_b or omega_o.
+        """The first `count` of omega, omega', ... along the flow, for omega_b ("b") or omega_o ("o").
 
         Examples
         --------
@@ -71,7 +76,7 @@ class Ingredients:
         >>> found.derivatives("b", 2)[1].tolist()
         [0.0, -0.18, 0.0]
         """
-        points = [self.n]
+        points: list[Any] = [self.n]
         for n in range(count - 1):
             total = sum(
                 factorial(n) // (factorial(i) * factorial(n - i)) * np.cross(points[i], self.body.apply(points[n - i]))
@@ -82,7 +87,7 @@ class Ingredients:
 
 
 def improvement(name: str, exponential: str, at: Ingredients) -> tuple[int, Any]:
-    """(p, sigma): the term dt^p sigma m by which an update with i differs from its base; section 4 of the paper.
+    """(p, sigma), where dt^p sigma m is the difference of an update with i from its base (section 4 of the paper).
 
     Examples
     --------
@@ -117,7 +122,7 @@ def improvement(name: str, exponential: str, at: Ingredients) -> tuple[int, Any]
 
 @final
 class ClosedFormUpdate:
-    """An update of the rigid body in closed form: call it as update(m, dt).
+    """An update of the rigid body in closed form, called as update(m, dt).
 
     Parameters
     ----------
@@ -129,12 +134,12 @@ class ClosedFormUpdate:
     Raises
     ------
     InputError
-        If there is no such name or exponential.
+        If no update has this name, or the exponential is another one.
 
     Notes
     -----
-    The corrected formulas of section 4 of the paper in the convention X = omega x m; those for RK4, and all but Euler
-    and Heun with the true exponential, are not in the paper.
+    The corrected formulas of section 4 of the paper in the convention X = omega x m. The formulas for RK4, and with the
+    true exponential all except Euler and Heun, are not in the paper.
 
     Examples
     --------
@@ -152,36 +157,40 @@ class ClosedFormUpdate:
         self.kind = scheme(name)[0]
         self._action = Action(body.representation, exponential)
 
-    def __call__(self, m: Any, dt: Any) -> Any:
+    def __call__(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """The next point, shape (..., 3), for m (..., 3) and step sizes dt (...,)."""
         point = points_of(m)
-        return self._action.act(self.generator(point, dt), point)
+        after: Any = self._action.act(self.generator(point, dt), point)
+        new: Array = after
+        return new
 
-    def generator(self, m: Any, dt: Any) -> Any:
+    def generator(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """xi(m, dt), shape (..., 3)."""
-        m = points_of(m)
-        size = np.sqrt(dot(m, m))
-        at = Ingredients(self.body, m / np.where(size > 0, size, 1))
-        h = step_sizes(dt, m) * size
-        xi = getattr(self, f"_{self.name[:3]}")(at, h)
+        point = points_of(m)
+        size = np.sqrt(dot(point, point))
+        at = Ingredients(self.body, point / np.where(size > 0, size, 1))
+        h = step_sizes(dt, point) * size
+        schemes = {"eul": self._eul, "rk2": self._rk2, "sy4": self._sy4, "rk4": self._rk4}
+        xi: Array = schemes[self.name[:3]](at, h)
         if "_i" not in self.name:
             return xi
         power, sigma = improvement(self.name, self.exponential, at)
-        return xi + h**power * sigma * at.n
+        corrected: Array = xi + h**power * sigma * at.n
+        return corrected
 
     # -- base schemes at unit vectors --------------------------------------------------------------------
-    def _omega(self, m: Any) -> Any:
+    def _omega(self, m: Values) -> Any:
         turned = self.body.apply(m)
         return -turned if self.kind == "b" else dot(m, turned) * m - turned
 
-    def _eul(self, at: Ingredients, h: Any) -> Any:
+    def _eul(self, at: Ingredients, h: Array) -> Any:
         return h * self._omega(at.n)
 
-    def _rk2(self, at: Ingredients, h: Any) -> Any:
+    def _rk2(self, at: Ingredients, h: Array) -> Any:
         first = self._omega(at.n)
         return h / 2 * (first + self._omega(self._action.act(h * first, at.n)))
 
-    def _sy4(self, at: Ingredients, h: Any) -> Any:
+    def _sy4(self, at: Ingredients, h: Array) -> Any:
         w = at.derivatives(self.kind, 4)
         xi = sum(h ** (j + 1) / factorial(j + 1) * w[j] for j in range(4))
         if self.exponential == "exp":
@@ -192,8 +201,8 @@ class ClosedFormUpdate:
         third = square * w[0] + np.cross(w[1], w[0])
         return xi + h**3 / 12 * third + h**4 / 24 * (square * w[1] + np.cross(w[2], w[0]) + 2 * half * w[0])
 
-    def _rk4(self, at: Ingredients, h: Any) -> Any:
-        def stage(u: Any) -> Any:
+    def _rk4(self, at: Ingredients, h: Array) -> Any:
+        def stage(u: Array) -> Any:
             y = h * self._omega(self._action.act(u, at.n))
             once = np.cross(u, y)
             if self.exponential == "cayley":
@@ -207,15 +216,3 @@ class ClosedFormUpdate:
 
     def __repr__(self) -> str:
         return f"<{self.name} in closed form, {self.exponential}>"
-
-
-def dot(a: Any, b: Any) -> Any:
-    """<a, b>, shape (..., 1).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> dot(np.ones(3), np.ones(3)).tolist()
-    [3.0]
-    """
-    return np.sum(a * b, axis=-1, keepdims=True)

@@ -1,11 +1,12 @@
-"""The Jacobi elliptic functions sn, cn, dn, with both the modulus and its complement given, in the precision given.
+"""Jacobi elliptic functions sn, cn, dn of a modulus and its complement, in float64 or longdouble.
 
-For k^2 <= 1/2 quotients of theta functions in the nome q; for k^2 > 1/2 sums over the images under the imaginary
-period, which are sech and tanh in the limit k = 1:
+For k^2 <= 1/2 they are quotients of theta functions in the nome q. For k^2 > 1/2 they are sums over the images under
+the imaginary period, which are sech and tanh in the limit k = 1:
 
     dn = (pi/2K') sum sech(x_n),   k cn = (pi/2K') sum (-1)^n sech(x_n),   k sn = (pi/2K') sum (-1)^n tanh(x_n),
 
-x_n = pi (u - 2 n K)/(2 K').  Next to k = 1 the modulus alone does not determine the period: 1 - k^2 is lost in k^2.
+x_n = pi (u - 2 n K)/(2 K'). Next to k = 1 the modulus alone does not determine the period, because 1 - k^2 is lost in
+the round-off of k^2.
 """
 
 from __future__ import annotations
@@ -13,19 +14,22 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+
+from liehom.typing import Array
 
 MEAN_ITERATIONS = 24  # of the arithmetic-geometric mean: enough for k' = 1e-300
-THETA_TERMS = 6  # q^(n^2) with q <= exp(-pi)
-IMAGE_TERMS = 16  # exp(-pi n) in extended precision
+THETA_TERMS = 6  # terms are q^(n^2) with q <= exp(-pi)
+IMAGE_TERMS = 16  # terms are about exp(-pi n): enough for extended precision
 
 
-def jacobi_elliptic(u: Any, square: Any, complement: Any) -> tuple[Any, Any, Any]:
+def jacobi_elliptic(u: npt.ArrayLike, square: npt.ArrayLike, complement: npt.ArrayLike) -> tuple[Array, Array, Array]:
     """sn(u), cn(u), dn(u) for the modulus k with k^2 = `square`, 1 - k^2 = `complement`.
 
     Parameters
     ----------
     u, square, complement : arrays that broadcast
-        Both squares lie between 0 and 1; the smaller one decides the accuracy.
+        k^2 and 1 - k^2 lie between 0 and 1; the smaller one determines the accuracy.
 
     Returns
     -------
@@ -33,8 +37,8 @@ def jacobi_elliptic(u: Any, square: Any, complement: Any) -> tuple[Any, Any, Any
 
     Notes
     -----
-    [NIST] 22.2 and 22.12. Absolute errors are a few units of round-off of max(1, |u|); next to k = 1 and away from
-    their zeros cn and dn are also relatively accurate.
+    [NIST] 22.2 and 22.12. Absolute errors are a few units of round-off of max(1, |u|). Next to k = 1, cn and dn are
+    also relatively accurate away from their zeros.
 
     Examples
     --------
@@ -46,23 +50,23 @@ def jacobi_elliptic(u: Any, square: Any, complement: Any) -> tuple[Any, Any, Any
     >>> bool(abs(sn - np.tanh(0.5)) < 1e-15), bool(cn == dn)
     (True, True)
     """
-    u, square, complement = np.broadcast_arrays(*(np.asarray(x) for x in (u, square, complement)))
-    kind = np.result_type(u, square, complement, np.float64)
-    u, square, complement = (x.astype(kind) for x in (u, square, complement))
-    half, other = quarter_period(complement), quarter_period(square)
+    given: Any = np.broadcast_arrays(*(np.asarray(x) for x in (u, square, complement)))
+    kind = np.result_type(*given, np.float64)
+    argument, k2, rest_of_k2 = (x.astype(kind) for x in given)
+    half, other = quarter_period(rest_of_k2), quarter_period(k2)
     finite = np.isfinite(half)
-    turns = np.where(finite, np.round(u / (2 * np.where(finite, half, 1))), 0)
-    rest = u - 2 * np.where(finite, half, 0) * turns
+    turns = np.where(finite, np.round(argument / (2 * np.where(finite, half, 1))), 0)
+    rest = argument - 2 * np.where(finite, half, 0) * turns
     sign = 1 - 2 * np.mod(turns, 2)
-    steep = square > complement
-    near = _images(rest, np.sqrt(np.where(steep, square, 1)), half, np.where(steep, other, 1))
+    steep = k2 > rest_of_k2
+    near = _images(rest, np.sqrt(np.where(steep, k2, 1)), half, np.where(steep, other, 1))
     far = _thetas(rest, np.where(steep, 1, half), np.where(steep, 1, other))
     sn, cn, dn = (np.where(steep, a, b) for a, b in zip(near, far, strict=True))
     return sign * sn, sign * cn, dn
 
 
-def quarter_period(complement: Any) -> Any:
-    """K = pi / (2 agm(1, k')), where 1 - k^2 = `complement`; infinite for 0.
+def quarter_period(complement: npt.ArrayLike) -> Array:
+    """The quarter period K = pi / (2 agm(1, k')) for 1 - k^2 = k'^2 = `complement`; inf for 0.
 
     Examples
     --------
@@ -70,19 +74,20 @@ def quarter_period(complement: Any) -> Any:
     >>> bool(abs(quarter_period(np.array(1.0)) - np.pi / 2) < 1e-15), float(quarter_period(np.array(0.0)))
     (True, inf)
     """
-    complement = np.asarray(complement)
-    a, g = np.ones_like(complement), np.sqrt(np.where(complement > 0, complement, 1))
+    square: Any = np.asarray(complement)
+    a, g = np.ones_like(square), np.sqrt(np.where(square > 0, square, 1))
     for _ in range(MEAN_ITERATIONS):
         a, g = (a + g) / 2, np.sqrt(a * g)
-    return np.where(complement > 0, _pi(complement) / (2 * a), np.inf)
+    return np.where(square > 0, _pi(square) / (2 * a), np.inf)
 
 
-def _pi(like: Any) -> Any:
+def _pi(like: Array) -> Any:
+    """pi in the type of an array."""
     return 4 * np.arctan(np.ones((), dtype=like.dtype))
 
 
-def _thetas(u: Any, half: Any, other: Any) -> tuple[Any, Any, Any]:
-    """Quotients of theta functions; those with a factor q^(1/4) without it."""
+def _thetas(u: Array, half: Array, other: Array) -> tuple[Array, Array, Array]:
+    """sn, cn, dn as quotients of theta functions; common factors q^(1/4) are left out."""
     z = _pi(u) * u / (2 * half)
     q = np.exp(-_pi(u) * other / half)
     ones = np.ones_like(u)
@@ -103,7 +108,8 @@ def _thetas(u: Any, half: Any, other: Any) -> tuple[Any, Any, Any]:
     return sn, cn, null[2] * theta[2] / (null[1] * theta[3])
 
 
-def _images(u: Any, modulus: Any, half: Any, other: Any) -> tuple[Any, Any, Any]:
+def _images(u: Array, modulus: Array, half: Array, other: Array) -> tuple[Array, Array, Array]:
+    """sn, cn, dn as sums over images under the imaginary period."""
     scale = _pi(u) / (2 * other)
     x, period = scale * u, 2 * scale * half
     sn, cn, dn = np.tanh(x), _sech(x), _sech(x)
@@ -116,6 +122,7 @@ def _images(u: Any, modulus: Any, half: Any, other: Any) -> tuple[Any, Any, Any]
     return scale / modulus * sn, scale / modulus * cn, scale * dn
 
 
-def _sech(x: Any) -> Any:
+def _sech(x: Array) -> Array:
     small = np.exp(-np.abs(x))
-    return 2 * small / (1 + small * small)
+    made: Array = 2 * small / (1 + small * small)
+    return made

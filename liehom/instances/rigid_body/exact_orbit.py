@@ -1,11 +1,11 @@
-"""The step on the orbit itself: xi = t (omega_o + s m) with the Cayley transform and s such that the energy stays.
+"""The step that stays on the orbit: xi = t (omega_o + s m) with the Cayley transform and s that conserves the energy.
 
 At unit vectors, with sigma_i and R, h, v as in `closed_forms`, w = omega_o, rho = <X, Om w>/v^2, b = <w, Om w>/v^2,
 
     H(cay(xi) m) - H(m) = (t^2 v^2 / (2 d^2)) f(s),   d = 1 + t^2 (v^2 + s^2)/4,
     f(s) = sigma_i + (t rho - 1 + t^2 v^2/4) s + (t^2/4)(b - h) s^2 - (t^2/4) s^3,
 
-a cubic whose root next to t = 0 is sigma_i (1 + t rho + ...).  It always has a real root.
+a cubic that always has a real root. For small t its root is sigma_i (1 + t rho + ...).
 """
 
 from __future__ import annotations
@@ -13,26 +13,29 @@ from __future__ import annotations
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
-from liehom.correctors.step import Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential, solve_implicitly
 from liehom.errors import InputError
 from liehom.homogeneous import Action
-from liehom.instances.rigid_body.closed_forms import Ingredients, dot
+from liehom.instances.rigid_body.closed_forms import Ingredients
 from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.updates import step_sizes
+from liehom.instances.spheres.sphere import dot
 from liehom.integrators.run.points import points_of
 from liehom.series.jet import Jet
 from liehom.tracing import Traced
+from liehom.typing import Array, BooleanArray, Values
 
 NEWTON_ITERATIONS = 8
-# |f'| below which the root is about to meet another one
 MIN_SLOPE = 0.1
+"""|f'| at a root below which another root is near."""
 MAX_HALVINGS = 12
 
 
 @final
 class ExactOrbit(OneExponential):
-    """The step of a rigid body that stays on the orbit to round-off, for `liehom.integrate` with exponential="cayley".
+    """A step of the rigid body that stays on the orbit to round-off, for `liehom.integrate` with exponential="cayley".
 
     Parameters
     ----------
@@ -41,8 +44,8 @@ class ExactOrbit(OneExponential):
 
     Notes
     -----
-    Its clock is tau(t) = t (1 + t rho / 2), with which trajectories have order 2. With the true exponential the
-    energy has order 2 only.
+    Its time reparametrization is τ(t) = t (1 + t rho / 2), with which trajectories have order 2. With the true
+    exponential the energy has order 2 only.
 
     Examples
     --------
@@ -62,10 +65,10 @@ class ExactOrbit(OneExponential):
     def order(self) -> int:
         return 2
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         return self.at(action, psi, m, t).factors(h)[0]
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> OrbitStep:
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> OrbitStep:
         return OrbitStep(self.body, m)
 
     def __repr__(self) -> str:
@@ -74,7 +77,7 @@ class ExactOrbit(OneExponential):
 
 @final
 class OrbitStep(LocalStep):
-    """The step at one point, as a function of its size.
+    """The step of `ExactOrbit` at given points, as a function of its size.
 
     Parameters
     ----------
@@ -91,8 +94,8 @@ class OrbitStep(LocalStep):
     (True, True)
     """
 
-    def __init__(self, body: FreeBody, m: Any) -> None:
-        self._size = np.sqrt(dot(m, m))
+    def __init__(self, body: FreeBody, m: Values) -> None:
+        self._size: Any = np.sqrt(dot(m, m))
         self._size = np.where(self._size > 0, self._size, 1)
         at = self._at = Ingredients(body, m / self._size)
         self.omega = at.h * at.n - body.apply(at.n)
@@ -102,19 +105,21 @@ class OrbitStep(LocalStep):
         self.rho = np.where(moves, dot(at.X, turned) / below, 0)
         self._square = np.where(moves, dot(self.omega, turned) / below - at.h, 0)
 
-    def factors(self, h: Any) -> tuple[Any, ...]:
+    def factors(self, h: Values) -> Factors:
         t = h * self._size
         return (t * (self.omega + self._root(t) * self._at.n),)
 
-    def time(self, h: Any) -> Any:
-        """t (1 + t rho / 2), for h of shape (...,)."""
-        return h * (1 + h * (self._size * self.rho)[..., 0] / 2)
+    def time(self, h: Values) -> Values:
+        """τ = t (1 + t rho / 2), for h of shape (...,)."""
+        passed: Values = h * (1 + h * (self._size * self.rho)[..., 0] / 2)
+        return passed
 
-    def root(self, h: Any) -> tuple[Any, Any]:
-        """s for the step sizes h (..., 1), and where it is the root that grows out of sigma_i, both (..., 1).
+    def root(self, h: Values) -> tuple[Any, Any]:
+        """s for the step sizes h (..., 1), and whether it is the root that continues sigma_i, both of shape (..., 1).
 
-        Newton's method from sigma_i; where it does not lead to a root with f' < -0.1, the root with f' <= 0 that is
-        nearest to sigma_i: the first one is then close to vanishing in a double root, or has vanished.
+        s is found by Newton's method from sigma_i. If that does not lead to a root with f' < -0.1, the root that
+        continues sigma_i is close to a double root or has vanished there, and s is the root with f' <= 0 that is
+        nearest to sigma_i.
         """
         t = h * self._size
         start = self._at.sigma_i + 0 * t
@@ -124,48 +129,48 @@ class OrbitStep(LocalStep):
             s = np.where(slope < -MIN_SLOPE / 2, s - self._value(s, t) / np.where(slope < 0, slope, -1), s)
         eps = float(np.finfo(s.dtype).eps)
         kept = (np.abs(self._value(s, t)) <= 16 * eps * (1 + np.abs(s))) & (self._slope(s, t) < -MIN_SLOPE)
-        if isinstance(s, Traced):  # where it does not hold the step is not made by compiled code
+        if isinstance(s, Traced):  # compiled code makes the step only if this holds
             s.tape.required.append(Traced(s.tape, np.all(kept)).entry)
             return s, kept
         if not bool(kept.all()):
             s = np.where(kept, s, self._nearest(start, t, kept))
         return s, kept
 
-    def value(self, s: Any, h: Any) -> Any:
-        """f(s) for steps of the size h (..., 1)."""
+    def value(self, s: Values, h: Values) -> Any:
+        """f(s) for steps of size h, shape (..., 1)."""
         return self._value(s, h * self._size)
 
-    def _root(self, t: Any) -> Any:
+    def _root(self, t: Values) -> Any:
         if not isinstance(t, Jet):
             return self.root(t / self._size)[0]
         at = self._at
 
-        def rest(d: Any) -> Any:
+        def rest(d: Values) -> Any:
             s = at.sigma_i + d
             return t * s * (self.rho + t / 4 * (at.v2 + s * (self._square - s)))
 
         return at.sigma_i + solve_implicitly(rest, np.zeros_like(at.h), t)
 
-    def _value(self, s: Any, t: Any) -> Any:
+    def _value(self, s: Values, t: Values) -> Any:
         at = self._at
         return at.sigma_i + s * (t * self.rho - 1 + t * t / 4 * (at.v2 + s * (self._square - s)))
 
-    def _slope(self, s: Any, t: Any) -> Any:
+    def _slope(self, s: Values, t: Values) -> Any:
         return t * self.rho - 1 + t * t / 4 * (self._at.v2 + s * (2 * self._square - 3 * s))
 
-    def _nearest(self, start: Any, t: Any, kept: Any) -> Any:
-        """The root with f' <= 0 that is nearest to sigma_i, where it is needed."""
+    def _nearest(self, start: Array, t: Values, kept: BooleanArray) -> Array:
+        """The root with f' <= 0 that is nearest to sigma_i, for entries that are not `kept`."""
         found = start.copy()
         constant, linear = self._at.sigma_i, t * self.rho - 1 + t * t / 4 * self._at.v2
         square, cube = t * t / 4 * self._square, -t * t / 4
         rows = np.broadcast_arrays(cube, square, linear, constant, found)
-        for index in np.argwhere(~np.broadcast_to(kept, found.shape)):
-            place = tuple(index)
-            *polynomial, near = (float(x[place]) for x in rows)
+        for position in np.argwhere(~np.broadcast_to(kept, found.shape)):
+            index = tuple(position)
+            *polynomial, near = (float(x[index]) for x in rows)
             roots = np.roots(polynomial)
             real = roots[np.abs(roots.imag) <= 1e-6 * (1 + np.abs(roots))].real
             outer = real[np.polyval(np.polyder(polynomial), real) <= 1e-6]
-            found[place] = min(outer if len(outer) else real, key=lambda x: abs(x - near))
+            found[index] = min(outer if len(outer) else real, key=lambda x: abs(x - near))
         for _ in range(2):
             slope = self._slope(found, t)
             far = np.abs(slope) > 1e-3
@@ -175,10 +180,10 @@ class OrbitStep(LocalStep):
 
 @final
 class ExactOrbitUpdate:
-    """The step as an update (m, dt) -> m; made by ``RigidBody.exact_orbit()``.
+    """The step of `ExactOrbit` as an update (m, dt) -> m; ``RigidBody.exact_orbit()`` returns it.
 
-    Where the root that grows out of sigma_i is lost (from dt |m| of about 3 times the moments on), the only root left
-    may lie on the other of the two closed orbits of the same energy: there the step is made in two halves.
+    For dt |m| above about 3 times the moments, the root that continues sigma_i may vanish, and the remaining root may
+    be on the other of the two closed orbits of the same energy. Then the step is made in two halves.
 
     Parameters
     ----------
@@ -199,16 +204,16 @@ class ExactOrbitUpdate:
         self.body, self.step = body, step
         self._action = Action(body.representation, "cayley")
 
-    def __call__(self, m: Any, dt: Any) -> Any:
+    def __call__(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """The next point, shape (..., 3)."""
         return self.advance(m, dt)[0]
 
-    def time(self, m: Any, dt: Any) -> Any:
-        """The time that passes, with which trajectories have order 2, shape (...,)."""
+    def time(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
+        """The time τ that passes, with which trajectories have order 2, shape (...,)."""
         return self.advance(m, dt)[1]
 
-    def advance(self, m: Any, dt: Any) -> tuple[Any, Any]:
-        """The next point and the time that passes, shapes (..., 3) and (...,).
+    def advance(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> tuple[Array, Array]:
+        """The next point, shape (..., 3), and the time τ that passes, shape (...,).
 
         Raises
         ------
@@ -221,9 +226,10 @@ class ExactOrbitUpdate:
             raise InputError(f"the step size is {dt!r}, expected finite numbers")
         return self._advance(point, h, MAX_HALVINGS)
 
-    def _advance(self, m: Any, h: Any, halvings: int) -> tuple[Any, Any]:
+    def _advance(self, m: Array, h: Array, halvings: int) -> tuple[Array, Array]:
         local = OrbitStep(self.body, m)
-        after, passed = self._action.act(local.factors(h)[0], m), local.time(h[..., 0])
+        after: Any = self._action.act(local.factors(h)[0], m)
+        passed: Any = local.time(h[..., 0])
         kept = local.root(h)[1][..., 0]
         if bool(kept.all()) or not halvings:
             return after, passed

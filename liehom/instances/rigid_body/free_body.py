@@ -1,11 +1,11 @@
-"""FreeBody: what the updates use of a rigid body, its inverse inertia Om and its vector fields.
+"""FreeBody: the protocol of a rigid body that its updates use, with the inverse inertia Om and the vector fields.
 
 The updates are written for this protocol, below `RigidBody`, which satisfies it and whose methods return them.
 """
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -13,9 +13,12 @@ from liehom.homogeneous import GeneratorField
 from liehom.representations import Representation
 from liehom.typing import Values
 
+FloatType: TypeAlias = type[np.floating[Any]]
+"""numpy.float64 or numpy.longdouble."""
+
 
 class FreeBody(Protocol):
-    """A free rigid body m' = m x Om m, as far as its updates need it.
+    """A free rigid body m' = m x Om m, with the methods that its updates call.
 
     Attributes
     ----------
@@ -36,7 +39,7 @@ class FreeBody(Protocol):
         """Om m for points m (..., 3)."""
         ...
 
-    def invariants(self, dtype: type[np.floating[Any]] = np.float64) -> tuple[Any, Any, Any]:
+    def invariants(self, dtype: FloatType = np.float64) -> tuple[Any, Any, Any]:
         """e_1, e_2, e_3, the elementary symmetric functions of the inverse moments."""
         ...
 

@@ -1,15 +1,15 @@
-"""The motion of the free rigid body in principal axes, exactly, by Jacobi elliptic functions.
+"""Exact motion of the free rigid body in principal axes, by Jacobi elliptic functions.
 
 With w_1 <= w_2 <= w_3 the inverse moments, a_1 = w_3 - w_2, a_2 = w_3 - w_1, a_3 = w_2 - w_1, m' = m x Om m reads
 
     m_1' = a_1 m_2 m_3,   m_2' = -a_2 m_3 m_1,   m_3' = a_3 m_1 m_2,
 
-with the integrals P = a_2 m_1^2 + a_1 m_2^2, Q = a_3 m_2^2 + a_2 m_3^2 and A = a_1 m_3^2 - a_3 m_1^2.  For A > 0
+with the first integrals P = a_2 m_1^2 + a_1 m_2^2, Q = a_3 m_2^2 + a_2 m_3^2 and A = a_1 m_3^2 - a_3 m_1^2. For A > 0
 
     m_1 = (P/a_2)^(1/2) cn u,  m_2 = -+ (P/a_1)^(1/2) sn u,  m_3 = +- (Q/a_2)^(1/2) dn u,  u = u_0 + (a_1 Q)^(1/2) t,
     k^2 = a_3 P / (a_1 Q),  1 - k^2 = a_2 A / (a_1 Q);
 
-for A < 0 the axes 1 and 3 change places; on the separatrix A = 0 these are tanh and sech.
+For A < 0 the axes 1 and 3 are exchanged; on the separatrix A = 0 the functions are tanh and sech.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from typing import Any
 import numpy as np
 
 from liehom.instances.rigid_body.elliptic import jacobi_elliptic
+from liehom.typing import Array
 
 
-def free_motion(m: Any, gaps: tuple[Any, Any, Any], t: Any) -> Any:
-    """The points at time t of the motions through m at time 0, in principal axes.
+def free_motion(m: Array, gaps: tuple[Any, Any, Any], t: Array) -> Array:
+    """Points at time t of the motions through m at time 0, in principal axes, shape (..., 3).
 
     Parameters
     ----------
     m : array of shape (..., 3)
-        Axis 1 is that of the largest moment of inertia.
+        Axis 1 is the axis of the largest moment of inertia.
     gaps : (a_1, a_2, a_3)
         Not negative, a_2 = a_1 + a_3.
     t : array of shape (...,)
@@ -38,8 +39,8 @@ def free_motion(m: Any, gaps: tuple[Any, Any, Any], t: Any) -> Any:
 
     Notes
     -----
-    The addition theorem takes the place of u_0, with the denominator 1 - k^2 sn^2 u sn^2 u_0 as the sum of
-    cn^2 u_0 and sn^2 u_0 dn^2 u, so that nothing is lost next to the separatrix.
+    The addition theorem is used instead of u_0. Its denominator 1 - k^2 sn^2 u sn^2 u_0 is computed as the sum of
+    cn^2 u_0 and sn^2 u_0 dn^2 u, which is accurate next to the separatrix.
 
     Examples
     --------
@@ -52,7 +53,7 @@ def free_motion(m: Any, gaps: tuple[Any, Any, Any], t: Any) -> Any:
     if a2 == 0:  # a sphere: nothing moves
         return np.broadcast_to(m, (*np.broadcast_shapes(m.shape[:-1], np.shape(t)), 3)).copy()
     level = a1 * m[..., 2] ** 2 - a3 * m[..., 0] ** 2
-    third = (level > 0) | ((level == 0) & (a1 > 0))  # the axis that is circled
+    third = (level > 0) | ((level == 0) & (a1 > 0))  # whether the motion circles axis 3, else it circles axis 1
     swing, middle = np.where(third, m[..., 0], m[..., 2]), m[..., 1]
     circled = np.where(third, m[..., 2], m[..., 0])
     own, across = np.where(third, a1, a3), np.where(third, a3, a1)

@@ -2,29 +2,31 @@
 
 Isotropy and multiples of psi raise its order.
 
-The system of Theorem 5, (1/2) rho(zeta) w_1 - c w_1 = w_n - z_n, has two unknowns.  `liehom.Corrected` lets c change
-the clock; here the generator makes up for it: adding zeta t^(n-1) - c psi(m) t^n changes the coefficient of t^n by
-(1/2) rho(zeta) w_1 - c w_1, and the clock stays.  From xi = sum psi^(j-1) t^j / j! this makes the paper's xi_o^sy4.
+The system of Theorem 5, (1/2) rho(zeta) w_1 - c w_1 = w_n - z_n, has two unknowns. In `liehom.Corrected`, c changes the
+time reparametrization τ. Here it changes the generator: adding zeta t^(n-1) - c psi(m) t^n changes the coefficient of
+t^n by (1/2) rho(zeta) w_1 - c w_1, and time is nominal, τ(t) = t. Applied to xi = sum psi^(j-1) t^j / j!, this gives
+the paper's xi_o^sy4.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.correctors.expansion import flow_series
 from liehom.correctors.isotropy.isotropy_corrector import correct
-from liehom.correctors.step import Generator, LocalStep, OneExponential
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action
+from liehom.typing import Values
 
 
 @final
 @dataclass(frozen=True)
 class GeneratorTaylor(OneExponential):
-    """xi = sum_(j <= n) psi^(j-1) t^j / j!, the Taylor series of the integral of psi along the flow: order at most 2.
+    """The step xi = sum_(j <= n) psi^(j-1) t^j / j!, the series of the integral of psi along the flow: order at most 2.
 
     Parameters
     ----------
@@ -42,7 +44,7 @@ class GeneratorTaylor(OneExponential):
     def order(self) -> int:
         return min(self.n, 2)
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         flow = flow_series(psi.field, m, self.n, t[..., 0] if np.ndim(t) else t)
         total = flow.psi(self.n - 1) / self.n * h
         for j in range(self.n - 1, 0, -1):
@@ -52,7 +54,7 @@ class GeneratorTaylor(OneExponential):
 
 @final
 class NominalTimeCorrected(OneExponential):
-    """A step raised in order by isotropy and by multiples of psi(m), without a clock.
+    """A step whose order is raised by isotropy and by multiples of psi(m), at the nominal time τ(h) = h.
 
     Parameters
     ----------
@@ -66,7 +68,7 @@ class NominalTimeCorrected(OneExponential):
 
     Notes
     -----
-    For autonomous fields, where the range condition (6.2) holds.
+    For autonomous fields, at points at which the range condition (6.2) holds.
 
     Examples
     --------
@@ -85,10 +87,10 @@ class NominalTimeCorrected(OneExponential):
     def order(self) -> int:
         return max(self._order, self.step.order)
 
-    def generator(self, action: Action, psi: Generator, m: Any, t: Any, h: Any) -> Any:
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         return self.at(action, psi, m, t).factors(h)[0]
 
-    def at(self, action: Action, psi: Generator, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         local = self.step.at(action, psi, m, t)
         velocity = psi(m, t)
         time = t[..., 0] if np.ndim(t) else t
@@ -97,7 +99,7 @@ class NominalTimeCorrected(OneExponential):
                 action, psi.field, local, m, time, base_order=n - 1, order=n, orbit_dimension=psi.orbit_dimension
             )
             zeta, c = found.zeta[n - 1], found.clock[n]
-            if zeta is not None and c is not None:  # they are where no trajectory moves
+            if zeta is not None and c is not None:  # they are None if no trajectory moves
                 local = _Raised(local, n, zeta, -c[..., None] * velocity)
         return local
 
@@ -107,12 +109,12 @@ class NominalTimeCorrected(OneExponential):
 
 @final
 class _Raised(LocalStep):
-    """xi + zeta h^(n-1) + x h^n."""
+    """The generator xi + zeta h^(n-1) + x h^n."""
 
-    def __init__(self, base: LocalStep, n: int, zeta: Any, x: Any) -> None:
+    def __init__(self, base: LocalStep, n: int, zeta: Values, x: Values) -> None:
         self.base, self.n, self.zeta, self.x = base, n, zeta, x
 
-    def factors(self, h: Any) -> tuple[Any, ...]:
+    def factors(self, h: Values) -> Factors:
         power = h
         for _ in range(self.n - 2):
             power = power * h

@@ -7,26 +7,32 @@ omega_b is the generator of the body representation, omega_o the one orthogonal 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra import so
+from liehom.correctors.step import ExponentialLike
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.maps import FieldMatrix, remainder
 from liehom.instances.rigid_body.attitude import attitude
 from liehom.instances.rigid_body.closed_forms import ClosedFormUpdate
 from liehom.instances.rigid_body.exact_orbit import ExactOrbit, ExactOrbitUpdate
+from liehom.instances.rigid_body.free_body import FloatType
 from liehom.instances.rigid_body.free_motion import free_motion
 from liehom.instances.rigid_body.updates import Update
 from liehom.integrators.run.points import points_of
 from liehom.representations import Representation, adjoint
-from liehom.scalars import QQ
+from liehom.scalars import QQ, ExactMatrix, Scalar
+from liehom.typing import Array, ScalarLike, Values
 
 SYMMETRY_RTOL = 1e-10
+"""Largest difference of I[i, j] and I[j, i], relative to the largest entry."""
 
 
 @final
@@ -36,8 +42,8 @@ class RigidBody:
     Parameters
     ----------
     inertia : three positive numbers, or a symmetric positive definite (3, 3) matrix
-        Principal moments, or the tensor. Numbers, fractions, or texts such as "3/2"; floats count as the rational
-        numbers that they are, so that Om = I^-1 is known exactly. Moments need not satisfy the triangle inequality.
+        Principal moments, or the tensor. Entries are numbers, fractions, or strings such as "3/2". A float is read as
+        the rational number that it is, so that Om = I^-1 is exact. Moments need not satisfy the triangle inequality.
 
     Attributes
     ----------
@@ -53,12 +59,12 @@ class RigidBody:
     Raises
     ------
     ShapeError, InputError
-        If the inertia tensor is not of this kind.
+        If the inertia is not of this kind.
 
     Notes
     -----
-    Section 4 of the paper with X = omega x m throughout. Names of updates are those of Figure 6; `liehom.instances.
-    update_names` lists them.
+    Section 4 of the paper with X = omega x m throughout. Updates have the names of Figure 6;
+    `liehom.instances.update_names` lists them.
 
     Examples
     --------
@@ -72,20 +78,20 @@ class RigidBody:
     (True, True)
     """
 
-    def __init__(self, inertia: Any) -> None:
+    def __init__(self, inertia: Sequence[ScalarLike] | Sequence[Sequence[ScalarLike]] | npt.NDArray[Any]) -> None:
         tensor = _tensor(inertia)
         self._inverse = tensor.inverse()
         self._apply = FieldMatrix(self._inverse)
         self.representation: Representation = adjoint(so(3))
-        self.inertia = tensor.to_numpy()
-        self.inverse = self._inverse.to_numpy()
+        self.inertia: Array = tensor.to_numpy()
+        self.inverse: Array = self._inverse.to_numpy()
         for array in (self.inertia, self.inverse):
             array.flags.writeable = False
         self._diagonal = all(tensor.to_rows()[i][j] == 0 for i in range(3) for j in range(3) if i != j)
 
     # -- the field ---------------------------------------------------------------------------------------
-    def apply(self, m: Any) -> Any:
-        """Om m for m (..., 3): floats of either precision, exact numbers, or a Jet.
+    def apply(self, m: npt.ArrayLike | Values) -> Any:
+        """Om m for points m (..., 3): floats of either precision, exact numbers, or a Jet.
 
         Examples
         --------
@@ -95,17 +101,17 @@ class RigidBody:
         """
         return self._apply(m)
 
-    def rayleigh(self, m: Any) -> Any:
-        """h = <m, Om m> / |m|^2, twice the energy on the unit sphere, shape (...,)."""
+    def rayleigh(self, m: Values) -> Any:
+        """Rayleigh quotient h = <m, Om m> / |m|^2, twice the energy on the unit sphere, shape (...,)."""
         return _dot(m, self.apply(m)) / _dot(m, m)
 
     def field(self, kind: str = "o") -> GeneratorField:
-        """The vector field with the generator omega_b ("b") or omega_o ("o").
+        """The vector field with the generator omega_b ("b") or omega_o ("o"), a GeneratorField.
 
         Raises
         ------
         InputError
-            If the kind is another one.
+            If the kind is neither "b" nor "o".
 
         Examples
         --------
@@ -120,12 +126,12 @@ class RigidBody:
 
     @cached_property
     def _fields(self) -> dict[str, GeneratorField]:
-        def body(m: Any) -> Any:
+        def body(m: Values) -> Any:
             return -self.apply(m)
 
-        def orthogonal(m: Any) -> Any:
+        def orthogonal(m: Values) -> Any:
             turned = self.apply(m)
-            h = np.sum(m * turned, axis=-1, keepdims=True) / np.sum(m * m, axis=-1, keepdims=True)
+            h: Any = np.sum(m * turned, axis=-1, keepdims=True) / np.sum(m * m, axis=-1, keepdims=True)
             return h * m - turned
 
         return {
@@ -133,22 +139,22 @@ class RigidBody:
             for kind, psi in zip(_GENERATORS, (body, orthogonal), strict=True)
         }
 
-    def vector(self, m: Any) -> Any:
-        """X(m) = m x Om m."""
+    def vector(self, m: Values) -> Any:
+        """Vector field X(m) = m x Om m, shape (..., 3)."""
         return np.cross(m, self.apply(m))
 
-    def energy(self, m: Any) -> Any:
-        """H(m) = <m, Om m> / 2, shape (...,)."""
+    def energy(self, m: Values) -> Any:
+        """Energy H(m) = <m, Om m> / 2, shape (...,)."""
         return _dot(m, self.apply(m)) / 2
 
-    def casimir(self, m: Any) -> Any:
+    def casimir(self, m: Values) -> Any:
         """|m|^2, shape (...,)."""
         return _dot(m, m)
 
     # -- principal axes ----------------------------------------------------------------------------------
     @cached_property
-    def _principal(self) -> tuple[list[Any], Any]:
-        """w_1 <= w_2 <= w_3 (exactly, for a diagonal tensor) and axes in columns."""
+    def _principal(self) -> tuple[list[Scalar], Array]:
+        """w_1 <= w_2 <= w_3 (exact for a diagonal tensor) and axes in columns."""
         if self._diagonal:
             rows = self._inverse.to_rows()
             order = sorted(range(3), key=lambda i: rows[i][i])
@@ -162,17 +168,17 @@ class RigidBody:
         return values, axes
 
     @property
-    def moments(self) -> Any:
-        """The principal moments, the largest first, shape (3,)."""
+    def moments(self) -> Array:
+        """Principal moments, the largest first, shape (3,)."""
         return np.array([1 / QQ.to_float(x) for x in self._principal[0]])
 
     @property
-    def axes(self) -> Any:
+    def axes(self) -> Array:
         """Principal axes in columns, in the order of `moments`, shape (3, 3)."""
         return self._principal[1]
 
-    def invariants(self, dtype: Any = np.float64) -> tuple[Any, Any, Any]:
-        """e_1, e_2, e_3, the elementary symmetric functions of the inverse moments.
+    def invariants(self, dtype: FloatType = np.float64) -> tuple[Any, Any, Any]:
+        """e_1, e_2, e_3, the elementary symmetric functions of the inverse moments, in a floating type.
 
         Examples
         --------
@@ -184,27 +190,28 @@ class RigidBody:
         second = (trace**2 - square.trace()) / 2
         return number(trace, dtype), number(second, dtype), number(om.determinant(), dtype)
 
-    def equilibria(self, radius: float = 1.0) -> Any:
-        """The points +-e_j on the principal axes, the axis of the largest moment first, shape (6, 3).
+    def equilibria(self, radius: float = 1.0) -> Array:
+        """The equilibria +-e_j on the principal axes, the axis of the largest moment first, shape (6, 3).
 
-        Where two moments agree every point between their axes is an equilibrium too.
+        If two moments are equal, every point of the great circle through their axes is an equilibrium too.
 
         Examples
         --------
         >>> RigidBody([1, 2, 3]).equilibria()[:2].tolist()
         [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
         """
-        return radius * np.stack([self.axes.T, -self.axes.T], axis=1).reshape(6, 3) + 0.0
+        points: Array = radius * np.stack([self.axes.T, -self.axes.T], axis=1).reshape(6, 3) + 0.0
+        return points
 
-    def separatrix(self, angle: Any, branch: int = 1, radius: float = 1.0) -> Any:
-        """Points on the separatrix h = w_2: two great circles through the middle axis.
+    def separatrix(self, angle: npt.ArrayLike, branch: int = 1, radius: float = 1.0) -> Array:
+        """Points on the separatrix h = w_2, two great circles through the middle axis.
 
         Parameters
         ----------
         angle : array of shape (...,)
-            From the middle axis; 0 and pi are the unstable equilibria.
+            Angle from the middle axis; 0 and pi are the unstable equilibria.
         branch : 1 or -1
-            Which of the two circles.
+            Selects one of the two circles.
         radius : float
 
         Returns
@@ -214,7 +221,7 @@ class RigidBody:
         Raises
         ------
         InputError
-            If two moments agree: there is no separatrix.
+            If two moments are equal, since then there is no separatrix.
 
         Examples
         --------
@@ -231,22 +238,24 @@ class RigidBody:
             )
         first, middle, third = self.axes.T
         across = (np.sqrt(a1) * first + branch * np.sqrt(a3) * third) / np.sqrt(a2)
-        angle = np.asarray(angle, dtype=float)[..., None]
-        return radius * (np.cos(angle) * middle + np.sin(angle) * across)
+        angles = np.asarray(angle, dtype=float)[..., None]
+        points: Array = radius * (np.cos(angles) * middle + np.sin(angles) * across)
+        return points
 
-    def _gaps(self, dtype: Any) -> tuple[Any, Any, Any]:
+    def _gaps(self, dtype: FloatType) -> tuple[Any, Any, Any]:
+        """w_3 - w_2, w_3 - w_1, w_2 - w_1 in a floating type."""
         w1, w2, w3 = self._principal[0]
         return number(w3 - w2, dtype), number(w3 - w1, dtype), number(w2 - w1, dtype)
 
     # -- exact motion ------------------------------------------------------------------------------------
-    def exact(self, m0: Any, t: Any) -> Any:
+    def exact(self, m0: npt.ArrayLike, t: npt.ArrayLike) -> Array:
         """The point at time t of the motion through m0 at time 0, by Jacobi elliptic functions.
 
         Parameters
         ----------
         m0 : array_like of shape (..., 3)
-            Of any length; numpy.longdouble is kept (for a tensor that is not diagonal the axes are in double
-            precision).
+            Of any norm. numpy.longdouble gives a result in extended precision (for a tensor that is not diagonal, the
+            axes are in double precision).
         t : array_like of shape (...,)
             Broadcasts against the leading axes of m0.
 
@@ -272,8 +281,8 @@ class RigidBody:
         axes = self.axes.astype(m.dtype)
         return free_motion(m @ axes, self._gaps(m.dtype.type), time) @ axes.T
 
-    def attitude(self, m0: Any, t: Any, start: Any = None) -> Any:
-        """The rotations Q(t) from the body to space, Q' = Q hat(Om m), with Q m, the momentum in space, constant.
+    def attitude(self, m0: npt.ArrayLike, t: npt.ArrayLike, start: npt.ArrayLike | None = None) -> Array:
+        """Rotations Q(t) from the body to space, Q' = Q hat(Om m); the momentum in space, Q m, is constant.
 
         Parameters
         ----------
@@ -291,11 +300,11 @@ class RigidBody:
         Raises
         ------
         ShapeError, InputError
-            If an argument is not of this form, or Q(0) is no rotation.
+            If an argument is not of this form, or Q(0) is not a rotation.
 
         Notes
         -----
-        m and the rows of Q are moved by one rotation, that of the generator omega_b.
+        One rotation, with the generator omega_b, moves m and the rows of Q.
 
         Examples
         --------
@@ -308,13 +317,13 @@ class RigidBody:
         return attitude(self.apply, point_of(m0), t, start)
 
     # -- updates -----------------------------------------------------------------------------------------
-    def update(self, name: str, exponential: Any = "cayley") -> Update:
-        """The update of Figure 6 with this name, (m, dt) -> m, from its base scheme and the generic corrector.
+    def update(self, name: str, exponential: ExponentialLike = "cayley") -> Update:
+        """The update (m, dt) -> m of Figure 6 with a name, from its base scheme and the generic corrector.
 
         Raises
         ------
         InputError
-            If there is none; lists the names.
+            If no update has this name; the message lists the names.
 
         Examples
         --------
@@ -324,7 +333,7 @@ class RigidBody:
         return Update(self, name, exponential)
 
     def closed_form(self, name: str, exponential: str = "cayley") -> ClosedFormUpdate:
-        """The same update in closed form, (m, dt) -> m.
+        """The update (m, dt) -> m of Figure 6 with a name, in closed form.
 
         Examples
         --------
@@ -337,7 +346,7 @@ class RigidBody:
         return ClosedFormUpdate(self, name, exponential)
 
     def exact_orbit(self) -> ExactOrbitUpdate:
-        """The Cayley step that keeps the energy to round-off, (m, dt) -> m, with a clock of order 2.
+        """The update (m, dt) -> m by the Cayley step that conserves the energy to round-off, of order 2 in time.
 
         Examples
         --------
@@ -357,8 +366,8 @@ class RigidBody:
 _GENERATORS = ("b", "o")
 
 
-def number(x: Any, dtype: Any) -> Any:
-    """A rational number in floats of a type.
+def number(x: Scalar, dtype: FloatType) -> Any:
+    """A rational number rounded to a floating type.
 
     Examples
     --------
@@ -371,8 +380,8 @@ def number(x: Any, dtype: Any) -> Any:
     return dtype(near) + dtype(remainder(QQ, x, near)) if dtype == np.longdouble else dtype(near)
 
 
-def point_of(m: Any) -> Any:
-    """Points of R^3 as floats, shape (..., 3).
+def point_of(m: npt.ArrayLike) -> Array:
+    """Points of R^3 as an array of floats, shape (..., 3).
 
     Raises
     ------
@@ -390,12 +399,13 @@ def point_of(m: Any) -> Any:
     return point
 
 
-def _dot(a: Any, b: Any) -> Any:
+def _dot(a: Values, b: Values) -> Any:
+    """<a, b> over the last axis, shape (...,)."""
     return np.sum(a * b, axis=-1)
 
 
-def _tensor(inertia: Any) -> Any:
-    """The inertia tensor over QQ."""
+def _tensor(inertia: object) -> ExactMatrix:
+    """The inertia tensor as a matrix over QQ."""
     given = np.asarray(inertia, dtype=object)
     if given.shape == (3,):
         given = np.diag(given)
@@ -417,6 +427,7 @@ def _tensor(inertia: Any) -> Any:
 
 
 def _rational(x: Any) -> Fraction:
+    """A number, or a string, as a fraction."""
     try:
         if isinstance(x, str | int | Fraction):
             return Fraction(x)

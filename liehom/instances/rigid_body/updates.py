@@ -1,9 +1,9 @@
-"""The updates of Figure 6 for the rigid body, each a base scheme on a generator, corrected or not.
+"""The updates of Figure 6 for the rigid body, each a base scheme on a generator, with or without a correction.
 
-    name = scheme_variant: scheme eul, rk2, sy4, rk4; variant b or o (the generator omega_b or omega_o), with i before
-    it for one order more of the energy by isotropy (eul_i: on omega_o)
+    name = scheme_variant: scheme eul, rk2, sy4, rk4; variant b or o (the generator omega_b or omega_o), preceded by i
+    if isotropy raises the order of the energy by one (eul_i: on omega_o)
 
-The clock is the nominal one: energy and orbits gain from the correction, trajectories keep the order of the base.
+Time is nominal: the correction raises the order of energy and orbits, and trajectories have the order of the base.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
-from liehom.correctors.step import Generator, Step
+from liehom.correctors.step import ExponentialLike, Generator, Step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.instances.rigid_body.free_body import FreeBody
@@ -21,10 +22,11 @@ from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor, 
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import Euler, Heun, LieTaylor
 from liehom.integrators.run.points import points_of
+from liehom.typing import Array
 
 
 class Orders(NamedTuple):
-    """Global orders on a triaxial body: of the energy and of the solution."""
+    """Global orders of the energy and of the solution on a triaxial body."""
 
     energy: int
     solution: int
@@ -50,7 +52,7 @@ ORDERS: dict[str, Orders] = {
 
 
 def update_names() -> tuple[str, ...]:
-    """The names of the updates: the 13 of Figure 6, then rk4_ib and rk4_io.
+    """Names of the updates, a tuple of strings: the 13 of Figure 6, then rk4_ib and rk4_io.
 
     Examples
     --------
@@ -61,12 +63,12 @@ def update_names() -> tuple[str, ...]:
 
 
 def checked_name(name: str) -> str:
-    """The name, if there is an update of this name.
+    """The name, if an update has this name.
 
     Raises
     ------
     InputError
-        If there is none.
+        If no update has this name.
 
     Examples
     --------
@@ -81,9 +83,9 @@ def checked_name(name: str) -> str:
 
 
 def scheme(name: str, *, cayley: bool = True) -> tuple[str, Step]:
-    """The generator ("b" or "o") and the step that an update consists of.
+    """The generator ("b" or "o") and the step of an update.
 
-    With the true exponential sy4_o is LieTaylor(4) on omega_o; with Cayley the paper chooses another isotropy, by
+    With the true exponential sy4_o is LieTaylor(4) on omega_o. With Cayley the paper chooses another isotropy, for
     which the conditions of order 4 hold with xi_4 = omega''' + 3 <omega', omega> omega (`NominalTimeCorrected`).
 
     Examples
@@ -97,13 +99,13 @@ def scheme(name: str, *, cayley: bool = True) -> tuple[str, Step]:
     base = (
         NominalTimeCorrected(GeneratorTaylor(4), 4) if (method, kind, cayley) == ("sy4", "o", True) else bases[method]
     )
-    # a step whose energy has order p has one of order p + 1 where its orbit has
+    # corrected to capture orbits to the order of the energy
     return kind, Corrected(base, ORDERS[name].energy) if "i" in variant else base
 
 
 @final
 class Update:
-    """An update m -> Exp(xi(m, dt)) m of the rigid body, made by the generic code: call it as update(m, dt).
+    """An update m -> Exp(xi(m, dt)) m of the rigid body by the generic code, called as update(m, dt).
 
     Parameters
     ----------
@@ -119,19 +121,19 @@ class Update:
     step : Step
         The base scheme, or `Corrected` of it.
     field : GeneratorField
-        With the generator omega_b or omega_o.
+        The field with the generator omega_b or omega_o.
     orders : (energy, solution)
         Global orders on a triaxial body.
 
     Raises
     ------
     InputError
-        If there is no such name; when it is called, at m = 0.
+        If no update has this name; in a call, at m = 0.
 
     Notes
     -----
-    Figure 6 and section 4 of the paper. The correction needs sigma at t^(n-1), the last power that matters: at lower
-    powers it is zero, up to round-off, as the energy of the base is right there.
+    Figure 6 and section 4 of the paper. The correction needs sigma at t^(n-1), the highest power that matters. At lower
+    powers sigma is zero up to round-off, because the energy of the base is right there.
 
     Examples
     --------
@@ -142,33 +144,37 @@ class Update:
     (Orders(energy=2, solution=1), (2, 3))
     """
 
-    def __init__(self, body: FreeBody, name: str, exponential: Any = "cayley") -> None:
+    def __init__(self, body: FreeBody, name: str, exponential: ExponentialLike = "cayley") -> None:
         self.body, self.name = body, checked_name(name)
         self._action = Action(body.representation, exponential)
         kind, self.step = scheme(name, cayley=self._action.exponential.name.startswith("Cayley"))
         self.field: GeneratorField = body.field(kind)
         self.orders = ORDERS[name]
 
-    def __call__(self, m: Any, dt: Any) -> Any:
+    def __call__(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """The next point, shape (..., 3), for m (..., 3) and step sizes dt (...,)."""
         point = _off_the_origin(points_of(m))
-        return self._action.act(self._generator(point, dt), point)
+        after: Any = self._action.act(self._generator(point, dt), point)
+        new: Array = after
+        return new
 
-    def generator(self, m: Any, dt: Any) -> Any:
+    def generator(self, m: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
         """xi(m, dt), shape (..., 3)."""
         return self._generator(_off_the_origin(points_of(m)), dt)
 
-    def _generator(self, m: Any, dt: Any) -> Any:
+    def _generator(self, m: Array, dt: npt.ArrayLike) -> Array:
         h = step_sizes(dt, m)
         local = self.step.at(self._action, Generator(self.field, 2), m, np.zeros_like(h))
-        return local.factors(h)[0]
+        found: Any = local.factors(h)[0]
+        xi: Array = found
+        return xi
 
     def __repr__(self) -> str:
         return f"<update {self.name} with {self._action.exponential.name}: {self.step!r}>"
 
 
-def step_sizes(dt: Any, m: Any) -> Any:
-    """Step sizes (..., 1) of the type of m.
+def step_sizes(dt: npt.ArrayLike, m: Array) -> Array:
+    """Step sizes (..., 1) in the floating type of the points m (..., 3).
 
     Examples
     --------
@@ -185,7 +191,8 @@ def step_sizes(dt: Any, m: Any) -> Any:
         ) from None
 
 
-def _off_the_origin(m: Any) -> Any:
+def _off_the_origin(m: Array) -> Array:
+    """The points, if none of them is 0."""
     if not bool(np.all(np.any(m != 0, axis=-1))):
         raise InputError("the group leaves m = 0 fixed: leave such points out, they do not move")
     return m

@@ -1,22 +1,24 @@
-"""Sphere: SO(k) on the sphere of any radius in R^k, generators of its vector fields, geodesic curvature.
+"""Sphere: SO(k) on the sphere of any radius in R^k, with generators of vector fields and geodesic curvatures.
 
     (x ^ y) z = <x, z> y - <y, z> x,   omega(m) = m ^ X(m) / |m|^2 is the generator of X orthogonal to g_m,
     g_m = {eta : eta m = 0}, spanned by x ^ y with x, y orthogonal to m.
 
-For k = 3 generators are vectors acting by the cross product, x ^ y = x x y.  With u = X/|X| and the curvature vector
-K of the orbit (tangential, orthogonal to u), Euler's step with |X| u ^ K in its generator runs on the circle that
-osculates the orbit: (3.7) of the paper, in any dimension.
+For k = 3 generators are vectors that act by the cross product, x ^ y = x x y. Let u = X/|X|, and let K be the
+curvature vector of the orbit (tangential, orthogonal to u). Euler's step with |X| u ^ K added to its generator moves on
+the circle that osculates the orbit: (3.7) of the paper, in any dimension.
 """
 
 from __future__ import annotations
 
-from typing import Any, final
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra import so
 from liehom.correctors.expansion import flow_series, step_series
-from liehom.correctors.step import Generator, Step
+from liehom.correctors.step import ExponentialLike, Generator, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.components import Components
@@ -24,6 +26,10 @@ from liehom.homogeneous.maps import FieldMap
 from liehom.integrators.run.points import points_of
 from liehom.representations import Representation, adjoint, defining
 from liehom.series.jet import Jet
+from liehom.typing import Array, Real, Values
+
+VectorField: TypeAlias = Callable[..., Any] | Sequence[Any]
+"""Components of a vector field or of a generator, in one of the forms that a `GeneratorField` takes."""
 
 
 @final
@@ -33,7 +39,7 @@ class Sphere:
     Parameters
     ----------
     k : int
-        The dimension of the space around it, at least 2.
+        The dimension of the surrounding space, at least 2.
     radius : float
 
     Attributes
@@ -75,8 +81,8 @@ class Sphere:
         """The dimension of g_m = so(k - 1)."""
         return (self.k - 1) * (self.k - 2) // 2
 
-    def wedge(self, x: Any, y: Any) -> Any:
-        """x ^ y in so(k), shape (..., dim), for x and y (..., k); arrays, Jets, exact numbers.
+    def wedge(self, x: npt.ArrayLike | Values, y: npt.ArrayLike | Values) -> Any:
+        """x ^ y in so(k), shape (..., dim so(k)), for x and y (..., k): arrays, Jets or exact numbers.
 
         Examples
         --------
@@ -85,8 +91,8 @@ class Sphere:
         """
         return self._wedge(x, y)
 
-    def project(self, m: Any) -> Any:
-        """radius m / |m|.
+    def project(self, m: npt.ArrayLike) -> Array:
+        """The points radius m / |m| of the sphere, shape (..., k).
 
         Examples
         --------
@@ -94,16 +100,17 @@ class Sphere:
         [0.0, 2.0, 0.0]
         """
         point = points_of(m)
-        return self.radius * point / np.linalg.norm(point, axis=-1, keepdims=True)
+        projected: Array = self.radius * point / np.linalg.norm(point, axis=-1, keepdims=True)
+        return projected
 
     # -- generators --------------------------------------------------------------------------------------
-    def generator(self, field: Any, isotropy: Any = None) -> GeneratorField:
-        """The vector field X with its orthogonal generator, or with isotropy added to it.
+    def generator(self, field: VectorField, isotropy: VectorField | None = None) -> GeneratorField:
+        """The vector field X as a GeneratorField, with the orthogonal generator or with isotropy added to it.
 
         Parameters
         ----------
         field : callable or sequence
-            X(m) or X(m, t) in one of the forms that a `GeneratorField` takes, with k components. A component along m
+            X(m) or X(m, t) in one of the forms that a `GeneratorField` takes, with k components. The component along m
             has no effect.
         isotropy : callable or sequence, optional
             eta(m) or eta(m, t) in so(k); its part in g_m, eta - m ^ eta m / |m|^2, is added.
@@ -124,19 +131,19 @@ class Sphere:
         times = vector.time_dependent or (eta is not None and eta.time_dependent)
         action = Action(self.representation).infinitesimal
 
-        def psi(m: Any, t: Any) -> Any:
-            x = vector(m, t)
+        def psi(m: Values, t: Real) -> Any:
+            x: Any = vector(m, t)
             if eta is None:
-                return self.wedge(m, x) / _dot(m, m)
+                return self.wedge(m, x) / dot(m, m)
             more = eta(m, t)
-            return more + self.wedge(m, x - action(more, m)) / _dot(m, m)
+            return more + self.wedge(m, x - action(more, m)) / dot(m, m)
 
         if times:
             return GeneratorField(self.representation, psi, time_dependent=True)
         return GeneratorField(self.representation, lambda m: psi(m, 0.0), time_dependent=False)
 
     def orthogonal(self, field: GeneratorField) -> GeneratorField:
-        """The same vector field with its orthogonal generator.
+        """The vector field of `field` as a GeneratorField with the orthogonal generator.
 
         Examples
         --------
@@ -152,8 +159,8 @@ class Sphere:
         return self.generator(lambda m: field.vector(m))
 
     # -- geodesic curvature ------------------------------------------------------------------------------
-    def curvature_of_flow(self, field: GeneratorField, m: Any, t: Any = 0.0) -> Any:
-        """The geodesic curvature of the orbit through m, (3.8).
+    def curvature_of_flow(self, field: GeneratorField, m: npt.ArrayLike, t: Real = 0.0) -> Array:
+        """Geodesic curvature of the orbit through m, (3.8).
 
         Parameters
         ----------
@@ -164,8 +171,8 @@ class Sphere:
         Returns
         -------
         array
-            For k = 3 the signed curvature, shape (...,), positive to the left seen from outside; else the
-            curvature vector, tangential and orthogonal to X, shape (..., k). 0 where X = 0.
+            For k = 3 the signed curvature, shape (...,), positive for curves to the left seen from outside. For other k
+            the curvature vector, tangential and orthogonal to X, shape (..., k). It is 0 where X = 0.
 
         Examples
         --------
@@ -179,8 +186,10 @@ class Sphere:
         """
         return self._curvature(flow_series(field, points_of(m), 2, t).points)
 
-    def curvature_of_step(self, field: GeneratorField, step: Step, m: Any, exponential: Any = "exp") -> Any:
-        """The geodesic curvature at m of the curve dt -> step of size dt, in the same form.
+    def curvature_of_step(
+        self, field: GeneratorField, step: Step, m: npt.ArrayLike, exponential: ExponentialLike = "exp"
+    ) -> Array:
+        """Geodesic curvature at m of the curve dt -> step of size dt, in the form of `curvature_of_flow`.
 
         Examples
         --------
@@ -195,8 +204,10 @@ class Sphere:
         """
         return self._curvature(self.step_curve(field, step, m, 2, exponential))
 
-    def step_curve(self, field: GeneratorField, step: Step, m: Any, order: int, exponential: Any = "exp") -> Jet:
-        """The Taylor series of dt -> step of size dt at m, values of shape (..., k).
+    def step_curve(
+        self, field: GeneratorField, step: Step, m: npt.ArrayLike, order: int, exponential: ExponentialLike = "exp"
+    ) -> Jet:
+        """Taylor series of dt -> step of size dt at m, a Jet with values of shape (..., k).
 
         Examples
         --------
@@ -213,7 +224,7 @@ class Sphere:
         return step_series(action, local, point, order)
 
     def curvature_series(self, curve: Jet) -> Jet:
-        """The geodesic curvature along a curve, for k = 3 a Jet of numbers, of order less by 2.
+        """Geodesic curvature along a curve of order n, a Jet of order n - 2 (of numbers for k = 3, else of vectors).
 
         Parameters
         ----------
@@ -227,8 +238,8 @@ class Sphere:
 
         Notes
         -----
-        Lemma 2 and (3.10) of the paper: of two curves that agree to order n - 1 the curvatures differ first at the
-        derivative n - 2, by the difference of the n-th derivatives along N x X, over |X|^3.
+        Lemma 2 and (3.10) of the paper: the curvatures of two curves that agree to order n - 1 differ first in the
+        derivative of order n - 2, by the difference of the n-th derivatives along N x X, divided by |X|^3.
 
         Examples
         --------
@@ -247,13 +258,12 @@ class Sphere:
         weights = np.arange(1, n + 3).reshape(-1, *[1] * (y.ndim - 1))
         first = weights * y[1:]
         second = weights[: n + 1] * first[1:]
-        made = self._curvature_along(Jet(y[: n + 1]), Jet(first[: n + 1]), Jet(second))
-        return made  # type: ignore[no-any-return]
+        return self._curvature_along(Jet(y[: n + 1]), Jet(first[: n + 1]), Jet(second))
 
-    def improvement(self, field: GeneratorField, m: Any, t: Any = 0.0) -> Any:
-        """What makes Euler's step with the orthogonal generator follow the osculating circle: (3.7) for any k.
+    def improvement(self, field: GeneratorField, m: npt.ArrayLike, t: Real = 0.0) -> Array:
+        """Isotropy with which Euler's step with the orthogonal generator follows the osculating circle: (3.7).
 
-        |X| u ^ K in g_m, with K the curvature vector of the orbit; for k = 3 it is sigma_i m/|m|, sigma_i = k_g |X|.
+        It is |X| u ^ K in g_m, K the curvature vector of the orbit; for k = 3, sigma_i m/|m| with sigma_i = k_g |X|.
 
         Returns
         -------
@@ -270,46 +280,57 @@ class Sphere:
         True
         """
         points = flow_series(field, points_of(m), 2, t).points
-        m, x, acceleration = (points.coefficient(j) * (j or 1) for j in range(3))
-        vector, unit, speed = _curvature_vector(m, x, acceleration)
-        return speed * self.wedge(unit, vector)
+        point, x, acceleration = (points.coefficient(j) * (j or 1) for j in range(3))
+        vector, unit, speed = _curvature_vector(point, x, acceleration)
+        isotropy: Array = speed * self.wedge(unit, vector)
+        return isotropy
 
-    def _curvature(self, curve: Jet) -> Any:
+    def _curvature(self, curve: Jet) -> Array:
         m, x, acceleration = (curve.coefficient(j) * (j or 1) for j in range(3))
         vector, unit, _ = _curvature_vector(m, x, acceleration)
         if self.k != 3:
             return vector
-        return np.sum(vector * np.cross(m / np.sqrt(_dot(m, m)), unit), axis=-1)
+        signed: Array = np.sum(vector * np.cross(m / np.sqrt(dot(m, m)), unit), axis=-1)
+        return signed
 
-    def _curvature_along(self, m: Jet, x: Jet, acceleration: Jet) -> Any:
-        """The same for Jets, where X is not 0."""
+    def _curvature_along(self, m: Any, x: Any, acceleration: Any) -> Jet:
+        """Curvature along Jets of points, velocities and accelerations; the velocities are not 0."""
         if self.k == 3:
-            above = np.sum(acceleration * np.cross(m, x), axis=-1)
-            return above / (np.sqrt(np.sum(m * m, axis=-1)) * np.sum(x * x, axis=-1) ** 1.5)
-        square = _dot(x, x)
-        rest = acceleration - m * (_dot(acceleration, m) / _dot(m, m)) - x * (_dot(acceleration, x) / square)
-        return rest / square
+            above: Any = np.sum(acceleration * np.cross(m, x), axis=-1)
+            signed: Jet = above / (np.sqrt(np.sum(m * m, axis=-1)) * np.sum(x * x, axis=-1) ** 1.5)
+            return signed
+        square = dot(x, x)
+        rest = acceleration - m * (dot(acceleration, m) / dot(m, m)) - x * (dot(acceleration, x) / square)
+        vector: Jet = rest / square
+        return vector
 
     def __repr__(self) -> str:
         return f"Sphere({self.k})" if self.radius == 1 else f"Sphere({self.k}, radius={self.radius})"
 
 
-def _dot(x: Any, y: Any) -> Any:
+def dot(x: Values, y: Values) -> Any:
+    """<x, y> over the last axis, shape (..., 1), for arrays and Jets.
+
+    Examples
+    --------
+    >>> dot(np.ones(3), np.ones(3)).tolist()
+    [3.0]
+    """
     return np.sum(x * y, axis=-1, keepdims=True)
 
 
-def _curvature_vector(m: Any, x: Any, acceleration: Any) -> tuple[Any, Any, Any]:
+def _curvature_vector(m: Values, x: Values, acceleration: Values) -> tuple[Array, Array, Array]:
     """K = (tangential acceleration across x) / |x|^2, the unit vector along x, and |x|; K = 0 where x = 0."""
-    speed = np.sqrt(_dot(x, x))
+    speed = np.sqrt(dot(x, x))
     moves = speed > 0
     unit = np.where(moves, x / np.where(moves, speed, 1), 0)
-    across = acceleration - m * (_dot(acceleration, m) / _dot(m, m))
-    across = across - unit * _dot(across, unit)
+    across = acceleration - m * (dot(acceleration, m) / dot(m, m))
+    across = across - unit * dot(across, unit)
     return np.where(moves, across / np.where(moves, speed, 1) ** 2, 0), unit, speed
 
 
 def _wedge(representation: Representation) -> FieldMap:
-    """(x, y) -> x ^ y: the components of y x^T - x y^T in the basis, which is orthogonal for the trace form."""
+    """The map (x, y) -> x ^ y: components of y x^T - x y^T in the basis, which is orthogonal for the trace form."""
     k, entries = representation.size, []
     for a, matrix in enumerate(representation.matrices):
         rows = matrix.to_rows()

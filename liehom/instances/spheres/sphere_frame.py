@@ -1,57 +1,63 @@
-"""SphereFrame: the frame {n, omega/v, n x omega/v} of section 3 on S^2, and the order conditions in its coordinates.
+"""SphereFrame: the frame {n, omega/v, n x omega/v} of section 3 on S^2, with the order conditions in its coordinates.
 
     n = m/|m|,  v = |omega|,  omega^(j) = a_j n + b_j omega/v + c_j n x omega/v,  likewise alpha_j, beta_j, gamma_j for
     the coefficients xi_j of a step xi = sum xi_j t^j / j!
 
-beta_j and gamma_j are determined by the orders, alpha_j is free: the isotropy.  gamma decides whether the orbit is
-captured, beta whether it is at the right time.
+The orders determine beta_j and gamma_j; alpha_j, the isotropy, is free. gamma decides whether the orbit is captured,
+beta whether the point is reached at the right time.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import factorial
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.correctors.expansion import flow_series
-from liehom.correctors.step import Generator, OneExponential, step_variable
+from liehom.correctors.step import ExponentialLike, Generator, OneExponential, step_variable
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.instances.spheres.sphere import Sphere
 from liehom.integrators.run.points import points_of
+from liehom.typing import Array, Values
 
 ORDER = 4
+
+Coordinates: TypeAlias = tuple[Array, ...]
+"""One coordinate of four vectors, arrays of shape (...,)."""
 
 
 @final
 class SphereFrame:
-    """The frame at a point of S^2, and what order conditions say in it.
+    """The frame at points of S^2, and the order conditions in its coordinates.
 
     Parameters
     ----------
     field : GeneratorField
         On `Sphere(3).representation`, autonomous; its isotropy does not matter.
     m : array_like of shape (..., 3)
-        No equilibria.
+        Points other than equilibria.
 
     Attributes
     ----------
     vectors : array of shape (..., 3, 3)
         The frame, in rows.
     v : array of shape (...,)
+        |omega|.
     a, b, c : tuples of four arrays of shape (...,)
         Coordinates of the orthogonal generator and its derivatives along the flow.
 
     Raises
     ------
     InputError, ShapeError
-        If the field depends on time or m is an equilibrium or no point of R^3.
+        If the field depends on time, or m is an equilibrium or not a point of R^3.
 
     Notes
     -----
-    Section 3 of the paper, (3.2)-(3.6), with the signs and terms corrected; order 4 is not in the paper.
+    Section 3 of the paper, (3.2)-(3.6), with corrected signs and terms; order 4 is not in the paper.
 
     Examples
     --------
@@ -65,7 +71,7 @@ class SphereFrame:
     True
     """
 
-    def __init__(self, field: GeneratorField, m: Any) -> None:
+    def __init__(self, field: GeneratorField, m: npt.ArrayLike) -> None:
         point = points_of(m)
         if point.shape[-1:] != (3,) or field.representation.size != 3:
             raise ShapeError(f"the frame is one on S^2, got points of shape {point.shape} and {field!r}")
@@ -82,20 +88,22 @@ class SphereFrame:
         self.vectors = np.stack([n, along, np.cross(n, along)], axis=-2)
         self.a, self.b, self.c = self._read(omega)
 
-    def _read(self, vectors: Sequence[Any]) -> tuple[tuple[Any, ...], ...]:
+    def _read(self, vectors: Sequence[Any]) -> tuple[Coordinates, Coordinates, Coordinates]:
+        """Coordinates of vectors in the frame: those along n, along omega, and along n x omega."""
         made = [(self.vectors @ x[..., None])[..., 0] for x in vectors]
-        return tuple(tuple(x[..., i] for x in made) for i in range(3))
+        along_n, along, across = (tuple(x[..., i] for x in made) for i in range(3))
+        return along_n, along, across
 
     def coordinates(
-        self, step: OneExponential, field: GeneratorField, exponential: Any = "exp"
-    ) -> tuple[tuple[Any, ...], ...]:
+        self, step: OneExponential, field: GeneratorField, exponential: ExponentialLike = "exp"
+    ) -> tuple[Coordinates, Coordinates, Coordinates]:
         """alpha_j, beta_j, gamma_j, j = 1, ..., 4, of a step with one exponential.
 
         Parameters
         ----------
         step : OneExponential
         field : GeneratorField
-            With the generator that the step uses.
+            The field with the generator that the step uses.
         exponential : "exp", "cayley", ...
 
         Returns
@@ -117,9 +125,7 @@ class SphereFrame:
         (xi,) = local.factors(step_variable(ORDER, self.point))
         return self._read([xi.coefficient(j) * factorial(j) for j in range(1, ORDER + 1)])
 
-    def conditions(
-        self, alpha: Sequence[Any], exponential: str = "exp"
-    ) -> tuple[tuple[Any, Any, Any, Any], tuple[Any, Any, Any, Any]]:
+    def conditions(self, alpha: Sequence[Values], exponential: str = "exp") -> tuple[Coordinates, Coordinates]:
         """beta_1, ..., beta_4 and gamma_1, ..., gamma_4 for the orders 1 to 4, given alpha_1, alpha_2, alpha_3.
 
         Raises
@@ -139,7 +145,8 @@ class SphereFrame:
         """
         cayley = _is_cayley(exponential)
         v, (_, b1, b2, b3), (_, c1, c2, c3) = self.v, self.b, self.c
-        a1, a2, a3 = alpha[:3]
+        free: Any = alpha
+        a1, a2, a3 = free[:3]
         tail = -a1 * v**3 - 2 * a1 * b2 - 3 * a2 * b1 - 2 * a3 * v
         if cayley:
             third = b2 + v**3 / 2 + 1.5 * c1 * a1
@@ -151,19 +158,22 @@ class SphereFrame:
             last = c3 + 2 * v**2 * c1 - a1**2 * c1 + tail
         return (v, b1, third, fourth), (0 * v, c1 - a1 * v, c2 - 1.5 * (a2 * v + a1 * b1), last)
 
-    def capturing(self, order: int, alpha: Sequence[Any], gamma: Sequence[Any], exponential: str = "exp") -> Any:
-        """alpha_(n-1) with which a step of order n - 1 captures orbits to order n = 2, 3, 4: (3.5), (3.6).
+    def capturing(
+        self, order: int, alpha: Sequence[Values], gamma: Sequence[Values], exponential: str = "exp"
+    ) -> Array:
+        """alpha_(n-1), shape (...,), with which a step of order n - 1 captures orbits to order n: (3.5), (3.6).
 
         Parameters
         ----------
         order : int
-            n.
+            n, one of 2, 3 and 4.
         alpha, gamma : sequences
             The coordinates of the step; alpha up to n - 2 and gamma up to n are used.
 
         Notes
         -----
-        The equation for gamma_n solved for alpha_(n-1); that for beta_n is the clock's, tau = t + theta t^n/n!.
+        The equation for gamma_n is solved for alpha_(n-1). The equation for beta_n is satisfied by the time
+        reparametrization τ = t + theta t^n/n!.
 
         Raises
         ------
@@ -182,15 +192,20 @@ class SphereFrame:
         True
         """
         v, (_, b1, b2, _), (_, c1, c2, c3) = self.v, self.b, self.c
+        free: Any = alpha
+        given: Any = gamma
+        found: Array
         if order == 2:
-            return (c1 - gamma[1]) / v
-        if order == 3:
-            return (2 / 3 * (c2 - gamma[2]) - alpha[0] * b1) / v
-        if order != 4:
+            found = (c1 - given[1]) / v
+        elif order == 3:
+            found = (2 / 3 * (c2 - given[2]) - free[0] * b1) / v
+        elif order == 4:
+            a1, a2 = free[:2]
+            known = 3 * v**2 * c1 if _is_cayley(exponential) else (2 * v**2 - a1**2) * c1
+            found = (c3 - given[3] + known - a1 * v**3 - 2 * a1 * b2 - 3 * a2 * b1) / (2 * v)
+        else:
             raise InputError(f"the order is {order!r}, expected 2, 3 or 4")
-        a1, a2 = alpha[:2]
-        known = 3 * v**2 * c1 if _is_cayley(exponential) else (2 * v**2 - a1**2) * c1
-        return (c3 - gamma[3] + known - a1 * v**3 - 2 * a1 * b2 - 3 * a2 * b1) / (2 * v)
+        return found
 
     def __repr__(self) -> str:
         return f"<frame on S^2 at points of shape {self.point.shape}>"

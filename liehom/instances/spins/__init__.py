@@ -1,4 +1,4 @@
-"""Landau-Lifshitz-Gilbert spins: one spin in closed form, lattices, and all spins as one point.
+"""Landau-Lifshitz-Gilbert spins: one spin in closed form, lattices of spins, and all spins of a lattice as one point.
 
 Users start from `liehom.LandauLifshitz`; see docs/api/instances.md.
 """

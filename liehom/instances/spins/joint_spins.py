@@ -1,8 +1,8 @@
-"""JointSpins: all spins of a lattice as one point of R^(3n), on which so(3)^n acts; for few spins.
+"""JointSpins: all spins of a small lattice as one point of R^(3n), on which so(3)^n acts.
 
     rho(x_1, ..., x_n)(m_1, ..., m_n) = (x_1 x m_1, ..., x_n x m_n)
 
-The representation has 3n matrices of size 3n: good up to some dozen spins.
+The representation has 3n matrices of size 3n, which limits n to some dozen spins.
 """
 
 from __future__ import annotations
@@ -11,16 +11,18 @@ from collections.abc import Callable
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra import direct_sum, so
 from liehom.homogeneous import GeneratorField
 from liehom.instances.spins.spin_lattice import SpinLattice
 from liehom.representations import Representation, adjoint
+from liehom.typing import Real, Values
 
 
 @final
 class JointSpins:
-    """A product of spheres as one space.
+    """The space of all states of n spins, a product of n spheres in R^(3n).
 
     Parameters
     ----------
@@ -34,7 +36,7 @@ class JointSpins:
     representation : Representation
         so(3)^n on R^(3n).
     field : GeneratorField
-        For points (..., 3n), the spins one after the other.
+        On points (..., 3n), the coordinates of the spins in order.
 
     Examples
     --------
@@ -51,8 +53,8 @@ class JointSpins:
         self.representation = product_of_spheres(lattice.count)
         axes = (1,) * len(lattice.shape)
 
-        def psi(m: Any, t: Any) -> Any:
-            # t of every lattice, at each of its spins
+        def psi(m: Values, t: Real) -> Any:
+            # the time of every lattice, repeated for each of its spins
             times = np.reshape(t, (*np.shape(t), *axes)) + 0 * self.spins(m)[..., 0]
             return self.point(generator(self.spins(m), times))
 
@@ -62,14 +64,14 @@ class JointSpins:
             time_dependent=time_dependent,
         )
 
-    def point(self, m: Any) -> Any:
-        """The points (..., 3n) of spins (..., *shape, 3), arrays or Jets."""
-        m = m if hasattr(m, "shape") else np.asarray(m, dtype=float)
-        self.lattice.check(m)
-        return m.reshape((*m.shape[: len(m.shape) - 1 - len(self.lattice.shape)], 3 * self.lattice.count))
+    def point(self, m: npt.ArrayLike | Values) -> Any:
+        """Points (..., 3n) of spins (..., *shape, 3), arrays or Jets."""
+        spins: Any = m if hasattr(m, "shape") else np.asarray(m, dtype=float)
+        self.lattice.check(spins)
+        return spins.reshape((*spins.shape[: len(spins.shape) - 1 - len(self.lattice.shape)], 3 * self.lattice.count))
 
-    def spins(self, point: Any) -> Any:
-        """The spins (..., *shape, 3) of points (..., 3n), arrays or Jets.
+    def spins(self, point: npt.ArrayLike | Values) -> Any:
+        """Spins (..., *shape, 3) of points (..., 3n), arrays or Jets.
 
         Examples
         --------
@@ -77,12 +79,12 @@ class JointSpins:
         >>> LandauLifshitz((3, 4)).joint().spins([0.0] * 36).shape
         (3, 4, 3)
         """
-        point = point if hasattr(point, "shape") else np.asarray(point, dtype=float)
-        return point.reshape((*point.shape[:-1], *self.lattice.shape, 3))
+        joint: Any = point if hasattr(point, "shape") else np.asarray(point, dtype=float)
+        return joint.reshape((*joint.shape[:-1], *self.lattice.shape, 3))
 
 
 def product_of_spheres(n: int) -> Representation:
-    """so(3)^n on R^(3n).
+    """The representation of so(3)^n on R^(3n).
 
     Examples
     --------
@@ -93,5 +95,5 @@ def product_of_spheres(n: int) -> Representation:
     matrices = np.zeros((3 * n, 3 * n, 3 * n), dtype=int)
     for i in range(n):
         matrices[3 * i : 3 * i + 3, 3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = single
-    # a sum of representations of the summands
+    # unchecked, because it is a direct sum of representations of the summands
     return Representation(direct_sum(*[so(3)] * n), matrices, name="n spins", check=False)

@@ -9,10 +9,11 @@ so(3): spins turn counterclockwise about the field (for gamma > 0) and, for alph
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, final
+from collections.abc import Callable, Iterable
+from typing import Any, TypeAlias, Unpack, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.algebra import so
 from liehom.correctors import Conserving, Corrected, Step
@@ -22,9 +23,15 @@ from liehom.homogeneous.fields.components import joined
 from liehom.instances.spins.joint_spins import JointSpins
 from liehom.instances.spins.spin_lattice import SpinLattice
 from liehom.integrators import Solution, integrate
+from liehom.integrators.run.options import SingleRunOptions
 from liehom.representations import adjoint
+from liehom.typing import Array, Real, Values
 
 UNIT_RTOL = 1e-6
+"""Largest difference of the length of a spin from 1."""
+
+AppliedField: TypeAlias = npt.ArrayLike | Callable[[Any], Any]
+"""An applied field, constant or as a function of time."""
 
 
 @final
@@ -42,7 +49,8 @@ class LandauLifshitz:
     axis : (3,) or (*shape, 3) array_like
         e, of any length but 0.
     applied : (3,) or (*shape, 3) array_like, or callable
-        H; or a function of t, written with numpy functions, of t (...,) to (..., 3), or a list of 3 of shape (...,).
+        H, constant or a function of t. A function is written with numpy functions, and maps t (...,) to an array
+        (..., 3) or to a list of 3 arrays (...,).
     damping : float or array_like of the lattice's shape
         alpha, not negative.
     gyromagnetic : float
@@ -53,21 +61,21 @@ class LandauLifshitz:
     Attributes
     ----------
     field : GeneratorField
-        On so(3) and R^3, for states m (..., *shape, 3): every spin is a trajectory, and psi couples them along the axes
-        of the lattice. It is right as long as all spins of a lattice are at one time: with fixed steps by the nominal
-        time. `integrate` sees to that.
+        On so(3) and R^3, for states m (..., *shape, 3). Every spin is a trajectory, and psi couples them along the axes
+        of the lattice. The field is right as long as all spins of a lattice are at one time, which fixed steps in
+        nominal time guarantee; `integrate` checks this.
 
     Raises
     ------
     InputError, ShapeError
-        If an argument is not right.
+        If an argument has a wrong type, shape or sign.
 
     Notes
     -----
-    A single spin, and spins that are not coupled, are on S^2, where isotropy is full: a corrected step has any order,
-    each spin by its own clock. Coupled spins are on a product of n spheres, of dimension 2n; n directions of isotropy
-    and one clock do not suffice (rank 3 of 4 for two spins). There the order comes from `LieTaylor` and `RKMK`, and
-    isotropy conserves first integrals: see `joint`.
+    Spins without coupling are on S^2, where isotropy is full: a corrected step has any order, with a time
+    reparametrization for each spin. Coupled spins are on a product of n spheres, of dimension 2n, where n directions of
+    isotropy and one time reparametrization do not suffice (rank 3 of 4 for two spins). For them the order comes from
+    `LieTaylor` and `RKMK`, and isotropy conserves first integrals: see `joint`.
 
     Examples
     --------
@@ -99,17 +107,17 @@ class LandauLifshitz:
         shape: tuple[int, ...] = (),
         *,
         exchange: float = 0.0,
-        anisotropy: Any = 0.0,
-        axis: Any = (0.0, 0.0, 1.0),
-        applied: Any = (0.0, 0.0, 0.0),
-        damping: Any = 0.0,
+        anisotropy: npt.ArrayLike = 0.0,
+        axis: npt.ArrayLike = (0.0, 0.0, 1.0),
+        applied: AppliedField = (0.0, 0.0, 0.0),
+        damping: npt.ArrayLike = 0.0,
         gyromagnetic: float = 1.0,
         periodic: bool | tuple[bool, ...] = True,
     ) -> None:
         self.lattice = SpinLattice(shape, periodic)
         self.exchange = float(self._given("exchange", exchange, ()))
-        self.anisotropy: Any = self._given("anisotropy", anisotropy, self.lattice.shape)
-        self.damping: Any = self._given("damping", damping, self.lattice.shape)
+        self.anisotropy: Array = self._given("anisotropy", anisotropy, self.lattice.shape)
+        self.damping: Array = self._given("damping", damping, self.lattice.shape)
         self.gyromagnetic = float(self._given("gyromagnetic", gyromagnetic, ()))
         if np.any(self.damping < 0):
             raise InputError(f"the damping is {damping!r}, expected at least 0")
@@ -119,36 +127,38 @@ class LandauLifshitz:
             raise InputError(f"the axis is {axis!r}, expected vectors of R^3 other than 0")
         self._axis = e / length
         self.time_dependent = callable(applied)
-        self._applied: Any = applied if callable(applied) else self._given("applied", applied, (*self.lattice.shape, 3))
-        if not self.time_dependent and self._applied.shape[-1:] != (3,):
-            raise ShapeError(f"the applied field has shape {self._applied.shape}, expected (..., 3)")
+        self._applied: Any = applied
+        if not callable(applied):
+            self._applied = constant = self._given("applied", applied, (*self.lattice.shape, 3))
+            if constant.shape[-1:] != (3,):
+                raise ShapeError(f"the applied field has shape {constant.shape}, expected (..., 3)")
         psi: Callable[..., Any] = self.generator if self.time_dependent else lambda m: self.generator(m)
         self.field = GeneratorField(adjoint(so(3)), psi, time_dependent=self.time_dependent)
 
     # -- properties --------------------------------------------------------------------------------------
     @property
     def coupled(self) -> bool:
-        """Whether spins act on each other."""
+        """Whether the spins are coupled by exchange."""
         return self.exchange != 0 and self.lattice.bonds > 0
 
     # -- physics -----------------------------------------------------------------------------------------
-    def effective_field(self, m: Any, time: Any = 0.0) -> Any:
-        """h = -dE/dm at m (..., *shape, 3), array or Jet of that shape; time (..., *shape) or a number.
+    def effective_field(self, m: npt.ArrayLike | Values, time: Real = 0.0) -> Any:
+        """h = -dE/dm at m (..., *shape, 3), an array or Jet of that shape, for a time (..., *shape) or a number.
 
         Examples
         --------
         >>> LandauLifshitz((3,), exchange=2.0, periodic=False).effective_field([[0, 0, 1.0]] * 3)[:, 2].tolist()
         [2.0, 4.0, 2.0]
         """
-        m = self._spins(m)
-        h = self._field_at(m, time)
+        spins = self._spins(m)
+        h = self._field_at(spins, time)
         if np.any(self.anisotropy):
-            h = h + self._along(m) * (2 * self.anisotropy[..., None] * self._axis)
+            h = h + self._along(spins) * (2 * self.anisotropy[..., None] * self._axis)
         if self.coupled:
-            h = h + self.exchange * self.lattice.neighbour_sum(m)
+            h = h + self.exchange * self.lattice.neighbour_sum(spins)
         return h
 
-    def generator(self, m: Any, t: Any = 0.0) -> Any:
+    def generator(self, m: npt.ArrayLike | Values, t: Real = 0.0) -> Any:
         """psi = gamma/(1 + alpha^2) (h + alpha m x h), with m' = psi x m; shape (..., *shape, 3).
 
         Examples
@@ -156,14 +166,14 @@ class LandauLifshitz:
         >>> LandauLifshitz(applied=[0.0, 0.0, 2.0], damping=0.5).generator([1.0, 0.0, 0.0]).tolist()
         [0.0, -0.8, 1.6]
         """
-        m = self._spins(m)
-        h = self.effective_field(m, t)
+        spins = self._spins(m)
+        h = self.effective_field(spins, t)
         rate = (self.gyromagnetic / (1 + self.damping**2))[..., None]
         if not np.any(self.damping):
-            return rate * h + 0 * m
-        return rate * (h + self.damping[..., None] * np.cross(m, h))
+            return rate * h + 0 * spins
+        return rate * (h + self.damping[..., None] * np.cross(spins, h))
 
-    def energy(self, m: Any, time: Any = 0.0) -> Any:
+    def energy(self, m: npt.ArrayLike | Values, time: Real = 0.0) -> Any:
         """E of the lattices m (..., *shape, 3), shape (...,), arrays or Jets.
 
         Examples
@@ -171,15 +181,15 @@ class LandauLifshitz:
         >>> LandauLifshitz((4,), exchange=1.0, applied=[0, 0, 0.5]).energy([[0, 0, 1.0]] * 4)
         np.float64(-6.0)
         """
-        m = self._spins(m)
-        density = -np.sum(m * self._field_at(m, time), axis=-1)
+        spins = self._spins(m)
+        density = -np.sum(spins * self._field_at(spins, time), axis=-1)
         if np.any(self.anisotropy):
-            density = density - self.anisotropy * self._along(m)[..., 0] ** 2
+            density = density - self.anisotropy * self._along(spins)[..., 0] ** 2
         if self.coupled:
-            density = density - self.exchange / 2 * np.sum(m * self.lattice.neighbour_sum(m), axis=-1)
+            density = density - self.exchange / 2 * np.sum(spins * self.lattice.neighbour_sum(spins), axis=-1)
         return self.lattice.total(density)
 
-    def energy_rate(self, m: Any, time: Any = 0.0) -> Any:
+    def energy_rate(self, m: npt.ArrayLike | Values, time: Real = 0.0) -> Any:
         """dE/dt = -gamma sum_i alpha/(1 + alpha^2) |m_i x h_i|^2 in a constant field, shape (...,).
 
         Examples
@@ -187,14 +197,22 @@ class LandauLifshitz:
         >>> LandauLifshitz(applied=[0, 0, 2.0], damping=0.5).energy_rate([1.0, 0, 0])
         np.float64(-1.6)
         """
-        m = self._spins(m)
-        turning = np.cross(m, self.effective_field(m, time))
+        spins = self._spins(m)
+        turning = np.cross(spins, self.effective_field(spins, time))
         rate = self.gyromagnetic * self.damping / (1 + self.damping**2)
         return -self.lattice.total(rate * np.sum(turning * turning, axis=-1))
 
     # -- integration -------------------------------------------------------------------------------------
-    def integrate(self, t_span: Any, m0: Any, *, step: Step | None = None, dt: Any = None, **options: Any) -> Solution:
-        """The spins along time, by `liehom.integrate`.
+    def integrate(
+        self,
+        t_span: Iterable[float],
+        m0: npt.ArrayLike,
+        *,
+        step: Step | None = None,
+        dt: npt.ArrayLike | None = None,
+        **options: Unpack[SingleRunOptions],
+    ) -> Solution:
+        """The spins as functions of time, a `Solution` of `liehom.integrate`.
 
         Parameters
         ----------
@@ -202,11 +220,11 @@ class LandauLifshitz:
         m0 : (..., *shape, 3) array_like
             Unit vectors.
         step : Step, optional
-            Default `LieTaylor(6)`. Coupled spins: no corrected step.
+            Default `LieTaylor(6)`. Corrected steps are for spins without coupling only.
         dt : float, optional
-            The step size. Coupled spins need one; others without it have one each, adapted.
+            The step size. Coupled spins need one. For other spins the default is adaptive, for each spin separately.
         **options
-            Those of `liehom.integrate`.
+            Options of `liehom.integrate`.
 
         Returns
         -------
@@ -227,19 +245,19 @@ class LandauLifshitz:
         ...
         liehom.errors.InputError: the spins are coupled, so they need one step size: give dt, or take joint() ...
         """
-        m0 = np.asarray(m0)
-        self.lattice.check(m0)
-        if m0.dtype.kind not in "iuf" or not bool(np.all(np.abs(np.linalg.norm(m0, axis=-1) - 1) <= UNIT_RTOL)):
+        spins = np.asarray(m0)
+        self.lattice.check(spins)
+        if spins.dtype.kind not in "iuf" or not bool(np.all(np.abs(np.linalg.norm(spins, axis=-1) - 1) <= UNIT_RTOL)):
             raise InputError("the spins are not of length 1: divide them by their norms")
         if self.coupled:
             self._check_together(step, dt, options)
-        return integrate(self.field, t_span, m0, step=step, dt=dt, **options)
+        return integrate(self.field, t_span, spins, step=step, dt=dt, **options)
 
     def joint(self) -> JointSpins:
-        """All spins of a lattice as one point on a product of spheres, for few spins.
+        """The `JointSpins` of the lattice, all spins as one point on a product of spheres, for few spins.
 
-        There step sizes are adapted for all spins together, events stop all of them, and isotropy conserves the
-        energy (`liehom.correctors.Conserving`).
+        There all spins have one adaptive step size, events stop all of them, and isotropy conserves the energy
+        (`liehom.correctors.Conserving`).
 
         Examples
         --------
@@ -252,7 +270,8 @@ class LandauLifshitz:
         return JointSpins(self.lattice, self.generator, self.time_dependent)
 
     # -- private -----------------------------------------------------------------------------------------
-    def _check_together(self, step: Step | None, dt: Any, options: dict[str, Any]) -> None:
+    def _check_together(self, step: Step | None, dt: npt.ArrayLike | None, options: SingleRunOptions) -> None:
+        """Raise InputError if the options would bring coupled spins to different times."""
         if dt is None or np.ndim(dt):
             raise InputError(
                 "the spins are coupled, so they need one step size: give dt, or take joint() for adapted steps"
@@ -265,7 +284,8 @@ class LandauLifshitz:
         if options.get("events") is not None:
             raise InputError("the spins are coupled: an event would stop one of them; take joint() for events")
 
-    def _given(self, name: str, value: Any, shape: tuple[int, ...]) -> Any:
+    def _given(self, name: str, value: npt.ArrayLike, shape: tuple[int, ...]) -> Array:
+        """A parameter as an array that broadcasts to a shape, checked."""
         try:
             array = np.asarray(value, dtype=float)
         except (TypeError, ValueError):
@@ -280,15 +300,18 @@ class LandauLifshitz:
             raise ShapeError(f"{name} has shape {array.shape}, expected one that broadcasts to {shape}")
         return array
 
-    def _spins(self, m: Any) -> Any:
-        m = m if hasattr(m, "shape") else np.asarray(m, dtype=float)
-        self.lattice.check(m)
-        return m
+    def _spins(self, m: npt.ArrayLike | Values) -> Any:
+        """Spins as an array or Jet of a shape (..., *shape, 3), checked."""
+        spins: Any = m if hasattr(m, "shape") else np.asarray(m, dtype=float)
+        self.lattice.check(spins)
+        return spins
 
-    def _along(self, m: Any) -> Any:
+    def _along(self, m: Values) -> Any:
+        """<m, e>, shape (..., *shape, 1)."""
         return np.sum(m * self._axis, axis=-1)[..., None]
 
-    def _field_at(self, m: Any, t: Any) -> Any:
+    def _field_at(self, m: Values, t: Real) -> Any:
+        """The applied field at time t, in the form of m."""
         if not self.time_dependent:
             return self._applied
         h = self._applied(t)
@@ -306,5 +329,6 @@ class LandauLifshitz:
         return f"<LandauLifshitz {shape}J = {self.exchange}, K = {k}, alpha = {damping}>"
 
 
-def _shown(value: Any) -> str:
+def _shown(value: Array) -> str:
+    """A parameter as it is printed."""
     return str(float(value)) if value.ndim == 0 else f"array of shape {value.shape}"

@@ -2,30 +2,37 @@
 
     m' = -g m x H - a g m x (m x H),   g = gamma/(1 + a^2)
 
-With p = <m, H>/|H| and u = a g |H| t the part along the field is tanh(artanh(p) + u), the part across it turns by the
-angle g |H| t and has the length of 1/cosh.
+With p = <m, H>/|H| and u = a g |H| t, the component along the field is tanh(artanh(p) + u). The component across it
+turns by the angle g |H| t and has the length 1/cosh(artanh(p) + u).
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
+from liehom.typing import Array
 
 
-def macrospin(m0: Any, field: Any, t: Any, *, damping: Any = 0.0, gyromagnetic: Any = 1.0) -> Any:
-    """The spin at time t in a constant field.
+def macrospin(
+    m0: npt.ArrayLike,
+    field: npt.ArrayLike,
+    t: npt.ArrayLike,
+    *,
+    damping: npt.ArrayLike = 0.0,
+    gyromagnetic: npt.ArrayLike = 1.0,
+) -> Array:
+    """The spin at time t in a constant field, in closed form, shape (..., 3).
 
     Parameters
     ----------
     m0 : (..., 3) array_like
-        Unit vectors.
+        Unit vectors, the spins at time 0.
     field : (..., 3) array_like
         H.
     t, damping, gyromagnetic : float or array_like of shape (...,)
-        Conventions of `LandauLifshitz`. All broadcast.
+        Time, alpha and gamma of `LandauLifshitz`. All arguments are broadcast.
 
     Returns
     -------
@@ -46,30 +53,31 @@ def macrospin(m0: Any, field: Any, t: Any, *, damping: Any = 0.0, gyromagnetic: 
     >>> bool(macrospin([0.1, 0.0, -np.sqrt(0.99)], [0.0, 0.0, 1.0], 80.0, damping=0.1)[2] > 0.999)
     True
     """
-    m0, field = np.asarray(m0, dtype=float), np.asarray(field, dtype=float)
-    if m0.shape[-1:] != (3,) or field.shape[-1:] != (3,):
-        raise ShapeError(f"a spin of shape {m0.shape} in a field of shape {field.shape}, expected (..., 3) for both")
-    damping, t = np.asarray(damping, dtype=float), np.asarray(t, dtype=float)
-    size = np.linalg.norm(field, axis=-1)
-    n = field / np.where(size > 0, size, 1.0)[..., None]
-    angle = np.asarray(gyromagnetic, dtype=float) / (1 + damping**2) * size * t
-    u = damping * angle
-    p = np.sum(m0 * n, axis=-1)
-    across = m0 - p[..., None] * n
-    # tanh(artanh(p) + u) = s (a - b e)/(a + b e); the smaller one of a and b from the part across the field
+    spin, h = np.asarray(m0, dtype=float), np.asarray(field, dtype=float)
+    if spin.shape[-1:] != (3,) or h.shape[-1:] != (3,):
+        raise ShapeError(f"a spin of shape {spin.shape} in a field of shape {h.shape}, expected (..., 3) for both")
+    alpha, time = np.asarray(damping, dtype=float), np.asarray(t, dtype=float)
+    size = np.linalg.norm(h, axis=-1)
+    n = h / np.where(size > 0, size, 1.0)[..., None]
+    angle = np.asarray(gyromagnetic, dtype=float) / (1 + alpha**2) * size * time
+    u = alpha * angle
+    p = np.sum(spin * n, axis=-1)
+    across = spin - p[..., None] * n
+    # tanh(artanh(p) + u) = s (a - b e)/(a + b e); the smaller of a and b comes from the component across the field
     s = np.where(u < 0, -1.0, 1.0)
     square = np.sum(across * across, axis=-1)
     a, b = 1 + s * p, 1 - s * p
     a, b = np.where(s * p < 0, square / np.maximum(b, 1), a), np.where(s * p < 0, b, square / np.maximum(a, 1))
     e = np.maximum(np.exp(-2 * np.abs(u)), np.finfo(float).tiny)
-    turned = np.cos(angle)[..., None] * across + np.sin(angle)[..., None] * np.cross(n, m0)
-    return (s * (a - b * e) / (a + b * e))[..., None] * n + (2 * np.sqrt(e) / (a + b * e))[..., None] * turned
+    turned = np.cos(angle)[..., None] * across + np.sin(angle)[..., None] * np.cross(n, spin)
+    made: Array = (s * (a - b * e) / (a + b * e))[..., None] * n + (2 * np.sqrt(e) / (a + b * e))[..., None] * turned
+    return made
 
 
 def switching_time(
     start: float, end: float, *, field: float, anisotropy: float = 0.0, damping: float, gyromagnetic: float = 1.0
 ) -> float:
-    """The time in which m.e goes from one value to another, in a field H along the easy axis e.
+    """The time in which m.e goes from one value to another, in a field H along the easy axis e, a float.
 
     Parameters
     ----------
@@ -82,12 +90,12 @@ def switching_time(
     Raises
     ------
     InputError
-        If the spin does not go there, or a number is out of range.
+        If m.e does not reach the value, or a number is out of range.
 
     Notes
     -----
-    With z = m.e the equation is z' = a g (1 - z^2)(H + 2 K z), and the time an integral of partial fractions. Negative
-    times are before the start.
+    With z = m.e the equation is z' = a g (1 - z^2)(H + 2 K z), and the time is an integral of partial fractions. It is
+    negative if m.e had the second value before the first one.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""SpinLattice: chains, grids and blocks of unit vectors, and the sum over nearest neighbours.
+"""SpinLattice: chains, grids and blocks of unit vectors, with the sum over nearest neighbours.
 
     (sum m)_i = m_{i-1} + m_{i+1}  along each axis of the lattice
 
@@ -12,10 +12,13 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
+from liehom.typing import Values
 
 MIN_PERIOD = 3
+"""Smallest number of spins on a periodic axis."""
 
 
 @final
@@ -28,13 +31,13 @@ class SpinLattice:
     shape : tuple of int
         (): single spins; (n,): a chain; (n1, n2): a grid; and so on.
     periodic : bool or tuple of bool
-        For all axes, or one for each. An axis that is closed has at least 3 spins: with 2 the same two would be
+        One value for all axes, or one for each. A periodic axis has at least 3 spins, because two spins would be
         neighbours twice.
 
     Raises
     ------
     InputError
-        If the shape or the boundary is not so.
+        If the shape or the boundary is not of this form.
 
     Examples
     --------
@@ -65,12 +68,12 @@ class SpinLattice:
 
     @property
     def count(self) -> int:
-        """The number of spins."""
+        """Number of spins."""
         return int(np.prod(self.shape, dtype=int))
 
     @property
     def bonds(self) -> int:
-        """The number of pairs of neighbours.
+        """Number of pairs of neighbours.
 
         Examples
         --------
@@ -80,9 +83,9 @@ class SpinLattice:
         closed = self.periodic if isinstance(self.periodic, tuple) else ()
         return sum((n if p else n - 1) * self.count // n for n, p in zip(self.shape, closed, strict=True))
 
-    def neighbour_sum(self, m: Any) -> Any:
-        """The sum of the neighbours of every spin, for m (..., *shape, 3), array or Jet."""
-        total = 0 * m
+    def neighbour_sum(self, m: Values) -> Any:
+        """Sum of the neighbours of every spin, for m (..., *shape, 3), an array or a Jet of this shape."""
+        total: Any = 0 * m
         closed = self.periodic if isinstance(self.periodic, tuple) else ()
         for i, (n, p) in enumerate(zip(self.shape, closed, strict=True)):
             axis = i - len(self.shape) - 1
@@ -95,12 +98,12 @@ class SpinLattice:
                 total = total + np.roll(m, 1, axis=axis) * left + np.roll(m, -1, axis=axis) * right
         return total
 
-    def total(self, x: Any) -> Any:
-        """The sum of x (..., *shape) over all spins."""
+    def total(self, x: Values) -> Any:
+        """Sum of x (..., *shape) over all spins, shape (...,)."""
         axes = tuple(range(-len(self.shape), 0))
         return np.sum(x, axis=axes) if axes else x
 
-    def check(self, m: Any) -> None:
+    def check(self, m: npt.ArrayLike | Values) -> None:
         """Raise ShapeError unless m has the shape (..., *shape, 3).
 
         Examples
