@@ -79,7 +79,7 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
 
 
 def load_problem(path: str | os.PathLike[str]) -> Problem:
-    """Problem in a representation file: its point, generator and options; the point may have floats.
+    """Problem in a representation file, with its point, generator and options; the point may have floats.
 
     Raises
     ------

@@ -310,7 +310,7 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_demo_runs_on_the_example_files_and_ends_with_a_picture(elsewhere: Path) -> None:
+def test_demo_runs_on_the_example_files_and_ends_with_a_plot(elsewhere: Path) -> None:
     result = liehom("demo")
     assert result.exit_code == 0, result.output
     for expected in ("g2_su3", "not full", "witness, verified", "QQ(sqrt(2))", "equilibrium", "diag(1, 1, 2)"):
@@ -329,7 +329,7 @@ def test_demo_without_matplotlib_says_how_to_get_it(elsewhere: Path, monkeypatch
     assert list(elsewhere.iterdir()) == []
 
 
-def test_demo_where_no_picture_can_be_written(elsewhere: Path) -> None:
+def test_demo_in_a_folder_where_no_plot_can_be_written(elsewhere: Path) -> None:
     (elsewhere / "liehom-demo.png").mkdir()
     result = liehom("demo")
     assert result.exit_code == 0, result.output

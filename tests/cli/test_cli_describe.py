@@ -135,7 +135,7 @@ def test_floats_are_numerical() -> None:
         ("missing.sage", "cannot be read"),
     ],
 )
-def test_bad_input(name: str, says: str) -> None:
+def test_unknown_names_exit_with_2(name: str, says: str) -> None:
     result = describe(name)
     assert (result.exit_code, result.stdout) == (2, "")
     assert says in result.stderr
@@ -172,5 +172,5 @@ def test_exceptional_real_forms_with_a_capital_letter() -> None:
     assert facts("G2")["real_form"] == "g2(2)"
 
 
-def test_a_family_with_a_parameter_is_no_pair() -> None:
+def test_family_with_a_parameter_is_not_a_pair() -> None:
     assert "solvable" in describe("bianchi(VI;2)").stdout

@@ -194,7 +194,7 @@ def test_orders_are_what_they_should_be(file: str, words: tuple[str, ...], orbit
 @pytest.mark.parametrize(
     "sizes", ["", "0.1", "0.1,0.1", "0.1,0", "0.1,-0.05", "0.1,nan", "0.1,x", "0.1,,0.05", "20,10"]
 )
-def test_step_sizes_that_are_none(sizes: str) -> None:
+def test_invalid_step_sizes_exit_with_2(sizes: str) -> None:
     refused(liehom("order", RIGID, f"--dt={sizes}"))
 
 
@@ -204,7 +204,7 @@ def test_the_order_of_a_run_that_stands_still() -> None:
 
 # -- pictures --------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(("suffix", "begins"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
-def test_pictures_are_drawn(suffix: str, begins: bytes) -> None:
+def test_plots_are_drawn(suffix: str, begins: bytes) -> None:
     picture = f"picture.{suffix}"
     result = liehom("integrate", RIGID, "--plot", picture)
     assert result.exit_code == 0, result.output
@@ -230,7 +230,7 @@ def test_a_compiled_step_gives_the_same(file: str, tmp_path: Path, monkeypatch: 
 
 
 @pytest.mark.parametrize("words", [("--t-span", "3", "3"), ("--dt", "0.1", "--max-steps", "3"), ("--t-span", "2", "0")])
-def test_pictures_of_odd_runs(words: tuple[str, ...]) -> None:
+def test_plots_of_unusual_runs(words: tuple[str, ...]) -> None:
     result = liehom("integrate", RIGID, "--plot", "picture.png", "--json", *words)
     assert result.exit_code in (0, 1)
     assert json_of(result)["plot"] == "picture.png"
@@ -348,7 +348,7 @@ def test_a_checkpoint_of_something_else_is_refused(monkeypatch: pytest.MonkeyPat
         ({"clock": "wall"}, "clock"),
     ],
 )
-def test_problems_that_are_none(command: str, keys: dict[str, Any], named: str) -> None:
+def test_malformed_problems_exit_with_2(command: str, keys: dict[str, Any], named: str) -> None:
     refused(liehom(command, variant(**keys)), named)
     assert written() == ["variant.json"]
 
@@ -379,7 +379,7 @@ def test_problems_that_are_none(command: str, keys: dict[str, Any], named: str) 
         (("--exponential", "cayleigh"), "cayley"),
     ],
 )
-def test_options_that_are_none(words: tuple[str, ...], named: str) -> None:
+def test_invalid_options_exit_with_2(words: tuple[str, ...], named: str) -> None:
     refused(liehom("integrate", RIGID, *words), named)
     assert written() == []
 
@@ -387,7 +387,7 @@ def test_options_that_are_none(words: tuple[str, ...], named: str) -> None:
 @pytest.mark.parametrize(
     "file", ["none.json", "examples/none.json", "examples/../secret.json", "", ".", "examples/so4_so3.json"]
 )
-def test_files_that_are_no_problem(file: str) -> None:
+def test_files_without_a_problem_exit_with_2(file: str) -> None:
     refused(liehom("integrate", "--", file))
     assert written() == []
 

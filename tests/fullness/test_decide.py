@@ -114,12 +114,12 @@ NOT_FULL += [f"affine(S3(so({n})))" for n in (3, 4)] + [f"affine(S2(so({n})))" f
 
 
 @pytest.mark.parametrize("name", COMPACT + HYPERBOLIC + PROJECTIVE + AFFINE)
-def test_full_families(name: str) -> None:
+def test_transitive_families_are_full(name: str) -> None:
     in_bases(name, True, range(1))
 
 
 @pytest.mark.parametrize("name", NOT_FULL)
-def test_families_that_are_not_full(name: str) -> None:
+def test_intransitive_families_are_not_full_by_the_expected_certificate(name: str) -> None:
     in_bases(name, False, range(1))
 
 
@@ -129,7 +129,7 @@ def test_spheres_in_sparse_random_bases(n: int) -> None:
 
 
 @pytest.mark.parametrize("n", [22, 40])
-def test_large_spheres(n: int) -> None:
+def test_large_spheres_are_full(n: int) -> None:
     proved(lh.pair(f"so({n})/so({n - 1})"), True)
 
 
@@ -348,7 +348,7 @@ def test_a_kernel_of_the_isotropy_changes_nothing(name: str, ideal: str) -> None
         ([[[0, -1, 1, 0], [1, 0, 0, 1], [0, 0, 0, -1], [0, 0, 1, 0]]], False),  # a complex Jordan block
     ],
 )
-def test_few_matrices(matrices: Any, full: bool) -> None:
+def test_algebras_of_few_matrices_are_decided_in_every_basis(matrices: Any, full: bool) -> None:
     proved(affine(matrices), full)
     d = len(matrices[0])
     rng = random.Random(d)

@@ -196,7 +196,7 @@ def test_field_of_large_height() -> None:
 
 @fields
 @pytest.mark.parametrize("name", ["affine(so(2))", "affine(sl(2))", "sl(3)/P1", "affine(S3(gl(2)))", "affine(so(2,1))"])
-def test_multiples_of_what_the_residue_map_kills(name: str, field: Any) -> None:
+def test_multiples_of_a_prime_in_the_kernel_of_the_residue_map(name: str, field: Any) -> None:
     """Modular linear algebra sends b to a root modulo a prime p: b - root and p both go to 0."""
     prime, root = field.residue()
     generator = field.from_coordinates([QQ.convert(int(i == 1)) for i in range(field.degree)])

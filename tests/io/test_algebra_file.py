@@ -61,19 +61,19 @@ def test_the_format_must_be_stated() -> None:
 
 
 @pytest.mark.parametrize("key", ["dimension", "structure_constants"])
-def test_missing_key(key: str) -> None:
+def test_missing_key_is_named(key: str) -> None:
     with pytest.raises(errors.FormatError, match=f"'{key}' is missing in an algebra file"):
         lh.from_json({k: v for k, v in SO3.items() if k != key})
 
 
 @pytest.mark.parametrize("key", ["subalgebra", "matrices", "point", "Name"])
-def test_unknown_key(key: str) -> None:
+def test_unknown_key_is_named(key: str) -> None:
     with pytest.raises(errors.FormatError, match=f"unknown key '{key}' in an algebra file"):
         lh.from_json({**SO3, key: []})
 
 
 @pytest.mark.parametrize("name", ["", 7, None, "a\nb", "x" * 101])
-def test_name_that_is_none(name: Any) -> None:
+def test_unprintable_or_long_name_raises(name: Any) -> None:
     with pytest.raises(errors.FormatError, match=r"name is .*expected a printable name"):
         lh.from_json({**SO3, "name": name})
 

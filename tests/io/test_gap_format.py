@@ -109,7 +109,7 @@ def test_an_entry_of_an_antisymmetric_table_sets_both_orders() -> None:
         ("for i in [ 1 .. 3 ] do od;", "'for' is not read"),
     ],
 )
-def test_what_is_no_table(text: str, says: str) -> None:
+def test_malformed_table_raises_with_the_fault(text: str, says: str) -> None:
     with pytest.raises(errors.FormatError, match=says):
         io.from_gap(text)
 

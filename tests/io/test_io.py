@@ -161,7 +161,7 @@ def test_a_problem_with_an_exact_point_gives_the_pair() -> None:
         io.loads(json.dumps(PLANE), problem=True).pair()
 
 
-def test_a_pair_file_is_no_problem() -> None:
+def test_pair_file_is_not_a_problem() -> None:
     with refuses(errors.FormatError, "matrices"):
         io.loads(json.dumps(SPHERE), problem=True)
 
@@ -200,17 +200,17 @@ def test_not_a_json_object(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "{", "{'dimension': 1}", '{"dimension": 1,}', "not json", '{"dimension": 01}'])
-def test_not_json(text: str) -> None:
+def test_invalid_json_raises_with_the_position(text: str) -> None:
     with refuses(errors.FormatError, "not JSON", "line"):
         io.loads(text)
 
 
-def test_nested_without_end() -> None:
+def test_deep_nesting_raises_format_error() -> None:
     with refuses(errors.FormatError, "nested"):
         io.loads("[" * 100_000)
 
 
-def test_not_utf8(tmp_path: Path) -> None:
+def test_invalid_utf8_raises_with_the_byte(tmp_path: Path) -> None:
     file = tmp_path / "pair.json"
     file.write_bytes(b'{"basis": ["\xff"]}')
     with refuses(errors.FormatError, "UTF-8"):
@@ -226,7 +226,7 @@ def test_no_such_file_and_a_folder(tmp_path: Path) -> None:
         io.dump(pair(), tmp_path)
 
 
-def test_unknown_key() -> None:
+def test_unknown_key_is_named() -> None:
     with refuses(errors.FormatError, "unknown key 'dimensions'"):
         pair(dimensions=3)
     with refuses(errors.FormatError, "unknown key 'points'"):
@@ -234,12 +234,12 @@ def test_unknown_key() -> None:
 
 
 @pytest.mark.parametrize("key", ["dimension", "structure_constants", "subalgebra"])
-def test_missing_key(key: str) -> None:
+def test_missing_key_is_named(key: str) -> None:
     with refuses(errors.FormatError, key, "missing"):
         io.from_json({k: v for k, v in SPHERE.items() if k != key})
 
 
-def test_key_given_twice() -> None:
+def test_repeated_key_is_named() -> None:
     with refuses(errors.FormatError, "'dimension' is given twice"):
         io.loads('{"dimension": 1, "structure_constants": [], "subalgebra": [], "dimension": 2}')
 
@@ -280,7 +280,7 @@ def test_only_i_less_than_j_is_listed(i: int, j: int) -> None:
         pair(structure_constants=[[i, j, 2, "1"]])
 
 
-def test_duplicate_entry() -> None:
+def test_duplicate_entry_names_both_indices() -> None:
     with refuses(errors.FormatError, r"structure_constants\[3\]", r"\(0, 1, 2\)", "entry 0"):
         pair(structure_constants=[*SPHERE["structure_constants"], [0, 1, 2, "1"]])
 
@@ -418,7 +418,7 @@ def test_dependent_matrices() -> None:
         ({"name": "a", "minpoly": ["-2", "0", "1"], "interval": ["1", "2"], "x": 1}, "'x'"),
     ],
 )
-def test_fields_that_are_none(field: Any, named: str) -> None:
+def test_malformed_field_raises(field: Any, named: str) -> None:
     with refuses(errors.FormatError, "field", named):
         pair(field=field)
 

@@ -36,7 +36,7 @@ def test_round_trip(key: str) -> None:
     assert (found.basis_names, found.name) == (algebra.basis_names, algebra.name)
 
 
-def test_names_that_are_no_variables_are_replaced() -> None:
+def test_names_that_are_not_variables_are_replaced() -> None:
     algebra = lh.LieAlgebra({(0, 1): {1: 1}}, basis=["e+", "f-"])
     found = io.from_sage(io.to_sage(algebra))
     assert found == algebra
@@ -102,7 +102,7 @@ def test_indices_that_are_integers() -> None:
         ("__import__('os').system('ls')", "is not read"),
     ],
 )
-def test_what_are_no_brackets(text: str, says: str) -> None:
+def test_malformed_brackets_raise_with_the_fault(text: str, says: str) -> None:
     with pytest.raises(errors.FormatError, match=says):
         io.from_sage(text)
 

@@ -94,6 +94,6 @@ def test_other_things_are_refused(thing: Any) -> None:
         io.to_sympy(thing)
 
 
-def test_a_symbol_is_no_number() -> None:
+def test_symbol_is_not_a_number() -> None:
     with pytest.raises(errors.InputError):
         lh.LieAlgebra({(0, 1): {1: sympy.Symbol("x")}})

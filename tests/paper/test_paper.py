@@ -241,7 +241,7 @@ def test_reproduce_prints_one_object(tmp_path: Path) -> None:
     assert all(Path(file).is_file() for file in data["figures"][0]["files"])
 
 
-def test_reproduce_says_what_it_knows(tmp_path: Path) -> None:
+def test_reproduce_lists_the_known_names(tmp_path: Path) -> None:
     result = liehom_("reproduce", "fig8", "--out", str(tmp_path))
     assert result.exit_code == 2
     assert result.stdout == ""

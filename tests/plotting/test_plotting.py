@@ -83,7 +83,7 @@ def test_a_triangle_has_the_slope_that_was_measured() -> None:
     assert sorted(np.round(slopes, 9)) == [1, 4]
 
 
-def test_no_triangle_for_an_order_that_is_none() -> None:
+def test_no_triangle_for_an_order_far_from_an_integer() -> None:
     dts = table().dts
     wild = table(orbit_errors=tuple(h**2.5 for h in dts), trajectory_errors=(NAN,) * 4)
     assert not plot_convergence(wild).axes[0].patches
@@ -131,7 +131,7 @@ def test_on_axes_of_the_caller() -> None:
         (table(), {"axes": 3}, "axes"),
     ],
 )
-def test_what_plot_convergence_refuses(tables: Any, options: Any, match: str) -> None:
+def test_plot_convergence_raises_for_wrong_arguments(tables: Any, options: Any, match: str) -> None:
     with pytest.raises(InputError, match=match):
         plot_convergence(tables, **options)
 
@@ -233,14 +233,14 @@ def test_a_solution_without_a_step() -> None:
         plot_trajectory(lh.integrate(rotation(size), (0, 0), np.eye(size)[0], dense_output=True))
 
 
-def test_what_plot_trajectory_refuses() -> None:
+def test_plot_trajectory_raises_for_other_objects() -> None:
     with pytest.raises(InputError, match="solution"):
         plot_trajectory(np.zeros((3, 4)))  # type: ignore[arg-type]
 
 
 # -- files and settings ----------------------------------------------------------------------------------
 @pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
-def test_the_same_picture_is_the_same_file(suffix: str, tmp_path: Path) -> None:
+def test_equal_plots_are_equal_files(suffix: str, tmp_path: Path) -> None:
     made = solution(3)
     for draw in (lambda path: plot_trajectory(made, path), lambda path: plot_convergence(table(), path)):
         first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
@@ -251,7 +251,7 @@ def test_the_same_picture_is_the_same_file(suffix: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["picture.txt", "picture", "no/such/folder/picture.png", ""])
-def test_names_that_are_no_pictures(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_without_a_plot_suffix_raise(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(FormatError):
         plot_convergence(table(), name)

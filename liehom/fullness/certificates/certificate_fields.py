@@ -173,7 +173,7 @@ READERS: dict[str, dict[str, Callable[[ExactField, str, object], object]]] = {
 
 # -- writing -----------------------------------------------------------------------------------------------
 def to_json_value(field: ExactField, value: Any) -> Any:
-    """The JSON value of a field: strings for numbers, lists for tuples; indices of sparse matrices stay integers.
+    """JSON value of a field, with strings for numbers and lists for tuples; indices of sparse matrices stay integers.
 
     Examples
     --------

@@ -15,8 +15,8 @@ def eta_of_witness(
 ) -> tuple[list[Scalar] | None, Field | None, int | None]:
     """The triple (eta, its field, exact rank of [rho(h) eta, eta]); all None if eta is not in QQ(theta) or the field.
 
-    An eta in k(theta), k a number field and theta outside k, would need an extension of k; it stands in the
-    certificate.
+    An eta in k(theta), k a number field and theta outside k, would need an extension of k; it is in the certificate
+    only.
     """
     coordinates = certificate.fields["eta"]
     if all(not isinstance(c, tuple) or len(c) == 1 for c in coordinates):

@@ -1,7 +1,7 @@
 """The independent checker of certificates, with its own arithmetic: it shares no code with the search.
 
 It imports only `liehom.scalars`, `liehom.errors` and the certificate, and it repeats on purpose what other wings have
-too. Everyone may call `verify_certificate`; nobody may use its other functions. docs/theory/fullness.md says what each
+too. Call `verify_certificate`; the other functions are for the checker alone. docs/theory/fullness.md says what each
 kind of certificate proves.
 """
 

@@ -100,10 +100,15 @@ def _verify_trivial(pair: CheckedPair) -> None:
 def _verify_full(pair: CheckedPair, certificate: Certificate) -> None:
     """Full: elements of h act as infinitesimal similarities, transitively on one sphere at one point.
 
-    Checks: d >= 2; the form F is symmetric, vanishes on h and is positive definite on V, where it is called P;
-    the elements z_j lie in h, and K_j = rho(z_j) has P(Kx, y) + P(x, Ky) = 2c P(x, y); eta, h and all
-    [z_j, eta] span g. It is enough to compare F(z x, y) + F(x, z y) with 2c F(x, y) for x and y in a complement
-    of h: for x in h all terms vanish, [z, x] being in h.
+    Checks:
+
+    * d >= 2;
+    * the form F is symmetric, vanishes on h, and is positive definite on V, where it is called P;
+    * the elements z_j lie in h, and K_j = rho(z_j) has P(Kx, y) + P(x, Ky) = 2c P(x, y);
+    * eta, h and all [z_j, eta] span g.
+
+    It is enough to compare F(z x, y) + F(x, z y) with 2c F(x, y) for x and y in a complement of h. For x in h all terms
+    vanish, since [z, x] lies in h.
 
     Proof of fullness. Let m be the set of P-skew maps in rho(h) + R, a Lie algebra, since rho(h) is one and a
     bracket of skew maps is skew. K_j - c_j lies in m, and V = span{x, K_j x} for x = eta mod h gives
@@ -158,10 +163,13 @@ def _is_positive_definite(form: ExactMatrix) -> bool:
 def _verify_witness(pair: CheckedPair, certificate: Certificate) -> None:
     """Not full: a real eta outside h and a linear form phi != 0 with phi(h) = phi(eta) = phi([h, eta]) = 0.
 
-    The coordinates of eta and phi are polynomials in theta, of degree below that of f (minpoly). Checks: f is
-    squarefree and f(a) f(b) < 0 for the interval, a < b (for f of degree 1: a <= theta <= b, so that f = t and
-    the interval (0, 0) or (-1, 1) say that eta and phi are over the field itself); one coordinate of phi, and
-    one of eta mod h, is coprime to f; the three equations hold modulo f.
+    The coordinates of eta and phi are polynomials in theta, of lower degree than f (minpoly). Checks:
+
+    * f is squarefree, and f(a) f(b) < 0 for the interval (a, b), a < b. If f has degree 1, a <= theta <= b is enough:
+    then
+      f = t and the interval (0, 0) or (-1, 1) say that eta and phi are over the field itself.
+    * One coordinate of phi, and one coordinate of eta mod h, is coprime to f.
+    * The three equations hold modulo f.
 
     Proof. f has a real root theta in (a, b). All equations hold there, phi(theta) != 0, and eta(theta) is not
     in h, as a polynomial coprime to f does not vanish at a root of f. phi is a nonzero linear form on V that
@@ -229,8 +237,10 @@ def _verify_commutant(pair: CheckedPair, certificate: Certificate) -> None:
     """Not full: a map T of V commutes with rho(h), and its eigenvalues lie on both sides of a line Re = cut.
 
     The rows u_j of `complement` and h form a basis of g, and T u_j = sum over i of T[i, j] u_i modulo h. Checks:
-    complement and h are a basis; T commutes with rho(h); 0 < #{eigenvalues with Re > cut} < d, counted with
-    multiplicity, none on the line.
+
+    * complement and h are a basis of g;
+    * T commutes with rho(h);
+    * 0 < #{eigenvalues with Re > cut} < d, counted with multiplicity, and no eigenvalue lies on the line.
 
     Proof. The sum W of the generalized eigenspaces of T for Re > cut is real, proper, not 0, and invariant
     under all that commutes with T: rho(h)x + Rx lies in W for x in W.
@@ -255,22 +265,25 @@ def _verify_commutant(pair: CheckedPair, certificate: Certificate) -> None:
 
 
 def _side_by_side(rows: ExactMatrix, k: int, d: int) -> ExactMatrix:
-    """Matrix (w; p, v) with k d x d matrices side by side, from k rows (w, v)."""
+    """The d x d matrices side by side, columns (p, v), from k flat rows (w, v)."""
     order = [p * d + w for w in range(d) for p in range(k)]
     return rows.reshape(k * d, d).select(rows=order).reshape(d, k * d)
 
 
 def _stacked(matrix: ExactMatrix, k: int, d: int) -> ExactMatrix:
-    """Matrix (p, w; v) with the d x d matrices below each other, from the matrix (w; p, v)."""
+    """The d x d matrices below each other, rows (p, w), from the matrices side by side, columns (p, v)."""
     return matrix.reshape(d * k, d).select(rows=[w * k + p for p in range(k) for w in range(d)])
 
 
 def _verify_dominance(pair: CheckedPair, certificate: Certificate) -> None:
     """Not full: X in h has a top space W that few elements of rho(h) can leave.
 
-    Let A be the traceless part of rho(X). Checks: eps > 0; X in h; no eigenvalue of A has its real part in
-    [c - eps, c]; W, the sum of the generalized eigenspaces of A for Re > c, is not 0; dim W + m < d, where m is
-    the number of eigenvalues of ad rho(X) on rho(h) with Re <= -eps. All counts are with multiplicity.
+    Let A be the traceless part of rho(X), W the sum of its generalized eigenspaces for Re > c, and m the number of
+    eigenvalues of ad rho(X) on rho(h) with Re <= -eps. All counts are with multiplicity. Checks:
+
+    * eps > 0, and X lies in h;
+    * no eigenvalue of A has its real part in [c - eps, c];
+    * W is not 0, and dim W + m < d.
 
     Proof. rho(h) is the sum of q (generalized eigenspaces of ad rho(X) for Re > -eps) and a complement of
     dimension m; both, and W, are real. An element of q for the eigenvalue mu sends the generalized eigenspace

@@ -86,7 +86,7 @@ def _product(prime: int, left: Sparse, right: Sparse) -> Sparse:
 
 
 def _swapped(matrix: Sparse, a: int, b: int, c: int) -> Sparse:
-    """Matrix (j; i, l) of shape (b, a c) with the entries (i; j, l) of a matrix of shape (a, b c)."""
+    """Matrix of shape (b, a c) with rows j and columns (i, l), from one with rows i and columns (j, l)."""
     from scipy.sparse import coo_matrix
 
     entries = matrix.tocoo()

@@ -1,5 +1,5 @@
 """Steps of the decision: each module finds a witness, a form or a cut for the isotropy representation.
 
-`liehom.fullness.decide` calls them in order, and nobody else should; the independent checker shares no code with them.
+Only `liehom.fullness.decide` calls them, in order. The independent checker shares no code with them.
 The order and the mathematics are in docs/theory/fullness.md.
 """

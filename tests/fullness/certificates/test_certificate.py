@@ -36,7 +36,7 @@ def malformed(data: Any, message: str) -> None:
 
 @pytest.mark.parametrize(("kind", "fields"), SAMPLES)
 @pytest.mark.parametrize("field", [QQ, ROOT2])
-def test_round_trip(kind: str, fields: dict[str, Any], field: Any) -> None:
+def test_json_round_trip_returns_the_same_certificate(kind: str, fields: dict[str, Any], field: Any) -> None:
     certificate = Certificate(kind, fields, field)
     data = certificate.to_json()
     assert ("field" in data) == (field is ROOT2)
@@ -60,7 +60,7 @@ def test_the_second_certificate_of_a_witness() -> None:
     malformed(HEADER | {"kind": "dominance"} | SAMPLES[-1][1] | {"also": also.to_json()}, "unknown key 'also'")
 
 
-def test_frozen() -> None:
+def test_fields_cannot_be_changed() -> None:
     certificate = Certificate(*SAMPLES[-1])
     with pytest.raises(AttributeError):
         certificate.kind = "full"  # type: ignore[misc]
@@ -114,7 +114,7 @@ def test_lengths_that_do_not_fit_the_pair() -> None:
         assert caught.value.check == "length"
 
 
-def test_header() -> None:
+def test_wrong_format_version_or_kind_is_malformed() -> None:
     good = HEADER | {"kind": "trivial"}
     assert Certificate.from_json(good) == Certificate("trivial", {})
     for data in (None, [], "trivial", 3, [good], json.dumps(good)):
@@ -206,7 +206,7 @@ def test_malformed_fields_of_witness(name: str, value: Any, message: str) -> Non
         ({"degree": "2"}, "unknown key 'degree' in field"),
     ],
 )
-def test_malformed_number_field(change: dict[str, Any], message: str) -> None:
+def test_malformed_number_field_names_the_fault(change: dict[str, Any], message: str) -> None:
     field = {"name": "a", "minpoly": ["-2", "0", "1"], "interval": ["1", "2"]}
     data = HEADER | {"kind": "trivial"}
     assert Certificate.from_json(data | {"field": field}).field == ROOT2

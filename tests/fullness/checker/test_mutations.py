@@ -125,12 +125,12 @@ def assert_explained(seen: collections.Counter[str]) -> None:
     }  # fmt: skip
 
 
-def test_mutants() -> None:
+def test_accepted_mutants_are_explained() -> None:
     assert_explained(mutants(2000, 0))
 
 
 @pytest.mark.slow
-def test_ten_thousand_mutants() -> None:
+def test_accepted_mutants_are_explained_among_ten_thousand() -> None:
     assert_explained(sum((mutants(2000, seed) for seed in range(1, 6)), collections.Counter()))
 
 

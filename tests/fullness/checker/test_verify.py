@@ -284,7 +284,7 @@ def changed(certificate: Certificate, **fields: Any) -> Certificate:
 
 # -- accepted ----------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("name", GOOD)
-def test_accepted(name: str) -> None:
+def test_valid_certificates_are_accepted(name: str) -> None:
     pair, certificate = GOOD[name]
     assert verify_certificate(pair, certificate) is True
     assert verify_certificate(pair, certificate.to_json()) is True
@@ -340,16 +340,16 @@ def test_a_numerical_pair_is_refused() -> None:
     assert "float64" in str(error)
 
 
-def test_dependent_rows() -> None:
+def test_dependent_rows_of_h_fail_the_check_independent() -> None:
     refused(make(3, SO3, [[0, 0, 1], [0, 0, 2]]), Certificate("trivial", {}), "independent")
     refused(make(3, SO3, [[0, 0, 0]]), Certificate("trivial", {}), "independent")
 
 
-def test_rows_that_are_not_closed() -> None:
+def test_rows_that_are_not_closed_fail_the_check_closed() -> None:
     refused(make(3, SO3, [[1, 0, 0], [0, 1, 0]]), Certificate("trivial", {}), "closed")
 
 
-def test_a_table_that_is_no_lie_algebra() -> None:
+def test_table_without_homomorphism_fails_the_check_homomorphism() -> None:
     """Two rotations of R^3 declared to commute span V with one x, but not with the axis that both move least."""
     rotations = {(0, 3, 4): 1, (0, 4, 3): -1, (1, 4, 2): 1, (1, 2, 4): -1}
     pair = make(5, rotations, [[1, 0, 0, 0, 0], [0, 1, 0, 0, 0]])
@@ -460,7 +460,7 @@ def test_the_embedding_decides() -> None:
     refused(pair, ROOT_CIRCLE_FULL, "field")
 
 
-def test_an_interval_with_three_roots_is_no_field() -> None:
+def test_interval_with_three_roots_fails_the_check_field() -> None:
     field = {"name": "a", "minpoly": ["1", "-3", "0", "1"], "interval": ["-2", "2"]}
     data = Certificate("trivial", {}).to_json() | {"field": field}
     with pytest.raises(CertificateFormatError, match="contains 3 real roots"):
@@ -495,7 +495,7 @@ def test_trivial_needs_codimension_one() -> None:
         ({"form": [[0, 3, "1"]]}, "length"),
     ],
 )
-def test_full_checks(fields: dict[str, Any], check: str) -> None:
+def test_each_check_of_a_full_certificate_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(SPHERE, changed(SPHERE_FULL, **fields), check)
 
 
@@ -525,7 +525,7 @@ def test_full_is_for_dimension_two_and_more() -> None:
         ({"eta": ["0", "2", "1"], "phi": ["0", "1", "-2"]}, "phi-bracket"),
     ],
 )
-def test_witness_checks(fields: dict[str, Any], check: str) -> None:
+def test_each_check_of_a_witness_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(SPLIT, changed(SPLIT_NOT, **fields), check)
 
 
@@ -586,7 +586,7 @@ def test_the_second_certificate_is_checked_too() -> None:
         ({"matrix": []}, "cut"),
     ],
 )
-def test_commutant_checks(fields: dict[str, Any], check: str) -> None:
+def test_each_check_of_a_commutant_certificate_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(SPLIT, changed(SPLIT_CUT, **fields), check)
 
 
@@ -620,7 +620,7 @@ def test_a_complex_structure_splits_nothing() -> None:
         ({"cut": "-3/4", "eps": "1/8"}, "dominance"),  # 4 + 3
     ],
 )
-def test_dominance_checks(fields: dict[str, Any], check: str) -> None:
+def test_each_check_of_a_dominance_certificate_fails_by_name(fields: dict[str, Any], check: str) -> None:
     refused(TENSOR, changed(TENSOR_NOT, **fields), check)
 
 

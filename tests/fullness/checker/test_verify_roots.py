@@ -50,7 +50,7 @@ def with_roots(*roots: complex) -> list[Any]:
     return product(*factors)
 
 
-def test_division() -> None:
+def test_quotient_times_divisor_plus_remainder() -> None:
     rng = random.Random(0)
     for _ in range(200):
         f, g = (polynomial(*[rng.randint(-5, 5) for _ in range(rng.randint(1, 7))]) for _ in range(2))
