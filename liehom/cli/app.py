@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces."
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     name="liehom",
     help=HELP,
     no_args_is_help=True,

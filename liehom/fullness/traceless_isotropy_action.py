@@ -12,6 +12,7 @@ from typing import cast, final
 from liehom.representations import Pair
 from liehom.scalars import ExactField, ExactMatrix, Scalar
 from liehom.scalars.modular.modular import independent_columns, independent_rows, pivot_columns
+from liehom.scalars.spaces.quotient import Quotient
 
 
 @final
@@ -31,6 +32,8 @@ class TracelessIsotropyAction:
     traceless : list of ExactMatrix
         The basis of L0 that `members` selects.
     """
+
+    quotient: Quotient[ExactMatrix]
 
     __slots__ = ("_columns", "field", "matrices", "members", "pair", "quotient", "size", "traceless")
 

@@ -58,6 +58,8 @@ class FieldMap:
     [0.0, 1.0]
     """
 
+    shape: tuple[int, int, int]
+
     __slots__ = (
         "_entries",
         "_exact",

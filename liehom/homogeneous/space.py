@@ -17,7 +17,7 @@ from liehom.homogeneous.exponentials.custom_exponential import ExponentialLike, 
 from liehom.homogeneous.exponentials.exponential import Exponential
 from liehom.homogeneous.frames.branch_free_frames import TightFrame, orthogonal_decomposition
 from liehom.homogeneous.frames.inner_product import InnerProduct, inner_product
-from liehom.homogeneous.maps import action_map, bracket_map
+from liehom.homogeneous.maps import FieldMap, action_map, bracket_map
 from liehom.representations import Representation
 from liehom.series.arrays import is_jax, namespace
 from liehom.series.jet import Jet
@@ -51,6 +51,8 @@ class Action:
     1.0
     """
 
+    representation: Representation
+
     __slots__ = (
         "_basis",
         "_size",  # behind `max_norm`; pickles of 0.1.0 have these two names
@@ -67,8 +69,8 @@ class Action:
             raise InputError(f"expected a Representation, got {representation!r}")
         self.representation = representation
         self.exponential: Exponential = exponential_of(representation, exponential)
-        self.infinitesimal = action_map(representation)
-        self.bracket = bracket_map(representation)
+        self.infinitesimal: FieldMap = action_map(representation)
+        self.bracket: FieldMap = bracket_map(representation)
         self.inner_product: InnerProduct = inner_product(representation)
         self._basis = self.inner_product.orthonormal_basis()
         shape = (representation.algebra.dimension, representation.size**2)

@@ -35,6 +35,9 @@ class Counted:
     (5.0, [2])
     """
 
+    counter: list[int]
+    value: float
+
     __slots__ = ("counter", "value")
 
     def __init__(self, value: float, counter: list[int]) -> None:

@@ -47,6 +47,9 @@ class Node:
     0.16666666666666666
     """
 
+    known: list[Any]
+    operands: tuple[tuple[Node, int], ...]
+
     __slots__ = ("known", "operands", "order", "rule", "value")
 
     def __init__(

@@ -56,6 +56,9 @@ class Traced(NDArrayOperatorsMixin):
     ((3,), True)
     """
 
+    entries: ExprArray
+    tape: Tape
+
     __slots__ = ("entries", "tape")
     if TYPE_CHECKING:  # methods of arrays that `__getattr__` finds
         astype: Callable[..., Traced]
@@ -66,7 +69,7 @@ class Traced(NDArrayOperatorsMixin):
         min: Callable[..., Traced]
         any: Callable[..., Traced]
         all: Callable[..., Traced]
-    __array_priority__ = 100.0
+    __array_priority__: float = 100.0
 
     def __init__(self, tape: Tape, entries: Operand) -> None:
         self.tape = tape

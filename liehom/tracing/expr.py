@@ -59,6 +59,13 @@ class Expr:
         Whether it is a boolean.
     """
 
+    args: tuple[Expr, ...]
+    boolean: bool
+    index: int
+    op: str
+    tape: Recorder
+    value: Payload
+
     __slots__ = ("args", "boolean", "index", "op", "tape", "terms", "value")
 
     def __init__(self, tape: Recorder, op: str, args: tuple[Expr, ...], value: Payload, index: int) -> None:
@@ -89,7 +96,8 @@ class Expr:
     def __truediv__(self, other: NumberLike) -> Expr:
         return self.tape.div(*self._with(other))
 
-    __radd__, __rmul__ = __add__, __mul__
+    __radd__: Callable[[Expr, NumberLike], Expr] = __add__
+    __rmul__: Callable[[Expr, NumberLike], Expr] = __mul__
 
     def __rsub__(self, other: NumberLike) -> Expr:
         return self.tape.sub(*self._with(other)[::-1])

@@ -38,6 +38,12 @@ class Tape:
     (True, True, 6.0)
     """
 
+    zero: Expr
+    one: Expr
+    false: Expr
+    true: Expr
+    calls: Expr
+
     def __init__(self) -> None:
         self.recorded: list[Expr] = []
         self._known: dict[tuple[Hashable, ...], Expr] = {}

@@ -278,6 +278,11 @@ class Kernel:
         Relative time of an operation, 1; the JAX kernel has another.
     """
 
+    graph: StepGraph
+    width: int
+    text: str
+    cached: bool
+
     cost = 1
 
     def __init__(self, graph: StepGraph, width: int) -> None:

@@ -54,6 +54,12 @@ class Writer:
         The basic block of the traced step in which lines are written at the moment.
     """
 
+    width: int
+    label: str
+    vector: str
+    mask: str
+    suffix: str
+
     def __init__(self, width: int) -> None:
         self.width, self.label = width, "step"
         self.vector = "double" if width == 1 else f"<{width} x double>"
@@ -161,6 +167,8 @@ class Body:
     inputs : dict
         Names of the inputs, by their index.
     """
+
+    writer: Writer
 
     def __init__(self, writer: Writer, inputs: dict[int, str]) -> None:
         self.writer, self._inputs = writer, inputs

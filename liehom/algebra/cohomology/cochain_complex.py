@@ -57,6 +57,8 @@ class CochainComplex:
     True
     """
 
+    size: int
+
     __slots__ = ("_differentials", "algebra", "matrices", "size")
 
     def __init__(self, algebra: LieAlgebra, matrices: MatricesLike | None = None, *, size: int | None = None) -> None:

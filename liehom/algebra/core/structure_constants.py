@@ -36,6 +36,13 @@ class StructureConstants:
         Each position once, i < j, values non-zero elements of the field.
     """
 
+    den: int
+    field: Field[Any]
+    i: IntegerArray
+    j: IntegerArray
+    k: IntegerArray
+    parts: tuple[Sequence[int], ...]
+
     __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "field", "i", "j", "k", "parts")
 
     def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:

@@ -12,7 +12,7 @@ from typing import final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.structure.exact_field import exact_field
-from liehom.scalars import ExactMatrix, as_exact
+from liehom.scalars import ExactField, ExactMatrix, as_exact
 from liehom.scalars.modular.modular import invariant_hull_rank, pivot_columns
 
 SUPPORT = 16  # non-zero entries of a random element of an algebra with a sparse table
@@ -45,7 +45,7 @@ class BracketSeeds:
 
     def __init__(self, algebra: LieAlgebra) -> None:
         self.algebra = algebra
-        self.field = exact_field(algebra, "centroids")
+        self.field: ExactField = exact_field(algebra, "centroids")
         self.n: int = algebra.dimension
         self.rng: random.Random = random.Random(self.n)
         table = algebra.table

@@ -66,6 +66,16 @@ class Conservation:
     See `conservation_map`.
     """
 
+    action: Action
+    basis: Values
+    factor: float
+    gradient: Values
+    integral: FirstIntegral
+    m: Values
+    matrix: Values
+    moving: Values
+    value: Values
+
     __slots__ = (
         "_bound",
         "_on_tangents",
@@ -99,7 +109,7 @@ class Conservation:
         sizes = _length(tangential)
         kept = sizes > noise * _length(self.gradient)
         self._sizes = np.where(kept, sizes, 0.0)
-        self.tangential = np.where(kept[..., None], tangential / np.where(kept, sizes, 1.0)[..., None], 0.0)
+        self.tangential: Array = np.where(kept[..., None], tangential / np.where(kept, sizes, 1.0)[..., None], 0.0)
         velocity = action.infinitesimal(generator, m)
         self._take(velocity, _length(velocity) > noise * action.max_norm * _length(generator) * _length(m))
 

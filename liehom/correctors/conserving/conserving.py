@@ -79,6 +79,9 @@ class Conserving(Step):
     True
     """
 
+    step: Step
+    linear: bool
+
     def __init__(
         self,
         step: Step,

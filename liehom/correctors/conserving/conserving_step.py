@@ -80,6 +80,11 @@ class ConservingStep(LocalStep):
     (True, 1, True)
     """
 
+    base: LocalStep
+    found: Conservation
+    n: int | None
+    defects: tuple[tuple[int, Values], ...] | None
+
     def __init__(
         self,
         base: LocalStep,

@@ -123,6 +123,8 @@ class CorrectedStep(LocalStep):
     (3, 0.0)
     """
 
+    defects: tuple[tuple[int, Values], ...]
+
     def __init__(self, base: LocalStep, correction: Correction, one_exponential: bool) -> None:
         self.base = base
         self.correction = correction

@@ -74,6 +74,11 @@ class OrderRecursion:
     parts : list of Part
     """
 
+    action: Action
+    m: Values
+    total: int
+    levels: Any
+
     def __init__(
         self,
         action: Action,

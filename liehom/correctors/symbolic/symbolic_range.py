@@ -55,6 +55,10 @@ class SymbolicRange:
     (array([z, -y, x], dtype=object), 2)
     """
 
+    orbit_dimension: int
+    projector: ObjectArray
+    rank: int
+
     def __init__(self, action: Action, field: FunctionField, point: ObjectArray) -> None:
         self._action, self._field, self._point = action, field, point
         n = action.dimension
@@ -193,6 +197,8 @@ class RangeInverse:
     >>> found.rank, found(v)[0] == x / (x**2 + y**2)
     (1, True)
     """
+
+    rank: int
 
     def __init__(self, matrix: ObjectArray) -> None:
         self._matrix = matrix

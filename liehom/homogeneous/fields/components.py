@@ -62,6 +62,11 @@ class Components:
     (array([6., 0.]), True)
     """
 
+    counts: tuple[int, ...]
+    size: int
+    time_dependent: bool
+    what: str
+
     __slots__ = ("_function", "_source", "counts", "size", "time_dependent", "what")
 
     def __init__(

@@ -44,6 +44,8 @@ class Evaluation:
     (3.0, 0.25)
     """
 
+    t: Real
+
     __slots__ = ("_coordinates", "_m", "_zero", "kind", "t")
 
     def __init__(self, m: Values, t: Real) -> None:

@@ -59,6 +59,9 @@ class GeneratorField:
     (array([0.6, 0. , 2.4]), 0.0)
     """
 
+    representation: Representation
+    source: GeneratorLike | LeastNorm
+
     __slots__ = ("_action", "_components", "_dimension", "representation", "source", "time_dependent")
 
     def __init__(

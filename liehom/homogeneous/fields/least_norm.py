@@ -59,6 +59,9 @@ class LeastNorm:
     [0.36, 0.0, 0.48]
     """
 
+    components: Components
+    time_dependent: bool
+
     __slots__ = ("_action", "_basis", "_dimension", "_rtol", "_size", "components", "time_dependent")
 
     def __init__(

@@ -103,6 +103,9 @@ class LaneGroup:
         Their initial points.
     """
 
+    graph: StepGraph
+    lanes: IntegerArray
+
     def __init__(self, graph: StepGraph, lanes: IntegerArray, backend: str, points: Array) -> None:
         self.graph, self.lanes = graph, lanes
         self.width: int = 1 if backend == "jax" else _width(graph, len(lanes))

@@ -62,6 +62,10 @@ class Reference:
     (True, True)
     """
 
+    field: GeneratorField
+    order: int
+    start: Array
+
     __slots__ = ("_other", "_solution", "field", "order", "start", "t0", "tolerance")
 
     def __init__(
@@ -82,8 +86,8 @@ class Reference:
             raise InputError(f"the order of a reference is an integer at least {MIN_ORDER}, got {order!r}")
         eps = np.finfo(start.dtype).eps
         self.field, self.start, self.order = field, start, int(order)
-        self.t0 = _number("t0", t0, start.dtype)
-        self.tolerance = eps if tolerance is None else _number("tolerance", tolerance, start.dtype)
+        self.t0: np.floating[Any] = _number("t0", t0, start.dtype)
+        self.tolerance: np.floating[Any] = eps if tolerance is None else _number("tolerance", tolerance, start.dtype)
         if not 0 < self.tolerance < 1:
             raise InputError(f"tolerance is {tolerance!r}, expected a number between 0 and 1")
         self._solution = _Solution(field, start, self.t0, self.order, self.tolerance, 1.0)

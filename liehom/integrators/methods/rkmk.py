@@ -199,6 +199,12 @@ class EmbeddedStep(LocalStep):
 class _Stages:
     """Stages k_i of a method at one point, computed on demand for the last h."""
 
+    method: RKMK
+    action: Action
+    psi: Generator
+    m: Values
+    t: Values
+
     def __init__(self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values) -> None:
         self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
         self.numbers: Coefficients = method.coefficients(m)

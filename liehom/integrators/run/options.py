@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from liehom.correctors.step import ExponentialLike, Step
 from liehom.integrators.run.events import EventFunction
-from liehom.typing import Array
+from liehom.typing import Array, IntegerArray
 
 Span: TypeAlias = tuple[np.floating[Any], np.floating[Any]]
 """Start and end of the time span, in the floating type of the points."""
@@ -103,3 +103,24 @@ class Options:
             f"{'steps' if self.t_eval is None else 't_eval'} {self.dense_output} "
             f"{'nominal' if self.nominal else 'corrected'} {self.max_step} {self.first_step}"
         )
+
+
+def ending_message(status: int, codes: IntegerArray, ended_at: Array) -> str:
+    """Message of a solution: how its trajectories ended, and where the first failure is.
+
+    Parameters
+    ----------
+    status : int
+        The status of the whole run; negative if a trajectory failed.
+    codes, ended_at : (...) arrays
+        Status of each trajectory, and the time at which it ended.
+    """
+    if status >= 0:
+        return MESSAGES[status]
+    failed = np.argwhere(codes < 0)
+    index = tuple(int(i) for i in failed[0])
+    message = f"{MESSAGES[int(codes[index])]} At t = {float(ended_at[index]):.10g}"
+    if codes.ndim:
+        shown = index[0] if len(index) == 1 else index
+        message += f", trajectory {shown}; {len(failed)} of {codes.size} failed"
+    return message + "."

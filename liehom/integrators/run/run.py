@@ -12,7 +12,7 @@ import time as wall
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path as File
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -46,13 +46,13 @@ from liehom.integrators.run.options import (
     EVENT,
     IMPLICIT,
     LINEAR,
-    MESSAGES,
     NOT_FINITE,
     PSI,
     TOO_MANY,
     TOO_SMALL,
     Options,
     Span,
+    ending_message,
 )
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.proposal import StepProposal
@@ -89,6 +89,17 @@ class Run:
     fast_path : callable or None
         Makes ordinary steps of the run by compiled code; returns whether there are more to be made.
     """
+
+    action: Action
+    step: Step
+    options: Options
+    span: Span
+    start: Array
+    shape: tuple[int, ...]
+    dtype: np.dtype[np.float64]
+    end: np.floating[Any]
+    direction: np.float64
+    tiny: np.float64
 
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.step, self.options = action, step, options
@@ -426,20 +437,8 @@ class Run:
             y_events=y_events,
             nfev=now.calls,
             status=worst,
-            message=self._message(worst),
+            message=ending_message(worst, now.code, now.ended_at),
             n_steps=now.taken if self.shape else int(now.taken),
             report=now.statistics.report(self.action, clock, self.psi.orbit_dimension),
             statuses=statuses if self.shape else int(statuses),
         )
-
-    def _message(self, status: int) -> str:
-        if status >= 0:
-            return MESSAGES[status]
-        now = self.state
-        failed = np.argwhere(now.code < 0)
-        index = tuple(int(i) for i in failed[0])
-        message = f"{MESSAGES[int(now.code[index])]} At t = {float(now.ended_at[index]):.10g}"
-        if self.shape:
-            shown = index[0] if len(index) == 1 else index
-            message += f", trajectory {shown}; {len(failed)} of {now.code.size} failed"
-        return message + "."

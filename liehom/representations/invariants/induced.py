@@ -38,6 +38,9 @@ class EntryMap:
     [2, 4]
     """
 
+    source: int
+    target: int
+
     __slots__ = ("_by_source", "source", "target")
 
     def __init__(self, source: int, target: int, terms: Iterable[Term]) -> None:

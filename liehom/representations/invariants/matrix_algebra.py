@@ -42,6 +42,9 @@ class MatrixAlgebra:
     (4, 1)
     """
 
+    field: ExactField
+    size: int
+
     __slots__ = ("_flat", "_inverse", "_places", "basis", "field", "size")
 
     def __init__(self, field: ExactField, size: int, matrices: Sequence[ExactMatrix]) -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from math import gcd, lcm
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import flint
 import numpy as np
@@ -137,7 +137,7 @@ class ExactMatrix(Matrix):
 
     def __init__(self, field: ExactField, parts: tuple[flint.fmpz_mat, ...], den: int) -> None:
         self._field = field
-        self.parts = parts
+        self.parts: tuple[flint.fmpz_mat, ...] = parts
         self.den: int = den
 
     # -- shape and entries -------------------------------------------------------------------------------
@@ -228,7 +228,7 @@ class ExactMatrix(Matrix):
             return False
         return all(a * other.den == b * self.den for a, b in zip(self.parts, other.parts, strict=True))
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return f"<matrix {self.nrows} x {self.ncols} over {self._field.name}>"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 import numpy.typing as npt
@@ -192,7 +192,7 @@ class FloatMatrix(Matrix):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, FloatMatrix) and np.array_equal(self.array, other.array)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     @property
     def T(self) -> FloatMatrix:

@@ -54,6 +54,8 @@ class NumberField(ExactField):
     (2, 1, '1/2 + 1/2*a')
     """
 
+    root_index: int
+
     __slots__ = (
         "_balls",
         "_modulus",
@@ -300,7 +302,7 @@ class AlgebraicNumber(ExactNumber):
 
     def __init__(self, field: NumberField, polynomial: flint.fmpq_poly) -> None:
         self.field: NumberField = field
-        self.polynomial = polynomial
+        self.polynomial: flint.fmpq_poly = polynomial
 
     @property
     def coordinates(self) -> list[flint.fmpq]:

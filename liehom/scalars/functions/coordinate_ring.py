@@ -68,10 +68,10 @@ class CoordinateRing:
         graded: Sequence[str] = (),
     ) -> None:
         self.names: tuple[str, ...] = tuple(names)
-        self.context = flint.fmpq_mpoly_ctx.get(self.names, flint.Ordering.degrevlex)
+        self.context: flint.fmpq_mpoly_ctx = flint.fmpq_mpoly_ctx.get(self.names, flint.Ordering.degrevlex)
         given = [self.polynomial(c) for c in constraints]
         given = [c for c in given if not c.is_zero()]
-        self.basis = given if len(given) < 2 else self._groebner(given)
+        self.basis: list[flint.fmpq_mpoly] = given if len(given) < 2 else self._groebner(given)
         if any(c.is_constant() for c in self.basis):
             raise FieldError("the constraints contradict each other: they have no common zero")
         self.weights: list[int] = [int(name in graded) for name in self.names]

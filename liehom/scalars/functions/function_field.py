@@ -8,7 +8,7 @@ with denominators such as |X|^2 and |X|^4 are added without a gcd.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import flint
 
@@ -171,7 +171,7 @@ class RationalFunction:
 
     def __init__(self, field: FunctionField, numerator: flint.fmpq_mpoly, powers: Powers) -> None:
         self.field: FunctionField = field
-        self.numerator = numerator
+        self.numerator: flint.fmpq_mpoly = numerator
         self.powers: Powers = () if numerator.is_zero() else powers
 
     def _other(self, value: Any) -> RationalFunction | None:
@@ -256,7 +256,7 @@ class RationalFunction:
             return NotImplemented
         return bool((self - right).numerator.is_zero())
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     def __bool__(self) -> bool:
         return not self.numerator.is_zero()

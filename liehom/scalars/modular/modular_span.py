@@ -43,6 +43,9 @@ class ModularSpan:
     ([0, 2], 2)
     """
 
+    modulus: int
+    ncols: int
+
     __slots__ = ("modulus", "ncols", "pivots", "rows")
 
     def __init__(self, modulus: int, ncols: int) -> None:

@@ -40,6 +40,9 @@ class SparseInteger:
     (0, 0)
     """
 
+    columns: IntegerArray
+    rows: IntegerArray
+
     __slots__ = ("columns", "den", "rows", "shape", "values")
 
     def __init__(

@@ -6,7 +6,7 @@ orthonormal. Vectors are rows.
 
 from __future__ import annotations
 
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from liehom.errors import ShapeError
 from liehom.scalars.fields.exact_field import as_exact
@@ -38,6 +38,8 @@ class Subspace:
     >>> U.dimension, [1, 0, 0] in U, (U + Subspace(QQ, [[0, 0, 1]], 3)).dimension
     (1, False, 2)
     """
+
+    field: Field[Any]
 
     __slots__ = ("ambient", "basis", "field")
 
@@ -118,7 +120,7 @@ class Subspace:
             return bool(self.basis == other.basis)
         return self.dimension == other.dimension and self.includes(other)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
 
     def rows(self) -> list[list[Scalar]]:
         """List of the rows of the canonical basis, each a list of field elements."""
