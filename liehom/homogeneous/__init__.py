@@ -1,4 +1,4 @@
-"""Homogeneous spaces: actions and generator fields; orbit types, the range condition and the cone on which it fails."""
+"""Homogeneous spaces: actions with an exponential, generator fields, orbit types, and the range condition."""
 
 from liehom.homogeneous.exponentials import Cayley as Cayley
 from liehom.homogeneous.exponentials import CustomExponential as CustomExponential

@@ -14,6 +14,7 @@ from typing import final
 
 import numpy as np
 
+from liehom.homogeneous.frames.inner_product import exact_gram_matrix
 from liehom.representations import Representation
 from liehom.scalars.fields.field import Matrix, Scalar
 from liehom.typing import ObjectArray, ScalarLike, VectorLike
@@ -94,7 +95,7 @@ def solve_exactly(
     reached = full @ both
     c = field.zero if moved == rank else both[both.nrows - 1, 0]
     target = reached + velocity_column.scale(c * leading)
-    zeta = basis.T @ _least(moves, target, basis @ gram_matrix(representation) @ basis.T)
+    zeta = basis.T @ _least(moves, target, basis @ exact_gram_matrix(representation) @ basis.T)
     left = right_column - reached
     return ExactSolution(
         solvable,
@@ -113,35 +114,6 @@ def _least(moves: Matrix, target: Matrix, gram: Matrix) -> Matrix:
         return found
     turned = gram.solve(moves.T)
     found = turned @ (moves @ turned).solve(target)
-    return found
-
-
-def gram_matrix(representation: Representation) -> Matrix:
-    """The inner product on g by which zeta is least, exactly: `liehom.homogeneous.inner_product` over the field.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> print(gram_matrix(lh.defining(lh.so(2))))
-    [2]
-    """
-    field, n = representation.field, representation.algebra.dimension
-    size = representation.size**2
-    flat = field.stack_rows([a.reshape(1, size) for a in representation.matrices], size)
-    turned = field.stack_rows([a.T.reshape(1, size) for a in representation.matrices], size)
-    trace = -(flat @ turned.T)
-    if trace.is_positive_definite():
-        found: Matrix = trace
-        return found
-    killing = -representation.algebra.killing_form()
-    if killing.is_positive_definite():
-        found = killing
-        return found
-    product = flat @ flat.T
-    if product.is_positive_definite() and field.stack_rows([flat, turned], size).rank() == flat.rank():
-        found = product
-        return found
-    found = field.identity(n)
     return found
 
 

@@ -17,8 +17,9 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.symbolic.exact_range import gram_matrix, object_array
+from liehom.correctors.symbolic.exact_range import object_array
 from liehom.homogeneous import Action
+from liehom.homogeneous.frames.inner_product import exact_gram_matrix
 from liehom.representations import Representation
 from liehom.scalars.fields.field import Matrix
 from liehom.scalars.functions.function_field import FunctionField, RationalFunction
@@ -64,7 +65,7 @@ class SymbolicRange:
         n = action.dimension
         self._units = np.empty((n, n), dtype=object)
         self._units[...] = [[field.one if i == j else field.zero for j in range(n)] for i in range(n)]
-        inverse_gram = gram_matrix(action.representation).inverse().to_rows()
+        inverse_gram = exact_gram_matrix(action.representation).inverse().to_rows()
         self._dual = np.empty((n, n), dtype=object)
         self._dual[...] = [[field.convert(x) for x in row] for row in inverse_gram]
         metric = invariant_form(action.representation)

@@ -1,6 +1,6 @@
-"""Maps Exp from g to the group, acting on V: the exponential, Cayley, Rodrigues' formula, a user's own.
+"""Maps Exp from g to the group, acting on V: the exponential, the Cayley transform, Rodrigues' formula, custom maps.
 
-`exponential_of` finds the exponential that a name denotes. Actions and integrators use them; see docs/notation.md.
+`exponential_of` gives the exponential that a name denotes. Actions and integrators use them; see docs/notation.md.
 """
 
 from liehom.homogeneous.exponentials.cayley import Cayley as Cayley

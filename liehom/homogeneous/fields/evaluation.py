@@ -1,4 +1,4 @@
-"""Evaluation: the point, the time and the arithmetic for an expression; and the nodes of compiled expressions.
+"""Evaluation of expressions at a point and a time in the arithmetic of the point, and the nodes of expressions.
 
 A compiled expression is a function of an `Evaluation`, that is of m and t.  Its constants are numbers of the arithmetic
 of m: float64, extended precision, exact numbers, or Jets of these.

@@ -146,7 +146,7 @@ class TightFrame(NamedTuple):
 
 
 class ActionLike(Protocol):
-    """What `tight_frame` needs of a `liehom.Action`, which is defined in a module above this one."""
+    """The part of `liehom.Action` that `tight_frame` uses; `Action` itself is in a module above this one."""
 
     infinitesimal: FieldMap
     inner_product: InnerProduct

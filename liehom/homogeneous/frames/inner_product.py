@@ -17,6 +17,7 @@ import numpy as np
 from liehom.algebra import LieAlgebra
 from liehom.errors import InputError
 from liehom.representations import Representation, defining
+from liehom.scalars import Matrix
 from liehom.typing import Array
 
 RTOL = 1e-9
@@ -107,6 +108,34 @@ def inner_product(representation: Representation) -> InnerProduct:
             algebra, conjugate, "-B(x, theta y), B the Killing form, theta = minus transpose in the defining matrices"
         )
     return _made(algebra, np.eye(n), "coefficients in the given basis")
+
+
+def exact_gram_matrix(representation: Representation) -> Matrix:
+    """The Gram matrix of the inner product on g over the field of the representation.
+
+    The candidates of `inner_product` are tried, except those with a centre or a defining representation.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(exact_gram_matrix(lh.defining(lh.so(2))))
+    [2]
+    """
+    field, n = representation.field, representation.algebra.dimension
+    size = representation.size**2
+    flat: Matrix = field.stack_rows([a.reshape(1, size) for a in representation.matrices], size)
+    turned: Matrix = field.stack_rows([a.T.reshape(1, size) for a in representation.matrices], size)
+    trace: Matrix = -(flat @ turned.T)
+    if trace.is_positive_definite():
+        return trace
+    killing: Matrix = -representation.algebra.killing_form()
+    if killing.is_positive_definite():
+        return killing
+    product: Matrix = flat @ flat.T
+    if product.is_positive_definite() and field.stack_rows([flat, turned], size).rank() == flat.rank():
+        return product
+    identity: Matrix = field.identity(n)
+    return identity
 
 
 def _made(algebra: LieAlgebra, form: Array, name: str) -> InnerProduct:

@@ -21,7 +21,7 @@ from liehom.typing import Array
 
 
 class CertificateLike(Protocol):
-    """What `failure_cone` reads of a `liehom.Certificate`, which is defined in a layer above this one."""
+    """The part of `liehom.Certificate` that `failure_cone` reads; `Certificate` itself is in a layer above this one."""
 
     @property
     def kind(self) -> str:

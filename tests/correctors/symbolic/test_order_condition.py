@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.correctors import OrderCondition, chi, order_condition
-from liehom.correctors.symbolic.exact_range import gram_matrix
 from liehom.errors import FieldError, InputError, ShapeError
+from liehom.homogeneous.frames.inner_product import exact_gram_matrix
 from tests.correctors.support import quadratic, spin, unit
 
 QQ = lh.QQ
@@ -136,7 +136,7 @@ def test_the_exact_choice_is_the_least() -> None:
     ids=str,
 )
 def test_the_exact_inner_product_is_the_numerical_one(rho: Any) -> None:
-    assert np.allclose(gram_matrix(rho).to_numpy(), lh.Action(rho).inner_product.matrix)
+    assert np.allclose(exact_gram_matrix(rho).to_numpy(), lh.Action(rho).inner_product.matrix)
 
 
 @pytest.mark.parametrize("kind", [float, "exact"])
