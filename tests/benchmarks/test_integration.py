@@ -155,7 +155,7 @@ def test_cost_at_an_error_is_interpolated() -> None:
 
 def test_targets_are_measured() -> None:
     found = kernels(tiny=True)
-    assert found["arrays"]["ratio"] > 0 and found["compile"]["first"] > 0 and found["compile"]["again"] > 0
+    assert found["arrays"]["ratio"] > 0 and found["compile"]["first"] > found["compile"]["again"] > 0
     assert found["one corrected"] > 0
     peer = {"group": "heyoka.py", "label": "", "points": [(1e-3, 1e-13, 1e-13)]}
     ours = {"group": "liehom", "label": "T4", "points": [(1.0, 1e-13, 1e-13)]}

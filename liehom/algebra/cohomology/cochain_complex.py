@@ -18,7 +18,7 @@ from typing import Any, final
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.errors import InputError, RepresentationError, ShapeError
-from liehom.scalars import ExactField, ExactMatrix, Field, FloatField, Matrix
+from liehom.scalars import ExactField, Field, FloatField, Matrix, as_exact
 from liehom.scalars.fields.field import MatricesLike
 
 MAX_ENTRIES = 30_000_000
@@ -164,7 +164,7 @@ def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[
     """
     if not field.exact:
         return 1, [[[(x, v) for x, v in enumerate(a.entries()) if v != 0]] for a in matrices]
-    exact = [a for a in matrices if isinstance(a, ExactMatrix)]
+    exact = [as_exact(a) for a in matrices]
     den = lcm(*(a.den for a in exact))
     made = []
     for a in exact:

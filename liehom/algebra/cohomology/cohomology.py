@@ -14,7 +14,7 @@ from liehom.algebra.cohomology.cochain_complex import CochainComplex
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import InputError, InternalError, ShapeError, SingularError
-from liehom.scalars import ExactMatrix, Matrix, Subspace
+from liehom.scalars import Matrix, Subspace, as_exact
 from liehom.scalars.fields.field import MatricesLike
 from liehom.scalars.modular.modular import pivot_columns
 from liehom.typing import ScalarLike, VectorLike
@@ -242,9 +242,7 @@ class _Solver:
         """Indices of columns of d that are a basis of its column space modulo a prime."""
         if (degree, attempt) not in self._images:
             matrix = self.cochains.differential(degree)
-            image: list[int] = []
-            if isinstance(matrix, ExactMatrix) and 0 not in matrix.shape:
-                image = pivot_columns(matrix.modulo(attempt))
+            image = [] if 0 in matrix.shape else pivot_columns(as_exact(matrix).modulo(attempt))
             self._images[degree, attempt] = image
         return self._images[degree, attempt]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra.closure.sparse_commutators import first_difference
-from liehom.scalars import ExactMatrix, FloatMatrix, Matrix
+from liehom.scalars import FloatMatrix, Matrix, as_exact
 from liehom.scalars.modular.modular import invariant_hull_rank
 
 RANDOM_ELEMENTS = 4
@@ -47,7 +47,7 @@ def _is_sparse(matrices: tuple[Matrix, ...]) -> bool:
     if matrices[0].field.degree > 1:
         return False
     n = matrices[0].nrows
-    filled = sum(1 for a in matrices if isinstance(a, ExactMatrix) for x in a.parts[0].entries() if x != 0)
+    filled = sum(1 for a in matrices for x in as_exact(a).parts[0].entries() if x != 0)
     return filled <= len(matrices) * max(2 * n, n * n // 6)
 
 
