@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -43,7 +43,7 @@ def measured_orders(bodies: int = BODIES, sizes: tuple[float, ...] = SIZES, seed
     start /= np.sqrt((start**2).sum(axis=0))
     w = 1 / moments
     body = Body((w[0], w[1], w[2]))
-    exact = np.stack([RigidBody(sample.moments[:, i]).exact(start[:, i], SPAN) for i in range(bodies)], axis=-1)
+    exact: Any = np.stack([RigidBody(sample.moments[:, i]).exact(start[:, i], SPAN) for i in range(bodies)], axis=-1)
     found = {}
     for name in UPDATES:
         errors = [_errors(name, body, start, exact, dt) for dt in sizes[-2:]]

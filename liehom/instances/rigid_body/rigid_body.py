@@ -90,7 +90,7 @@ class RigidBody:
         self._diagonal = all(tensor.to_rows()[i][j] == 0 for i in range(3) for j in range(3) if i != j)
 
     # -- the field ---------------------------------------------------------------------------------------
-    def apply(self, m: npt.ArrayLike | Values) -> Any:
+    def apply(self, m: Values) -> Any:
         """Om m for points m (..., 3): floats of either precision, exact numbers, or a Jet.
 
         Examples
