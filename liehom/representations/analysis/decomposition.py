@@ -25,7 +25,7 @@ from liehom.representations.core.generating_matrices import exact_matrices, gene
 from liehom.representations.core.representation import Representation
 from liehom.representations.invariants.intertwiners import commutant, intertwiners
 from liehom.representations.invariants.irreducibility import is_irreducible
-from liehom.scalars import ExactField, ExactMatrix, Field, Subspace
+from liehom.scalars import ExactField, ExactMatrix, Field, Subspace, as_exact
 from liehom.scalars.fields.field import MatrixLike
 from liehom.scalars.roots.extension import Extension, trivial_extension
 from liehom.scalars.spaces.real_rows import is_basis_of_reals
@@ -205,7 +205,7 @@ class Decomposition:
             whole space, or if components of one group over one field are not equivalent.
         """
         rho = self.representation
-        if not is_basis_of_reals([c.subspace.basis for c in self.components], rho.size):
+        if not is_basis_of_reals([as_exact(c.subspace.basis) for c in self.components], rho.size):
             raise CertificateError("sum", "the components are not a basis of the space")
         for number, component in enumerate(self.components):
             self._verify_component(number, component)
@@ -215,7 +215,7 @@ class Decomposition:
         field, dimension = component.field, component.dimension
         matrices = exact_matrices(component.representation)
         over = [component.extension.matrix(a) for a in exact_matrices(self.representation)]
-        if restricted(over, component.subspace.basis) != list(matrices):
+        if restricted(over, as_exact(component.subspace.basis)) != list(matrices):
             raise CertificateError("restriction", f"component {number} is not the restriction to its subspace")
         generating = generating_matrices(component.representation)
         if not is_irreducible(matrices, dimension, field, generating):
@@ -276,7 +276,7 @@ class _Group:
 def _groups(rho: Representation) -> Iterator[_Group]:
     """The groups of V^g, which is not split by its commutant, and of the isotypic components of gV."""
     field, size = cast(ExactField, rho.field), rho.size
-    fixed = rho.invariant_vectors().basis if rho.matrices else field.identity(size)
+    fixed = as_exact(rho.invariant_vectors().basis) if rho.matrices else field.identity(size)
     base = trivial_extension(field)
     if fixed.nrows:
         single = tuple(fixed.select(rows=[i]) for i in range(fixed.nrows))
@@ -306,7 +306,7 @@ class _Restrictions:
             return self.rho
         algebra, matrices = self._over(extension)
         # kernels of commuting matrices are invariant
-        made = restricted(matrices, subspace.basis, check=False)
+        made = restricted(matrices, as_exact(subspace.basis), check=False)
         # The restriction of a homomorphism to an invariant subspace.
         return Representation(algebra, made, size=subspace.dimension, check=False)
 

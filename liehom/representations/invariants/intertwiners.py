@@ -325,7 +325,7 @@ def _independent(over: Field, matrices: list[ExactMatrix], size: int) -> tuple[E
     if not matrices:
         return ()
     flat = over.stack_rows([m.reshape(1, size * size) for m in matrices], size * size)
-    space = Subspace(over, flat, size * size).basis
+    space: ExactMatrix = flat.row_space()
     return tuple(space.select(rows=[i]).reshape(size, size) for i in range(space.nrows))
 
 
