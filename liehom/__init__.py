@@ -18,7 +18,7 @@ The layers, in reading order; each imports only those above it in this list:
 `atlas`            sweeps over families of pairs, every entry decided
 `io`               JSON files in and out
 `paper`            the figures of the paper, done again
-`plotting`         pictures of trajectories and of measured orders
+`plotting`         plots of trajectories and of measured orders
 `testing`          a public conformance suite
 `cli`              the command line
 """

@@ -36,6 +36,7 @@ Progress: TypeAlias = Callable[[str], object]
 """Called with a line of text as each step begins."""
 
 LOG = logging.getLogger("liehom.fullness")
+"""Records the pair, each step with its outcome, and the verdict, at level DEBUG."""
 FIRST_TRIES, ROUNDS = 40, 6
 """Random elements in the first round of the spectral search, and rounds; each round that fails doubles the elements."""
 
@@ -79,10 +80,15 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
     """
     if not isinstance(pair, Pair):
         raise InputError(f"expected a Pair, got {pair!r}; a name is read by liehom.pair, a file by liehom.load")
-    if not isinstance(pair.field, ExactField):
-        LOG.debug("decide %r: numerical, over %s", pair, pair.field.name)
-        return decide_numerically(pair, seed=seed)
     LOG.debug("decide %r: dim g/h = %d", pair, pair.dimension)
+    verdict = _verdict(pair, seed, progress)
+    LOG.debug("verdict: %s", verdict)
+    return verdict
+
+
+def _verdict(pair: Pair, seed: int, progress: Progress | None) -> Verdict:
+    if not isinstance(pair.field, ExactField):
+        return decide_numerically(pair, seed=seed)
     if pair.dimension <= 1:
         reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
         return Full(pair, certificate_writer.trivial(pair.field), reason[pair.dimension])
@@ -90,7 +96,6 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
     for attempt in range(3):
         verdict = _decide(action, seed + attempt, progress)
         if verdict is not None:
-            LOG.debug("verdict: %s", verdict)
             return verdict
         LOG.debug("attempt %d found no certificate", attempt + 1)
     raise InternalError("no certificate was found, though one exists; please report this pair")
@@ -117,7 +122,7 @@ def _decide(action: TracelessIsotropyAction, seed: int, progress: Progress | Non
     _begin("nilpotent ideals", progress)
     rows = nilpotent_ideal_rows(action.traceless, action.size, action.field)
     if rows.nrows:
-        LOG.debug("a nilpotent ideal annihilates a subspace of dimension %d", action.size - rows.rank())
+        LOG.debug("the nilpotent ideal is not 0, so the pair is not full")
         reason = "a nilpotent ideal of the isotropy algebra annihilates an invariant subspace"
         return _not_full(action, kernel_witness(action, rows), reason)
     _begin("commutant", progress)

@@ -11,6 +11,7 @@ from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.kernels import Body, kernel
 from liehom.paper.printed_data import UPDATES
 from liehom.paper.samples import NARROW_MOMENTS, SEED, random_bodies
+from liehom.typing import Array
 
 Longdoubles: TypeAlias = npt.NDArray[np.longdouble]
 
@@ -52,7 +53,7 @@ def measured_orders(bodies: int = BODIES, sizes: tuple[float, ...] = SIZES, seed
     return found
 
 
-def _errors(name: str, body: Body, start: Longdoubles, exact: Longdoubles, dt: float) -> tuple[float, float]:
+def _errors(name: str, body: Body, start: Longdoubles, exact: Array, dt: float) -> tuple[float, float]:
     """Averages over the bodies of |m(T) - exact| and of the largest |H - H_0|."""
     update, m = kernel(name, body), (start[0], start[1], start[2])
     before = body.energy(m)

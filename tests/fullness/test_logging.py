@@ -15,6 +15,12 @@ import liehom as lh
         ("so(4)/so(3)", ["step: rank at sample points", "step: invariant forms", "1 symmetric and 0 skew-symmetric"]),
         ("sl(3)/P1", ["step: commutant", "commutant of dimension 1, a division algebra", "definite form: found"]),
         ("so(4)/0", ["the rank is below 6 at a sample point: not full"]),
+        ("affine(sl(2,Q(-1,3)))", ["step: commutant", "commutant of dimension 4, reducible"]),
+        (
+            "affine(sl(2,Q(-1,3))+sl(1,Q(-1,3)))",
+            ["step: spectral search, 40 random elements", "dominant element: found"],
+        ),
+        ("so(2)/so(1)", []),
     ],
 )
 def test_each_step_is_logged_with_its_outcome_and_the_verdict(
