@@ -63,7 +63,7 @@ class SymmetricMatrices:
     liehom.errors.ShapeError: a point of Sym(4) has 10 coordinates on its last axis, got shape (3,)
     """
 
-    __slots__ = ("_columns", "_index", "_rows", "k", "representation")
+    __slots__ = ("_columns", "_place", "_rows", "k", "representation")
 
     def __init__(self, k: int) -> None:
         if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
@@ -75,7 +75,8 @@ class SymmetricMatrices:
         upper = np.triu_indices(self.k)
         index: IntegerArray = np.zeros((self.k, self.k), dtype=int)
         index[upper] = np.arange(upper[0].size)
-        self._index: IntegerArray = np.maximum(index, index.T)  # of the coordinate that is the entry (i, j)
+        # the index of the coordinate that is the entry (i, j); pickles refer to it by this name
+        self._place: IntegerArray = np.maximum(index, index.T)
 
     # -- coordinates -------------------------------------------------------------------------------------
     @overload
@@ -101,7 +102,7 @@ class SymmetricMatrices:
                 f"a point of Sym({self.k}) has {self.representation.size} coordinates on its last axis, got shape "
                 f"{point.shape}"
             )
-        return point[..., self._index]
+        return point[..., self._place]
 
     @overload
     def to_vector(self, matrix: Jet) -> Jet: ...
