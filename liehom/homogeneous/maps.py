@@ -303,14 +303,16 @@ class FieldMatrix:
     @overload
     def __call__(self, x: Jet) -> Jet: ...
     @overload
-    def __call__(self, x: Values) -> Values: ...
-    def __call__(self, x: Values) -> Values:
+    def __call__(self, x: ValuesLike) -> Values: ...
+    def __call__(self, x: ValuesLike) -> Values:
         """M x for x (..., n), array or Jet."""
-        value = x.value if isinstance(x, Jet) else x
+        given: Any = x
+        value = x.value if isinstance(x, Jet) else given
         if is_exact(value):
-            return x @ self._exact
-        made: Values = x @ namespace(value).asarray(self._floating)
-        return made if self._rest is None or value.dtype != np.longdouble else made + x @ self._rest
+            exact: Values = given @ self._exact
+            return exact
+        made: Values = given @ namespace(value).asarray(self._floating)
+        return made if self._rest is None or value.dtype != np.longdouble else made + given @ self._rest
 
 
 def remainder(field: Field, value: Scalar, near: float) -> float:

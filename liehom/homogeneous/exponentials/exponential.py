@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from math import ceil, sqrt
-from typing import Any, final, overload
+from typing import Any, cast, final, overload
 
 import numpy as np
 
@@ -71,8 +71,7 @@ class Exponential(ABC):
 
     def series(self, x: Jet, m: Values) -> Jet:
         """The Jet Exp(x(t)) m(t), for x(0) = 0."""
-        made: Any = self.act(x, m)
-        return made  # type: ignore[no-any-return]
+        return cast(Jet, self.act(x, m))  # functions of a Jet return Jets
 
     def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
         """The value dExp^-1_x y, with `terms` terms of its series; Runge-Kutta-Munthe-Kaas steps need it.

@@ -1,8 +1,12 @@
 """Components: a generator or vector field, in any form a user may give, as one function (m, t) -> components.
 
-The forms are a function psi(m) or psi(m, t) written with numpy functions over leading axes; a list of sympy
-expressions, strings of the whitelist grammar or numbers, in the symbols m0, m1, ..., t; and an array of constant
-components.  All of them run on arrays, on exact numbers and on Jets.
+The forms are
+
+* a function psi(m) or psi(m, t) written with numpy functions over leading axes,
+* a list of sympy expressions, strings of the whitelist grammar or numbers, in the symbols m0, m1, ..., t,
+* an array of constant components.
+
+All of them run on arrays, on exact numbers and on Jets.
 """
 
 from __future__ import annotations
