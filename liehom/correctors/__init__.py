@@ -1,4 +1,9 @@
-"""Isotropy correctors: Theorem 5 at a point, iterated to any order, and what it needs of a step."""
+"""Isotropy correctors: steps raised to any order, or made to conserve first integrals, by isotropy.
+
+`step` is the interface of one-step methods and `expansion` their Taylor series.  The wings are `isotropy` (Theorem 5
+iterated to any order, in floats), `conserving` (section 7) and `symbolic` (formulas and exact decisions).  See
+docs/theory/correctors.md.
+"""
 
 from liehom.correctors.conserving import Conservation as Conservation
 from liehom.correctors.conserving import Conserved as Conserved

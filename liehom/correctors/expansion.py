@@ -1,9 +1,9 @@
-"""Taylor coefficients of the flow and of a step at a point, and of the reparametrised flow.
+"""Taylor coefficients of the flow and of a step at a point, and of the reparametrized flow.
 
     F_t(m) = w_0 + w_1 t + ...,  (k + 1) w_(k+1) = sum_(i <= k) rho(psi_i) w_(k-i),  psi_i along the flow,
     step(t) = z_0 + z_1 t + ...
 
-Plain Taylor coefficients, not derivatives.
+All coefficients are plain Taylor coefficients, not derivatives.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ from liehom.series.node import Node
 from liehom.typing import Array, Real, Values
 
 ROUND_OFF_UNITS = 64
+"""A Taylor coefficient counts as zero if it is below this many units of round-off of its terms."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """The Taylor expansion of the flow at a point.
+    """Taylor expansion of the flow at a point.
 
     Attributes
     ----------
@@ -58,18 +59,18 @@ class Flow:
         return self.field.time_dependent
 
     def point(self, k: int) -> Values:
-        """w_k, shape (..., N)."""
+        """Coefficient w_k of the flow, shape (..., N)."""
         found: Values = self.points.coefficient(k)
         return found
 
     def psi(self, k: int) -> Values:
-        """psi_k, shape (..., dim g)."""
+        """Coefficient psi_k of the generator along the flow, shape (..., dim g)."""
         found: Values = self.generator.coefficient(k)
         return found
 
 
 def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) -> Flow:
-    """The flow of m' = rho(psi(m, t)) m from (m, t) to a given order.
+    """`Flow`: the expansion of the flow of m' = rho(psi(m, t)) m from (m, t) to a given order.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) 
     order : int
         At least 1.
     t : float or array of shape (...,)
-        The time at which a time-dependent field is expanded; next to an exact point an exact number.
+        The time at which a time-dependent field is expanded; an exact number if the point is exact.
 
     Raises
     ------
@@ -90,11 +91,11 @@ def flow_series(field: GeneratorField, m: ArrayLike, order: int, t: Real = 0.0) 
 
     Notes
     -----
-    Section 5 of the paper. psi is called once, on a series that grows as its own result does.
+    Section 5 of the paper. psi is called once, on a series whose coefficients follow from those of psi.
 
     Examples
     --------
-    Exact: the logistic-like field on the circle at a rational point
+    Exact coefficients at a rational point of the circle:
 
     >>> import numpy as np
     >>> import liehom as lh
@@ -124,7 +125,7 @@ def _over(coefficient: Values | None, k: int) -> Values | None:
 
 
 def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: Jet | None = None) -> Jet:
-    """The expansion of a step in h: a Jet with values (..., N).
+    """Expansion of a step in h, a Jet with values (..., N).
 
     Parameters
     ----------
@@ -134,7 +135,7 @@ def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: J
     m : array of shape (..., N)
     order : int
     zeta : Jet, optional
-        A correction: added to the generator of a step with one exponential, else an outermost factor.
+        A correction, added as `with_correction` does.
 
     Examples
     --------
@@ -153,14 +154,14 @@ def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: J
 
 @final
 class Clock:
-    """A reparametrisation tau(t) = t + c_2 t^2 + ... and the coefficients of F_tau(t).
+    """A time reparametrization ("clock") tau(t) = t + c_2 t^2 + ... and the coefficients of F_tau(t).
 
     Parameters
     ----------
     flow : Flow
     order : int
     shape : tuple of int
-        Leading axes: every trajectory has its own clock.
+        Leading axes; each trajectory has its own clock.
 
     Examples
     --------
@@ -181,7 +182,7 @@ class Clock:
         self._powers: dict[tuple[int, int], Values | None] = {}
 
     def set(self, k: int, value: Values) -> None:
-        """Set c_k, k >= 2 (add to it where it was set)."""
+        """Set c_k for k >= 2, or add to it if it has been set."""
         old = self.coefficients[k]
         self.coefficients[k] = value if old is None else old + value
         self._powers = {key: x for key, x in self._powers.items() if key[1] - key[0] < k - 1}
@@ -215,10 +216,10 @@ class Clock:
 
 
 def leading_order(flow: Flow, order: int) -> Values:
-    """The least l with w_l != 0, shape (...,); 0 where all coefficients up to `order` vanish.
+    """The smallest l with w_l != 0, shape (...,); 0 if all coefficients up to `order` vanish.
 
-    A coefficient counts as zero if it is below 64 units of round-off of the terms that make it; exact coefficients
-    are compared with 0.
+    A coefficient counts as zero if it is below 64 units of round-off of the terms that it is the sum of. Exact
+    coefficients are compared with 0.
 
     Examples
     --------
@@ -229,7 +230,7 @@ def leading_order(flow: Flow, order: int) -> Values:
     2
     """
     found: Any = np.zeros(flow.points.shape[:-1], dtype=int)
-    # where w_1 = 0 for an autonomous field, the point is an equilibrium and all w_k vanish
+    # if w_1 = 0 for an autonomous field, the point is an equilibrium and all w_k vanish
     for k in range(1, order + 1 if flow.time_dependent else 2):
         found = np.where((found == 0) & ~vanishing(flow, k), k, found)
         if bool(np.all(found)):
@@ -241,8 +242,8 @@ def leading_order(flow: Flow, order: int) -> Values:
 def vanishing(flow: Flow, k: int) -> Values:
     """Whether w_k is zero up to round-off, shape (...,); k >= 1.
 
-    Round-off of the terms that make w_k, and for an autonomous field also of psi itself: psi cannot be better than
-    the unit of round-off times |m| times its derivative along the flow, which is |psi_1| / |w_1|.
+    The round-off counted is that of the terms of w_k and, for an autonomous field, of psi itself. The error of psi
+    is at least the unit of round-off times |m| times its derivative along the flow, which is |psi_1| / |w_1|.
 
     Examples
     --------
@@ -271,7 +272,7 @@ def vanishing(flow: Flow, k: int) -> Values:
 
 
 def _all_move(flow: Flow, size: Array) -> bool:
-    """Whether w_1 with largest coordinates `size` is beyond round-off everywhere, by norms; False if not known."""
+    """Whether norms prove that w_1, with largest coordinates `size`, is beyond round-off in all trajectories."""
     m = flow.point(0)
     norm = flow.field.frobenius_norms(flow.psi(0), m)
     if norm is None or not bool((size > 0).all()):
@@ -282,7 +283,7 @@ def _all_move(flow: Flow, size: Array) -> bool:
 
 
 def at_rest(action: Action, flow: Flow) -> Values:
-    """Whether w_1 of an autonomous field is zero up to round-off, from norms alone: `vanishing`, short.
+    """Whether w_1 of an autonomous field is zero up to round-off, shape (...,), by norms only; cf. `vanishing`.
 
     Examples
     --------
@@ -297,7 +298,7 @@ def at_rest(action: Action, flow: Flow) -> Values:
     bound = (ROUND_OFF_UNITS * float(np.finfo(w.dtype).eps) * action.max_norm) ** 2
     speed, size = _square(w), _square(m)
     gram, twice = action.inner_product.matrix, flow.generator.order >= 1
-    if isinstance(w, np.ndarray):  # mostly nothing is at rest, also by a larger norm
+    if isinstance(w, np.ndarray):  # in most calls no point is at rest, even by a larger norm
         largest = float(np.abs(gram).sum(axis=0).max()) * bound
         far = speed > largest * _square(flow.psi(0)) * size
         if bool(far.all()) and (
@@ -321,7 +322,7 @@ def _square(x: Values) -> Values:
 
 
 def _moved(xp: ModuleType, flow: Flow, x: Values, m: Values) -> Values:
-    """The largest coordinate of |rho(x)| |m|: what the coordinates of rho(x) m are rounded by."""
+    """The largest coordinate of |rho(x)| |m|, which bounds the round-off of rho(x) m in units of eps."""
     columns = flow.field.infinitesimal(x[..., None, :], xp.eye(m.shape[-1], dtype=m.dtype))
     found: Values = xp.max((xp.abs(m)[..., None, :] @ xp.abs(columns))[..., 0, :], axis=-1)
     return found

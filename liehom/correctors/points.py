@@ -16,14 +16,14 @@ from liehom.typing import IntegerArray
 
 
 def read_point(representation: Representation, m: ArrayLike) -> tuple[npt.NDArray[Any], IntegerArray]:
-    """Floats, or numbers of the representation's field; and the dimensions of the orbits.
+    """(points as floats or as exact numbers of the representation's field, dimensions of their orbits).
 
     Raises
     ------
     ShapeError
         If m does not have N coordinates.
     InputError
-        If the group leaves a point fixed.
+        If the group fixes a point.
 
     Examples
     --------

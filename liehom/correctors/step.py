@@ -1,6 +1,6 @@
 """Step: one step m -> Exp(xi(m, t, h)) m of a Lie group method, written once for arrays and for Jets.
 
-On arrays a step integrates; with the Jet h = 0 + 1 t it is expanded in the step size.  A step is one exponential
+On arrays a step integrates.  With the Jet h = 0 + 1 t it is expanded in the step size.  A step is one exponential
 (`OneExponential`) or a product of several.
 """
 
@@ -33,20 +33,22 @@ JAX_ITERATIONS = 60
 
 @final
 class Generator:
-    """psi as steps call it: (m, t) -> (..., dim g) with t of shape (..., 1); and what is known of the run.
+    """The generator as steps call it, (m, t) -> (..., dim g) with t of shape (..., 1).
+
+    It also carries data of the run.
 
     Parameters
     ----------
     field : GeneratorField
     orbit_dimension : int or array of shape (...,)
-        Of the orbits of the trajectories; constant along each.
+        Dimension of the orbit of each trajectory, which is constant along it.
     start : array of shape (..., N), optional
-        Where the run began.
+        Initial points of the run.
 
     Attributes
     ----------
     prepared : dict
-        What steps have derived from field and start, computed once: by the step, nothing else.
+        Results that steps derived from field and initial points, by step; only the step itself uses its entry.
 
     Examples
     --------
@@ -73,13 +75,14 @@ class Generator:
 class Step(ABC):
     """A one-step method on homogeneous spaces.
 
-    A new method needs `order` and `factors(action, psi, m, t, h)`, with
+    A new method needs `order` and `factors(action, psi, m, t, h)`. The arguments of `factors` are
 
-    * `action`, the `Action`: ``action.act(x, m)`` is Exp(x) m;
-    * `psi`, the generator as a function (m, t) -> (..., dim g);
-    * `m`, the point, of shape (..., N);
-    * `t` and `h`, time and step size, with a last axis of length 1 so that ``h * psi(m, t)`` broadcasts; to be
-      expanded, `h` is a `Jet` without constant term.
+    * `action`: the `Action`, for which ``action.act(x, m)`` is Exp(x) m;
+    * `psi`: the generator, a function (m, t) -> (..., dim g);
+    * `m`: the point, of shape (..., N);
+    * `t` and `h`: time and step size, with a last axis of length 1 so that ``h * psi(m, t)`` broadcasts.
+
+    When the step is expanded, `h` is a `Jet` without constant term.
 
     Examples
     --------
@@ -91,7 +94,7 @@ class Step(ABC):
     @property
     @abstractmethod
     def order(self) -> int:
-        """The order as a method for trajectories."""
+        """Order of convergence as a method for trajectories, an int."""
 
     @property
     def one_exponential(self) -> bool:
@@ -100,17 +103,17 @@ class Step(ABC):
 
     @abstractmethod
     def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
-        """Generators x_1, ..., x_s; the step is m -> Exp(x_s) ... Exp(x_1) m."""
+        """Tuple of generators x_1, ..., x_s (..., dim g); the step is m -> Exp(x_s) ... Exp(x_1) m."""
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        """The step at (m, t) as a function of h alone; methods that prepare something there override this.
+        """The step at (m, t) as a function of h alone; methods that precompute something there override this.
 
-        `error_terms` asks for `LocalStep.defects` of so many orders beyond `order`.
+        `error_terms` is the number of orders beyond `order` for which `LocalStep.defects` are computed.
         """
         return LocalStep(lambda h: self.factors(action, psi, m, t, h))
 
     def __repr__(self) -> str:
-        # no address: reports and the fingerprints of checkpoints contain it
+        # without the address, as reports and the fingerprints of checkpoints contain the repr
         return f"{type(self).__name__}()"
 
 
@@ -133,12 +136,12 @@ class OneExponential(Step, ABC):
 
     @property
     def one_exponential(self) -> bool:
-        """True."""
+        """Whether `factors` is always a single generator: True."""
         return True
 
     @abstractmethod
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        """xi(m, t, h), array or Jet of shape (..., dim g)."""
+        """The generator xi(m, t, h) of the step, array or Jet of shape (..., dim g)."""
 
     def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         return (self.generator(action, psi, m, t, h),)
@@ -155,7 +158,7 @@ class LocalStep:
     Attributes
     ----------
     defects : tuple of (int, array), or None
-        (k, |[t^k] (flow - step)|) where it has been computed.
+        (k, |[t^k] (flow - step)|), for the k for which it has been computed.
 
     Examples
     --------
@@ -171,16 +174,16 @@ class LocalStep:
         self._factors = factors
 
     def factors(self, h: Values) -> Factors:
-        """The generators of the step of size h (..., 1)."""
+        """Tuple of the generators of the step of size h (..., 1)."""
         return self._factors(h)
 
     def time(self, h: Values) -> Values:
-        """The time that passes in the step, h (...,) unless the step has a clock of its own."""
+        """Time that passes in the step of size h (...,): h, unless the step has its own clock tau."""
         return h
 
 
 def apply_factors(action: Action, factors: Factors, m: Values) -> Values:
-    """Exp(x_s) ... Exp(x_1) m.
+    """The point Exp(x_s) ... Exp(x_1) m, shape (..., N).
 
     Examples
     --------
@@ -196,7 +199,7 @@ def apply_factors(action: Action, factors: Factors, m: Values) -> Values:
 
 
 def with_correction(factors: Factors, zeta: Values | None, one_exponential: bool) -> Factors:
-    """The factors of a corrected step: zeta is added to the generator, or is an outermost factor.
+    """Factors of a corrected step: zeta is added to the single generator, or is an additional, outermost factor.
 
     Examples
     --------
@@ -211,7 +214,7 @@ def with_correction(factors: Factors, zeta: Values | None, one_exponential: bool
 
 
 def step_variable(order: int, like: Values) -> Jet:
-    """The Jet h = 0 + 1 t with values of shape (1,), of the kind of `like`.
+    """The Jet h = 0 + 1 t with values of shape (1,) and numbers of the kind of `like`.
 
     Examples
     --------
@@ -224,10 +227,11 @@ def step_variable(order: int, like: Values) -> Jet:
 
 
 def solve_implicitly(function: Callable[[Any], Values], start: Values, h: Real, *, stacked: bool = False) -> Values:
-    """The solution x of x = function(x), where function has a factor h.
+    """Solution x of x = function(x), where function has a factor h.
 
-    On Jets coefficient by coefficient; on arrays by iteration from `start` until x no longer changes, for every
-    trajectory apart, so that none depends on what it is solved with. `stacked`: the first axis is none of the ensemble.
+    Jets are solved coefficient by coefficient. Arrays are iterated from `start` until x no longer changes, each
+    trajectory separately, so that no result depends on the other trajectories. With `stacked`, the first axis is
+    not one of the ensemble (it holds the stages of a method).
 
     Raises
     ------
@@ -250,7 +254,7 @@ def solve_implicitly(function: Callable[[Any], Values], start: Values, h: Real, 
     if isinstance(start, Traced):
         return _solved_on_tape(function, start, start.tape)
     if is_jax(start):
-        # a loop, not sixty copies of the function, which would take minutes to compile
+        # a loop, as sixty copies of the function would take minutes to compile
         found: Values = import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
         return found
     eps = np.finfo(np.result_type(start, float)).eps
@@ -259,7 +263,7 @@ def solve_implicitly(function: Callable[[Any], Values], start: Values, h: Real, 
     change: Any = np.zeros(())
     settled: Any = np.zeros((), dtype=bool)
     for _ in range(MAX_ITERATIONS):
-        with np.errstate(over="ignore", invalid="ignore"):  # an iteration that diverges says so below
+        with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported below
             new = function(start)
             change = np.where(settled, 0.0, np.abs(new - start).max(axis=axes, keepdims=True, initial=0.0))
         size = np.abs(new).max(axis=axes, keepdims=True, initial=0.0)
@@ -277,7 +281,7 @@ def solve_implicitly(function: Callable[[Any], Values], start: Values, h: Real, 
 
 
 def _solved_on_tape(function: Callable[[Any], Values], start: Values, tape: Tape) -> Traced:
-    """The same iteration for one trajectory in compiled code; a step whose iteration fails is not made there."""
+    """Solution of x = function(x) in compiled code, by the same iteration; numpy takes a step for which it fails."""
     eps = float(np.finfo(np.float64).eps)
 
     def iteration(x: Traced, before: Traced, settled: Values) -> tuple[list[Values], Values]:

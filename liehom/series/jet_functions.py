@@ -148,7 +148,7 @@ def _linear(function: Callable[..., Any], args: tuple[Operand, ...], options: di
         raise refused(f"np.{name} with a series as an option")
     odd = [key for key, value in options.items() if key not in OPTIONS and value is not None]
     if odd or len(args) > limit:
-        raise refused(f"np.{name} with {', '.join(odd) or 'so many arguments'}")
+        raise refused(f"np.{name} with {', '.join(odd) or f'more than {limit} positional arguments'}")
     rest, options = frozen(tuple(rest)), {key: frozen(value) for key, value in options.items() if value is not None}
 
     def applied(x: Values) -> Values:
@@ -173,7 +173,7 @@ def _bilinear(function: Callable[..., Any], args: tuple[Operand, ...], options: 
     if len(args) > 2:
         third = {"tensordot": "axes", "convolve": "mode", "correlate": "mode", "cross": "axisa"}.get(function.__name__)
         if third is None or len(args) > 3:
-            raise refused(f"np.{function.__name__} with so many arguments")
+            raise refused(f"np.{function.__name__} with these positional arguments")
         rest[third] = frozen(args[2])
     return bilinear(function, args[0], args[1], **rest)
 
@@ -218,7 +218,7 @@ def _einsum(*args: Operand, **options: object) -> Jet:
     if options.get("out") is not None:
         raise refused("np.einsum with out=")
     made = nodes(*factors)
-    # constants are no factors of the convolution
+    # the convolution is over the factors that are Jets
     places = [i for i, factor in enumerate(factors) if holds_jets(factor)]
     constants = [node.value for node in made]
 

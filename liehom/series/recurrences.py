@@ -204,7 +204,7 @@ def real_power(u: Node, exponent: Fraction | Number | float, value: Values | Non
             if value is None:
                 value = power(u.value, exponent)
             if any(x == 0 for x in np.asarray(u.value).flat):
-                raise SeriesError(f"the power {exponent} of a series is no series where its value is 0")
+                raise SeriesError(f"the power {exponent} of a series has no expansion if its value is 0")
         else:
             p = constant_like(u.value, exponent)[()]
     if value is None:

@@ -1,4 +1,4 @@
-"""Section 7: steps that conserve first integrals by isotropy, exactly or to one order more.
+"""Section 7: steps that conserve first integrals by isotropy, to round-off or to one order higher.
 
 `Conserving` is the step that users wrap around another; `conservation` holds the map chi_m, `level_newton`
 Proposition 10. See docs/theory/correctors.md.

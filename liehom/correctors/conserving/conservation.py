@@ -26,11 +26,12 @@ from liehom.tracing import Traced
 from liehom.typing import Array, BooleanArray, IntegerArray, Real, Values
 
 RANK_RTOL = 1e-8
+"""Singular values of chi_m, with rows scaled to at most about 1, count as 0 up to this size."""
 
 
 @final
 class Conservation:
-    """chi_m: g_m -> W, by which isotropy changes first integrals, at a point or at several.
+    """The map chi_m: g_m -> W by which isotropy changes first integrals, at one or several points.
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ class Conservation:
         At m.
     m : array of shape (..., N)
     generator : array of shape (..., dim g)
-        xi_1, any with rho(xi_1) m = X(m).
+        xi_1, any generator with rho(xi_1) m = X(m).
     factor : float
         e.
 
@@ -51,11 +52,11 @@ class Conservation:
     value, gradient : arrays of shape (..., k) and (..., k, N)
         F(m) and DF(m).
     basis : array of shape (..., dim g, s)
-        An orthonormal basis of g_m (in compiled code a projector on it, or of g where nothing has to be projected).
+        An orthonormal basis of g_m. In compiled code it is a projector on g_m, or a basis of g if none is needed.
     matrix : array of shape (..., k, s)
         chi_m in this basis.
     scale : array of shape (..., k)
-        |F| + sum_i |dF/dm_i| |m_i|: F is rounded by this much times eps.
+        |F| + sum_i |dF/dm_i| |m_i|; the round-off of F is eps times this.
 
     Notes
     -----
@@ -114,7 +115,7 @@ class Conservation:
         self._take(velocity, _length(velocity) > noise * action.max_norm * _length(generator) * _length(m))
 
     def _on_tight_frame(self, frame: IsotropyFrame) -> Values:
-        """DF on the tangent space, for a frame without a basis of g_m: what lengths are taken of is the same."""
+        """DF on the tangent space, for a frame without a basis of g_m; its rows have the same lengths."""
         action, tight = self.action, self.action.tight_frame
         columns, basis = action.infinitesimal.right(self.m), action.inner_product.orthonormal_basis()
         tangential = (self.gradient @ columns) @ frame.lift
@@ -133,23 +134,23 @@ class Conservation:
 
     @property
     def hat(self) -> Values:
-        """chi_m with each row divided by its largest possible size, as its rank is decided, shape (..., k, s).
+        """Matrix of chi_m with each row divided by its largest possible size, shape (..., k, s); it decides the rank.
 
-        Its rows are at most of norm sqrt(s), and 0 where X or DF on the orbit vanish.
+        Its rows have norm at most sqrt(s). They are 0 where X, or DF on the orbit, vanishes.
         """
         kept = self.moving[..., None] & (self._bound > 0)
         return np.where(kept[..., None], self.matrix / np.where(kept, self._bound, 1.0)[..., None], 0.0)
 
     def _of_one(self) -> tuple[Values, Values]:
-        """Of one integral: |chi_m|, and whether it counts as not 0, both (..., 1)."""
+        """(|chi_m|, whether it counts as not 0), both of shape (..., 1), for one integral."""
         size = _length(self.matrix)
         return size, self.moving[..., None] & (size > RANK_RTOL * self._bound)
 
     def toward(self, displacement: Values) -> Conservation:
-        """The same with a displacement (..., N) of the step in place of X where X(m, t) = 0.
+        """`Conservation` with the displacement (..., N) of the step in place of X(m, t) where X(m, t) = 0.
 
-        A time-dependent field that vanishes at t moves the point all the same; the displacement has the direction of
-        the leading coefficient of the flow. At an equilibrium it is round-off, and nothing changes.
+        A time-dependent field that vanishes at t moves the point nevertheless. The displacement then has the direction
+        of the leading coefficient of the flow. At an equilibrium it is round-off, and nothing changes.
 
         Examples
         --------
@@ -166,20 +167,21 @@ class Conservation:
         return made
 
     def needs_motion(self, displacement: Values) -> None:
-        """In compiled code: only steps are made for which `toward` would change nothing."""
+        """Require, in compiled code, that `toward` would change nothing; numpy takes the other steps."""
         moved = _length(displacement) > ROUND_OFF_UNITS * float(np.finfo(np.float64).eps) * _length(self.m)
         settled: Any = self.moving | ~moved
         settled.tape.required.append(settled.entry)
 
     @property
     def dimension(self) -> int:
-        """Of g."""
+        """Dimension of g, an int."""
         return self.action.dimension
 
     def along(self, displacement: Values, directions: Values | None = None) -> Values:
-        """e DF(m) rho(zeta) displacement for zeta in a basis of g_m (or the directions (..., dim g, q) given).
+        """Matrix of zeta -> e DF(m) rho(zeta) displacement in a basis of g_m, shape (..., k, s).
 
-        Shape (..., k, s). It is chi_m for the displacement rho(xi_1) m.
+        With `directions` (..., dim g, q) in place of the basis, its shape is (..., k, q). It is chi_m for the
+        displacement rho(xi_1) m.
 
         Examples
         --------
@@ -195,14 +197,14 @@ class Conservation:
         return found
 
     def __call__(self, zeta: Values) -> Values:
-        """chi_m(zeta) for zeta (..., dim g) in g_m, shape (..., k)."""
+        """The value chi_m(zeta) for zeta (..., dim g) in g_m, shape (..., k)."""
         moved = self.action.infinitesimal(zeta, self._velocity)
         found: Values = self.factor * (self.gradient @ moved[..., None])[..., 0]
         return found
 
     @property
     def singular_values(self) -> Values:
-        """Of `hat`, shape (..., min(k, s)), decreasing."""
+        """Singular values of `hat`, decreasing, shape (..., min(k, s))."""
         if self.matrix.shape[-2] == 1:
             found: Values = _length(self.hat)[..., : self.matrix.shape[-1]]
             return found
@@ -211,7 +213,7 @@ class Conservation:
 
     @property
     def rank(self) -> IntegerArray:
-        """Of chi_m, shape (...,)."""
+        """Rank of chi_m, shape (...,)."""
         if self.matrix.shape[-2] == 1:
             one: IntegerArray = self._of_one()[1][..., 0].astype(int)
             return one
@@ -220,7 +222,7 @@ class Conservation:
 
     @property
     def wanted(self) -> IntegerArray:
-        """How many of the integrals are independent on the orbit at m: the rank of DF(m) on its tangent space."""
+        """Number of integrals that are independent on the orbit at m, shape (...,): the rank of DF(m) on T_m."""
         if self.tangential.shape[-2] == 1:
             one: IntegerArray = (self._sizes[..., 0] > 0).astype(int)
             return one
@@ -236,7 +238,7 @@ class Conservation:
 
     @property
     def directions(self) -> Values:
-        """V_m: an orthonormal basis of the complement of ker chi_m in g_m, shape (..., dim g, q); zeros fill up."""
+        """Orthonormal basis of V_m, the complement of ker chi_m in g_m, shape (..., dim g, q), padded by zeros."""
         if self.matrix.shape[-2] == 1:
             size, kept = (x[..., None] for x in self._of_one())
             rows = np.where(kept, self.matrix / np.where(kept, size, 1.0), 0.0)
@@ -248,12 +250,12 @@ class Conservation:
         return found
 
     def preimage(self, target: Values) -> Values:
-        """The zeta in g_m of least norm with chi_m(zeta) = target (..., k); in least squares where there is none."""
+        """The smallest zeta in g_m with chi_m(zeta) = target (..., k), or the least-squares solution if none exists."""
         directions = self.directions
         matrix = self.along(self._velocity, directions)
         units = np.where(self.scale > 0, self.scale, 1.0)
         matrix = matrix / units[..., None]
-        if type(matrix) is Traced:  # of one integral
+        if type(matrix) is Traced:  # one integral
             inverse = np.where(matrix == 0, 0.0, 1.0 / np.where(matrix == 0, 1.0, matrix))
         else:
             inverse = pseudo_inverse(matrix, 0.0)
@@ -261,15 +263,15 @@ class Conservation:
         return found
 
     def range(self, index: tuple[int, ...] = ()) -> Array:
-        """An orthonormal basis of chi_m(g_m) in W, columns, shape (k, rank); at the point of that index."""
+        """Orthonormal basis of chi_m(g_m) in W, as columns, shape (k, rank), at the point of this index."""
         left, sizes, _ = np.linalg.svd(_double(self.matrix[index]))
         rank = int(np.asarray(self.rank)[index])
         return left[:, : min(rank, len(sizes))]
 
     def unreachable(self, index: tuple[int, ...] = ()) -> Array:
-        """Covectors z, rows of shape (j, k), with z chi_m = 0 although z DF does not vanish on the orbit.
+        """Covectors z, as rows, shape (wanted - rank, k), with z chi_m = 0 although z DF is not 0 on the orbit.
 
-        The combination sum_i z_i F_i cannot be corrected by isotropy, at first order; j = wanted - rank.
+        Isotropy cannot change the combination sum_i z_i F_i at first order.
         """
         hat, tangential = _double(self.hat[index]), _double(self.tangential[index])
         left, sizes, _ = np.linalg.svd(hat)
@@ -293,7 +295,7 @@ class Conservation:
 
 
 def needs_one(matrix: Values) -> None:
-    """Refuse several integrals where values are not known: a singular value decomposition branches on them."""
+    """Raise `TraceError` for several integrals in compiled code, as a singular value decomposition branches."""
     if type(matrix) is Traced:
         raise TraceError(
             "several first integrals at once need a singular value decomposition, which is not compiled: conserve one, "
@@ -302,7 +304,7 @@ def needs_one(matrix: Values) -> None:
 
 
 def combination(covector: Sequence[float] | Array) -> str:
-    """A covector on W as a combination of integrals, in words.
+    """String that shows a covector on W as a combination of integrals.
 
     Examples
     --------
@@ -323,7 +325,7 @@ def combination(covector: Sequence[float] | Array) -> str:
 
 
 def pseudo_inverse(matrix: Values, cutoff: float | Array) -> Array:
-    """A^+ of matrices (..., k, q); singular values up to the cutoff (...,), or 1e-12 of the largest, count as 0.
+    """Pseudo-inverse of matrices (..., k, q); singular values up to `cutoff` or 1e-12 of the largest count as 0.
 
     Examples
     --------
@@ -350,15 +352,15 @@ def conservation_map(
     t: Real = 0.0,
     exponential: ExponentialLike = "exp",
 ) -> Conservation:
-    """chi_m: g_m -> W, the change of E_n by isotropy t^(n-1) zeta in a step.
+    """`Conservation`: the map chi_m: g_m -> W, the change of E_n by isotropy t^(n-1) zeta in a step.
 
     Parameters
     ----------
     field : GeneratorField
     step : Step
-        It decides e alone: 1/2 for one exponential, 1 for several.
+        It only decides e: 1/2 for one exponential, 1 for several.
     m : array_like of shape (..., N)
-    F : callable, text, sympy expression or list of these
+    F : callable, string, sympy expression or list of these
         See `FirstIntegral`.
     t : float or array of shape (...,)
     exponential : str, Exponential or callable
@@ -366,7 +368,7 @@ def conservation_map(
     Returns
     -------
     Conservation
-        With the matrix on an orthonormal basis of g_m, its rank and range, and the combinations that it does not reach.
+        Its matrix in an orthonormal basis of g_m, its rank and range, and the combinations that it does not reach.
 
     Raises
     ------
@@ -377,11 +379,11 @@ def conservation_map(
 
     Notes
     -----
-    (7.5) and Corollary 11 of the paper; xi_1 may be any generator with rho(xi_1) m = X(m), such as psi(m).
+    (7.5) and Corollary 11 of the paper. xi_1 may be any generator with rho(xi_1) m = X(m), such as psi(m).
 
     Examples
     --------
-    The free rigid body: chi_m(s m) = -(1/2) s |X|^2
+    For the free rigid body, chi_m(s m) = -(1/2) s |X|^2:
 
     >>> import numpy as np
     >>> import liehom as lh
@@ -409,5 +411,5 @@ def _length(x: Values) -> Values:
 
 
 def _double(x: Values) -> Array:
-    """The precision in which linear algebra is available, and no NaN, for which it raises."""
+    """x in double precision, for LAPACK, with 0 in place of NaN and infinity, for which it raises."""
     return np.nan_to_num(np.asarray(x, dtype=np.float64), nan=0.0, posinf=0.0, neginf=0.0)

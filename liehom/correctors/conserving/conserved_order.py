@@ -2,7 +2,7 @@
 
     F(step(t)) - F(m) = E_n t^n + E_(n+1) t^(n+1) + ...,    conserved to order n - 1
 
-Exact over exact scalars.
+At exact points the coefficients E_n are exact.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from liehom.series.jet import Jet
 from liehom.typing import Array, IntegerArray, Real, Values
 
 EXTRA_ORDERS = 4
-"""How far beyond the order of a step coefficients are looked at by default."""
+"""Default number of coefficients beyond the order of the step that are computed."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class ConservedOrder:
-    """To which order a step conserves F at a point, or at several.
+    """Order to which a step conserves F, at one or several points.
 
     Attributes
     ----------
     order : int or array of shape (...,)
         The largest p, up to `bound`, with F(step(t)) - F(m) = O(t^(p+1)).
     coefficients : tuple
-        E_0, ..., E_bound, the Taylor coefficients of F(step(t)) - F(m): arrays of shape (...,), or (..., k) where F is
-        a list; E_n with n = order + 1 is the first that is not 0.
+        E_0, ..., E_bound, the Taylor coefficients of F(step(t)) - F(m): arrays of shape (...,), or (..., k) if F is
+        a list. E_n with n = order + 1 is the first that is not 0.
     bound : int
-        The last coefficient that was looked at.
+        Index of the last coefficient that was computed.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def conserved_order(
     t: Real = 0,
     exponential: ExponentialLike = "exp",
 ) -> ConservedOrder:
-    """To which order a step conserves a first integral, with the coefficients E_n.
+    """`ConservedOrder`: the order to which a step conserves a first integral, with the coefficients E_n.
 
     Parameters
     ----------
@@ -79,28 +79,28 @@ def conserved_order(
     step : Step
     m : array_like of shape (..., N)
         Floats, or exact numbers of the representation's field in an array of objects; E_n is then exact.
-    F : callable, text, sympy expression or list of these
+    F : callable, string, sympy expression or list of these
         See `FirstIntegral`.
     up_to : int, optional
-        The last coefficient to look at (default: 4 beyond the order of the step).
+        Index of the last coefficient to compute (default: the order of the step plus 4).
     t : number or array of shape (...,)
     exponential : str, Exponential or callable
 
     Raises
     ------
     InputError
-        If F is not a first integral of the field: shows its derivative along the flow.
+        If F is not a first integral of the field; the message shows its derivative along the flow.
     ShapeError
         If m does not have N coordinates.
 
     Notes
     -----
-    Definition 9 of the paper: F is conserved to order n - 1 if F(step(t)) - F(m) = O(t^n). From the expansion of the
-    step in its size.
+    Definition 9 of the paper: F is conserved to order n - 1 if F(step(t)) - F(m) = O(t^n). The coefficients
+    come from the expansion of the step in its size.
 
     Examples
     --------
-    Heun's step of the free rigid body conserves the energy to order 3, one more than its own order:
+    Heun's step of the free rigid body conserves the energy to order 3, its own order plus 1:
 
     >>> import numpy as np
     >>> import liehom as lh
@@ -125,7 +125,7 @@ def conserved_order(
 
 
 def agreement(coefficients: list[Array], noise: list[Array] | None) -> IntegerArray:
-    """The largest p with E_1 = ... = E_p = 0, shape (...,); exactly, or up to what may be round-off.
+    """The largest p with E_1 = ... = E_p = 0, shape (...,), exactly or up to the noise given.
 
     Examples
     --------
@@ -146,7 +146,7 @@ def agreement(coefficients: list[Array], noise: list[Array] | None) -> IntegerAr
 
 
 def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Values, bound: int) -> list[Array]:
-    """E_0, ..., E_bound, arrays of shape (..., k).
+    """List of E_0, ..., E_bound, arrays of shape (..., k).
 
     Examples
     --------
@@ -165,7 +165,7 @@ def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Value
 def round_off_of(
     action: Action, integral: FirstIntegral, flow: Flow, local: LocalStep, m: Values, bound: int
 ) -> list[Array]:
-    """What may be round-off in E_0, ..., E_bound, arrays of shape (..., k).
+    """List of bounds of the round-off in E_0, ..., E_bound, arrays of shape (..., k).
 
     Examples
     --------

@@ -1,9 +1,9 @@
-"""Conserving(step, F): a step that keeps first integrals by isotropy, exactly or to one order more; section 7.
+"""Conserving(step, F): a step that conserves first integrals by isotropy, to round-off or to one order higher.
 
     m -> Exp(xi(m, t) + t^(n-1) sigma) m,    sigma in g_m,    F(step) = F(start of the run)         (7.2), (7.6)
 
-n - 1 is the order to which the step conserves F by itself.  sigma lies in V_m, the complement of ker chi_m in g_m; its
-linearisation solves chi_m(sigma) = -E_n.
+Here n - 1 is the order to which the base step conserves F.  sigma is in V_m, the complement of ker chi_m in g_m; its
+linearization solves chi_m(sigma) = -E_n.  See section 7 of the paper.
 """
 
 from __future__ import annotations
@@ -32,37 +32,37 @@ TIME_SHIFT = 0.01
 
 @final
 class Conserving(Step):
-    """A step whose generator gets t^(n-1) sigma, sigma in g_m, so that first integrals keep their values.
+    """A step that adds t^(n-1) sigma, sigma in g_m, to its generator, so that first integrals keep their values.
 
     Parameters
     ----------
     step : Step
         The base, of any kind.
-    F : callable, text, sympy expression or list of these
+    F : callable, string, sympy expression or list of these
         The first integral, or k of them: see `FirstIntegral`.
     aim : "start" or "previous"
-        Whether F is to be what it was at the start of the run, so that round-off does not add up, or at the point
-        from which the step is made.
+        The target: the value of F at the initial point of the run, so that round-off does not add up, or at the point
+        before the step.
     linear : bool
         One linear solve per step instead of Newton's method: F is then conserved to order n.
     order : int, optional
-        n - 1, the order to which the base conserves F; by default it is measured next to the start of the run.
+        n - 1, the order to which the base conserves F. By default it is measured near the initial points.
     value : float or array of shape (..., k), optional
-        What F is to be, instead of F at the start of the run.
+        The target, in place of the value of F at the initial point.
 
     Raises
     ------
     InputError
-        If an argument is not right. At the first step: if F is not a first integral, or isotropy does not reach a
+        If an argument is not valid. At the first step, if F is not a first integral, or if isotropy does not reach a
         combination of the integrals, which the message names.
 
     Notes
     -----
-    Proposition 10 of the paper, with Newton's method started at the solution of chi_m(sigma_0) = -E_n up to higher
-    order (E_n need not vanish, unlike what its proof says); `linear` is the linearisation after it. At an equilibrium
-    chi_m = 0, and the step is that of the base; so it is where F does not resolve the orbits at the precision of the
-    numbers. Where chi_m loses rank on the way, the level set may be out of the reach of isotropy for large steps of a
-    low order: the report counts steps that miss it. The order as a method for trajectories is that of the base.
+    Proposition 10 of the paper. Newton's method starts at the solution of chi_m(sigma_0) = -E_n up to higher order (E_n
+    need not vanish, unlike its proof says); `linear` is the linearization after the proposition. At an equilibrium
+    chi_m = 0, and the step is the base step; likewise if F does not resolve the orbits at the precision of the numbers.
+    If chi_m loses rank along a trajectory, large steps of low order may not be able to reach the level set; the report
+    counts the steps that miss it. The order as a method for trajectories is the order of the base.
 
     Examples
     --------
@@ -135,7 +135,7 @@ class Conserving(Step):
         )
 
     def kept_order(self, action: Action, psi: Generator, m: Values, t: Values) -> int | None:
-        """n of (7.2) at the start of a run, with t of shape (...,); None if no E_n was found that does not vanish."""
+        """The n of (7.2) at the initial points of a run, with t (...,); None if all E_n computed vanish."""
         return self._begun(action, psi, m, t).n
 
     def _begun(self, action: Action, psi: Generator, m: Values, t: Values) -> _Begun:
@@ -161,7 +161,7 @@ def _shown(source: IntegralSource) -> str:
 
 @final
 class _Begun:
-    """What a conserving step knows at the start of a run: that F is a first integral, its value there, and n."""
+    """Data of a conserving step for a run: the first integral, checked, its target value, and n."""
 
     def __init__(self, step: Conserving, action: Action, psi: Generator, m: Values, t: Values) -> None:
         start = m if psi.start is None else psi.start
@@ -179,7 +179,7 @@ class _Begun:
         self._explore(step, action, psi, start, t)
 
     def _given(self, step: Conserving, m: Traced) -> Values | None:
-        """The target of a traced step, a number that every trajectory has; None for F(m)."""
+        """Target of a traced step, a number of each trajectory; None for F(m)."""
         if step.aim == "previous":
             return None
         if step._value is not None:
@@ -189,7 +189,7 @@ class _Begun:
         return Traced(m.tape, [m.tape.trajectory_constant(lambda points: self.integral(points)[..., 0])])
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Values, t: Values) -> None:
-        """n, and whether chi is onto, at the start and at points next to it, as symmetric points may mislead."""
+        """Find n, and check that chi is onto, at the initial points and near them, as symmetric points may mislead."""
         factor = 0.5 if step.one_exponential else 1.0
         inner = Generator(psi.field, psi.orbit_dimension, start)
         short: Any = np.ones(start.shape[:-1], dtype=bool)
@@ -198,7 +198,7 @@ class _Begun:
         bound = step.order + EXTRA_ORDERS
         for j in range(EXTRA_POINTS + 1):
             if j > 1 and short.size >= ENOUGH_TRAJECTORIES and not short.any():
-                break  # so many trajectories, moved once from where they may all be symmetric, are points enough
+                break  # this many trajectories, moved once from points that may be symmetric, are enough points
             x = np.cos((1.0 + j) * np.arange(1, action.dimension + 1)) / (action.max_norm or 1.0)
             point = action.act(np.broadcast_to(x, (*start.shape[:-1], x.size)), start) if j else start
             point = point.astype(start.dtype, copy=False)

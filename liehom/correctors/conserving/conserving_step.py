@@ -27,20 +27,20 @@ TOLERATED_UNITS = 0.5
 @final
 @dataclass(frozen=True, slots=True)
 class Conserved:
-    """What a conserving step of one size reports, all of shape (...,).
+    """Report of a conserving step of one size; all arrays have shape (...,).
 
     Attributes
     ----------
     iterations : array of int
-        Of Newton's method.
+        Number of iterations of Newton's method.
     defect : array
-        The largest of the |F_i(step) - target_i|.
+        The largest |F_i(step) - target_i|.
     units : array
-        The same in units of what F_i is rounded by.
+        The largest |F_i(step) - target_i| in units of the round-off of F_i.
     rank, wanted : array of int
-        The rank of chi_m, and how many integrals are independent on the orbit at m.
+        The rank of chi_m, and the number of integrals that are independent on the orbit at m.
     left : array of bool
-        Where isotropy was left alone because F does not resolve its effect: at or next to an equilibrium, or h = 0.
+        Whether isotropy was not used because F does not resolve its effect: at or near an equilibrium, or for h = 0.
     """
 
     iterations: Values
@@ -52,9 +52,9 @@ class Conserved:
 
 
 class ConservingStep(LocalStep):
-    """A conserving step at one point, as a function of h; the correction is found for each h.
+    """A conserving step at one point, as a function of h, for each of which the correction is computed.
 
-    Made by `Conserving.at`.
+    `Conserving.at` returns it.
 
     Parameters
     ----------
@@ -62,9 +62,9 @@ class ConservingStep(LocalStep):
     found : Conservation
         chi_m.
     target : array of shape (..., k), or None
-        What F is to be; None for F(m).
+        Target value of F; None for F(m).
     n : int or None
-        The first coefficient E_n that does not vanish everywhere.
+        Index of the first coefficient E_n that does not vanish everywhere.
     one_exponential, linear : bool
 
     Examples
@@ -111,18 +111,18 @@ class ConservingStep(LocalStep):
         return self._made(h)[1]
 
     def conserved(self, h: Values) -> Conserved:
-        """What became of F in the step of size h (..., 1)."""
+        """`Conserved`, the report on F for the step of size h (..., 1)."""
         return self._made(h)[2]
 
     def isotropy(self, h: Values) -> Values:
-        """t^(n-1) sigma of the step of size h (..., 1), shape (..., dim g)."""
+        """The isotropy t^(n-1) sigma of the step of size h (..., 1), shape (..., dim g)."""
         made, base = self._made(h)[1], self.base.factors(h)
         if len(made) > len(base):
             return made[-1]
         return made[0] - base[0]
 
     def sigma(self) -> Values:
-        """The solution of chi_m(sigma) = -E_n in V_m, shape (..., dim g); 0 where E_n is round-off."""
+        """Solution of chi_m(sigma) = -E_n in V_m, shape (..., dim g); 0 where E_n is round-off."""
         if self._sigma is None:
             m = self.found.m
             if self.n is None:
@@ -190,7 +190,7 @@ class ConservingStep(LocalStep):
         return -self.found.preimage(np.where(np.abs(value) > noise, value, 0.0))
 
     def _series(self, h: Jet) -> Jet | None:
-        """t^(n-1) sigma as a series in h, which conserves F(m) to its order; None if there is nothing to do."""
+        """The isotropy t^(n-1) sigma as a Jet in h that conserves F(m) to its order; None if it is 0."""
         total, found = h.order, self.found
         if self.n is None or total < self.n:
             return None
@@ -221,7 +221,7 @@ def _length(x: Values) -> Values:
 
 @final
 class ClockedConservingStep(ConservingStep):
-    """A conserving step whose base has a clock of its own, such as a `Corrected` step.
+    """A conserving step whose base has its own clock (time reparametrization), such as a `Corrected` step.
 
     Examples
     --------
@@ -236,5 +236,5 @@ class ClockedConservingStep(ConservingStep):
     """
 
     def time(self, h: Values) -> Values:
-        """tau(h) of the base, for h of shape (...,)."""
+        """Time tau(h) that passes in the base step, for h of shape (...,)."""
         return self.base.time(h)

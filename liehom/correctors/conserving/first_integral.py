@@ -2,8 +2,8 @@
 
     F(F_t(m)) = F(m),    so that DF(m) X(m, t) = 0
 
-F is a function written with numpy functions over leading axes, or texts, sympy expressions or numbers in the symbols
-m0, m1, ....
+F is a function written with numpy functions over leading axes, or it is given by strings, sympy expressions or numbers
+in the symbols m0, m1, ....
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ IntegralSource: TypeAlias = Callable[[Any], Any] | ScalarLike | Sequence[Callabl
 """A function F(m), a string or sympy expression in m0, m1, ..., or a sequence of these or of numbers."""
 
 RTOL = 1e-8
+"""Relative size up to which a Taylor coefficient of F along the flow counts as 0."""
 
 
 @final
@@ -41,14 +42,14 @@ class FirstIntegral:
     Attributes
     ----------
     scalar : bool or None
-        Whether F is a number rather than a list of k; None for a function that has not been called.
+        Whether F is one number, not a list of k. None for a function that has not been called.
 
     Raises
     ------
     InputError
-        If it is none of these forms, or depends on time.
+        If the source has none of these forms, or depends on time.
     ShapeError
-        When it is evaluated, if a function returns another shape.
+        On evaluation, if a function returns another shape.
 
     Notes
     -----
@@ -78,7 +79,7 @@ class FirstIntegral:
             return
         parts = [source] if single else list(source) if np.iterable(source) else None
         if not parts:
-            raise InputError(f"F is {source!r}: expected a function of m, or texts or expressions in m0, m1, ...")
+            raise InputError(f"F is {source!r}: expected a function of m, or strings or expressions in m0, m1, ...")
         self.scalar = single
         self._source = parts
         self._components = Components(parts, size, (len(parts),), "F")
@@ -86,7 +87,7 @@ class FirstIntegral:
             raise InputError(f"F = {parts} depends on t: a first integral is a function of m alone")
 
     def __call__(self, m: Values) -> Values:
-        """F(m) for m (..., N), array or Jet of shape (..., k)."""
+        """The value F(m) for m (..., N), array or Jet of shape (..., k)."""
         if self._components is not None:
             found: Values = self._components(m)
             return found
@@ -96,7 +97,7 @@ class FirstIntegral:
         lead, shape = m.shape[:-1], made.shape
         if shape == lead:
             scalar = True
-            # stacked where numpy has made a bare number of an array of exact numbers
+            # numpy makes a bare number of a 0-dimensional array of exact numbers; np.stack makes an array again
             made = made[..., None] if lead or made.dtype != object else np.stack([made], axis=-1)
         elif len(shape) == len(lead) + 1 and shape[:-1] == lead and shape[-1]:
             scalar = False
@@ -109,7 +110,7 @@ class FirstIntegral:
         return made if isinstance(made, Jet) or made.dtype.kind == "f" else _real(made, m)
 
     def gradient(self, m: Values) -> tuple[Values, Values]:
-        """F(m), shape (..., k), and DF(m), shape (..., k, N), by series of order 1 in the N directions."""
+        """(F(m) of shape (..., k), DF(m) of shape (..., k, N)), by series of order 1 in the N directions."""
         m = as_values(m)
         lead, n = m.shape[:-1], m.shape[-1]
         unit = np.eye(n, dtype=m.dtype) if not is_exact(m) else zeros(m, (n, n)) + np.eye(n, dtype=int)
@@ -121,11 +122,11 @@ class FirstIntegral:
         return made.value[0], np.moveaxis(made.coefficient(1), 0, -1)
 
     def squeezed(self, value: Values) -> Values:
-        """Values of shape (..., k) as the user has them: (...,) for a number."""
+        """Values (..., k) in the shape of the user's F: (...,) if F is a number."""
         return value[..., 0][()] if self.scalar else value
 
     def check(self, flow: Flow, order: int, scale: Values | None = None) -> None:
-        """Check that F is constant along the flow, in the Taylor coefficients 1, ..., order.
+        """Check that the Taylor coefficients 1, ..., order of F along the flow vanish.
 
         Parameters
         ----------
@@ -133,12 +134,12 @@ class FirstIntegral:
             Its expansion at a point or several, at least to this order.
         order : int
         scale : array of shape (..., k), optional
-            What F is rounded by, in units of the round-off (computed where it is not given).
+            See `conditioning`; computed if it is not given.
 
         Raises
         ------
         InputError
-            If it is not; shows the derivative.
+            If one does not vanish; the message shows the derivative.
 
         Examples
         --------
@@ -179,7 +180,7 @@ class FirstIntegral:
 
 
 def conditioning(value: Values, gradient: Values, m: Values) -> Values:
-    """|F| + sum_i |dF/dm_i| |m_i|, shape (..., k): F is rounded, by m and by itself, by this much times eps.
+    """The scale |F| + sum_i |dF/dm_i| |m_i|, shape (..., k); the round-off of F is eps times this.
 
     Examples
     --------
@@ -193,7 +194,7 @@ def conditioning(value: Values, gradient: Values, m: Values) -> Values:
 
 
 def _real(made: Values, m: Values) -> Values:
-    """Integers, or exact numbers next to exact points."""
+    """Values of F as floats, or as exact numbers at exact points."""
     if made.dtype.kind in "iu":
         found: Values = made.astype(float) if not is_exact(m) else made.astype(object) + zeros(m, ())
         return found

@@ -1,8 +1,8 @@
 """Newton's method for the isotropy that puts a step on a level set of first integrals (Proposition 10).
 
-The unknown is an element x of V_m, the complement of ker chi_m in g_m; the Jacobian is at first the one of Corollary 11
-along the step that is made, e DF(m) rho(x) (step - m), and is corrected by the differences that are met (Broyden's
-updates; for one integral the secant method).  Residuals are in units of what F is rounded by.
+The unknown is an element x of V_m, the complement of ker chi_m in g_m.  The first Jacobian is that of Corollary 11
+along the step, e DF(m) rho(x) (step - m).  Broyden's updates correct it by the differences observed, which for
+one integral is the secant method.  Residuals are measured in units of the round-off of F.
 """
 
 from __future__ import annotations
@@ -19,25 +19,26 @@ from liehom.typing import Array, BooleanArray, Values
 
 MAX_ITERATIONS = 20
 MAX_STALLED_ITERATIONS = 2
+"""The iteration ends after this many iterations that did not reduce the residual."""
 MIN_RESOLVED_UNITS = 32.0
-"""A direction along which one radian changes F by less than this many units of round-off is left alone: next to an
+"""A direction along which one radian changes F by less than this many units of round-off is not used: near an
 equilibrium F does not resolve the orbits."""
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class LevelSolution:
-    """What Newton's method found.
+    """Solution found by Newton's method.
 
     Attributes
     ----------
     x : array of shape (..., dim g), or None
-        The isotropy to be added; None where there is nothing to add.
+        The isotropy to be added; None if it is 0 in all trajectories.
     residual : array of shape (..., k)
-        With this x.
+        F - target with this x.
     iterations : array of int, shape (...,)
     resolved : array of int, shape (...,)
-        In how many directions F resolves the change by isotropy.
+        Number of directions in which F resolves the change by isotropy.
     """
 
     x: Values | None
@@ -49,7 +50,7 @@ class LevelSolution:
 def solve_levels(
     residual: Callable[[Any], Any], first: Values, directions: Values, jacobian: Values, unit: Values, size: float
 ) -> LevelSolution:
-    """x in the span of `directions` with residual(x) = 0 to round-off.
+    """`LevelSolution` x in the span of `directions` with residual(x) = 0 to round-off.
 
     Parameters
     ----------
@@ -60,15 +61,15 @@ def solve_levels(
     directions : array of shape (..., dim g, q)
         Orthonormal, or columns of zeros.
     jacobian : array of shape (..., k, q)
-        Of residual at 0, approximately, in these directions.
+        Approximate Jacobian of residual at 0, in these directions.
     unit : array of shape (..., k)
-        A residual within it is round-off.
+        Residuals up to this size are round-off.
     size : float
-        The largest norm of rho(x) for |x| = 1: an iteration moves by at most one radian.
+        The largest norm of rho(x) for |x| = 1. An iteration moves by at most one radian.
 
     Notes
     -----
-    Proposition 10 of the paper with V_m = (ker chi_m)^perp; equations that isotropy does not reach are left out.
+    Proposition 10 of the paper with V_m = (ker chi_m)^perp. Equations that isotropy does not reach are omitted.
 
     Examples
     --------
@@ -112,7 +113,7 @@ def solve_levels(
 def _of_one(
     residual: Callable[[Any], Any], first: Array, direction: Array, slope: float, unit: float, size: float
 ) -> LevelSolution:
-    """`solve_levels` for one trajectory, one integral and one direction, where the overhead of arrays would show."""
+    """`solve_levels` for one trajectory, one integral and one direction, without the overhead of arrays."""
     resolved = abs(slope) > MIN_RESOLVED_UNITS * size * unit
     best = value = first.item()
     if not resolved or not abs(value) > unit:
@@ -140,7 +141,7 @@ def _of_one(
 def _on_tape(
     residual: Callable[[Any], Any], first: Traced, direction: Traced, slope: Traced, unit: Traced, size: float
 ) -> LevelSolution:
-    """`_of_one` in compiled code, every lane for itself."""
+    """`_of_one` in compiled code, in each lane separately."""
     tape = first.tape
     resolved = np.abs(slope) > MIN_RESOLVED_UNITS * size * unit[0]
     start = first[0]
@@ -148,7 +149,7 @@ def _on_tape(
     def iteration(
         c: Values, best: Values, over: Values, stalled: Values, count: Values, active: Values
     ) -> tuple[list[Values], Values]:
-        # with 1 / slope, as there is then one division
+        # 1 / slope is kept, which needs one division less
         step = np.clip(-best * over, -1 / size, 1 / size)
         value = residual((c + step) * direction)[0]
         change = value - best
@@ -169,7 +170,7 @@ def _on_tape(
 
 
 def _reduced(jacobian: Array, cutoff: float) -> tuple[Array, Array, Array, BooleanArray]:
-    """U^T, V, S and which are kept, of a singular value decomposition: the equations and unknowns that matter."""
+    """(U^T, V, S, mask of the singular values above the cutoff) of a singular value decomposition."""
     if jacobian.shape[-2:] == (1, 1):
         one, slopes = np.ones_like(jacobian), jacobian[..., 0]
         kept = np.abs(slopes) > cutoff
@@ -181,14 +182,14 @@ def _reduced(jacobian: Array, cutoff: float) -> tuple[Array, Array, Array, Boole
 
 
 def _limited(step: Array, largest: float) -> Array:
-    """Steps of norm at most `largest`; 0 where it is not finite."""
+    """step, shortened to norm at most `largest`; 0 where it is not finite."""
     norm = np.sqrt(_square(step))[..., None]
     step = np.where(norm > largest, step * (largest / np.where(norm > 0, norm, 1.0)), step)
     return np.where(np.isfinite(norm), step, 0.0)
 
 
 def _updated(inverse: Array, step: Array, change: Array) -> Array:
-    """Broyden's update of the inverse Jacobian: it then takes the change of the residual to the step."""
+    """Inverse Jacobian after Broyden's update, which maps `change` of the residual to `step`."""
     moved = (inverse @ change[..., None])[..., 0]
     row = (step[..., None, :] @ inverse)[..., 0, :]
     along = (step * moved).sum(axis=-1)[..., None, None]

@@ -1,13 +1,14 @@
-"""Terms of the flow's own generator, where isotropy cannot serve: next to zeros of a time-dependent field.
+"""Corrections by terms of the flow's own generator, near zeros of a time-dependent field.
 
-Let w_l be the leading coefficient at (m, t).  At orders n <= l isotropy does not enter.  And where w_l is small next
-to the later w_k, as shortly after a time at which the field vanishes, zeta and c are series in h / t_1 with
+Let w_l be the leading coefficient at (m, t).  At orders n <= l isotropy does not enter.  If w_l is small compared with
+the later w_k, as shortly after a time at which the field vanishes, zeta and c are series in h / t_1 with
 
     t_1 = min over k > l of (l |w_l| / (k |w_k|))^(1/(k-l)),    the time in which the velocity changes by itself,
 
-so that they serve steps h << t_1 only.  t_1 is compared with the time scale of the generator, 1/rate, with
-rate = max_k |psi_k|^(1/(k+1)): isotropy takes the share s(rate t_1) of each correction, s = 0 up to 1/4, 1 from 1/2
-on and smooth between, and the rest is made by x t^n, rho(x) m = what is missing at order n, as in a Taylor step.
+so they are useful only for steps h << t_1.  Therefore t_1 is compared with the time scale 1/rate of the generator,
+rate = max_k |psi_k|^(1/(k+1)).  Isotropy makes the fraction s(rate t_1) of each correction, where s = 0 up to 1/4,
+s = 1 from 1/2 on, and s is smooth between.  The rest of the correction at order n is a term x t^n of the generator, as
+in a Taylor step, where rho(x) m is the remaining difference.
 """
 
 from __future__ import annotations
@@ -23,11 +24,12 @@ from liehom.series.arrays import namespace
 from liehom.typing import Values
 
 NO_ISOTROPY_UP_TO, ONLY_ISOTROPY_FROM = 1 / 4, 1 / 2
+"""Values of rate t_1, without unit, between which the fraction of isotropy grows from 0 to 1."""
 REFINEMENTS = 2
 
 
 def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> Values:
-    """s(rate t_1), shape (...,): the share of the corrections that isotropy takes.
+    """Fraction s(rate t_1) of each correction that isotropy makes, shape (...,).
 
     Parameters
     ----------
@@ -67,7 +69,7 @@ def isotropy_fraction(action: Action, flow: Flow, leading: int, order: int) -> V
 
 
 def generator_norm(action: Action, x: Values) -> Values:
-    """A bound of the norm of rho(x) for x (..., dim g), shape (...,).
+    """Upper bound of the norm of rho(x) for x (..., dim g), shape (...,).
 
     Examples
     --------
@@ -83,7 +85,7 @@ def generator_norm(action: Action, x: Values) -> Values:
 
 
 def lifted(action: Action, frame: IsotropyFrame, m: Values, tangent: Values) -> Values:
-    """The generator x of least norm with rho(x) m = a tangent vector, shape (..., dim g).
+    """The smallest generator x with rho(x) m = a given tangent vector, shape (..., dim g).
 
     Examples
     --------

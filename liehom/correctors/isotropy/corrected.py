@@ -1,4 +1,4 @@
-"""Corrected(step, order): a step raised to any order by isotropy, with its clock."""
+"""Corrected(step, order): a step raised to any order by isotropy, with its clock (time reparametrization) tau."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class Corrected(Step):
     step : Step
         The base, of any order p >= 1.
     order : int
-        n. For n = p + 1 this is Theorem 5; for more it is the tower: p + 1, p + 2, ..., n. For n <= p nothing is
-        corrected.
+        n. For n = p + 1 this is Theorem 5. For larger n it is applied for the orders p + 1, p + 2, ..., n in turn. For
+        n <= p nothing is corrected.
     weight : float, optional
-        Which of several corrections at each order: that of least |zeta|^2 + weight^2 c^2. None (default) is
-        infinite: the least change of the clock, then the least zeta.
+        The choice among several corrections at each order: the smallest |zeta|^2 + weight^2 c^2. None (default) is an
+        infinite weight: the smallest change c of the clock and, among those, the smallest zeta.
 
     Raises
     ------
@@ -35,19 +35,20 @@ class Corrected(Step):
 
     Notes
     -----
-    Along the step's own clock the trajectory, not only the orbit, has order n, at every point where the range
-    condition (6.2) holds; where a linear system has no solution the order stays what it was and the residual says so.
+    At times tau(h) of the step's own clock the trajectory, not only the orbit, has order n, at every point where the
+    range condition (6.2) holds. If a linear system has no solution, the order reached before remains, and the residual
+    shows it.
 
-    A field psi(m, t) may vanish at some time t_0, as t f(m) does at 0. Isotropy and clock then serve at t_0 itself
-    (leading order l > 1), but shortly after it they are series in h / (t - t_0): by isotropy alone the global order
-    through such a point is 2 for Euler's base, 3 for Heun's, 4 for LieTaylor(3) and 5 for RKMK("rk4"), one more than
-    the base has, for any n (measured on S^2; 2, 2.9, 4 and 5). Therefore a smooth share of each correction is left
-    to terms of the flow's own generator there (`liehom.correctors.isotropy.completion`), and the order is n again:
-    4.0, 4.0, 5.0 and 5.0 were measured for n = 4, 4, 5, 5 with steps from t_0 = 0 and across it. Away from zeros the
-    share of isotropy is 1, and for autonomous fields it is 1 everywhere.
+    A field psi(m, t) may vanish at some time t_0, as t f(m) does at 0. Isotropy and clock raise the order at t_0 itself
+    (leading order l > 1), but shortly after t_0 they are series in h / (t - t_0). By isotropy alone the global order
+    through such a point would be the order of the base plus 1 for any n: 2 for Euler, 3 for Heun, 4 for LieTaylor(3)
+    and 5 for RKMK("rk4") (measured on S^2: 2, 2.9, 4 and 5). Therefore a smooth fraction of each correction is left
+    to terms of the flow's own generator there (`liehom.correctors.isotropy.completion`), and the order is n again.
+    With steps from t_0 = 0 and across it, 4.0, 4.0, 5.0 and 5.0 were measured for n = 4, 4, 5, 5. Away from zeros, and
+    everywhere for autonomous fields, isotropy makes the whole correction.
 
-    Next to equilibria of an autonomous field the corrections stay bounded; points that are equilibria up to
-    round-off stay where they are.
+    Next to equilibria of an autonomous field the corrections stay bounded. Points that are equilibria up to round-off
+    do not move.
 
     Examples
     --------
@@ -135,5 +136,5 @@ class CorrectedStep(LocalStep):
         return with_correction(self.base.factors(h), self.correction.generator(h), self._one_exponential)
 
     def time(self, h: Values) -> Values:
-        """tau(h), for h of shape (...,)."""
+        """Time tau(h) that passes in the step, for h of shape (...,)."""
         return self.correction.time(h)

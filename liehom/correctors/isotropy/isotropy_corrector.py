@@ -1,11 +1,11 @@
-"""The order-n isotropy corrector: Theorem 5, iterated to any order, with its clock.
+"""The order-n isotropy corrector: Theorem 5 iterated to any order, with its clock (time reparametrization) tau.
 
 Let the step agree with the reparametrised flow F_tau(t) through order n - 1, with w_l the leading coefficient of the
 flow.  Then zeta t^(n-l) in the generator, zeta in g_m, and c t^(n-l+1) in tau change the difference at order n by
 
     e rho(zeta) w_l - l c w_l,    which is set equal to    r = [t^n] (F_tau - step),
 
-so that the step agrees with the new F_tau through order n.  Doing this for n = p + 1, p + 2, ... raises a step of
+so that the step agrees with the new F_tau through order n.  This is done for n = p + 1, p + 2, ... and raises a step of
 order p to any order.
 """
 
@@ -29,15 +29,15 @@ from liehom.typing import IntegerArray, Real, Values
 @final
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """What the corrector found at a point.
+    """Isotropy correction at a point: coefficients, order reached, residual.
 
     Attributes
     ----------
     zeta : tuple
-        Coefficient k of the isotropy correction, shape (..., dim g), or None; where isotropy does not enter
-        (see `liehom.correctors.isotropy.completion`) also terms of the flow's own generator.
+        Coefficients k = 0, 1, ... of the isotropy correction, shape (..., dim g), or None. They include terms of the
+        flow's own generator where isotropy does not enter (see `liehom.correctors.isotropy.completion`).
     clock : tuple
-        Coefficient k of tau, shape (...,), or None; clock[1] = 1.
+        Coefficients k = 0, 1, ... of tau, shape (...,), or None; clock[1] = 1.
     leading : array of shape (...,)
         l, the order of the first non-zero coefficient of the flow; 0 at an equilibrium.
     reached : array of shape (...,)
@@ -45,7 +45,7 @@ class Correction:
     residual : array of shape (...,)
         The largest of the relative residuals of the linear systems.
     defects : tuple
-        (k, array): the size of [t^k] (F_tau - corrected step) where it is not 0.
+        (k, array): the norm of [t^k] (F_tau - corrected step), for the k at which it need not be 0.
     parts : tuple of Part
         The linear systems, one for each leading order in the ensemble.
 
@@ -69,15 +69,15 @@ class Correction:
 
     @property
     def singular_value(self) -> Values:
-        """The smallest singular value that decides the range condition (6.2) at the point, shape (...,).
+        """Smallest singular value that decides the range condition (6.2) at the point, shape (...,).
 
-        Infinite at an equilibrium.
+        It is infinite at an equilibrium.
         """
         return self._of_parts("singular_value", np.inf)
 
     @property
     def rank(self) -> Values:
-        """The rank that (6.2) asks to be the dimension of the orbit, shape (...,); 0 at an equilibrium."""
+        """Rank that must be the dimension of the orbit for (6.2) to hold, shape (...,); 0 at an equilibrium."""
         return self._of_parts("rank", 0)
 
     def _of_parts(self, name: str, otherwise: float) -> Values:
@@ -90,17 +90,17 @@ class Correction:
         return made
 
     def generator(self, h: Values) -> Values | None:
-        """sum_k zeta_k h^k for h of shape (..., 1), array or Jet; None if there is no correction."""
+        """The sum of zeta_k h^k for h of shape (..., 1), array or Jet; None if there is no correction."""
         return _polynomial(self.zeta, h)
 
     def time(self, h: Values) -> Values:
-        """tau(h), for h of shape (...,)."""
+        """Time tau(h) that passes in the step, for h of shape (...,)."""
         made = _polynomial(self.clock, h)
         return h if made is None else made
 
 
 def _polynomial(coefficients: tuple[Values | None, ...], h: Values) -> Values | None:
-    """Horner's rule over coefficients of which some are None; coefficient 0 is None."""
+    """Value at h of a polynomial, by Horner's rule; coefficients None are 0, coefficient 0 is None."""
     total: Values | None = None
     for x in reversed(coefficients):
         if total is not None:
@@ -120,7 +120,7 @@ def correction(
     exponential: ExponentialLike = "exp",
     weight: float | None = None,
 ) -> Correction:
-    """What raises a step to a given order at a point: the coefficients of the isotropy correction and of the clock.
+    """`Correction` that raises a step to a given order at a point: coefficients of zeta and of the clock tau.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def correction(
 
     Notes
     -----
-    Theorem 5 of the paper, with the factor 1/2 and the clock as the notation page has them.
+    Theorem 5 of the paper, with the factor 1/2 and the clock of docs/notation.md.
 
     Examples
     --------
@@ -195,7 +195,7 @@ def correct(
     one_exponential: bool = True,
     error_terms: int = 0,
 ) -> Correction:
-    """The corrections that raise a step from `base_order` to `order` at a point.
+    """`Correction` that raises a step from `base_order` to `order` at a point.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def correct(
     one_exponential : bool
         Whether the correction is added to the generator (e = 1/2) or is an outermost factor (e = 1).
     error_terms : int
-        How many coefficients beyond `order` to compute for `defects`.
+        Number of coefficients beyond `order` to compute for `defects`.
 
     Examples
     --------
@@ -244,7 +244,7 @@ def correct(
         tuple(recursion.zeta.node.known[: order + 1]),
         tuple(recursion.clock.coefficients[: order + 1]),
         leading,
-        recursion.xp.where(leading == 0, order, reached),  # an equilibrium stays
+        recursion.xp.where(leading == 0, order, reached),  # an equilibrium does not move
         recursion.residual,
         tuple(recursion.defects),
         tuple(recursion.parts),

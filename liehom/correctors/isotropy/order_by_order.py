@@ -1,6 +1,6 @@
-"""The iteration over the orders at a point (or at one point of each trajectory) that `correct` runs.
+"""The recursion over orders at a point, or at one point of each trajectory, that `correct` runs.
 
-At level n the corrected step agrees with F_tau through order n - 1; the difference r at order n is removed by zeta
+At level n the corrected step agrees with F_tau through order n - 1.  The difference r at order n is removed by zeta
 and c (`range_solver`), or by terms of the flow itself where isotropy does not enter (`completion`).
 """
 
@@ -29,18 +29,18 @@ SOLVED_RTOL = 1e-6
 @final
 @dataclass(frozen=True, slots=True)
 class Part:
-    """The trajectories with one leading order.
+    """Trajectories with the same leading order, and their linear system.
 
     Attributes
     ----------
     leading : int
-        l; beyond the order of the expansion where all coefficients of a time-dependent field's flow vanish.
+        l. Larger than the order of the expansion if all coefficients of a time-dependent field's flow vanish.
     here : array of bool, shape (...,), or None
-        Which they are; None for all.
+        Mask of these trajectories; None for all.
     solver : RangeSolver or None
-        None where isotropy cannot enter at any order.
+        None if isotropy does not enter at any order.
     fraction : array of shape (...,), or None
-        What isotropy takes of a correction; None is everything, everywhere.
+        Fraction of a correction that isotropy makes; None is 1 in all trajectories.
     """
 
     leading: int
@@ -51,14 +51,14 @@ class Part:
 
 @final
 class OrderRecursion:
-    """The state of the iteration: the corrections so far, and what is left.
+    """State of the recursion: the corrections so far, and the remaining difference.
 
     Parameters
     ----------
     action, field, local, m, t
         As for `liehom.correctors.isotropy.isotropy_corrector.correct`.
     total : int
-        The order to which everything can be expanded.
+        The order to which flow and step are expanded.
     orbit_dimension : int or array of shape (...,)
     one_exponential : bool
     weight : float or None
@@ -69,7 +69,7 @@ class OrderRecursion:
         The correction, values of shape (..., dim g).
     clock : Clock
     leading, levels, residual : arrays of shape (...,)
-        l, the last level that was solved (0 if none), the largest relative residual.
+        l, the last level that was solved (0 if none), and the largest relative residual.
     defects : list of (int, array)
     parts : list of Part
     """
@@ -102,14 +102,14 @@ class OrderRecursion:
         self.step: Jet = step
         self.clock: Clock = Clock(self.flow, total, self.shape)
         self._orbit_dimension = orbit_dimension
-        # the values of traced arrays are not known: w_1 = 0 is then met by a fraction of 0
+        # tracers have no values; for them w_1 = 0 is handled by a fraction of 0
         if is_lazy(m):
             self.leading: Values = np.ones(self.shape, dtype=int)
         elif action.tight_frame is not None and not field.time_dependent:
             self.leading = np.where(at_rest(action, self.flow), 0, 1)
         else:
             self.leading = leading_order(self.flow, total)
-        # None is all of them, which spares masks
+        # None stands for all trajectories, which saves masks
         self.active: Values | None = None
         self.moving: Values | None = None
         if is_lazy(m) and not field.time_dependent:
@@ -124,7 +124,7 @@ class OrderRecursion:
 
     @cached_property
     def frame(self) -> IsotropyFrame:
-        """At m, when it is first asked for: with a tight frame mostly never."""
+        """Isotropy frame at m, computed at first use (rarely, if there is a tight frame)."""
         return self.action.isotropy_frame(self.m, self._orbit_dimension)
 
     def _no_correction(self) -> Jet:
@@ -137,7 +137,7 @@ class OrderRecursion:
     def _split(self, factor: float, weight: float | None) -> list[Part]:
         parts = []
         some = np.asarray(self.leading).flat[:1]
-        alike = bool(np.all(self.leading == some))  # the common case, in which nothing has to be sorted
+        alike = bool(np.all(self.leading == some))  # the common case
         for l in [int(x) for x in (some if alike else np.unique(self.leading))]:
             here = None if alike else self.leading == l
             if l == 0:
@@ -169,7 +169,7 @@ class OrderRecursion:
                 continue
             own = difference if part.fraction is None else part.fraction[..., None] * difference
             zeta, c, residual = part.solver.solve(own)
-            if residual is None:  # it is 0 where nothing moves
+            if residual is None:  # the correction is then 0 at equilibria
                 here = None
             _add(changed, n - part.leading, _masked(self.xp, here, zeta))
             self.clock.set(n - part.leading + 1, c if here is None else self.xp.where(here, c, 0.0))
@@ -181,7 +181,7 @@ class OrderRecursion:
             self.zeta.replace(k, changed[k] if old is None else old + changed[k], self.step)
 
     def difference(self, n: int) -> Values:
-        """[t^n] (F_tau - step), shape (..., N)."""
+        """Coefficient [t^n] (F_tau - step), shape (..., N)."""
         found: Values = self.clock.point(n) - self.step.coefficient(n)
         return found
 
@@ -193,9 +193,9 @@ class OrderRecursion:
         self.levels = 0 * self.levels + n if where is None else self.xp.where(where, n, self.levels)
 
     def _judge(self, n: int, here: Values | None, difference: Values, residual: Values | None) -> None:
-        """Record the residual; where the system was not solved, the order stays and no more is corrected."""
+        """Record the residual; trajectories whose system was not solved are not corrected at higher orders."""
         xp = self.xp
-        if residual is None:  # it always has a solution
+        if residual is None:  # the system always has a solution
             self._reach(n, here)
             return
         largest = xp.max(xp.abs(difference), axis=-1)
@@ -219,7 +219,7 @@ class OrderRecursion:
 
 
 def round_off(action: Action, m: Values, flow: Flow, factors: Factors, n: int) -> Values:
-    """What may be round-off in [t^n] (F_tau - step), shape (...,): that of the terms of exp(|xi| + |psi| t) |m|.
+    """Bound of the round-off in [t^n] (F_tau - step), shape (...,), from the terms of exp(|xi| + |psi| t) |m|.
 
     Examples
     --------
@@ -248,7 +248,7 @@ def _add(changed: dict[int, Values], k: int, value: Values) -> None:
 
 
 def _both(a: Values | None, b: Values | None) -> Values | None:
-    """a and b, where None is everywhere."""
+    """The mask a & b, where None is the mask of all trajectories."""
     return b if a is None else a if b is None else a & b
 
 
@@ -257,6 +257,6 @@ def _masked(xp: ModuleType, here: Values | None, value: Values) -> Values:
 
 
 def norm(xp: ModuleType, x: Values) -> Values:
-    """The Euclidean norms of (..., N)."""
+    """Euclidean norms of x (..., N), shape (...,)."""
     found: Values = xp.sqrt(xp.sum(x * x, axis=-1))
     return found

@@ -2,12 +2,13 @@
 
     e rho(zeta) w_l - l c w_l = r,    zeta in g_m, c real,    e = 1/2 (1 where the correction is a factor of its own)
 
-Scaled by |w_l|, so that it is well posed next to equilibria; in least squares where it has no solution; of several
-solutions that of least |c| and then of least |zeta|, or that of least |zeta|^2 + weight^2 c^2.
+The system is divided by |w_l|, so it is well posed next to equilibria.  If it has no solution, it is solved in least
+squares.  Of several solutions the solver takes the one with the smallest |c| and, among those, the smallest |zeta|; or,
+with a weight, the one with the smallest |zeta|^2 + weight^2 c^2.
 
-In an orthonormal basis of the tangent space the unknowns are split: with M = e rho(g_m) u, u = w_l / |w_l|, and
-p = u - M M^+ u the part of u that isotropy does not reach, c is determined by r if p is not 0 and free if it is;
-then zeta = M^+ (r + l c u).
+In an orthonormal basis of the tangent space the unknowns are separated.  Let M = e rho(g_m) u, u = w_l / |w_l|, and
+let p = u - M M^+ u be the part of u that isotropy does not reach.  If p is not 0, r determines c; if p = 0, c is free.
+Then zeta = M^+ (r + l c u).
 """
 
 from __future__ import annotations
@@ -25,13 +26,16 @@ from liehom.tracing.array import Traced
 from liehom.typing import IntegerArray, Values
 
 RANK_RTOL = 1e-8
+"""Singular values of M below this fraction of the largest possible one count as 0."""
 REACHED_RTOL = 1e-7
+"""p counts as 0 if |p| is at most this."""
 REFINEMENTS = 3
+"""Iterations by which extended precision is reached."""
 
 
 @final
 class RangeSolver:
-    """The map r -> (zeta, c) at a point with a given w_l.
+    """Solver of the linear system, r -> (zeta, c), at a point with a given w_l.
 
     Parameters
     ----------
@@ -39,13 +43,13 @@ class RangeSolver:
     frame : IsotropyFrame
         At m.
     velocity : array of shape (..., N)
-        w_l; where it vanishes, `solve` gives zeta = 0 and c = 0.
+        w_l. If it vanishes, `solve` gives zeta = 0 and c = 0.
     leading : int
         l.
     factor : float
         e.
     weight : float, optional
-        Relative weight of c where it is free; None is infinite: least |c| first.
+        Relative weight of c if it is free; None is infinite.
 
     Notes
     -----
@@ -97,18 +101,18 @@ class RangeSolver:
 
     @property
     def singular_value(self) -> Values:
-        """The d-th singular value of [e rho(g_m) u, u], shape (...,): (6.2) holds where it is not 0."""
+        """The d-th singular value of [e rho(g_m) u, u], shape (...,); (6.2) holds if it is not 0."""
         return _entry(self._xp, self._singular_values(), self._frame.orbit_dimension)
 
     @property
     def rank(self) -> IntegerArray:
-        """The rank of this matrix, shape (...,); the range condition asks for d."""
+        """Rank of [e rho(g_m) u, u], shape (...,); the range condition holds if it is d."""
         found: IntegerArray = (self._singular_values() > self._cutoff).sum(axis=-1)
         return found
 
     @property
     def matrix(self) -> Values:
-        """[e rho(g_m) u, u] in orthonormal bases, shape (..., d, s + 1)."""
+        """The matrix [e rho(g_m) u, u] in orthonormal bases, shape (..., d, s + 1)."""
         found: Values = self._xp.concatenate([self._moves, self._unit[..., None]], axis=-1)
         return found
 
@@ -118,7 +122,7 @@ class RangeSolver:
         return self._values
 
     def solve(self, right: Values) -> tuple[Values, Values, Values]:
-        """zeta (..., dim g), c (...,) and the residual r - (e rho(zeta) w - l c w), tangential, shape (..., N)."""
+        """(zeta (..., dim g), c (...,), residual (..., N)); the residual is r - (e rho(zeta) w - l c w), tangential."""
         target = _apply(self._down, right / self._size)
         c = self._clock(target)
         moved = target + self._leading * c[..., None] * self._unit
@@ -139,11 +143,11 @@ class RangeSolver:
         return found
 
     def _generator(self, target: Values) -> Values:
-        """M^+ r, in the basis of the frame."""
+        """The product M^+ r, in the basis of the frame."""
         if target.dtype != np.longdouble:
             return _apply(self._inverse, target)
-        # M^T G^2 M M^T with G = (M M^T)^+ is M^+ in whatever precision G is known: it ends in the range of M^T, and
-        # rests where M^T (r - M y) = 0
+        # M^T G^2 M M^T with G = (M M^T)^+ is M^+, also if G is known in lower precision: the iteration stays in the
+        # range of M^T, and its fixed points have M^T (r - M y) = 0
         turned = np.swapaxes(self._moves, -1, -2)
         found = np.zeros((*np.broadcast_shapes(target.shape[:-1], turned.shape[:-2]), turned.shape[-2]), target.dtype)
         for _ in range(REFINEMENTS):
@@ -154,9 +158,9 @@ class RangeSolver:
 
 @final
 class TightFrameSolver:
-    """The same map on orbits with a tight frame (`branch_free_frames`): it always has a solution.
+    """Solver of the linear system on orbits with a tight frame (`branch_free_frames`), where it has a solution.
 
-    With w = w_l and mu of the tight frame: c = -<w, r> / (l <w, w>), and zeta is the part in g_m of
+    With w = w_l and mu of the tight frame, c = -<w, r> / (l <w, w>), and zeta is the component in g_m of
     G^-1 R^T r / (e mu <w, w>), R = [rho(e_1) w, ...].
 
     Parameters
@@ -168,8 +172,8 @@ class TightFrameSolver:
     velocity : array of shape (..., N)
     leading : int
     factor : float
-    moving : truth value, optional
-        Where it does not hold, zeta and c are 0; by default where w is 0.
+    moving : mask, optional
+        zeta and c are 0 where it does not hold. Default: where w is not 0.
 
     Examples
     --------
@@ -202,12 +206,12 @@ class TightFrameSolver:
         self._leading, self._factor = leading, factor
 
     def solve(self, right: Values) -> tuple[Values, Values, None]:
-        """zeta (..., dim g), c (...,) and None for no residual."""
+        """(zeta (..., dim g), c (...,), None); there is no residual."""
         action, tight, w = self._action, self._action.tight_frame, self._velocity
         if tight is None:
             raise InternalError("the action of a TightFrameSolver has no tight frame")
         along = inner(w, right) * self._over
-        # r in place of r + l c w: R^T w has no part in g_m
+        # r in place of r + l c w, as R^T w has no component in g_m
         turned = action.infinitesimal.right_transposed(w, right)
         y = across_lanes(turned, tight.inverse / (self._factor * tight.isotropy)) * self._over[..., None]
         if not tight.symmetric:
@@ -217,18 +221,18 @@ class TightFrameSolver:
 
     @property
     def singular_value(self) -> Values:
-        """As of a `RangeSolver`: the least of e mu^(1/2), d - 1 times, and 1."""
+        """The smallest singular value, min(e mu^(1/2), 1), shape (...,); cf. `RangeSolver.singular_value`."""
         isotropy = self._action.tight_frame.isotropy if self._action.tight_frame is not None else 0.0
         return np.full(np.shape(self._over), min(self._factor * isotropy**0.5, 1.0))
 
     @property
     def rank(self) -> IntegerArray:
-        """The dimension of the orbit."""
+        """Rank, the dimension of the orbit, shape (...,)."""
         return np.broadcast_to(self._dimension, np.shape(self._over))
 
 
 def inner(a: Values, b: Values) -> Values:
-    """The inner products of (..., N), arrays of numpy or traced ones.
+    """Inner products of a and b (..., N), shape (...,), of numpy or traced arrays.
 
     Examples
     --------
@@ -240,7 +244,7 @@ def inner(a: Values, b: Values) -> Values:
 
 
 def _polished(basis: Values, gram: Values) -> Values:
-    """A basis that is orthonormal to double precision, orthonormal to that of extended floats."""
+    """A basis orthonormal in extended precision (`numpy.longdouble`), from one orthonormal in double precision."""
     square = np.swapaxes(basis, -1, -2) @ gram @ basis
     return basis @ (1.5 * np.eye(basis.shape[-1], dtype=basis.dtype) - square / 2)
 
@@ -251,7 +255,7 @@ def _apply(matrix: Values, vector: Values) -> Values:
 
 
 def _normalized(xp: ModuleType, vector: Values) -> tuple[Values, Values]:
-    """|v| (1 where v = 0), shape (..., 1), and v / |v|; without underflow of squares."""
+    """(|v| of shape (..., 1), or 1 if v = 0; v / |v|), without underflow of squares."""
     largest = xp.max(xp.abs(vector), axis=-1, keepdims=True)
     largest = xp.where(largest > 0, largest, 1.0)
     unit = vector / largest
@@ -261,7 +265,7 @@ def _normalized(xp: ModuleType, vector: Values) -> tuple[Values, Values]:
 
 
 def _entry(xp: ModuleType, values: Values, d: int | IntegerArray) -> Values:
-    """values[d - 1], 0 where there are fewer."""
+    """The entry values[d - 1], or 0 if there are fewer than d values."""
     wide = xp.concatenate([0 * values[..., :1], values], axis=-1)
     index = np.where(d <= values.shape[-1], d, 0)
     found: Values = xp.take_along_axis(wide, np.broadcast_to(index, wide.shape[:-1])[..., None], axis=-1)[..., 0]
@@ -269,12 +273,12 @@ def _entry(xp: ModuleType, values: Values, d: int | IntegerArray) -> Values:
 
 
 def _single(x: Values) -> Values:
-    """The precision in which linear algebra is available."""
+    """x in double precision if it is of type longdouble, for which LAPACK has no routines."""
     return x.astype(np.float64) if x.dtype == np.longdouble else x
 
 
 def _pseudo_inverse(xp: ModuleType, matrix: Values, cutoff: float, rank: int | None = None) -> Values:
-    """M^+ (..., s, d); for extended floats ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
+    """M^+ (..., s, d); in extended precision ((M M^T)^+)^2 in double precision, from which M^+ is iterated."""
     turned = xp.swapaxes(matrix, -1, -2)
     extended = matrix.dtype == np.longdouble
     if type(matrix) is Traced:

@@ -1,4 +1,4 @@
-"""The same corrections at symbolic and exact points: closed forms, order conditions, proofs.
+"""Isotropy corrections at symbolic and exact points: closed forms, order conditions, proofs.
 
 `closed_form` returns formulas and compiled functions, `order_condition` decides (5.3)-(5.5) at a point. See
 docs/theory/correctors.md.

@@ -1,9 +1,9 @@
-"""From symbols to formula: the isotropy correction and the clock of a step as simplified expressions.
+"""ClosedForm: the isotropy correction and the clock of a step as simplified formulas.
 
 The point, the parameters and the time are elements of a field of rational functions modulo the constraints, such as
-|m|^2 = 1.  Flow and step are expanded over it by the code that expands them in numbers, so that what a formula belongs
-to is the step itself; the system of Theorem 5 is solved by normal equations (`symbolic_range`); that the corrected step
-agrees with the flow is proved, coefficient by coefficient.
+|m|^2 = 1.  The code that expands flow and step in numbers expands them over this field, so a formula belongs to the
+step that integrates.  The system of Theorem 5 is solved by normal equations (`symbolic_range`).  It is proved,
+coefficient by coefficient, that the corrected step agrees with the flow.
 """
 
 from __future__ import annotations
@@ -31,32 +31,32 @@ from liehom.typing import Expression, ObjectArray
 @final
 @dataclass(frozen=True, slots=True, repr=False)
 class ClosedForm:
-    """The correction of a step as a formula.
+    """Isotropy correction and clock of a step as formulas.
 
     Attributes
     ----------
     order : int
-        n, the order to which the corrected step captures the orbit (at times tau(h) the trajectory).
+        n, the order to which the corrected step captures the orbit, and at times tau(h) the trajectory.
     leading : int
         l, the order of the first coefficient of the flow that is not identically zero.
     zeta : dict of int to tuple of sympy expressions
-        zeta_k, the coefficients in g of h^k in the generator; the ones that are not identically zero.
+        zeta_k, the coefficients in g of h^k in the generator, for the k with zeta_k not identically zero.
     clock : dict of int to sympy expression
-        c_k for k >= 2, with tau(h) = h + c_2 h^2 + ...; all of them, also zeros.
+        c_k for all k >= 2, zeros included, with tau(h) = h + c_2 h^2 + ....
     isotropy : tuple of sympy expressions, or None
-        Where the isotropy has dimension 1, the generator of it that was given, or found (for at most one constraint),
-        such as m -> hat(m) on the sphere.
+        If the isotropy has dimension 1, its generator, given or (for at most one constraint) computed, such as
+        m -> hat(m) on the sphere.
     factor : dict of int to sympy expression
-        Where there is such a generator, the scalars with zeta_k = factor[k] isotropy.
+        If there is such a generator, the scalars with zeta_k = factor[k] isotropy.
     orbit_dimension : int
     residual_is_zero : bool
         Whether the corrected step was proved to agree with F_tau through order n wherever the constraints hold.
     reached : int
         The order to which it agrees.
     nonvanishing : sympy expression
-        Where this is not 0 the formulas are defined: the product of the different factors of denominators.
+        Product of the different factors of the denominators; the formulas hold where it is not 0.
     representation, step, exponential, symbols
-        What they belong to.
+        The problem that the formulas belong to.
 
     Examples
     --------
@@ -87,7 +87,7 @@ class ClosedForm:
     _elements: dict[tuple[str, int], Any] = field(repr=False)
 
     def equal(self, a: ExpressionLike, b: ExpressionLike) -> bool:
-        """Whether two expressions in the symbols are equal wherever the constraints hold: a proof, no sampling.
+        """Whether two expressions in the symbols are equal wherever the constraints hold, by proof, not by sampling.
 
         Raises
         ------
@@ -106,14 +106,14 @@ class ClosedForm:
         return bool(self.symbols.element(a) == self.symbols.element(b))
 
     def in_terms_of(self, invariants: Mapping[Any, Any], k: int | str | None = None, *, degree: int = 3) -> Expression:
-        """factor[k] (or the clock's c_k, for k = "clock 2" and so on) as a polynomial in named functions.
+        """The coefficient factor[k], or c_2 for k = "clock 2" etc., as a polynomial in named functions.
 
         Parameters
         ----------
         invariants : mapping from symbol or name to expression
             Rational functions of the coordinates and parameters, such as {"h": "w1*m0**2 + ...", "R": ...}.
         k : int or str, optional
-            Which coefficient; by default the last factor.
+            The coefficient; by default the last factor.
         degree : int
             The largest degree of the polynomial.
 
@@ -145,18 +145,18 @@ class ClosedForm:
         return found
 
     def function(self, k: int | None = None) -> Callable[..., Any]:
-        """zeta_k as a compiled function (m, t=0, **parameters) -> array of shape (..., dim g).
+        """Function (m, t=0, **parameters) -> zeta_k, an array of shape (..., dim g).
 
         Parameters
         ----------
         k : int, optional
-            Default: the last one that is not identically zero.
+            Default: the last k for which zeta_k is not identically zero.
 
         Returns
         -------
         callable
-            For m (..., N), numpy of any precision or JAX; parameters are numbers or arrays (...,). Where a denominator
-            is 0, as at equilibria, the value is 0.
+            It takes m (..., N), numpy of any precision or JAX, and parameters that are numbers or arrays (...,). Its
+            value is 0 where a denominator is 0, as at equilibria.
 
         Examples
         --------
@@ -175,7 +175,7 @@ class ClosedForm:
         return compiled_function(self.symbols, self._elements["zeta", k])
 
     def clock_function(self, k: int | None = None) -> Callable[..., Any]:
-        """c_k as a compiled function (m, t=0, **parameters) -> array of shape (...,); by default the last.
+        """Function (m, t=0, **parameters) -> c_k, an array of shape (...,); by default for the last k.
 
         Examples
         --------
@@ -190,7 +190,7 @@ class ClosedForm:
         return lambda m, t=0.0, **parameters: made(m, t, **parameters)[..., 0]
 
     def latex(self) -> str:
-        """The formulas in LaTeX, an aligned display without its environment.
+        """String with the formulas in LaTeX, an aligned display without its environment.
 
         Examples
         --------
@@ -247,44 +247,44 @@ def closed_form(
     isotropy: Sequence[Any] | None = None,
     parameters: Sequence[Any] | None = None,
 ) -> ClosedForm:
-    """The isotropy correction and the clock that raise a step to a given order, as formulas.
+    """`ClosedForm`: the isotropy correction and the clock that raise a step to a given order, as formulas.
 
     Parameters
     ----------
     representation : Representation
         rho, over QQ.
-    psi : sequence of sympy expressions, texts or rational numbers
-        The generator: rational functions of m0, ..., m(N-1), the time t and parameters, which are all other symbols.
+    psi : sequence of sympy expressions, strings or rational numbers
+        The generator, rational functions of m0, ..., m(N-1), the time t and parameters, which are all other symbols.
     step : Step
-        The base, such as ``Euler()``, ``Heun()``, ``LieTaylor(4)`` or a step of the user's.
+        The base, such as ``Euler()``, ``Heun()``, ``LieTaylor(4)`` or a user-defined step.
     order : int
-        n. Where the base has an order lower than n - 1, all orders between are corrected in turn.
+        n. If the base has an order below n - 1, all orders between are corrected in turn.
     exponential : str, Exponential or callable
-    constraints : sequence of sympy expressions or texts, optional
-        Polynomials that vanish on the orbits; they should define an irreducible variety. Default: |m|^2 - 1 where rho
-        is by skew-symmetric matrices, none else.
+    constraints : sequence of sympy expressions or strings, optional
+        Polynomials that vanish on the orbits and define an irreducible variety. Default: |m|^2 - 1 if the matrices of
+        rho are skew-symmetric, else none.
     isotropy : sequence of dim g expressions, optional
-        Where g_m has dimension 1, the generator of it in which to write the correction; by default one is computed.
+        If g_m has dimension 1, the generator of g_m in which to write the correction; by default one is computed.
     parameters : sequence of symbols or names, optional
-        The parameters; then all other symbols are refused.
+        The parameters; other symbols then raise `InputError`.
 
     Raises
     ------
     FieldError
         If the representation is not over QQ, or a coefficient is a float.
     InputError
-        If psi has unknown symbols or is no rational function of them; if the constraints are not invariant; if
-        `isotropy` does not generate g_m; if the flow has only equilibria, or the step is not consistent with it.
+        If psi has unknown symbols or is not a rational function of them; if the constraints are not invariant; if
+        `isotropy` does not generate g_m; if all points are equilibria, or the step is not consistent with the flow.
     ShapeError
         If psi or `isotropy` has the wrong length.
 
     Notes
     -----
-    Theorem 5 with its factor, one order after the other. The solution is that of least |c| and then of least |zeta|,
-    which `liehom.correction` computes in numbers; where the system has no solution, `reached` is less than `order`.
-    With several constraints there are no unique factors: formulas are less short, and lose digits next to equilibria.
-    The order that counts for the first correction is that of the orbit: a base whose orbits are better than its
-    trajectories has zeta_k = 0 for the orders between, with c_k that are not 0.
+    Theorem 5 with its factor, one order after the other. The solution is the one with the smallest |c| and, among
+    those, the smallest |zeta|, as in `liehom.correction`. If the system has no solution, `reached` is below `order`.
+    With several constraints, factors are not unique: formulas are longer, and lose digits near equilibria. The first
+    correction depends on the order of the orbit. If the orbits of the base have a higher order than its trajectories,
+    zeta_k = 0 for the orders between, while c_k is not 0.
 
     Examples
     --------
@@ -312,7 +312,7 @@ def closed_form(
 
 @final
 class _SymbolicRecursion:
-    """The iteration over the orders; values have one leading axis of length 1."""
+    """The recursion over orders; values have one leading axis of length 1."""
 
     def __init__(
         self, action: Action, generator: GeneratorField, step: Step, symbols: Symbols, solver: SymbolicRange, order: int
@@ -335,12 +335,12 @@ class _SymbolicRecursion:
         self.reached, self.found_zeta, self.found_clock = 0, {}, {}  # type: ignore[var-annotated]
 
     def in_algebra(self, solution: ObjectArray) -> ObjectArray:
-        """What the solver found as dim g coefficients."""
+        """Solution of the solver as an array of dim g coefficients."""
         row = self.solver.row
         return solution if row is None else simple(solution[0] * row)
 
     def difference(self, n: int) -> ObjectArray:
-        """[t^n] (F_tau - corrected step)."""
+        """Coefficient [t^n] (F_tau - corrected step), an array of N elements."""
         return simple((self.clock.point(n) - self.step.coefficient(n))[0])
 
     def run(self, base_order: int) -> None:

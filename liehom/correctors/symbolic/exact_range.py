@@ -2,8 +2,8 @@
 
     e rho(zeta) w_l - l c w_l = r,    zeta in g_m, c in the field
 
-Solvability is a rank; of several solutions that of least |c| and then of least |zeta|, in least squares where there
-is none.  Nothing passes through a float.
+Solvability is decided by a rank.  Of several solutions the one with the smallest |c| and, among those, the smallest
+|zeta| is taken; if there is none, the system is solved in least squares.  No float is involved.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from liehom.typing import ObjectArray, ScalarLike, VectorLike
 @final
 @dataclass(frozen=True, slots=True)
 class ExactSolution:
-    """The solution of the linear system.
+    """Solution of the linear system at one point.
 
     Attributes
     ----------
@@ -31,11 +31,11 @@ class ExactSolution:
     zeta : array of shape (dim g,), of exact numbers
     c : number
     residual : array of shape (N,)
-        r - (e rho(zeta) w_l - l c w_l); exactly 0 where the system is solvable.
+        r - (e rho(zeta) w_l - l c w_l), exactly 0 if the system is solvable.
     rank : int
-        Of [rho(g_m) w_l, w_l].
+        Rank of [rho(g_m) w_l, w_l].
     dimension : int
-        Of the orbit.
+        Dimension of the orbit.
     """
 
     solvable: bool
@@ -54,7 +54,7 @@ def solve_exactly(
     leading: int,
     factor: ScalarLike,
 ) -> ExactSolution:
-    """Solve the linear system at one point.
+    """`ExactSolution` of the linear system at one point.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def solve_exactly(
     full = field.stack_columns([moves, velocity_column.scale(field.convert(-leading))], n)
     rank, moved = full.rank(), moves.rank()
     solvable = field.stack_columns([full, right_column], n).rank() == rank
-    # in least squares: A^T A x = A^T r has solutions, all with the same A x
+    # least squares: A^T A x = A^T r has solutions, all with the same A x
     both = full.solve(right_column) if solvable else (full.T @ full).solve(full.T @ right_column)
     reached = full @ both
     c = field.zero if moved == rank else both[both.nrows - 1, 0]
@@ -108,7 +108,7 @@ def solve_exactly(
 
 
 def _least(moves: Matrix, target: Matrix, gram: Matrix) -> Matrix:
-    """The y with moves y = target of least y^T gram y: y = gram^-1 moves^T u."""
+    """The y with moves y = target and the smallest y^T gram y, in the form y = gram^-1 moves^T u."""
     if moves.ncols == 0:
         found: Matrix = moves.T @ target
         return found

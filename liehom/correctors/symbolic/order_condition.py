@@ -1,11 +1,11 @@
-"""The condition of Theorem 5 at a point: chi, and whether one order more can be had for a given step.
+"""The condition of Theorem 5 at a point: chi, and whether a given step can be raised to the next order.
 
 With zeta(t) = zeta_1 t + zeta_2 t^2 + ... in g_m added to the generator of a step (an outermost factor for a step
 with several exponentials),
 
     chi^(n)(zeta) = (d/dt)^n [step_zeta(t) - F_t(m)] at t = 0,    (5.5): c w_l in the range of chi^(n) for some c
 
-Exact where point and field are exact; in floats with the singular values that decided.
+The answer is exact if point and field are exact; in floats it comes with the singular values that decided.
 """
 
 from __future__ import annotations
@@ -54,15 +54,15 @@ class OrderCondition:
     solvable : bool
         Whether (5.5) holds for this step.
     zeta : array of shape (dim g,)
-        The coefficient of t^(n-l) that serves (in least squares where (5.5) fails).
+        The coefficient of t^(n-l) that satisfies (5.5), or the least-squares solution if (5.5) fails.
     c : number
         The coefficient of t^(n-l+1) in tau.
     residual : array of shape (N,)
-        What remains of [t^n] (F_tau - step): 0 where (5.5) holds.
+        The remaining [t^n] (F_tau - step), 0 if (5.5) holds.
     range_holds : bool
-        Whether the range condition (6.1) holds at m: (5.5) would then hold for every step.
+        Whether the range condition (6.1) holds at m; (5.5) then holds for every step.
     rank, dimension : int
-        Of [rho(g_m) w_l, w_l] and of the orbit; (6.1) holds if they are equal.
+        Rank of [rho(g_m) w_l, w_l], and dimension of the orbit; (6.1) holds if they are equal.
     singular_value : float or None
         In floats, the smallest singular value that decides (6.1).
     numerical : RankDecision or None
@@ -116,7 +116,7 @@ def chi(
     t: Real = 0,
     exponential: ExponentialLike = "exp",
 ) -> npt.NDArray[Any]:
-    """chi_m^(n)(zeta), equation (5.4): the n-th derivative of step - flow, with zeta added to the step.
+    """The value chi_m^(n)(zeta) of (5.4), shape (..., N): the n-th derivative of step - flow, zeta added to the step.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def chi(
 
     Notes
     -----
-    By definition, from the expansions. If all z_j = w_j for j < n and zeta begins with t^(n-l), it is
+    Computed by definition, from the expansions. If all z_j = w_j for j < n and zeta begins with t^(n-l), it is
     n! (rho(zeta_(n-l)) w_l / 2 + z_n - w_n), affine in zeta, with w and z the Taylor coefficients of flow and step;
     for a step with several exponentials without the 1/2. For a step with a clock the flow is F_tau.
 
@@ -166,7 +166,7 @@ def chi(
 def order_condition(
     field: GeneratorField, step: Step, m: ArrayLike, n: int, *, t: Real = 0, exponential: ExponentialLike = "exp"
 ) -> OrderCondition:
-    """Whether Theorem 5 gives order n at a point: (5.5) for this step, and the range condition for all steps.
+    """`OrderCondition`: whether Theorem 5 gives order n at a point, for this step (5.5) and for all steps (6.1).
 
     Parameters
     ----------
@@ -190,12 +190,13 @@ def order_condition(
 
     Notes
     -----
-    The system (1/2) rho(zeta) w_l - l c w_l = w_n - z_n in Taylor coefficients, with zeta in g_m; of its solutions
-    the one of least |c| and then of least |zeta|. For n <= l isotropy does not enter: (5.5) asks for z_n = w_n.
+    The system (1/2) rho(zeta) w_l - l c w_l = w_n - z_n in Taylor coefficients, with zeta in g_m. Of its solutions
+    the one with the smallest |c| and, among those, the smallest |zeta| is returned. For n <= l isotropy does not enter,
+    and (5.5) asks for z_n = w_n.
 
     Examples
     --------
-    Three different eigenvalues: the isotropy is trivial, and Euler's step cannot be raised
+    With three different eigenvalues the isotropy is trivial, and Euler's step cannot be raised:
 
     >>> import numpy as np
     >>> import liehom as lh
@@ -273,7 +274,7 @@ class _Expansion:
             raise InputError(f"zeta_{k} = {x} is not in the isotropy subalgebra: rho(zeta_{k}) m = {moved}")
 
     def difference(self, n: int) -> npt.NDArray[Any]:
-        """[t^n] (F_tau - step)."""
+        """Coefficient [t^n] (F_tau - step), shape (..., N)."""
         point: Any = self.clock.point(n)
         found: npt.NDArray[Any] = point - self.step.coefficient(n)
         return found
@@ -292,7 +293,7 @@ class _Expansion:
 
 
 def _solve(expansion: _Expansion, leading: int, right: npt.NDArray[Any]) -> ExactSolution:
-    """The solution over the field of the point."""
+    """Solution of the linear system over the field of the point."""
     field = expansion.representation.field
     factor = field.one / 2 if expansion.one_exponential else field.one
     velocity: Any = expansion.flow.point(leading)

@@ -1,8 +1,8 @@
-"""What a formula is turned into: a polynomial in named functions, and a compiled function.
+"""A formula as a polynomial in named functions, and as a numpy function.
 
     f = sum of c_i * (product of named functions),   c_i rational,
 
-by linear algebra on normal forms.
+The coefficients c_i are found by linear algebra on normal forms.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ TERMS_PER_CHUNK = 100
 
 # -- matching --------------------------------------------------------------------------------------------
 def ansatz(symbols: Symbols, invariants: Mapping[Any, Any], target: RationalFunction, degree: int) -> Expression:
-    """The polynomial in the invariants, with rational coefficients, that equals the target.
+    """The polynomial in the invariants, with rational coefficients, that equals the target, a sympy expression.
 
-    Terms whose degree in the parameters cannot occur are left out; of several polynomials one with terms of low degree
-    is taken.
+    Terms whose degree in the parameters cannot occur are omitted. Of several polynomials one with terms of low degree
+    is returned.
 
     Raises
     ------
@@ -60,14 +60,14 @@ def ansatz(symbols: Symbols, invariants: Mapping[Any, Any], target: RationalFunc
     solution = _combination([x for _, x in terms], target)
     if solution is None:
         raise InputError(
-            f"the coefficient is no polynomial of degree {degree} in {', '.join(map(str, names))} with rational "
+            f"the coefficient is not a polynomial of degree {degree} in {', '.join(map(str, names))} with rational "
             "coefficients: allow a higher degree, or name more functions (its denominator, for example)"
         )
     return sympy.Add(*(sympy.Rational(str(c)) * e for (e, _), c in zip(terms, solution, strict=True)))
 
 
 def _degrees(symbols: Symbols, x: RationalFunction) -> int | None:
-    """The degree in the parameters if all terms have one."""
+    """The degree in the parameters if all terms have the same, else None."""
     first = symbols.size + 1
 
     def of(p: FieldPolynomial) -> set[int]:
@@ -80,7 +80,7 @@ def _degrees(symbols: Symbols, x: RationalFunction) -> int | None:
 
 
 def _combination(elements: list[RationalFunction], target: RationalFunction) -> list[Any] | None:
-    """Rational numbers c with target = sum c_i elements_i."""
+    """List of rational numbers c with target = sum c_i elements_i, or None."""
     if not elements:
         return None
     powers: dict[int, int] = {}
@@ -103,7 +103,7 @@ def _combination(elements: list[RationalFunction], target: RationalFunction) -> 
 
 # -- compiled --------------------------------------------------------------------------------------------
 def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) -> Callable[..., Any]:
-    """Elements as a function (m, t=0, **parameters) -> array of shape (..., number of elements).
+    """Function (m, t=0, **parameters) -> values of the elements, array of shape (..., number of elements).
 
     Examples
     --------
@@ -117,7 +117,7 @@ def compiled_function(symbols: Symbols, elements: Sequence[RationalFunction]) ->
     import sympy
 
     order = [symbols.symbols[name] for name in symbols.names]
-    parts: list[Any] = []  # sums of at most TERMS_PER_CHUNK terms: a compiler reads a long sum as a deep tree
+    parts: list[Any] = []  # sums of at most TERMS_PER_CHUNK terms, as a compiler reads a long sum as a deep tree
     plans: list[tuple[tuple[int, int], list[tuple[list[int], int]]]] = []
     for element in elements:
         content, factors = symbols.factors(element)

@@ -1,6 +1,6 @@
 """Symbols of a problem: coordinates, time, parameters and constraints, between sympy and a field of functions.
 
-Expressions are read into elements (exactly: no floats), and elements are written as factorised expressions.
+Expressions are read into elements (exactly: no floats), and elements are written as factorized expressions.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Symbols:
     size : int
         N.
     symbols : dict of str to sympy symbol
-        The user's own symbols where there are any.
+        The symbols of the user's expressions, and new ones for names in strings.
     field : FunctionField
     constraints : tuple of sympy expressions
 
@@ -62,17 +62,17 @@ class Symbols:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The names of the parameters."""
+        """Tuple of the names of the parameters."""
         return self.names[self.size + 1 :]
 
     @property
     def point(self) -> list[RationalFunction]:
-        """The coordinates as elements."""
+        """List of the coordinates as elements of the field."""
         return list(self.field.variables[: self.size])
 
     @property
     def time(self) -> RationalFunction:
-        """The time as an element."""
+        """The time as an element of the field."""
         return self.field.variables[self.size]
 
     def depends_on_time(self, components: Sequence[Any]) -> bool:
@@ -80,7 +80,7 @@ class Symbols:
         return any("t" in {s.name for s in x.free_symbols} for x in components)
 
     def generator(self, components: Sequence[Any]) -> Callable[..., Any]:
-        """The expressions as a function (m) or (m, t) that runs on arrays of elements and on Jets."""
+        """Function (m) or (m, t) of the expressions, on arrays of elements and on Jets."""
         from_parameters = dict(zip(self.parameters, self.field.variables[self.size + 1 :], strict=True))
 
         def psi(m: Values, t: Values | RationalFunction) -> list[Any]:
@@ -92,7 +92,7 @@ class Symbols:
         return psi if self.depends_on_time(components) else lambda m: psi(m, self.time)
 
     def element(self, value: ExpressionLike) -> RationalFunction:
-        """An expression in the symbols, a text or a number as an element."""
+        """An expression in the symbols, a string or a number as an element of the field."""
         expression = read_expression(value, "the expression")
         unknown = sorted({s.name for s in expression.free_symbols} - set(self.names))
         if unknown:
@@ -102,7 +102,7 @@ class Symbols:
         return made
 
     def chunks(self, p: FieldPolynomial, size: int) -> list[Any]:
-        """A polynomial as expressions of at most `size` terms whose sum it is."""
+        """List of expressions of at most `size` terms with the polynomial p as their sum."""
         terms = list(p.terms())
         ring = self.field.ring.context
         return [self._polynomial(ring.from_dict(dict(terms[i : i + size]))) for i in range(0, len(terms), size)]
@@ -116,7 +116,7 @@ class Symbols:
         return sympy.Poly.from_dict(terms, *symbols).as_expr() if terms else sympy.Integer(0)
 
     def factors(self, element: RationalFunction, *, short: bool = False) -> tuple[Any, list[tuple[Any, int]]]:
-        """A rational number and polynomials with exponents; `short` for few terms instead of homogeneous factors."""
+        """(rational number, [(polynomial, exponent), ...]); `short` prefers few terms to homogeneous factors."""
         if not element:
             return QQ.zero, []
         if len(element.numerator) > MAX_TERMS_TO_FACTOR:
@@ -127,7 +127,7 @@ class Symbols:
         return QQ.convert(content), [(self.field.ring.shortest(p) if short else p, k) for p, k in factors]
 
     def expression(self, element: RationalFunction) -> Expression:
-        """An element as a factorised expression of few terms."""
+        """An element as a factorized sympy expression of few terms."""
         import sympy
 
         content, factors = self.factors(element, short=True)
@@ -137,7 +137,7 @@ class Symbols:
         return sympy.Mul(number[0], *above) / sympy.Mul(number[1], *below)
 
     def nonvanishing(self, elements: Iterable[Any]) -> Expression:
-        """The product of the different factors of the denominators of elements and lists of elements."""
+        """Product of the different factors of the denominators of elements and lists of elements."""
         import sympy
 
         used: set[int] = set()
@@ -155,14 +155,14 @@ def read_symbols(
     parameters: Sequence[Any] | None,
     others: Sequence[Any] = (),
 ) -> tuple[Symbols, list[Any]]:
-    """The symbols of a problem, and the components of psi as expressions.
+    """(`Symbols` of a problem, components of psi as expressions).
 
     Parameters
     ----------
     representation, psi, constraints, parameters
         See `liehom.correctors.closed_form.closed_form`.
     others : sequence of expressions
-        Others, whose symbols are used for the coordinates.
+        Further expressions whose symbols are used for the coordinates.
 
     Raises
     ------
@@ -191,7 +191,7 @@ def read_symbols(
     polynomials = _default_constraints(representation) if constraints is None else list(constraints)
     bounds = [read_expression(x, f"constraints[{i}]") for i, x in enumerate(polynomials)]
     symbols = {s.name: s for x in (*bounds, *components) for s in sorted(x.free_symbols, key=str)}
-    for x in (*others, *polynomials, *given):  # the user's own symbols before those of texts
+    for x in (*others, *polynomials, *given):  # the symbols of the user's expressions, before those in strings
         symbols |= {s.name: s for s in getattr(x, "free_symbols", ()) if s.name in base or s.name in symbols}
     named = [(f"psi[{i}]", x) for i, x in enumerate(components)] + [
         (f"constraints[{i}]", x) for i, x in enumerate(bounds)
@@ -226,7 +226,7 @@ def _natural(name: str) -> list[Any]:
 
 
 def _default_constraints(representation: Representation) -> list[str]:
-    """|m|^2 - 1 where the group is orthogonal."""
+    """The constraint |m|^2 - 1 if the group is orthogonal, else no constraint."""
     if all((a + a.T).is_zero() for a in representation.matrices):
         return [" + ".join(f"m{i}**2" for i in range(representation.size)) + " - 1"]
     return []
@@ -240,7 +240,7 @@ def _with_grading(
     constraints: list[Any],
     components: list[Any],
 ) -> Symbols:
-    """The field, graded such that the vector field has one parity where this is possible."""
+    """`Symbols` whose field is graded so that the vector field has a parity, if possible."""
     made = _checked_constraints(names, constraints)
     plain = Symbols(names, n, symbols, FunctionField(names, made, names[:n]), tuple(constraints))
     _require_invariance(representation, plain, made)
@@ -269,7 +269,7 @@ def _checked_constraints(names: tuple[str, ...], constraints: list[Any]) -> list
 def _require_invariance(
     representation: Representation, symbols: Symbols, constraints: list[dict[tuple[int, ...], Any]]
 ) -> None:
-    """The derivative of every constraint along rho(e_i) m must vanish where the constraints hold."""
+    """Check that the derivative of each constraint along rho(e_i) m vanishes where the constraints hold."""
     field, n, dimension = symbols.field, symbols.size, representation.algebra.dimension
     action = action_map(representation)
     for a in range(dimension):
@@ -286,13 +286,13 @@ def _require_invariance(
 
 
 def read_expression(value: ExpressionLike, what: str) -> Expression:
-    """A sympy expression, a text of the grammar or a rational number as a sympy expression.
+    """A sympy expression, a string of the grammar or a rational number as a sympy expression.
 
     Parameters
     ----------
     value : sympy expression, str or number
     what : str
-        What error messages call it.
+        Its name in error messages.
 
     Raises
     ------
@@ -328,12 +328,12 @@ def read_expression(value: ExpressionLike, what: str) -> Expression:
 
 
 def evaluated(expression: Expression, scope: Mapping[str, Any], field: FunctionField) -> Any:
-    """A rational expression with values for its symbols: elements, arrays of elements, or Jets.
+    """Value of a rational expression whose symbols are elements, arrays of elements, or Jets.
 
     Raises
     ------
     InputError
-        If it is not rational.
+        If the expression is not rational.
 
     Examples
     --------
@@ -355,7 +355,7 @@ def evaluated(expression: Expression, scope: Mapping[str, Any], field: FunctionF
         return made
     raise InputError(
         f"{expression} is not a rational function of the symbols: use a parameter for a constant, and a rational "
-        "parametrisation, or new coordinates with constraints, for a function"
+        "parametrization, or new coordinates with constraints, for a function"
     )
 
 

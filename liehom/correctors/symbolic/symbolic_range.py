@@ -2,13 +2,13 @@
 
     e rho(zeta) w_l - l c w_l = r,    zeta in g_m, c in the field
 
-The solution of least |c| and then of least |zeta|.  A symmetric matrix S of rank k whose characteristic polynomial is
-x^N + p_1 x^(N-1) + ... is inverted on its range by
+The solution is the one with the smallest |c| and, among those, the smallest |zeta|.  A symmetric
+matrix S of rank k with the characteristic polynomial x^N + p_1 x^(N-1) + ... is inverted on its range by
 
     Q(S) = -(S^(k-1) + p_1 S^(k-2) + ... + p_(k-1)) / p_k,
 
-where p_k is a sum of squares of minors: the only denominators are functions that vanish exactly where the rank drops,
-and no charts are needed.
+where p_k is a sum of squares of minors.  So the only denominators are functions that vanish if and only if the rank
+drops, and no charts are needed.
 """
 
 from __future__ import annotations
@@ -26,11 +26,12 @@ from liehom.scalars.functions.function_field import FunctionField, RationalFunct
 from liehom.typing import ObjectArray
 
 MAX_SIZE = 12
+"""Largest dimension of V for which an invariant form is searched."""
 
 
 @final
 class SymbolicRange:
-    """The isotropy at a symbolic point, and the map r -> (zeta, c).
+    """Isotropy at a symbolic point, and the solver r -> (zeta, c) of the linear system.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ class SymbolicRange:
     projector : array of shape (dim g, dim g)
         The orthogonal projector on g_m.
     row : array of dim g elements, or None
-        Where g_m has dimension 1 and there is at most one constraint, a polynomial generator of it.
+        A polynomial generator of g_m, if g_m has dimension 1 and there is at most one constraint.
 
     Examples
     --------
@@ -77,12 +78,12 @@ class SymbolicRange:
         self.orbit_dimension = inverse.rank
         image = np.stack([inverse(column) for column in fixing.T], axis=-1)
         self.projector = simple(self._units - adjoint @ image)
-        # without a gcd a row would bring factors that do not cancel
+        # without a gcd, a row would have factors that do not cancel
         own = n - inverse.rank == 1 and len(field.ring.basis) < 2
         self.row: ObjectArray | None = self._simplest_row() if own else None
 
     def _moved(self, m: ObjectArray) -> ObjectArray:
-        """The matrix of x -> rho(x) m, shape (N, dim g)."""
+        """Matrix of x -> rho(x) m, shape (N, dim g)."""
         return np.stack([self._action.infinitesimal(x, m) for x in self._units], axis=-1)
 
     def _simplest_row(self) -> ObjectArray:
@@ -115,7 +116,7 @@ class SymbolicRange:
         if self.row is None:
             moves = simple(factor * self._moved(velocity) @ self.projector)
             self._adjoint = simple(self._dual @ moves.T @ self._metric)
-        else:  # an orthonormal basis is not at hand, and not needed: zeta is unique, or 0
+        else:  # an orthonormal basis is not needed, as zeta is unique, or 0
             moved: Any = self._action.infinitesimal(self.row, velocity)
             moves = simple(factor * moved)[:, None]
             self._adjoint = moves.T @ self._metric
@@ -132,7 +133,7 @@ class SymbolicRange:
         return found
 
     def solve(self, right: ObjectArray) -> tuple[ObjectArray, RationalFunction]:
-        """zeta (dim g elements, or the factor of `row` where there is one) and c; in least squares if there is none."""
+        """(zeta, c), or the least-squares solution; zeta has dim g elements, or one, the factor of `row`."""
         c = self._field.zero
         if self._determined:
             c = (-(self._rest @ right) / (self._square * self._leading)).cancelled()
@@ -141,10 +142,10 @@ class SymbolicRange:
 
 
 def invariant_form(representation: Representation) -> Matrix:
-    """A positive definite form on V that the group keeps, near the sum of squares; this sum itself if none is found.
+    """Matrix of a positive definite form on V that the group preserves, near the sum of squares, or the identity.
 
-    With it the normal equations have denominators that are as invariant as the problem is. Where the system has a
-    solution, the solution does not depend on the form.
+    With an invariant form the denominators of the normal equations are as invariant as the problem. If the system has
+    a solution, the solution does not depend on the form.
 
     Examples
     --------
@@ -180,7 +181,7 @@ def invariant_form(representation: Representation) -> Matrix:
 
 @final
 class RangeInverse:
-    """v -> Q(S) v for a positive semidefinite, self-adjoint matrix S: its inverse on its range.
+    """The map v -> Q(S) v, the inverse on its range of a positive semidefinite, self-adjoint matrix S.
 
     Parameters
     ----------
@@ -229,7 +230,7 @@ class RangeInverse:
 
 
 def simple(values: ObjectArray) -> ObjectArray:
-    """An array of elements, or an element, without common factors of numerators and denominators that are seen.
+    """Array of elements with common factors of numerators and denominators cancelled, as far as they are found.
 
     Examples
     --------

@@ -151,7 +151,7 @@ def test_named_functions() -> None:
     io = body("o", lh.Heun(), 4)
     made = io.in_terms_of(NAMED)
     assert io.equal(made.subs({sympy.Symbol(k): v for k, v in NAMED.items()}), SIGMA_IO)
-    with pytest.raises(InputError, match="no polynomial of degree 3"):
+    with pytest.raises(InputError, match="not a polynomial of degree 3"):
         io.in_terms_of({"h": H})
     with pytest.raises(InputError, match="there is no clock with index 7"):
         io.in_terms_of(NAMED, "clock 7")
