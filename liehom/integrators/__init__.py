@@ -1,9 +1,8 @@
-"""Methods of integration, from their coefficients up.
+"""Methods of integration: coefficients, steps, runs, compiled runs, ensembles and measured orders.
 
-In reading order: `rooted_trees` and `order_conditions`, `tableau` (a Runge-Kutta method that proves its order),
-`collocation` (methods made from their nodes), `tableaux` (the classical ones by name); `steps`, `rkmk`, `products`
-(steps of Lie group methods); `integration`; `ensemble` (in chunks, on any executor); `reference`, `orbit_error`,
-`convergence` (measured orders).
+In reading order, `tableaux` has Runge-Kutta coefficients that prove their order, `methods` the steps of Lie group
+methods, `run` the loop over steps, and `compiled` its fast path. `integration` has `integrate`, `ensembles` cuts
+ensembles into chunks for any executor, and `convergence` measures orders. See docs/tutorials/integrating.md.
 """
 
 from liehom.integrators.convergence import ConvergenceTable as ConvergenceTable

@@ -127,8 +127,8 @@ def integrate(
     different numbers of steps, t and y are filled up with NaN unless `t_eval` is given. For an ensemble, psi gets
     times t of the shape of the leading axes.
 
-    Step sizes are adapted by the estimate of an embedded pair, or by the Taylor coefficients of the error at the
-    initial point of a step. The latter cannot foresee a jump of psi: take a pair, or `max_step`.
+    An adaptive step size follows from the estimate of an embedded pair, or from the Taylor coefficients of the error at
+    the initial point of a step. The latter cannot foresee a jump of psi: take a pair, or `max_step`.
 
     A trajectory ends with status -1, and with the points computed so far, if one of the following occurs; the other
     trajectories of an ensemble go on, and `statuses` and `message` say which ended and when.
@@ -142,9 +142,9 @@ def integrate(
     With ``compile`` the step is traced once, with everything that derives it, and compiled to machine code, which is
     cached on disk. Compiled code makes the ordinary steps. The first and the last step, steps that pass a time of
     `t_eval` and steps that fail are made without it. The results agree to round-off. psi is called while the step is
-    traced, not in the steps, so it must be the same function all the time; `nfev` is the number of calls that the
+    traced, not in the steps, so it must be the same function all the time. `nfev` is the number of calls that the
     trajectory with the most of them would make. Adaptive step sizes depend on the estimate of the error, a small
-    difference of large numbers: if it is far below the tolerance, sizes may differ by 1e-7 relatively, and a step
+    difference of large numbers. If it is far below the tolerance, sizes may differ by 1e-7 relatively, and a step
     accepted by less than that may be rejected.
 
     With ``compile="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default the initial and the

@@ -33,7 +33,7 @@ STEPS: dict[str, tuple[Any, str]] = {
 KEEPING = {"C2": lh.LieTaylor(2), "C4": lh.LieTaylor(4)}
 EXPLAINED = {
     "E2": "`Corrected(Euler(), 2)`",
-    "E2 cay": "the same with the Cayley transform",
+    "E2 cay": "`Corrected(Euler(), 2)` with the Cayley transform",
     "E4": "`Corrected(Euler(), 4)`",
     "E6": "`Corrected(Euler(), 6)`",
     "T4": "`LieTaylor(4)`",
@@ -43,9 +43,9 @@ EXPLAINED = {
     "RK4": '`RKMK("rk4")`',
     "C2": "`Conserving(LieTaylor(2), energy)`",
     "C4": "`Conserving(LieTaylor(4), energy)`",
-    "adaptive": "`LieTaylor(6)` with adapted steps, the default",
-    "DOP853": '`RKMK("dop853")` with adapted steps',
-    "exact orbit": "`ExactOrbit`, the rigid body's own step on the orbit, with the Cayley transform",
+    "adaptive": "`LieTaylor(6)` with an adaptive step size, the default",
+    "DOP853": '`RKMK("dop853")` with an adaptive step size',
+    "exact orbit": "`ExactOrbit`, the step of the rigid body that stays on the orbit, with the Cayley transform",
 }
 
 
@@ -82,7 +82,7 @@ def integrate(name: str, compile: str | None) -> Solve:
 
 
 def adaptive(step: Any, compile: str | None) -> Solve:
-    """`liehom.integrate` with adapted steps."""
+    """`liehom.integrate` with adaptive steps."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
         sol = lh.integrate(

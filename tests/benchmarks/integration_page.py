@@ -1,4 +1,4 @@
-"""The part of docs/performance.md on integration, from the measured figures; and the work-precision plots."""
+"""The part of docs/performance.md on integration, from the measured figures, and the work-precision plots."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ STYLES = {
     LLVM: "o-", EAGER: "s-", JAX: "^-", "scipy DOP853": "v--", "heyoka.py": "D--", "diffrax": "x--",
     "numba RK4 by hand": "+:", IN_JIT: "*-",
 }  # fmt: skip
-"""One line and one colour for each program, in all pictures."""
+"""Line style of each program, whose index is its colour, in all plots."""
 
 
 def shown(x: float | None, digits: int = 2) -> str:
-    """So many digits, without trailing precision that is not there."""
+    """A number with `digits` significant digits."""
     if x is None or not math.isfinite(x):
         return "-"
     if x and not 1e-3 <= abs(x) < 1e5:
@@ -31,13 +31,13 @@ def shown(x: float | None, digits: int = 2) -> str:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """In Markdown."""
+    """Lines of a Markdown table."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     return [*lines, *("| " + " | ".join(row) + " |" for row in rows), ""]
 
 
 def groups(methods: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Rows of one program together, in the order of the figures, liehom first."""
+    """Rows by program, in the order of the figures, liehom first."""
     found: dict[str, list[dict[str, Any]]] = {}
     for row in methods:
         found.setdefault(row["group"], []).append(row)
@@ -46,7 +46,7 @@ def groups(methods: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
 
 # -- one problem -------------------------------------------------------------------------------------------
 def _cell(problem: Problem, rows: list[dict[str, Any]], count: int, target: float, orbit: bool) -> str:
-    """The least cost of the steps, and the label of the method if there are several."""
+    """The smallest cost of the steps, and the label of the method if there are several."""
     found, label = best(problem, rows, count, target, orbit=orbit, call=False)
     several = len({row["label"] for row in rows}) > 1
     return shown(found) + (f" {label}" if several and math.isfinite(found) else "")
@@ -70,7 +70,7 @@ def _missing(name: str, rows: list[dict[str, Any]], width: int) -> list[str]:
 
 
 def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
-    """The tables of a problem."""
+    """Tables of a problem."""
     found = groups(data["methods"])
     lines = [f"### {problem.title[0].upper()}{problem.title[1:]}", ""]
     orbit = "energy" if problem.energy is not None else "orbit"
@@ -101,13 +101,13 @@ def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
 
 
 def picture_name(problem: Problem) -> str:
-    """The file of its plot."""
+    """File name of the plot of a problem."""
     plain = problem.name.lower().translate(str.maketrans({"⁴": "4", "²": "2", "(": "", ")": "", ",": "", " ": "_"}))
     return f"work_precision_{plain}.svg"
 
 
 def draw(problem: Problem, data: dict[str, Any], folder: Path) -> None:
-    """Error against the cost of the steps: orbits or energy on the left, trajectories on the right."""
+    """Plot errors against the cost of the steps: orbits or energy on the left, trajectories on the right."""
     import matplotlib
 
     matplotlib.use("svg")
@@ -133,7 +133,7 @@ def draw(problem: Problem, data: dict[str, Any], folder: Path) -> None:
 
 
 def _front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Those that no cheaper one is better than."""
+    """The points (cost, error) for which no cheaper point has a smaller error."""
     kept: list[tuple[float, float]] = []
     for cost, error in sorted(points):
         if not kept or error < kept[-1][1]:
@@ -143,35 +143,42 @@ def _front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 # -- the other parts -----------------------------------------------------------------------------------------
 def conditions_part(data: dict[str, Any]) -> list[str]:
-    """When, where, how."""
+    """Conditions of the measurements, and abbreviations of the methods."""
     c = data["conditions"]
     versions = ", ".join(f"{name} {version}" for name, version in c["versions"].items())
     loads = [p["load"] for p in data["problems"].values()]
-    wanted = "; ".join(f"{key}: {text}" for key, text in EXPLAINED.items())
     return [
-        f"Measured {c['date']} on one core of {c['cores']} ({c['processor']}), by `python -m tests.benchmarks.report`; "
-        f"{versions}. The machine was shared, with a load between {min(loads)} and {max(loads)}: processor time of the "
-        "process is given, not time on the clock, and it still grows by some ten per cent, at times by twice, when "
-        "others use the same caches and vector units. Ratios within a table are better than its figures.",
+        f"Measured {c['date']} on one core of {c['cores']} ({c['processor']}) by `python -m tests.benchmarks.report`, "
+        f"with {versions}. All fields are autonomous, and all trajectories of an ensemble have the same parameters.",
         "",
-        "Errors are those of nine of ten trajectories, the largest at five times; settings are refined until the "
-        "wanted error is reached, and costs interpolated between settings. Compilation was before. "
-        '"call" is what a call of the program costs besides its steps, for each trajectory: with `compile=` the trace '
-        "of the step and the first and the last step, which are made on numpy arrays. The other columns are the cost "
-        'of the steps; "in" is where the two are not told apart. A coarser setting than the coarsest that was tried '
-        "might do where a cost is the same for several errors. All fields are autonomous, and all trajectories of an "
-        "ensemble have the same parameters.",
+        "* Costs are CPU times of the process. The machine was shared, with a load between "
+        f"{min(loads)} and {max(loads)}, so they vary by some ten per cent, and by up to a factor of 2 when other "
+        "processes use the same caches and vector units. Ratios within a table are more accurate than its entries.",
+        "* An error is the maximum over five times, and 90 % of the trajectories have at most this error.",
+        "* The settings of each method are refined until the error of a column is reached, and costs are interpolated "
+        "between settings. If a cost is the same for several errors, a setting coarser than the coarsest tested one "
+        "might reach the larger of them.",
+        "* Compile time is excluded.",
+        '* The column "call" is the cost of a call besides its steps, per trajectory. With `compile=` it contains the '
+        "trace of the step, and the first and the last step, which run on numpy arrays.",
+        '* The other columns are the cost of the steps. For a program with "in" in the column "call" they contain the '
+        "cost of the call too.",
+        "* Each cell shows the cheapest method of its row, with its abbreviation:",
         "",
-        f"Of several methods the cheapest stands in a cell, by its letters: {wanted}. The peers: scipy's DOP853 with "
-        "all trajectories as one system; heyoka.py in batches of 8 with `fast_math`; diffrax through `vmap`, of Tsit5 "
-        "and Dopri8 the better one, on ensembles of 1000; and the classical Runge-Kutta method in numba with the field "
-        "as straight-line code, one trajectory at a time or in blocks of 16 lanes.",
+        *table(["abbreviation", "method"], EXPLAINED.items()),
+        "The other programs run as follows:",
+        "",
+        "* scipy's DOP853 with all trajectories as one system;",
+        "* heyoka.py in batches of 8 with `fast_math`;",
+        "* diffrax through `vmap` on ensembles of 1000, with the better one of Tsit5 and Dopri8;",
+        "* the classical Runge-Kutta method in numba with the field as straight-line code, one trajectory at a time or "
+        "in blocks of 16 lanes.",
         "",
     ]  # fmt: skip
 
 
 def targets_part(data: dict[str, Any]) -> list[str]:
-    """The targets, each with what was measured and whether it holds."""
+    """Table of the targets, the measured values, and whether the targets are met."""
     k = data["targets"]
     by_name = {p.name: p for p in problems()}
     rows = []
@@ -211,7 +218,7 @@ def targets_part(data: dict[str, Any]) -> list[str]:
 
 
 def growth_part(data: dict[str, Any]) -> list[str]:
-    """Exponents."""
+    """Table of the exponents of the cost of a step."""
     rows = [
         [
             row["what"],
@@ -224,16 +231,16 @@ def growth_part(data: dict[str, Any]) -> list[str]:
     ]
     head = ["step", "against", "cost of a step", "exponent", "of the second half"]
     return [
-        "### How cost grows", "",
-        "Exponents of the cost of a step by least squares of logarithms. Expansions to order n are O(n²) products of "
-        "coefficients; a generator that is affine in m on Sᵏ⁻¹ is itself O(k dim g) = O((dim g)^1.5); an ensemble is "
-        "O(N) once the arrays are longer than numpy's calls.", "",
+        "### Growth of the cost with order, dimension and number of trajectories", "",
+        "The exponents are slopes of the cost of a step by least squares of logarithms. An expansion to order n needs "
+        "O(n²) products of coefficients. A generator that is affine in m on Sᵏ⁻¹ costs O(k dim g) = O((dim g)^1.5). An "
+        "ensemble costs O(N) if the arrays are so long that the overhead of numpy's calls is small.", "",
         *table(head, rows),
     ]  # fmt: skip
 
 
 def long_part(data: dict[str, Any]) -> list[str]:
-    """T = 10^4, and many spins."""
+    """Table of the errors after long times, and for many spins."""
     rows = [
         [row["problem"], row["method"], shown(row["setting"]), shown(row["T"]), "not installed", "", ""]
         if "missing" in row
@@ -246,13 +253,13 @@ def long_part(data: dict[str, Any]) -> list[str]:
     head = ["problem", "method", "step or tolerance", "T", "energy error", "norm error", "µs, whole call"]
     return [
         "### Long times, many spins", "",
-        "16 trajectories to T = 10⁴, and one closed chain of 10⁴ spins: errors at the end, median of the energy, "
-        "largest of the norm.", "", *table(head, rows),
+        "Errors at the end of 16 trajectories to T = 10⁴ and of one closed chain of 10⁴ spins: the median error of the "
+        "energy, and the largest error of the norm.", "", *table(head, rows),
     ]  # fmt: skip
 
 
 def drift_part(data: dict[str, Any]) -> list[str]:
-    """What a trajectory error of 10^-6 leaves of norms and spectra."""
+    """Table of the errors of norms and spectra at a trajectory error of 10^-6."""
     columns: list[str] = []
     for content in data["problems"].values():
         columns += [g for g in groups(content["methods"]) if g not in columns]
@@ -265,16 +272,17 @@ def drift_part(data: dict[str, Any]) -> list[str]:
         cells += [shown(min(known.get(column, []), default=math.nan)) for column in columns]
         rows.append([name, *cells])
     return [
-        "### What stays on the orbit", "",
-        "The largest error of the norm (Sym(6): of an eigenvalue) at the end, at the coarsest setting whose trajectory "
-        "error is at most 10⁻⁶: the worst method of liehom, the best of a peer.", "",
+        "### Distance from the orbit", "",
+        "The table shows the largest error of the norm at the end (for Sym(6), of an eigenvalue), at the coarsest "
+        "setting whose trajectory error is at most 10⁻⁶. It is that of the worst method of liehom and of the best "
+        "method of each other program.", "",
         *table(["problem", "liehom", *columns], rows),
     ]  # fmt: skip
 
 
 def page_part(data: dict[str, Any]) -> str:
-    """All of it."""
-    lines = ["## Integration beside its peers", "", *conditions_part(data)]
+    """The part of the page between the markers, as Markdown."""
+    lines = ["## Integration compared with other programs", "", *conditions_part(data)]
     if "targets" in data:
         lines += targets_part(data)
     for problem in problems():
@@ -288,7 +296,7 @@ def page_part(data: dict[str, Any]) -> str:
 
 
 def write(data: dict[str, Any], docs: Path) -> None:
-    """Put it between the marks of docs/performance.md, and the plots beside it."""
+    """Write the part between the markers of docs/performance.md, and the plots."""
     for problem in problems():
         if problem.name in data["problems"]:
             draw(problem, data["problems"][problem.name], docs / "_static")

@@ -35,7 +35,7 @@ class Problem:
     drift : callable
         Of points: other invariants, whose errors are told at one accuracy.
     span, lanes_span : float
-        T, and the time that 10^4 trajectories are integrated for by methods with adapted steps.
+        T, and the time that 10^4 trajectories are integrated for by methods with adaptive steps.
     lanes : int
         At most so many trajectories are taken where more are asked for.
     shape : tuple of int

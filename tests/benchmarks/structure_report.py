@@ -89,7 +89,7 @@ def _timed(actions: Sequence[Callable[[], Any]]) -> float:
 
 def table(rows: list[Row], peer: str) -> str:
     """The rows in Markdown."""
-    head = ["task", "liehom, s", "GAP, s", "GAP / liehom", "Sage / liehom", "dgcv / liehom", "demand kept"]
+    head = ["task", "liehom, s", "GAP, s", "GAP / liehom", "Sage / liehom", "dgcv / liehom", "target met"]
     lines = [head, ["---"] * len(head), *(row.cells() for row in rows)]
     return "\n".join([peer, "", *("| " + " | ".join(line) + " |" for line in lines)])
 
@@ -111,7 +111,7 @@ def main() -> None:
         before, after = page.partition(BEGIN)[0], page.partition(END)[2]
         PAGE.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
     if missed := [row.name for row in rows if row.kept is False]:
-        print("demands that are not kept:", "; ".join(missed))
+        print("targets that are missed:", "; ".join(missed))
 
 
 if __name__ == "__main__":

@@ -274,7 +274,7 @@ class LandauLifshitz:
         """Raise InputError if the options would bring coupled spins to different times."""
         if dt is None or np.ndim(dt):
             raise InputError(
-                "the spins are coupled, so they need one step size: give dt, or take joint() for adapted steps"
+                "the spins are coupled, so they need one step size: give dt, or take joint() for adaptive steps"
             )
         if isinstance(step.step if isinstance(step, Conserving) else step, Corrected):
             raise InputError(

@@ -225,9 +225,9 @@ class _Lanes:
         run, graph, lanes = self.run, group.graph, group.lanes
         m, t, count = (group.packed(x) for x in (self.m, self.t, self.count))
         limit = self.limit
-        if graph.elapsed is None:  # so many steps end before it
+        if graph.elapsed is None:  # the limit as a number of steps that end before it
             whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
-            total: Any = run.total  # no step is made of a rest below the round-off of times
+            total: Any = run.total  # a rest below the round-off of times is not a step
             limit = np.minimum(np.ceil(whole - SLACK), np.broadcast_to(total, run.shape).reshape(-1)) - 1
         h, limit = group.packed(self.h), group.packed(limit)
         alive, tries = group.packed(self.alive.astype(np.float64)), group.packed(self.tries)
@@ -304,7 +304,7 @@ class _Lanes:
 
 
 def _width(graph: StepGraph, lanes: int) -> int:
-    """Lanes of a block: wide blocks hide how long operations take; in long code they run out of registers."""
+    """Number of lanes in a block: wide blocks hide latencies, but in long code they run out of registers."""
     if lanes < 4 * WIDE_LANES:
         return 1 if lanes < NARROW_LANES // 2 else NARROW_LANES
     ops = needed(graph.outputs)
