@@ -1,8 +1,9 @@
 """Numbers: the rationals QQ, real number fields QQ(a) and float64, each with its matrices.
 
-`Field` and `Matrix` are the interfaces; `rational`, `number_field` and `floating` implement them, `exact_matrix`
-holds the linear algebra on python-flint. `grammar` and `number_fields` read what a user writes, `polynomial` and
-`balls` count and enclose real roots. Everything above uses this wing; the conventions are in docs/notation.md.
+`field` has the interfaces `Field` and `Matrix`. `exact_field` has the linear algebra of QQ and the number fields on
+python-flint, `rational` and `number_field` their numbers, and `floating` float64. `grammar` and `number_fields` read
+user input, and `polynomial` and `balls` count and enclose real roots. Every layer above uses this wing; the conventions
+are in docs/notation.md.
 """
 
 from liehom.scalars.fields.exact_field import ExactField as ExactField

@@ -32,8 +32,10 @@ from liehom.scalars.fields.integer_matrices import (
 )
 from liehom.typing import ScalarLike
 
-TALL = 2
-GUESSED_INVERSE = 40
+# from this ratio of rows to columns on, independent rows are chosen modulo a prime
+MIN_TALL_RATIO = 2
+# from this size on, an integral inverse is guessed modulo a prime
+MIN_GUESSED_SIZE = 40
 
 
 class ExactField(Field["ExactMatrix"]):
@@ -302,8 +304,6 @@ class ExactMatrix(Matrix):
 
     def trace(self) -> Scalar:
         total = [sum((a[i, i] for i in range(self.nrows)), flint.fmpz(0)) for a in self.parts]
-        if self._field.degree == 1:
-            return flint.fmpq(total[0], self.den)
         return self._field.from_coordinates([flint.fmpq(x, self.den) for x in total])
 
     # -- linear algebra ----------------------------------------------------------------------------------
@@ -337,7 +337,7 @@ class ExactMatrix(Matrix):
         m, ncols = self._field.degree, self.ncols
         if 0 in self.shape:
             return self._field.zeros(0, ncols), []
-        if self.nrows > TALL * ncols:
+        if self.nrows > MIN_TALL_RATIO * ncols:
             found = self._tall_echelon()
             if found is not None:
                 return found
@@ -388,7 +388,7 @@ class ExactMatrix(Matrix):
         n = self.nrows
         if n != self.ncols:
             raise ShapeError(f"a matrix of shape {self.shape} has no inverse")
-        if self._field.degree == 1 and n >= GUESSED_INVERSE:
+        if self._field.degree == 1 and n >= MIN_GUESSED_SIZE:
             guess = self._integral_inverse()
             if guess is not None:
                 return guess

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 
 import flint
 
-SMALL_MATRIX = 64
+# up to this number of entries their gcd is taken one by one
+MAX_DIRECT_ENTRIES = 64
 
 
 def integer_identity(n: int) -> flint.fmpz_mat:
@@ -172,7 +173,7 @@ def _common_factor(number: flint.fmpz, matrix: flint.fmpz_mat) -> flint.fmpz:
     It divides the gcd of the entries of one combination of rows, and nearly always equals it: a division proves it.
     """
     nrows, ncols = matrix.nrows(), matrix.ncols()
-    if nrows * ncols <= SMALL_MATRIX:
+    if nrows * ncols <= MAX_DIRECT_ENTRIES:
         return _gcd_of(number, matrix.entries())
     one_row = matrix * _weights(ncols).transpose() if nrows < ncols else _weights(nrows) * matrix
     bound = _gcd_of(number, one_row.entries())

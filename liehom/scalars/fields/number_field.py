@@ -277,8 +277,7 @@ class NumberField(ExactField):
                 return index
 
     def __eq__(self, other: object) -> bool:
-        same = isinstance(other, NumberField) and self.minpoly == other.minpoly
-        return same and self.root_index == other.root_index  # type: ignore[attr-defined]
+        return isinstance(other, NumberField) and self.minpoly == other.minpoly and self.root_index == other.root_index
 
     def __hash__(self) -> int:
         return hash((self.minpoly, self.root_index))

@@ -20,7 +20,8 @@ from liehom.scalars.fields.rational import QQ
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 Triple = tuple[int, int, int]
-SHORT = 4
+# of the combinations of reduced basis vectors that are tried
+MAX_COEFFICIENT = 4
 
 
 def rational_zero(form: ExactMatrix) -> ExactMatrix | None:
@@ -158,7 +159,7 @@ def _short_vectors(coefficients: Triple, roots: Triple) -> Iterator[Triple]:
     basis = [row for row in flint.fmpz_mat(rows).hnf().tolist() if any(row)]
     weighed = flint.fmpz_mat([[x * w for x, w in zip(row, weights, strict=True)] for row in basis]).lll().tolist()
     reduced = [[int(x) // w for x, w in zip(row, weights, strict=True)] for row in weighed]
-    for k in sorted(product(range(-SHORT, SHORT + 1), repeat=3), key=lambda k: sum(map(abs, k))):
+    for k in sorted(product(range(-MAX_COEFFICIENT, MAX_COEFFICIENT + 1), repeat=3), key=lambda k: sum(map(abs, k))):
         if any(k):
             x, y, z = (sum(f * row[i] for f, row in zip(k, reduced, strict=True)) for i in range(3))
             yield x, y, z

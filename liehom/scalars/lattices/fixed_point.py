@@ -20,7 +20,8 @@ from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.rational import QQ
 from liehom.typing import ScalarLike
 
-STEPS = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
+# iterations between two tests whether the form has converged
+ITERATIONS = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 
 
 def fixed_point(matrix: ExactMatrix, bits: int) -> tuple[ExactMatrix, flint.fmpq]:
@@ -72,7 +73,7 @@ def balancing_rows(matrices: Sequence[ExactMatrix], bits: int) -> ExactMatrix | 
     d = matrices[0].nrows
     pairs = [(a.parts[0].transpose(), a.parts[0]) for a in matrices]
     form = flint.fmpz_mat(d, d, [int(i == j) << bits for i in range(d) for j in range(d)])
-    for steps in STEPS:
+    for steps in ITERATIONS:
         for _ in range(steps):
             image, size = _image(pairs, form), _trace(form)
             total = _trace(image)

@@ -18,9 +18,12 @@ from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.rational import QQ
 from liehom.typing import Array
 
-BITS = 40
-SPARE = 12
-TRIAL_PRIMES = 10_000
+# bits of the largest entry of a rounded frame
+FRAME_BITS = 40
+# random combinations of columns beyond the dimension
+EXTRA_COMBINATIONS = 12
+# number of primes tried as divisors
+TRIAL_DIVISION_PRIMES = 10_000
 
 
 def reduced_basis(form: Array) -> ExactMatrix:
@@ -44,7 +47,7 @@ def reduced_basis(form: Array) -> ExactMatrix:
     """
     factor = np.linalg.cholesky((form + form.T) / 2)
     n = len(factor)
-    scale = float(1 << BITS) / float(np.abs(factor).max())
+    scale = float(1 << FRAME_BITS) / float(np.abs(factor).max())
     rows = [round(x) for x in (factor * scale).ravel().tolist()]
     lattice: Any = flint.fmpz_mat(n, n, rows)
     _, change = lattice.lll(transform=True)
@@ -68,7 +71,7 @@ def reduced_rows(rows: ExactMatrix, factor: npt.NDArray[np.floating[Any]]) -> Ex
     [['1/2', '0'], ['0', '1']]
     """
     n = len(factor)
-    scale = float(1 << BITS) / float(np.abs(factor).max())
+    scale = float(1 << FRAME_BITS) / float(np.abs(factor).max())
     frame = flint.fmpz_mat(n, n, [round(x) for x in (factor * scale).ravel().tolist()])
     lattice: Any = rows.parts[0] * frame
     _, change = lattice.lll(transform=True)
@@ -138,7 +141,7 @@ def pairwise_coprime(number: int) -> list[int]:
     >>> pairwise_coprime(2**5 * 3 * (10**40 + 121) ** 2) == [2, 3, 10**40 + 121]
     True
     """
-    found = [int(p) for p, _ in flint.fmpz(number).factor(trial_limit=TRIAL_PRIMES)]
+    found = [int(p) for p, _ in flint.fmpz(number).factor(trial_limit=TRIAL_DIVISION_PRIMES)]
     roots = []
     for x in found:
         base = x
@@ -170,7 +173,7 @@ def integral_preimage(matrix: ExactMatrix) -> ExactMatrix:
     """
     n, m = matrix.shape
     rng = random.Random(n)
-    count = min(m, n + SPARE)
+    count = min(m, n + EXTRA_COMBINATIONS)
     if count < m:
         mixing = flint.fmpz_mat(m, count, [rng.randint(-9, 9) for _ in range(m * count)])
         columns = matrix.parts[0] * mixing

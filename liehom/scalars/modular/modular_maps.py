@@ -16,8 +16,10 @@ import flint
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.modular.modular import extending_rows, pivot_columns, row_basis, selected_rows, stacked_residues
 
-LARGEST_KERNEL = 64
-SEED_TRIALS = 12
+# every basis vector of the kernel is one more unknown
+MAX_KERNEL_DIMENSION = 64
+# random elements tried for one seed vector
+MAX_SEED_TRIALS = 12
 
 
 def intertwining_residues(
@@ -51,7 +53,7 @@ def intertwining_residues(
     rng = random.Random(left[0].nrows())
     spun = _SpunModule(left, right)
     while spun.rank < spun.d:
-        if not any(spun.seed(rng) for _ in range(SEED_TRIALS)):
+        if not any(spun.seed(rng) for _ in range(MAX_SEED_TRIALS)):
             return None
     return spun.solution(rng)
 
@@ -123,7 +125,7 @@ class _SpunModule:
         factors = polynomial.factor()[1]
         f = min(factors, key=lambda pair: pair[0].degree() * pair[1])[0]
         own, other = _kernel(_evaluated(f, a)), _kernel(_evaluated(f, b))
-        return (own, other) if max(own.nrows(), other.nrows()) <= LARGEST_KERNEL else None
+        return (own, other) if max(own.nrows(), other.nrows()) <= MAX_KERNEL_DIMENSION else None
 
     def _restricted(self, a: flint.nmod_mat) -> flint.nmod_mat:
         """Matrix of an element, which acts on rows, restricted to the span of the vectors, an invariant space."""

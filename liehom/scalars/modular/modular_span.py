@@ -21,8 +21,10 @@ from liehom.scalars.fields.rational import prime
 from liehom.scalars.modular.modular import row_basis, small_residues
 from liehom.typing import Array, IntegerArray
 
-PRIMES = 12
-TERMS = 512
+# primes combined for one lift
+MAX_PRIMES = 12
+# products of residues below 2^22 in one sum, so that it stays below 2^53
+MAX_TERMS = 512
 Residues = Array
 
 
@@ -163,9 +165,10 @@ def product(left: Residues, right: Residues, modulus: int) -> Residues:
     >>> product(np.array([[4.0, 5.0]]), np.array([[2.0], [3.0]]), 7)
     array([[2.]])
     """
-    total: Residues = remainders(left[..., :TERMS] @ right[..., :TERMS, :], modulus)
-    for start in range(TERMS, left.shape[-1], TERMS):
-        total = remainders(total + left[..., start : start + TERMS] @ right[..., start : start + TERMS, :], modulus)
+    total: Residues = remainders(left[..., :MAX_TERMS] @ right[..., :MAX_TERMS, :], modulus)
+    for start in range(MAX_TERMS, left.shape[-1], MAX_TERMS):
+        end = start + MAX_TERMS
+        total = remainders(total + left[..., start:end] @ right[..., start:end, :], modulus)
     return total
 
 
@@ -233,7 +236,7 @@ def rational_lifts(make: Callable[[int], flint.nmod_mat | None], field: Field) -
         return
     shape, modulus = (first.nrows(), first.ncols()), int(first.modulus())
     values = [int(x) for x in first.entries()]
-    for attempt in range(1, PRIMES):
+    for attempt in range(1, MAX_PRIMES):
         lifted = _lifted(values, modulus)
         if lifted is not None:
             yield field.from_entries([flint.fmpq(a, b) for a, b in lifted], *shape)

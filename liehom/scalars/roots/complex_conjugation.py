@@ -16,8 +16,10 @@ from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.fields.rational import QQ
 
-SPARE_BITS = 64
-DOUBLINGS = 12
+# working precision beyond the bits of the discriminant
+EXTRA_BITS = 64
+# of the working precision
+MAX_DOUBLINGS = 12
 
 
 def complex_conjugation(f: Polynomial) -> Polynomial | None:
@@ -49,8 +51,8 @@ def complex_conjugation(f: Polynomial) -> Polynomial | None:
         raise InputError(f"conjugation is decided for monic polynomials with integer coefficients; got {f!r}")
     integral = flint.fmpz_poly([int(c.p) for c in coefficients])
     discriminant = int(integral.discriminant())
-    bits = SPARE_BITS + discriminant.bit_length()
-    for _ in range(DOUBLINGS):
+    bits = EXTRA_BITS + discriminant.bit_length()
+    for _ in range(MAX_DOUBLINGS):
         with working_precision(bits):
             found = _integers([discriminant * x for x in _interpolated(integral)])
         if found is not None:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactMatrix
+from liehom.scalars.fields.number_field import NumberField
 
 Balls = tuple[flint.acb, ...]
 
@@ -109,8 +110,8 @@ def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], prec
 def enclosure(matrix: ExactMatrix, precision: int) -> flint.acb_mat:
     """Enclosure (``flint.acb_mat``) of a matrix over an exact field, with the current working precision."""
     total = flint.arb_mat(matrix.parts[0])
-    if len(matrix.parts) > 1:
-        generator = matrix.field.generator_ball(precision)  # type: ignore[attr-defined]  # only QQ has none, and one part
+    if isinstance(matrix.field, NumberField):
+        generator = matrix.field.generator_ball(precision)
         power = generator
         for part in matrix.parts[1:]:
             total += flint.arb_mat(part) * power

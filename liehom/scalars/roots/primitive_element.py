@@ -21,8 +21,10 @@ from liehom.scalars.fields.rational import QQ
 from liehom.scalars.roots.roots import bounds, simplest_between
 from liehom.typing import ScalarLike
 
-LARGEST_REDUCED_DEGREE = 24
-SUMS_TRIED_DEGREE = 8
+# up to this degree a smaller generator is sought
+MAX_REDUCED_DEGREE = 24
+# up to this degree sums of two elements are candidates too
+MAX_DEGREE_FOR_SUMS = 8
 SMALL_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31)
 
 
@@ -73,7 +75,7 @@ def smaller_generator(field: NumberField, integers: Sequence[AlgebraicNumber]) -
     n = field.degree
     whole = flint.fmpq_poly(field.modulus)
     best, chosen = field.modulus, flint.fmpq_poly([0, 1])
-    for element in _small(field, integers) if n <= LARGEST_REDUCED_DEGREE else []:
+    for element in _small(field, integers) if n <= MAX_REDUCED_DEGREE else []:
         polynomial = _minimal_polynomial(element, whole)
         if polynomial.gcd(polynomial.derivative()).degree() > 0:
             continue  # of a proper subfield
@@ -112,7 +114,7 @@ def _small(field: NumberField, integers: Sequence[AlgebraicNumber]) -> list[flin
         table = [[int(c * den) for c in row] + _embedded(row, roots, bits) for row in rows]
     # the coordinates, small compared with the scaled embeddings, record the combination
     reduced = [row[:n] for row in flint.fmpz_mat(table).lll().tolist() if any(row[:n])]
-    if n <= SUMS_TRIED_DEGREE:
+    if n <= MAX_DEGREE_FOR_SUMS:
         pairs = list(combinations(reduced, 2))
         reduced += [[x + sign * y for x, y in zip(p, q, strict=True)] for p, q in pairs for sign in (1, -1)]
     return [flint.fmpq_poly([flint.fmpq(c, den) for c in row]) for row in reduced]

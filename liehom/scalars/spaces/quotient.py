@@ -16,8 +16,10 @@ from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.field import M, Matrix
 from liehom.scalars.fields.floating import FloatMatrix
 
-SMALL_BITS = 5
-LATTICE_DIMENSION = 130
+# bits of numbers for which no reduction is tried
+MAX_SMALL_BITS = 5
+# up to this dimension the lattice of covectors is reduced
+MAX_LATTICE_DIMENSION = 130
 
 
 @final
@@ -68,7 +70,7 @@ def quotient(basis: Matrix) -> Quotient[ExactMatrix] | Quotient[FloatMatrix]:
         raise TypeError(f"no quotient over {basis.field}")
     reduced, pivots = basis.echelon()
     n = basis.ncols
-    if basis.field.degree == 1 and 0 < basis.nrows < n <= LATTICE_DIMENSION and not _is_small(reduced):
+    if basis.field.degree == 1 and 0 < basis.nrows < n <= MAX_LATTICE_DIMENSION and not _is_small(reduced):
         return _by_lattice(basis)
     return _from_echelon(reduced, pivots)
 
@@ -110,7 +112,7 @@ def _projection(reduced: ExactMatrix, pivots: list[int], free: list[int]) -> Exa
 
 
 def _is_small(matrix: ExactMatrix) -> bool:
-    bound = 1 << SMALL_BITS
+    bound = 1 << MAX_SMALL_BITS
     return matrix.den < bound and all(-bound < x < bound for x in matrix.parts[0].entries())
 
 

@@ -18,7 +18,8 @@ from liehom.typing import IntegerArray, ObjectArray
 if TYPE_CHECKING:
     from scipy import sparse
 
-LIMIT = 1 << 62
+# bound for sums of int64 products, with a factor 2 to spare
+INT64_LIMIT = 1 << 62
 
 
 @final
@@ -81,7 +82,7 @@ class SparseInteger:
             return False
         sums = np.zeros(self.shape[0])
         np.add.at(sums, self.rows, np.abs(self.values.astype(np.float64)))
-        return bool(sums.max() * float(np.abs(other.values.astype(np.float64)).max()) < LIMIT / 2)
+        return bool(sums.max() * float(np.abs(other.values.astype(np.float64)).max()) < INT64_LIMIT / 2)
 
     def _csr(self) -> sparse.csr_array:
         from scipy import sparse
