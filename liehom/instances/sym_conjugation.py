@@ -68,7 +68,7 @@ class SymmetricMatrices:
     def __init__(self, k: int) -> None:
         if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
             raise InputError(f"the size of the matrices is an integer at least 2, got {k!r}")
-        self.k = int(k)
+        self.k: int = int(k)
         self.representation: Representation = sym_conjugation(self.k)
         # standard basis of so(k): for i < j the matrix with entry 1 at (j, i)
         self._columns, self._rows = (x.copy() for x in np.triu_indices(self.k, 1))

@@ -147,7 +147,12 @@ class Traced(NDArrayOperatorsMixin):
             raise TypeError("only an array of one entry can be a float")
         return float(self.entries.flat[0])
 
-    __int__ = __index__ = __float__
+    if TYPE_CHECKING:
+        # raises like __float__
+        def __int__(self) -> int: ...
+        def __index__(self) -> int: ...
+    else:
+        __int__ = __index__ = __float__
     __hash__ = object.__hash__
 
     def __getattr__(self, name: str) -> Callable[..., Any]:

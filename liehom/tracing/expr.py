@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from typing import Any, Literal, Protocol, TypeAlias, final
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, final
 
 from liehom.errors import TraceError
 
@@ -151,7 +151,13 @@ class Expr:
             "entry of a float array): use numpy's functions and np.stack, or integrate without compile="
         )
 
-    __int__ = __index__ = __complex__ = __float__
+    if TYPE_CHECKING:
+        # raises like __float__
+        def __int__(self) -> int: ...
+        def __index__(self) -> int: ...
+        def __complex__(self) -> complex: ...
+    else:
+        __int__ = __index__ = __complex__ = __float__
 
     def __repr__(self) -> str:
         return repr(self.value) if self.constant else f"<{self.op} {self.index}>"

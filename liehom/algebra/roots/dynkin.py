@@ -78,7 +78,7 @@ def cartan_matrix(name: str) -> CartanMatrix:
     return tuple(map(tuple, matrix))
 
 
-def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph:
+def dynkin_diagram(cartan: Sequence[Sequence[int]] | str) -> networkx.DiGraph[int]:
     """The Dynkin diagram as a networkx graph.
 
     Parameters

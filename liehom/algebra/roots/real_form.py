@@ -149,7 +149,7 @@ class RealForm:
         """The root system of the complexification."""
         return self.vogan.root_system()
 
-    def satake_diagram(self) -> networkx.DiGraph:
+    def satake_diagram(self) -> networkx.DiGraph[int]:
         """The Satake diagram as a networkx graph; see `SatakeDiagram.graph`."""
         return self.satake.graph()
 

@@ -135,7 +135,7 @@ class RootSystem:
         """
         return diagram_components(self.cartan)
 
-    def dynkin_diagram(self) -> networkx.DiGraph:
+    def dynkin_diagram(self) -> networkx.DiGraph[int]:
         """The Dynkin diagram as a networkx.DiGraph; see `liehom.algebra.dynkin_diagram`."""
         return dynkin_diagram(self.cartan)
 

@@ -163,7 +163,7 @@ class SatakeDiagram:
         """
         return {root: times for root, times in self._projections().items() if any(root)}
 
-    def graph(self) -> networkx.DiGraph:
+    def graph(self) -> networkx.DiGraph[int]:
         """The diagram as a networkx graph.
 
         Returns

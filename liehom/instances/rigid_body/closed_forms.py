@@ -44,6 +44,14 @@ class Ingredients:
     True
     """
 
+    body: FreeBody
+    n: Values
+    h: Values
+    v2: Values
+    k: Values
+    q: Values
+    e: tuple[Any, Any, Any]
+
     def __init__(self, body: FreeBody, n: Values) -> None:
         self.body, self.n = body, n
         once = body.apply(n)
@@ -149,6 +157,10 @@ class ClosedFormUpdate:
     >>> bool(np.allclose(ClosedFormUpdate(body, "rk2_io")(m, 0.5), body.update("rk2_io")(m, 0.5), rtol=0, atol=1e-15))
     True
     """
+
+    body: FreeBody
+    name: str
+    kind: str
 
     def __init__(self, body: FreeBody, name: str, exponential: str = "cayley") -> None:
         if exponential not in ("cayley", "exp"):

@@ -94,6 +94,9 @@ class OrbitStep(LocalStep):
     (True, True)
     """
 
+    omega: Values
+    rho: Values
+
     def __init__(self, body: FreeBody, m: Values) -> None:
         self._size: Any = np.sqrt(dot(m, m))
         self._size = np.where(self._size > 0, self._size, 1)
@@ -199,6 +202,9 @@ class ExactOrbitUpdate:
     >>> update(m, 0.5).round(3).tolist(), round(float(update.time(m, 0.5)), 3)
     ([0.572, 0.601, 0.558], 0.514)
     """
+
+    body: FreeBody
+    step: ExactOrbit
 
     def __init__(self, body: FreeBody, step: ExactOrbit) -> None:
         self.body, self.step = body, step

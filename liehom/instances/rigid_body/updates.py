@@ -144,6 +144,11 @@ class Update:
     (Orders(energy=2, solution=1), (2, 3))
     """
 
+    body: FreeBody
+    name: str
+    step: Step
+    orders: Orders
+
     def __init__(self, body: FreeBody, name: str, exponential: ExponentialLike = "cayley") -> None:
         self.body, self.name = body, checked_name(name)
         self._action = Action(body.representation, exponential)

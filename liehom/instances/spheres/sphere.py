@@ -67,6 +67,9 @@ class Sphere:
     ([-0.5, 0.5, 0.0, 0.0], 3)
     """
 
+    k: int
+    radius: float
+
     def __init__(self, k: int, radius: float = 1.0) -> None:
         if isinstance(k, bool) or not isinstance(k, int | np.integer) or k < 2:
             raise InputError(f"k is {k!r}, expected an integer at least 2: the sphere lies in R^k")

@@ -71,6 +71,12 @@ class SphereFrame:
     True
     """
 
+    v: Array
+    vectors: Values
+    a: Coordinates
+    b: Coordinates
+    c: Coordinates
+
     def __init__(self, field: GeneratorField, m: npt.ArrayLike) -> None:
         point = points_of(m)
         if point.shape[-1:] != (3,) or field.representation.size != 3:

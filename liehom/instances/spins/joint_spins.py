@@ -46,6 +46,10 @@ class JointSpins:
     6
     """
 
+    field: GeneratorField
+    lattice: SpinLattice
+    representation: Representation
+
     __slots__ = ("field", "lattice", "representation")
 
     def __init__(self, lattice: SpinLattice, generator: Callable[..., Any], time_dependent: bool) -> None:

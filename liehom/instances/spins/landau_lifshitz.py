@@ -98,6 +98,12 @@ class LandauLifshitz:
     True
     """
 
+    exchange: float
+    field: GeneratorField
+    gyromagnetic: float
+    lattice: SpinLattice
+    time_dependent: bool
+
     __slots__ = (
         "_applied", "_axis", "anisotropy", "damping", "exchange", "field", "gyromagnetic", "lattice", "time_dependent",
     )  # fmt: skip

@@ -19,7 +19,7 @@ from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.run.points import points_of
 from liehom.typing import Array, IntegerArray
 
-ORDERS = {np.dtype(np.float64): 20, np.dtype(np.longdouble): 24}
+ORDERS: dict[np.dtype[Any], int] = {np.dtype(np.float64): 20, np.dtype(np.longdouble): 24}
 MIN_ORDER = 4
 MORE_ORDERS, SHORTER = 3, 0.7
 """The second solution, for the accuracy: orders added to those of the first, and the ratio of the lengths of pieces."""

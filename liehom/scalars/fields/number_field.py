@@ -54,6 +54,8 @@ class NumberField(ExactField):
     (2, 1, '1/2 + 1/2*a')
     """
 
+    interval: tuple[flint.fmpq, flint.fmpq]
+
     root_index: int
 
     __slots__ = (
