@@ -37,7 +37,7 @@ def commuting_eigenvector_witness(action: TracelessIsotropyAction, t: ExactMatri
     for _ in range(m - 1):
         powers.append(powers[-1] @ t)
     # f(T)/(T - theta) = sum_i h_i(theta) T^i with h_i = sum_{l > i} f_l theta^(l - i - 1), by synthetic
-    # division; its columns lie in ker(T - theta).  Collected by powers of theta:
+    # division; its columns lie in ker(T - theta). Collected by powers of theta:
     parts = []
     for j in range(m):
         total = field.zeros(size, size)
