@@ -7,7 +7,8 @@ as a matrix has the type `liehom.scalars.fields.field.MatrixLike`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Protocol, TypeAlias
+from types import EllipsisType
+from typing import Any, Protocol, SupportsIndex, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -27,7 +28,7 @@ ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 ObjectArray: TypeAlias = npt.NDArray[np.object_]
 """A numpy array of Python objects: exact numbers, sympy expressions."""
 
-Key: TypeAlias = Any
+Key: TypeAlias = "SupportsIndex | slice | EllipsisType | npt.NDArray[Any] | Sequence[Any] | tuple[Any, ...] | None"
 """Index of an array: integers, slices, Ellipsis, masks, and tuples of these."""
 
 

@@ -34,7 +34,7 @@ class View(NamedTuple):
     seen: Node
 
 
-def frozen(x: Key) -> Key:
+def frozen(x: Any) -> Any:
     """Copy of an index or option, as the caller may change it later.
 
     Examples
