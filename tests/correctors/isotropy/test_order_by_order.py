@@ -1,4 +1,4 @@
-"""The tower of corrections, the choice among several, and what they do not depend on."""
+"""Corrections order by order: the choice among several, and the choices that the result does not depend on."""
 
 from __future__ import annotations
 
