@@ -25,7 +25,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 DASHES = ("-", "--", "-.", ":")
 GREY, PALE = "#6b6b6b", "#d9d9d9"
 
-STYLE = {
+STYLE: dict[str, object] = {
     "font.size": 10,
     "axes.titlesize": 10,
     "axes.labelsize": 10,

@@ -23,7 +23,7 @@ from liehom.errors import CatalogError
 
 Parsed = tuple[str, tuple[int, ...], str]
 
-EXCEPTIONAL_CHARACTERS = {
+EXCEPTIONAL_CHARACTERS: dict[str, tuple[int, ...]] = {
     "e6": (6, 2, -14, -26, -78),
     "e7": (7, -5, -25, -133),
     "e8": (8, -24, -248),

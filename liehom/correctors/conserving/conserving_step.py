@@ -97,8 +97,8 @@ class ConservingStep(LocalStep):
     ) -> None:
         self.base, self.found, self.n = base, found, n
         self.defects = base.defects
-        self.estimate = getattr(base, "estimate", None)
-        self.estimate_order = getattr(base, "estimate_order", None)
+        self.estimate: Values | None = getattr(base, "estimate", None)
+        self.estimate_order: int | None = getattr(base, "estimate_order", None)
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale

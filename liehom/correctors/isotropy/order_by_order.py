@@ -119,7 +119,7 @@ class OrderRecursion:
             self.active = self.leading > 0
         self.parts: list[Part] = self._split(0.5 if one_exponential else 1.0, weight)
         self.levels = 0 * self.xp.asarray(self.leading)
-        self.residual = self.xp.zeros(self.shape, dtype=m.dtype)
+        self.residual: Values = self.xp.zeros(self.shape, dtype=m.dtype)
         self.defects: list[tuple[int, Values]] = []
 
     @cached_property

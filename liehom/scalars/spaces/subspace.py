@@ -49,7 +49,7 @@ class Subspace:
             raise ShapeError(f"rows of length {matrix.ncols} in a space of dimension {ambient}")
         self.field = field
         self.ambient: int = ambient
-        self.basis = matrix.row_space()
+        self.basis: Matrix = matrix.row_space()
 
     @property
     def dimension(self) -> int:
