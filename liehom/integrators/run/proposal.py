@@ -1,7 +1,11 @@
-"""StepProposal: a step of all trajectories of a run before it is committed, with the positions within it."""
+"""StepProposal: a step of all trajectories of a run before it is committed, with the positions within it.
+
+`logging.getLogger("liehom.integrators")` gets one line at level DEBUG for each step and each failure of a run.
+"""
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -11,6 +15,8 @@ from liehom.correctors.step import LocalStep, apply_factors
 from liehom.homogeneous import Action
 from liehom.integrators.run.clock import size_for
 from liehom.typing import Array, BooleanArray
+
+LOGGER = logging.getLogger("liehom.integrators")
 
 
 @final
@@ -54,6 +60,12 @@ class StepProposal:
     moves: BooleanArray
     last: BooleanArray
     nominal: bool
+
+    def log(self, active: BooleanArray) -> None:
+        """Log times, sizes, and the numbers of active trajectories that accept and reject the step."""
+        t, h = (x[self.moves] for x in (self.t, self.h))
+        ranges = "".join(f", {n} {x.min():.17g} to {x.max():.17g}" for n, x in (("t", t), ("h", h)) if x.size)
+        LOGGER.debug("step: %d accepted, %d rejected%s", self.moves.sum(), (active & ~self.moves).sum(), ranges)
 
     def position(self, s: Array) -> tuple[Array, Array]:
         """(t, y) within the step at the parameter s (...,)."""

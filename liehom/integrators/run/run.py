@@ -55,7 +55,7 @@ from liehom.integrators.run.options import (
     ending_message,
 )
 from liehom.integrators.run.progress import Progress
-from liehom.integrators.run.proposal import StepProposal
+from liehom.integrators.run.proposal import LOGGER, StepProposal
 from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples
 from liehom.integrators.run.solution import Solution
 from liehom.integrators.run.state import RunState
@@ -115,6 +115,7 @@ class Run:
         self.events: Events | None = None if options.events is None else Events(options.events)
         self.fast_path: Callable[[Run], bool] | None = None
         self.keeps: bool = options.t_eval is None or options.dense_output
+        self.logs = LOGGER.isEnabledFor(10)  # DEBUG, asked once: a run without a log pays nothing for it
         self.state: RunState = self._initial_state(start)
 
     def _initial_state(self, start: Array) -> RunState:
@@ -230,6 +231,8 @@ class Run:
             if np.array_equal(active, now.active):  # else the step is tried again without those that failed
                 self._diagnose(error)
             return
+        if self.logs:
+            proposal.log(now.active)
         if not proposal.moves.any():
             return
         now.statistics.take(proposal.local, proposal.h, now.t, now.m, proposal.moves)
@@ -381,6 +384,8 @@ class Run:
     def _fail(self, where: BooleanArray, code: int) -> None:
         where = self.state.active & where
         if where.any():
+            if self.logs:
+                LOGGER.debug("%d trajectories fail with code %d at t = %s", where.sum(), code, self.state.t[where])
             self._stop(where, code)
 
     def _fail_by_psi(self, where: BooleanArray, code: int) -> None:

@@ -147,3 +147,15 @@ def test_numpy_warnings_stay_the_users_own() -> None:
     before = np.geterr()
     lh.integrate(singular(1.0), (0, 1), MANY[0], step=lh.LieTaylor(4), dt=0.1)
     assert np.geterr() == before
+
+
+def test_steps_and_failures_are_logged_at_level_debug(caplog: pytest.LogCaptureFixture) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    options: dict[str, Any] = {"step": lh.RKMK("rk45"), "max_steps": 3}
+    quiet = lh.integrate(field, (0, 50), [0.6, 0.0, 0.8], **options)
+    assert not caplog.records
+    with caplog.at_level("DEBUG", logger="liehom.integrators"):
+        logged = lh.integrate(field, (0, 50), [0.6, 0.0, 0.8], **options)
+    assert np.array_equal(quiet.y, logged.y)
+    assert [record.getMessage().split(",")[0] for record in caplog.records[:1]] == ["step: 1 accepted"]
+    assert "1 trajectories fail" in caplog.records[-1].getMessage()
