@@ -34,6 +34,22 @@ from liehom import errors as errors
 from liehom.compatibility import OldModules
 
 if TYPE_CHECKING:
+    from liehom import algebra as algebra
+    from liehom import atlas as atlas
+    from liehom import catalog as catalog
+    from liehom import correctors as correctors
+    from liehom import fullness as fullness
+    from liehom import homogeneous as homogeneous
+    from liehom import instances as instances
+    from liehom import integrators as integrators
+    from liehom import io as io
+    from liehom import paper as paper
+    from liehom import parallel as parallel
+    from liehom import plotting as plotting
+    from liehom import representations as representations
+    from liehom import scalars as scalars
+    from liehom import series as series
+    from liehom import testing as testing
     from liehom.algebra import Homomorphism as Homomorphism
     from liehom.algebra import LieAlgebra as LieAlgebra
     from liehom.algebra import RealForm as RealForm

@@ -58,6 +58,9 @@ def test_lazy_names_are_those_that_type_checkers_see() -> None:
     tree = ast.parse(Path(liehom.__file__ or "").read_text(encoding="utf-8"))
     guarded = next(node for node in tree.body if isinstance(node, ast.If))
     seen = {a.asname: node.module for node in guarded.body if isinstance(node, ast.ImportFrom) for a in node.names}
+    packages = {name for name, module in seen.items() if module == "liehom"}
+    assert packages == set(liehom._LAYERS)
+    seen = {name: module for name, module in seen.items() if name not in packages}
     assert seen == liehom._HOME
     assert all(getattr(liehom, name).__name__ for name in seen if name not in ("QQ", "RR"))
     assert set(seen) <= set(dir(liehom))
