@@ -42,7 +42,7 @@ def kernels(*, tiny: bool = False) -> dict[str, Any]:
             )  # type: ignore[misc]
             found["nominal" if nominal else "corrected"] = {"C": floor, "compiled": ours, "ratio": ours / floor}
     found["arrays"] = _arrays(by_hand.starts(100 if tiny else 10_000), 2 if tiny else 20, 1 if tiny else 8)
-    found["compile"] = _compile_time(2 if tiny else 6)
+    found["compile"] = compile_time(2 if tiny else 6)
     one = np.ascontiguousarray(by_hand.starts(1).T)
     for name, step in (("Euler", lh.Euler()), ("corrected", lh.Corrected(lh.Euler(), 2))):
         made = by_hand.compiled(step, 1, nominal=False, points=one.T)
@@ -77,7 +77,7 @@ def _arrays(m: Any, count: int, rounds: int) -> dict[str, float]:
     return {"numpy": floor / count, "liehom": taken / count, "ratio": taken / floor}
 
 
-def _compile_time(order: int) -> dict[str, float]:
+def compile_time(order: int) -> dict[str, float]:
     """Seconds for a corrected step on S^4, with an empty cache and then with what it has kept."""
     rng = np.random.default_rng(1)
     a, b = rng.normal(size=(2, 5, 10))

@@ -12,6 +12,7 @@ import random
 import statistics
 import time
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import flint
@@ -19,8 +20,13 @@ import pytest
 
 import liehom as lh
 from liehom.testing import random_unimodular
+from tests import sampling
 
-SMALL = [name for name in lh.catalog.pair_names() if lh.pair(name).algebra.dimension <= 30]
+
+@cache
+def small() -> list[str]:
+    """The catalogue pairs with dim g at most 30."""
+    return [name for name in lh.catalog.pair_names() if lh.pair(name).algebra.dimension <= 30]
 
 
 def text_of(name: str, scrambled: bool) -> str:
@@ -47,8 +53,9 @@ def decided(text: str) -> Any:
 @pytest.mark.parametrize("scrambled", [False, True], ids=["plain", "scrambled"])
 @pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
 def test_catalogue(benchmark: Any, scrambled: bool) -> None:
-    texts = [text_of(name, scrambled) for name in SMALL]
-    claims = [lh.catalog.CLAIMS[name].full for name in SMALL]
+    names = small() if benchmark.enabled or sampling.whole else small()[::5]
+    texts = [text_of(name, scrambled) for name in names]
+    claims = [lh.catalog.CLAIMS[name].full for name in names]
 
     def median() -> tuple[float, list[bool]]:
         seconds, verdicts = [], []
@@ -83,7 +90,7 @@ def test_so40(benchmark: Any) -> None:
 @pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
 def test_construction(benchmark: Any) -> None:
     """Pairs by name: matrices, brackets, subalgebra."""
-    names = SMALL[::4]
+    names = small()[::4]
 
     def median() -> float:
         return statistics.median(seconds(lambda name=name: lh.pair(name)) for name in names)
@@ -94,7 +101,7 @@ def test_construction(benchmark: Any) -> None:
 
 @pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
 def test_isotropy_of_a_point(benchmark: Any) -> None:
-    named = sorted({name.split("/")[0] for name in SMALL if name.startswith(("so(", "sl(", "su(", "sp("))})
+    named = sorted({name.split("/")[0] for name in small() if name.startswith(("so(", "sl(", "su(", "sp("))})
     representations = [lh.catalog.representation(name) for name in named]
     points = [list(range(1, rho.size + 1)) for rho in representations]
 
