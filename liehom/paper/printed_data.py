@@ -76,7 +76,7 @@ FIGURE_5 = _table(
 # section 4, before Figure 3: average errors of xi_b^Eul on ten separatrices over [0, 500]
 SEPARATRIX = {1.0: 9.72e-2, 0.1: 3.89e-2, 0.01: 1.94e-3}
 
-# Figure 6: discretisation order, energy order, relative CPU time, the same within its class, ln CPU = a x + b with
+# Figure 6: discretization order, energy order, relative CPU time, the same within its class, ln CPU = a x + b with
 # x = -ln error
 FIGURE_6: dict[str, tuple[int, int, float, float, float, float]] = {
     "eul_b": (1, 1, 1.0, 1.0, 1.22, -7.58),

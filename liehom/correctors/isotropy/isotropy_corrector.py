@@ -1,6 +1,6 @@
 """The order-n isotropy corrector: Theorem 5 iterated to any order, with its clock (time reparametrization) tau.
 
-Let the step agree with the reparametrised flow F_tau(t) through order n - 1, with w_l the leading coefficient of the
+Let the step agree with the reparametrized flow F_tau(t) through order n - 1, with w_l the leading coefficient of the
 flow.  Then zeta t^(n-l) in the generator, zeta in g_m, and c t^(n-l+1) in tau change the difference at order n by
 
     e rho(zeta) w_l - l c w_l,    which is set equal to    r = [t^n] (F_tau - step),
