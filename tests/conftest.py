@@ -17,7 +17,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    sampling.whole = config.getoption("--slow")
+    sampling.whole = config.getoption("--slow") or config.getoption("benchmark_enable", default=False)
     # deadline: the suite shares two cores, so a slow example says nothing about the code;
     # derandomize: a run is the same run everywhere, and a failure found once is found again
     settings.register_profile(
@@ -33,7 +33,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         return
     slow = {item for item in items if item.get_closest_marker("slow")}
     named = {arg.split("::")[-1] for arg in config.args if "::" in arg}  # a test asked for by name runs whole
-    if not named:
+    if not named and not sampling.whole:
         slow.update(sampling.left_out([item for item in items if item not in slow], sampling.table()))
     if slow:
         config.hook.pytest_deselected(items=[item for item in items if item in slow])
