@@ -12,7 +12,7 @@ import pytest
 HEAD = """# What the tests cost
 
 CPU seconds of the default run (`--costs tests/costs.md` writes this page), fixtures included, modules above {least} s.
-The whole run: {tests} tests, {seconds:.0f} CPU seconds, besides collection.
+This run: {tests} tests, {seconds:.0f} CPU seconds, besides collection.
 
 | module | tests | CPU seconds |
 |---|---:|---:|

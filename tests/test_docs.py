@@ -233,7 +233,7 @@ def test_every_layer_has_an_api_page() -> None:
 
 def public_names() -> list[str]:
     """What `liehom/__init__.py` exports: `__all__`, or every `X as X`."""
-    tree = ast.parse(read("liehom", "__init__.py"))
+    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
     names = {
         alias.name
         for node in ast.walk(tree)

@@ -104,6 +104,8 @@ MAX_FUNCTION_LINES = 60
 def modules() -> dict[str, Path]:
     found = {}
     for path in sorted(PACKAGE.rglob("*.py")):
+        if PACKAGE / "examples" in path.parents:  # a wheel holds the scripts of the demo
+            continue
         parts = path.relative_to(ROOT).with_suffix("").parts
         found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
     return found
