@@ -151,7 +151,7 @@ def prose(roots: list[str]):
 PROSE = {"md", "module", "doc1", "doc", "comment", "help", "table"}
 ALL = PROSE | {"message", "heading"}
 
-# (rule, kinds, pattern, advice); the numbers are those of PROSE.md
+# (rule, kinds, pattern, advice); the numbers are those of CONTRIBUTING.md
 RULES = [
     ("R1-imports", {"module"}, r"(?:^|[.:;] )Imports? (?=[a-z])[^.]*", "delete: the import statements say it"),
     (
