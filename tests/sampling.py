@@ -41,17 +41,28 @@ def spread(count: int, size: int) -> set[int]:
 
 
 def left_out(items: list[I], tables: dict[str, dict[str, Any]]) -> list[I]:
-    """The items that do not run by default."""
+    """The items that do not run by default.
+
+    Raises
+    ------
+    ValueError
+        If a table names a slow case that its module does not have, since the case would run by default in silence.
+    """
     cases: dict[tuple[str, str], list[I]] = defaultdict(list)
+    names: dict[str, set[str]] = defaultdict(set)
     out = []
     for item in items:
         module = item.path.relative_to(ROOT).as_posix() if item.path.is_relative_to(ROOT) else ""
         entry = tables.get(module, {})
+        names[module].add(item.name)
         test = item.name.split("[")[0]
         if item.name in entry.get("slow", ()):
             out.append(item)
         elif test in entry.get("sample", ()):
             cases[module, test].append(item)
+    for module, found in names.items():
+        if missing := set(tables.get(module, {}).get("slow", ())) - found:
+            raise ValueError(f"{FILE.name}: {module} has no case {sorted(missing)}")
     for (module, test), group in cases.items():
         kept = spread(len(group), tables[module]["sample"][test])
         out += [item for i, item in enumerate(group) if i not in kept]

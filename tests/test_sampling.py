@@ -6,6 +6,8 @@ import ast
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 from tests import sampling
 
 
@@ -45,3 +47,9 @@ def test_other_tables_stay_whole() -> None:
 def test_fewer_examples_are_drawn_by_default() -> None:
     assert sampling.examples(400) == (400 if sampling.whole else 100)
     assert sampling.examples(6) >= 5
+
+
+def test_a_slow_case_that_does_not_exist_is_an_error() -> None:
+    cases = [Case("test_table[1]", sampling.ROOT / "tests/a.py")]
+    with pytest.raises(ValueError, match=r"tests/a\.py has no case \['test_table\[0\]'\]"):
+        sampling.left_out(cases, {"tests/a.py": {"slow": ["test_table[0]"]}})
