@@ -6,8 +6,9 @@ Python's import system asks last. For an old name it gives an `OldModule`, whose
 the new place, so that old pickles load. It is asked for no name that exists, and so costs nothing.
 
 Something is looked for by its name: in modules of the same name in the wings of the folder, in the folder, in its
-wings. Changes of three kinds need an entry below: classes with another name (`CLASSES`), attributes with another name
-(`ATTRIBUTES`), and classes whose objects hold something else than in 0.1.0 (`CHANGED`), which are refused.
+wings. Changes of four kinds need an entry below: classes with another name (`CLASSES`), attributes with another name
+(`ATTRIBUTES`), attributes that old pickles lack and the class fills in (`GROWN`), and classes whose objects hold
+something else than in 0.1.0 (`CHANGED`), which are refused.
 """
 
 from __future__ import annotations
@@ -105,6 +106,12 @@ ATTRIBUTES: dict[str, dict[str, str]] = {
     "liehom.algebra.root_system:RootSystem": {"_places": "_index"},
 }
 """Attributes with another name, 'old module:old name' -> {old: new}."""
+
+GROWN: dict[str, tuple[str, ...]] = {
+    "liehom.scalars.floating:FloatMatrix": ("_norm", "_spectral", "error"),
+    "liehom.scalars.floating:RankDecision": ("error",),
+}
+"""Attributes since 0.1.0 that `__setstate__` of the class fills in, 'old module:old name' -> names."""
 
 CHANGED: frozenset[str] = frozenset()
 """Classes whose objects hold something else than in 0.1.0, 'old module:old name'."""

@@ -1,7 +1,10 @@
-"""FloatField and FloatMatrix: float64 with a stated relative tolerance.
+"""FloatField and FloatMatrix: float64 matrices that carry a bound on their uncertainty.
 
-Every rank is the number of singular values above ``rtol * largest``; `FloatMatrix.rank_decision` reports the gap at
-this tolerance. No exact value is guessed from floats.
+A `FloatMatrix` A has an attribute ``error``, a bound on the Frobenius norm of the difference from the matrix that is
+meant. Data have the error ``rtol * ||A||_F``; arithmetic propagates it to first order. A matrix is zero if its norm is
+within its error, and a rank is the number of singular values above the error. Only norms, singular values and
+eigenvalues are compared with errors, so that no answer changes if all data are multiplied by a number or transformed
+orthogonally. No exact value is guessed from floats.
 """
 
 from __future__ import annotations
@@ -14,15 +17,19 @@ from typing import Any, ClassVar, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import FieldError, ShapeError, SingularError
+from liehom.errors import FieldError, ShapeError, SingularError, UndecidedError
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.typing import Array, ScalarLike
+
+ROUNDING = 1e-15  # least error of a computed matrix, relative to its norm
+CLEAR = 100.0  # margin of the kept values above the error with which a rank is beyond doubt
+SMALLEST, LARGEST = 1e-280, 1e280  # norms of results outside these bounds have lost digits
 
 
 @final
 @dataclass(frozen=True, slots=True)
 class RankDecision:
-    """A numerical rank and the singular values on both sides of the tolerance.
+    """A numerical rank and the singular values on both sides of the error.
 
     Attributes
     ----------
@@ -30,26 +37,95 @@ class RankDecision:
     kept, dropped : float
         The smallest singular value that counts and the largest that does not, relative to the largest singular
         value; 0 if no such value exists.
+    error : float
+        The bound on the uncertainty that decided, relative to the largest singular value; 0 for a zero matrix.
     """
 
     rank: int
     kept: float
     dropped: float
+    error: float = 0.0
+
+    def __setstate__(self, state: Sequence[float]) -> None:
+        for name, value in zip(self.__dataclass_fields__, [*state, 0.0], strict=False):  # 0.1.0 wrote no error
+            object.__setattr__(self, name, value)
 
     @property
     def gap(self) -> float:
         """Ratio kept / dropped, a float; infinite if no singular value was dropped."""
         return math.inf if self.dropped == 0 else self.kept / self.dropped
 
+    @property
+    def clear(self) -> bool:
+        """Whether the kept values exceed the error, and so the dropped values, at least a hundredfold."""
+        return self.rank == 0 or self.kept >= CLEAR * self.error
+
+    def require_clear(self, question: str) -> None:
+        """Raise `UndecidedError` unless the rank is clear; `question` is what it decides, for the message."""
+        if not self.clear:
+            raise UndecidedError(
+                f"{question} is not decided by the given numbers: a singular value of relative size {self.kept:.2g} "
+                f"counts and {self.dropped:.2g} does not, with a tolerance of {self.error:.2g}; give more accurate "
+                "numbers, another tolerance lh.FloatField(rtol), or exact numbers by lh.rationalize"
+            )
+
+
+def rank_decision(values: Array, error: float) -> RankDecision:
+    """`RankDecision` for descending singular values that are known up to an absolute error.
+
+    Examples
+    --------
+    >>> rank_decision(np.array([2.0, 1.0, 1e-12]), 1e-9)
+    RankDecision(rank=2, kept=0.5, dropped=5e-13, error=5e-10)
+    """
+    if len(values) == 0 or values[0] == 0:
+        return RankDecision(0, 0.0, 0.0, 0.0)
+    largest = float(values[0])
+    relative = values / largest
+    rank = int((values > error).sum())
+    kept = float(relative[rank - 1]) if rank else 0.0
+    return RankDecision(rank, kept, float(relative[rank]) if rank < len(values) else 0.0, error / largest)
+
+
+def norm_of(array: npt.NDArray[np.floating[Any]]) -> float:
+    """Frobenius norm without overflow or underflow of the squares; `FieldError` if an entry is not finite.
+
+    Examples
+    --------
+    >>> norm_of(np.array([0.0, 4e200])), norm_of(np.zeros(0))
+    (4e+200, 0.0)
+    """
+    size = float(max(array.max(), -array.min())) if array.size else 0.0
+    squares = 1e-140 < size < 1e140
+    norm = float(np.linalg.norm(array)) if squares else size
+    if not squares and 0 < size < math.inf:
+        norm = size * float(np.linalg.norm(array / size))
+    if not math.isfinite(norm):
+        _require_range(norm)
+    return norm
+
+
+def _require_range(norm: float) -> None:
+    """Raise `FieldError` if the norm of a result is so large or small that digits are lost."""
+    if not SMALLEST < norm < LARGEST:
+        raise FieldError(
+            f"a matrix of norm {norm:.1e} leaves the range of float64; multiply the data by a power of two, or use QQ"
+        )
+
 
 @final
 class FloatField(Field["FloatMatrix"]):
-    """The field float64 with a relative tolerance for ranks.
+    """The field float64 with the relative accuracy of data.
 
     Parameters
     ----------
     rtol : float, optional
-        Singular values below ``rtol`` times the largest count as zero (default 1e-9).
+        The matrices that are given have an uncertainty of ``rtol`` times their Frobenius norm (default 1e-9).
+
+    Notes
+    -----
+    A single number carries no error: `convert` takes it as it is, `sign` is its sign, and only 0.0 is zero. Whether
+    something vanishes is a question to a `FloatMatrix`, which knows the scale of the data that it comes from.
 
     Examples
     --------
@@ -107,6 +183,13 @@ class FloatField(Field["FloatMatrix"]):
         return float(value)
 
     def matrix(self, rows: MatrixLike, shape: tuple[int, int] | None = None) -> FloatMatrix:
+        if isinstance(rows, np.ndarray) and rows.dtype == np.float64 and rows.ndim == 2:
+            array: Array = rows.copy()
+            if shape is not None and array.shape != shape:
+                raise ShapeError(f"expected {shape[0]} rows of length {shape[1]}, got an array of shape {array.shape}")
+            if not np.isfinite(array).all():
+                raise FieldError(f"{array[~np.isfinite(array)][0]!r} is not finite")
+            return FloatMatrix(self, array)
         table = [[self.convert(x) for x in row] for row in rows_of(rows)]
         nrows, ncols = shape if shape is not None else (len(table), len(table[0]) if table else 0)
         if len(table) != nrows or any(len(row) != ncols for row in table):
@@ -121,10 +204,11 @@ class FloatField(Field["FloatMatrix"]):
         return FloatMatrix(self, np.zeros((nrows, ncols)))
 
     def identity(self, n: int) -> FloatMatrix:
-        return FloatMatrix(self, np.eye(n))
+        return FloatMatrix(self, np.eye(n), 0.0, spectral=1.0)
 
     def stack_rows(self, blocks: Sequence[FloatMatrix], ncols: int) -> FloatMatrix:
-        return FloatMatrix(self, np.vstack([np.zeros((0, ncols)), *[b.array for b in blocks]]))
+        array = np.vstack([np.zeros((0, ncols)), *[b.array for b in blocks]])
+        return FloatMatrix(self, array, math.hypot(*(b.error for b in blocks)))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, FloatField) and self.rtol == other.rtol
@@ -135,20 +219,52 @@ class FloatField(Field["FloatMatrix"]):
 
 @final
 class FloatMatrix(Matrix):
-    """A float64 matrix with the tolerance of its field, constructed by ``FloatField().matrix(rows)``.
+    """A float64 matrix with a bound on its uncertainty, constructed by ``FloatField().matrix(rows)``.
+
+    Parameters
+    ----------
+    field : FloatField
+    array : ndarray of float64, shape (m, n)
+    error : float, optional
+        Bound on the Frobenius norm of the uncertainty. By default the matrix is data, with the error
+        ``field.rtol * ||array||_F``. It is never below ``1e-15 * ||array||_F``, because of rounding.
+    spectral : float, optional
+        Bound on the largest singular value, if a better one than the Frobenius norm is known.
+
+    Notes
+    -----
+    Errors are propagated to first order: those of a sum add; A B has ``||A|| e_B + ||B|| e_A``; an inverse
+    ``e / s^2`` with the smallest singular value s; a null space or row space, with orthonormal rows, ``e / s`` with
+    the smallest singular value s that counts; A X = B has ``(e_B + e_A ||X||) / s``. A selection of rows or columns
+    has the error of the whole.
 
     Examples
     --------
     >>> A = FloatField().matrix([[3.0, 0.0], [0.0, 1e-13]])
-    >>> A.rank_decision().rank
-    1
+    >>> A.rank(), f"{A.error:.0e}", (A - A).is_zero(), A.is_zero()
+    (1, '3e-09', True, False)
     """
 
-    __slots__ = ("_field", "array")
+    error: float
 
-    def __init__(self, field: FloatField, array: Array) -> None:
+    __slots__ = ("_field", "_norm", "_spectral", "array", "error")
+
+    def __init__(
+        self, field: FloatField, array: Array, error: float | None = None, *, spectral: float | None = None
+    ) -> None:
         self._field = field
         self.array: Array = array
+        self._norm: float = norm_of(array)
+        self._spectral: float = self._norm if spectral is None else min(spectral, self._norm)
+        self.error = max(field.rtol * self._norm if error is None else error, ROUNDING * self._norm)
+        if not math.isfinite(self.error):
+            raise FieldError("the uncertainty leaves the range of float64; multiply the data by a power of two")
+
+    def __setstate__(self, state: tuple[None, dict[str, Any]]) -> None:
+        slots = state[1]
+        made = FloatMatrix(slots["_field"], slots["array"], slots.get("error"), spectral=slots.get("_spectral"))
+        for name in FloatMatrix.__slots__:
+            setattr(self, name, getattr(made, name))
 
     @property
     def field(self) -> FloatField:
@@ -157,6 +273,11 @@ class FloatMatrix(Matrix):
     @property
     def shape(self) -> tuple[int, int]:
         return self.array.shape[0], self.array.shape[1]
+
+    @property
+    def norm(self) -> float:
+        """Frobenius norm, a float."""
+        return self._norm
 
     def __getitem__(self, index: tuple[int, int]) -> float:
         return float(self.array[index])
@@ -172,16 +293,17 @@ class FloatMatrix(Matrix):
 
     def select(self, rows: Sequence[int] | None = None, columns: Sequence[int] | None = None) -> FloatMatrix:
         array = self.array if rows is None else self.array[list(rows), :]
-        return self._made(array if columns is None else array[:, list(columns)])
+        array = array if columns is None else array[:, list(columns)]
+        return self._made(array, self.error, self._spectral)
 
     def reshape(self, nrows: int, ncols: int) -> FloatMatrix:
-        return self._made(self.array.reshape(nrows, ncols))
+        return self._made(self.array.reshape(nrows, ncols), self.error)
 
     def split_rows(self, nrows: int, ncols: int) -> list[FloatMatrix]:
-        return [self._made(row.reshape(nrows, ncols)) for row in self.array]
+        return [self._made(row.reshape(nrows, ncols), self.error) for row in self.array]
 
-    def _made(self, array: npt.NDArray[np.floating[Any]]) -> FloatMatrix:
-        return FloatMatrix(self._field, np.asarray(array, dtype=np.float64))
+    def _made(self, array: npt.NDArray[np.floating[Any]], error: float, spectral: float | None = None) -> FloatMatrix:
+        return FloatMatrix(self._field, np.asarray(array, dtype=np.float64), error, spectral=spectral)
 
     def __repr__(self) -> str:
         return f"<matrix {self.nrows} x {self.ncols} over float64>"
@@ -196,75 +318,88 @@ class FloatMatrix(Matrix):
 
     @property
     def T(self) -> FloatMatrix:
-        return self._made(self.array.T)
+        return self._made(self.array.T, self.error, self._spectral)
 
     def __add__(self, other: FloatMatrix) -> FloatMatrix:
-        return self._made(self.array + other.array)
+        _require_range(max(self._norm + other._norm, SMALLEST * 2))
+        return self._made(self.array + other.array, self.error + other.error)
 
     def __sub__(self, other: FloatMatrix) -> FloatMatrix:
-        return self._made(self.array - other.array)
+        return self + -other
 
     def __neg__(self) -> FloatMatrix:
-        return self._made(-self.array)
+        return self._made(-self.array, self.error, self._spectral)
 
     def __matmul__(self, other: FloatMatrix) -> FloatMatrix:
         if self.ncols != other.nrows:
             raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not multiply")
-        return self._made(self.array @ other.array)
+        _require_range(self._norm * other._norm if self._norm and other._norm else 1.0)
+        error = self._spectral * other.error + other._spectral * self.error
+        return self._made(self.array @ other.array, error, self._spectral * other._spectral)
 
     def scale(self, factor: ScalarLike) -> FloatMatrix:
-        return self._made(self.array * self._field.convert(factor))
+        number = self._field.convert(factor)
+        _require_range(self._norm * abs(number) if self._norm and number else 1.0)
+        return self._made(self.array * number, self.error * abs(number), self._spectral * abs(number))
 
     def is_zero(self) -> bool:
-        return self.array.size == 0 or float(np.abs(self.array).max()) <= self._field.rtol
+        return self._norm <= self.error
 
     def trace(self) -> float:
         return float(np.trace(self.array))
 
+    # -- singular values -----------------------------------------------------------------------------------
     def rank_decision(self) -> RankDecision:
-        """`RankDecision`: the rank and the singular values on both sides of the tolerance."""
-        if self.array.size == 0:
-            return RankDecision(0, 0.0, 0.0)
-        values = np.linalg.svd(self.array, compute_uv=False)
-        if values[0] == 0:
-            return RankDecision(0, 0.0, 0.0)
-        relative = values / values[0]
-        rank = int((relative > self._field.rtol).sum())
-        return RankDecision(rank, float(relative[rank - 1]), float(relative[rank]) if rank < len(values) else 0.0)
+        """`RankDecision`: the rank and the singular values on both sides of the error."""
+        values: Array = np.linalg.svd(self.array, compute_uv=False) if self.array.size else np.zeros(0)
+        return rank_decision(values, self.error)
 
     def rank(self) -> int:
         return self.rank_decision().rank
 
+    def _decomposed(self) -> tuple[Array, Array, Array, int]:
+        """U, s, V and the rank r of the singular value decomposition U diag(s) V; all rows of V are given."""
+        m, n = self.shape
+        if not self.array.size:
+            return np.zeros((m, 0)), np.zeros(0), np.eye(n), 0
+        left, values, right = np.linalg.svd(self.array, full_matrices=m < n)
+        return left, values, right, int((values > self.error).sum())
+
     def row_space(self) -> FloatMatrix:
-        if self.array.size == 0:
-            return self._made(np.zeros((0, self.ncols)))
-        right = np.linalg.svd(self.array)[2]
-        return self._made(right[: self.rank()])
+        _, values, right, rank = self._decomposed()
+        return self._made(right[:rank], self.error / values[rank - 1] if rank else 0.0, 1.0)
 
     def null_space(self) -> FloatMatrix:
-        if self.array.size == 0:
-            return self._made(np.eye(self.ncols))
-        right = np.linalg.svd(self.array)[2]
-        return self._made(right[self.rank() :])
+        _, values, right, rank = self._decomposed()
+        return self._made(right[rank:], self.error / values[rank - 1] if rank else 0.0, 1.0)
 
     def solve(self, right: FloatMatrix) -> FloatMatrix:
-        solution, *_ = np.linalg.lstsq(self.array, right.array, rcond=self._field.rtol)
-        size = float(np.abs(right.array).max(initial=0.0)) + float(np.abs(self.array).max(initial=0.0))
-        if float(np.abs(self.array @ solution - right.array).max(initial=0.0)) > 1e3 * self._field.rtol * max(
-            size, 1e-300
-        ):
+        if right.nrows != self.nrows:
+            raise ShapeError(f"the right-hand side has {right.nrows} rows, the matrix {self.nrows}")
+        left, values, rows, rank = self._decomposed()
+        solution = rows[:rank].T @ ((left[:, :rank].T @ right.array) / values[:rank, None])
+        error = right.error + self.error * norm_of(solution)
+        if norm_of(self.array @ solution - right.array) > error:
             raise SingularError("the linear system has no solution within the tolerance")
-        return self._made(solution)
+        return self._made(solution, error / values[rank - 1] if rank else 0.0)
 
     def inverse(self) -> FloatMatrix:
-        if self.rank() < self.nrows:
+        n = self.nrows
+        if n != self.ncols:
+            raise ShapeError(f"a matrix of shape {self.shape} has no inverse")
+        if not n:
+            return self
+        smallest = float(np.linalg.svd(self.array, compute_uv=False)[-1])
+        if smallest <= self.error:
             raise SingularError("the matrix is singular within the tolerance")
-        return self._made(np.linalg.inv(self.array))
+        # LAPACK's elimination is accurate for rows of very different lengths, the singular vectors are not
+        return self._made(np.linalg.inv(self.array), self.error / smallest / smallest, 1 / smallest)
 
     def signature(self) -> tuple[int, int, int]:
-        values = np.linalg.eigvalsh((self.array + self.array.T) / 2)
-        bound = self._field.rtol * float(np.abs(values).max(initial=0.0))
-        positive, negative = int((values > bound).sum()), int((values < -bound).sum())
+        if norm_of(self.array - self.array.T) > 2 * self.error:
+            raise FieldError("only a symmetric matrix has a signature; this matrix is not symmetric")
+        values = np.linalg.eigvalsh((self.array + self.array.T) / 2) if self.array.size else np.zeros(0)
+        positive, negative = int((values > self.error).sum()), int((values < -self.error).sum())
         return positive, negative, len(values) - positive - negative
 
 
