@@ -10,7 +10,7 @@ module that implements it, in this wing or in one above, by an import inside the
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, final, overload
+from typing import TYPE_CHECKING, Any, TypeVar, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from liehom.algebra.core.jacobi import prove_jacobi
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
 from liehom.errors import InputError, ShapeError
+from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
@@ -41,7 +42,7 @@ SHOWN_TERMS = 8
 
 
 @final
-class LieAlgebra:
+class LieAlgebra(Immutable):
     """A real Lie algebra in a basis e_0, ..., e_{n-1}.
 
     Parameters
@@ -75,6 +76,9 @@ class LieAlgebra:
     -----
     A Lie algebra is a vector space with a bilinear bracket that is antisymmetric and satisfies
     [[x, y], z] + [[y, z], x] + [[z, x], y] = 0.
+
+    Two algebras are equal (``==``), and hash equal, if they have the same field and the same structure constants:
+    names are not compared, and another basis makes another algebra (`is_isomorphic` compares real forms).
 
     Examples
     --------
@@ -1088,7 +1092,8 @@ class LieAlgebra:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, LieAlgebra) and self._constants == other._constants
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash(self._constants)
 
     def __repr__(self) -> str:
         title = f"{self.name} " if self.name else ""

@@ -16,6 +16,7 @@ from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure.closure import Completion, lie_closure, square_matrices
 from liehom.algebra.closure.complex_matrices import as_real_matrices
 from liehom.errors import FieldError, InputError, RepresentationError, ShapeError
+from liehom.immutable import Immutable
 from liehom.representations.core.coordinates import Coordinates, complex_matrix, real_point, require_coordinates
 from liehom.representations.core.pair import Pair
 from liehom.representations.invariants.bracket_proof import failing_pair
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 
 
 @final
-class Representation:
+class Representation(Immutable):
     """A representation of a Lie algebra on K^N.
 
     Parameters
@@ -73,6 +74,11 @@ class Representation:
         If the number of matrices or their shapes do not fit.
     RepresentationError
         If the matrices do not respect the bracket; names i and j.
+
+    Notes
+    -----
+    Two representations are equal (``==``), and hash equal, if their algebras and matrices are; names, `given` and
+    `appended` are not compared.
 
     Examples
     --------
@@ -1091,6 +1097,9 @@ class Representation:
         if not isinstance(other, Representation):
             return NotImplemented
         return self.algebra == other.algebra and self.matrices == other.matrices and self.size == other.size
+
+    def __hash__(self) -> int:
+        return hash((self.algebra, self.size, self.matrices))
 
     def __repr__(self) -> str:
         title = f"{self.name!r} " if self.name else ""
