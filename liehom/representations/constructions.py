@@ -6,16 +6,19 @@ Constructions from a representation (dual, sums, products, powers, restriction) 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra import matrices as families
-from liehom.algebra.closure.closure import lie_closure
+from liehom.algebra.closure.closure import lie_closure, square_matrices
+from liehom.algebra.closure.complex_matrices import as_real_matrices
 from liehom.algebra.constructions.simple import simple
 from liehom.algebra.matrices.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
-from liehom.errors import InputError, RepresentationError, ShapeError
+from liehom.errors import DependentRowsError, InputError, NotASubalgebraError, RepresentationError, ShapeError
 from liehom.representations.core.coordinates import Coordinates
+from liehom.representations.core.elements import rows_of_matrices
+from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.highest_weight import highest_weight_module
 from liehom.representations.highest_weight.real_form_module import real_module
@@ -282,8 +285,61 @@ def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Represen
     if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.complex_size != k:
         raise InputError(f"conjugation of Hermitian {k} x {k} matrices needs su({k}) by skew-Hermitian matrices")
     made = rho.on_hermitian_matrices()
-    made.name = f"conjugation of Hermitian {k} x {k} matrices"
-    return made
+    title = f"conjugation of Hermitian {k} x {k} matrices"
+    # the same matrices with a name
+    return Representation(
+        rho.algebra, made.matrices, size=made.size, name=title, coordinates=made.coordinates, check=False
+    )
+
+
+def pair_from_matrices(
+    g_matrices: Iterable[MatrixLike],
+    h_matrices: Iterable[MatrixLike],
+    *,
+    field: Field | None = None,
+    hermitian: bool = False,
+    name: str | None = None,
+) -> Pair:
+    """The pair (g, h) of the real Lie algebras that two lists of real or complex matrices generate.
+
+    Parameters
+    ----------
+    g_matrices : sequence of (n, n) array_like
+        Generators of g, see `Representation.from_matrices`.
+    h_matrices : sequence of (n, n) array_like
+        Generators of h, in g. They are the basis of h if they are independent and span a Lie algebra.
+    field : Field, optional
+        By default the smallest real field that contains the entries of both lists, or their parts.
+    hermitian : bool
+        All matrices are Hermitian: each is multiplied by i.
+    name : str, optional
+        A name to print.
+
+    Raises
+    ------
+    NotInSpanError
+        If a matrix of h is not in g; `index` is its index in `h_matrices`.
+    ShapeError, InputError
+        See `Representation.from_matrices`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pauli = lh.pauli_matrices()
+    >>> pair = lh.pair_from_matrices(pauli[:2], [pauli[2]], hermitian=True)
+    >>> pair, lh.decide_fullness(pair).full
+    (<pair of dimensions 3/1 over QQ>, True)
+    """
+    first, second = list(g_matrices), list(h_matrices)
+    together, _ = as_real_matrices([*first, *second], field, hermitian=hermitian)
+    made = square_matrices(together, field)
+    rho = Representation.from_matrices(made[: len(first)])
+    rows = rows_of_matrices(rho, made[len(first) :], of=" of h")
+    try:
+        subalgebra = rho.algebra.subalgebra(rows)
+    except (DependentRowsError, NotASubalgebraError):
+        subalgebra = rho.algebra.subalgebra_generated_by(rows)
+    return Pair(rho.algebra, subalgebra, name=name)
 
 
 def symmetric_to_vector(matrix: MatrixLike) -> list[Any]:

@@ -72,8 +72,20 @@ def coordinates_of(
     return found
 
 
-def rows_of_matrices(rho: Representation, matrices: Iterable[MatrixLike], *, hermitian: bool = False) -> Matrix:
+def rows_of_matrices(
+    rho: Representation, matrices: Iterable[MatrixLike], *, hermitian: bool = False, of: str = ""
+) -> Matrix:
     """The matrix (k, dim g) with the coefficients of k elements of g, given by their matrices, as rows.
+
+    Parameters
+    ----------
+    rho : Representation
+        Faithful.
+    matrices : sequence of (N, N) array_like
+    hermitian : bool
+        Multiply the matrices by i, after a check that they are Hermitian.
+    of : str, optional
+        The list to which the matrices belong, such as " of h", for messages.
 
     Raises
     ------
@@ -89,7 +101,9 @@ def rows_of_matrices(rho: Representation, matrices: Iterable[MatrixLike], *, her
     """
     if isinstance(matrices, str) or not hasattr(matrices, "__iter__"):
         raise InputError(f"a list of square matrices was expected, got {matrices!r}")
-    rows = [coordinates_of(rho, a, hermitian=hermitian, what=f"matrix {k}", index=k) for k, a in enumerate(matrices)]
+    rows = [
+        coordinates_of(rho, a, hermitian=hermitian, what=f"matrix {k}{of}", index=k) for k, a in enumerate(matrices)
+    ]
     made: Matrix = rho.field.stack_rows(rows, rho.algebra.dimension)
     return made
 
