@@ -47,7 +47,7 @@ class Entry:
 
     @property
     def full(self) -> bool | None:
-        """Whether the pair is full; None if there is no verdict."""
+        """Whether the pair is full; None if there is no verdict or a numerical one that leaves it undecided."""
         return self.verdict.get("full")
 
     @property
@@ -93,7 +93,7 @@ class Entry:
 
     def _answer(self) -> str:
         if self.full is None:
-            return "no verdict"
+            return "undecided (numerical)" if self.verdict else "no verdict"
         return ("full" if self.full else "not full") + ("" if self.proved else " (numerical)")
 
 
@@ -195,8 +195,8 @@ class Atlas:
 
 
 def _cells_of(entry: Entry) -> list[str]:
-    if entry.full is None:
+    if not entry.verdict:
         return [entry.name, "", "", "?", f"none: {entry.failure}"]
-    answer = "yes" if entry.full else "no"
+    answer = {True: "yes", False: "no", None: "?"}[entry.full]
     kind = entry.verdict["certificate"]["kind"] if entry.proved else "none, numerical"
     return [entry.name, str(entry.dimension), str(entry.subalgebra_dimension), answer, kind]

@@ -56,7 +56,7 @@ def fullness(
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Decide whether a pair is full, and why.  Exit code 0: full, 1: not full, 3: numerical only."""
+    """Decide whether a pair is full, and why.  Exit code 0: full, 1: not full, 3: numerical or undecided."""
     run(lambda: _fullness(pair, certificate, json))
 
 
@@ -80,11 +80,10 @@ def _fullness(text: str, out: str | None, as_json: bool) -> int:
     if as_json:
         show_json({**verdict.to_json(), "pair": _facts(text, pair)})
         return code
-    answer = ("full" if verdict.full else "not full") + ("" if proved else " (numerical, not proved)")
     rows = [("pair", _described(text, pair)), *_evidence(verdict)]
     if out is not None:
         rows.append(("written to", out))
-    show_answer(f"{answer}: {verdict.reason}", rows, code)
+    show_answer(str(verdict), rows, code)
     return code
 
 
@@ -103,8 +102,10 @@ def _evidence(verdict: Verdict) -> list[tuple[str, str]]:
     elif data.get("eta_numerical"):
         rows.append(("eta, numerically", short_vector([f"{x:.6g}" for x in data["eta_numerical"]])))
     if verdict.certificate is None:
-        rows.append(("least singular value", f"{data['smallest_singular_value']:.3g}"))
-        rows.append(("gap", f"{data['gap']:.3g} (in units of the tolerance)"))
+        rows.append(
+            ("least singular value", f"{data['smallest_singular_value']:.3g}, tolerance {data['tolerance']:.3g}")
+        )
+        rows.append(("gap", f"{data['gap']:.3g}"))
     else:
         rows.append(("certificate", f"{verdict.certificate.kind}, verified by the independent checker"))
     return rows

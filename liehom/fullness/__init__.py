@@ -16,4 +16,5 @@ from liehom.fullness.verdict import Full as Full
 from liehom.fullness.verdict import NotFull as NotFull
 from liehom.fullness.verdict import NumericallyFull as NumericallyFull
 from liehom.fullness.verdict import NumericallyNotFull as NumericallyNotFull
+from liehom.fullness.verdict import NumericallyUndecided as NumericallyUndecided
 from liehom.fullness.verdict import Verdict as Verdict

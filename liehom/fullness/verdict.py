@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias, final
 
-from liehom.errors import CertificateError, UndecidedError
+from liehom.errors import UndecidedError
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.checker.verify import verify_certificate
 from liehom.fullness.failure import FailureReport, failure_report
@@ -45,7 +45,7 @@ class Full:
 
     def verify(self) -> bool:
         """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
-        return _verified(self.pair, self.certificate, self.full)
+        return verify_certificate(self.pair, self.certificate)
 
     def to_json(self) -> dict[str, Any]:
         """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
@@ -93,10 +93,10 @@ class NotFull:
     pair: Pair
     certificate: Certificate
     reason: str
-    eta: list[Scalar] | None = field(default=None, hash=False)
+    eta: list[Scalar] | None = None
     eta_field: Field | None = None
     rank: int | None = None
-    eta_numerical: list[float] | None = field(default=None, hash=False)
+    eta_numerical: list[float] | None = None
 
     @property
     def full(self) -> Literal[False]:
@@ -121,7 +121,7 @@ class NotFull:
 
     def verify(self) -> bool:
         """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
-        return _verified(self.pair, self.certificate, self.full)
+        return verify_certificate(self.pair, self.certificate)
 
     def to_json(self) -> dict[str, Any]:
         """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
@@ -147,18 +147,23 @@ class NotFull:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class _Numerical:
-    """Fields and methods of both numerical verdicts; each states its `full`."""
+    """Fields and methods of the numerical verdicts; each states its `full` and its `tolerance`."""
 
     pair: Pair
     reason: str
     smallest: float
     gap: float
-    eta: list[float] = field(default_factory=list, hash=False)
+    eta: list[float] = field(default_factory=list)
 
     @property
-    def full(self) -> bool:
-        """Whether the pair is numerically full."""
+    def full(self) -> bool | None:
+        """Whether the pair is numerically full; None if that is undecided."""
         raise NotImplementedError
+
+    @property
+    def tolerance(self) -> float:
+        """Error of sigma_d, a float: `gap` compares `smallest` with it."""
+        return self.smallest / self.gap
 
     @property
     def certificate(self) -> None:
@@ -170,10 +175,14 @@ class _Numerical:
         raise UndecidedError("a numerical verdict has no certificate; give exact numbers to have a proof")
 
     def __str__(self) -> str:
-        answer = "full" if self.full else "not full"
-        return f"{answer} (numerical, not proved): {self.reason}"
+        return f"{ANSWERS[self.full]} (numerical, not proved): {self.reason}"
 
     def __bool__(self) -> bool:
+        if self.full is None:
+            raise UndecidedError(
+                f"whether the pair is full is undecided: {self.reason}; exact data are always decided, see "
+                "liehom.rationalize"
+            )
         raise UndecidedError("a numerical verdict is not a proof and has no truth value; read its attribute `full`")
 
     def to_json(self) -> dict[str, Any]:
@@ -183,31 +192,39 @@ class _Numerical:
             "proved": False,
             "reason": self.reason,
             "smallest_singular_value": self.smallest,
+            "tolerance": self.tolerance,
             "gap": self.gap,
             "eta_numerical": self.eta,
             "certificate": None,
         }
 
 
+ANSWERS: dict[bool | None, str] = {True: "full", False: "not full", None: "undecided"}
+"""Words for the attribute `full` of a verdict."""
+
+
 @final
 class NumericallyFull(_Numerical):
-    """Numerically full: the smallest singular value of [rho(h) x, x] found on the sphere is above the tolerance.
+    """Numerically full: every pair within the error of the data is full.
 
     Attributes
     ----------
     smallest : float
-        Smallest ratio sigma_d / sigma_1 that was found, over many initial points.
+        Smallest singular value sigma_d of the matrix with columns E_a x and x / sqrt(d), the same at every unit vector
+        x. The E_a are an orthonormal basis of the traceless rho(h), in an inner product that the evidence names.
     gap : float
-        `smallest` divided by the tolerance of the field.
+        `smallest` divided by `tolerance`, at least 100.
+    tolerance : float
+        Error of `smallest`, propagated from the error of the data.
     eta : list of float
-        Element of g, in its basis, at which `smallest` was found.
+        Element of g, in its basis, at which `smallest` was computed.
 
     Examples
     --------
     >>> import liehom as lh
     >>> verdict = lh.decide_fullness(lh.Pair(lh.so(3).over(lh.RR), [[0.0, 0.0, 1.0]]))
     >>> print(verdict)
-    full (numerical, not proved): min sigma_d / sigma_1 >= 1 found in 62 starts, tolerance 3e-05
+    full (numerical, not proved): sigma_d = 0.707 at every eta, ... times its error ..., since a compact group ...
     """
 
     __slots__ = ()
@@ -223,12 +240,19 @@ class NumericallyFull(_Numerical):
 
 @final
 class NumericallyNotFull(_Numerical):
-    """Numerically not full: the smallest singular value at some eta is below the tolerance.
+    """Numerically not full: the smallest singular value at some eta is zero up to rounding.
 
     Attributes
     ----------
-    smallest, gap, eta
-        As in `NumericallyFull`, except that `gap` is the tolerance divided by `smallest`.
+    smallest : float
+        Smallest singular value sigma_d, relative to the norm of the data, of the matrix with columns A_i x and x, where
+        the A_i are the matrices of the isotropy.
+    gap : float
+        `tolerance` divided by `smallest`.
+    tolerance : float
+        Error of the data, relative to their norm. Other data within this error can be full.
+    eta : list of float
+        Element of g, in its basis, at which `smallest` was found.
 
     Examples
     --------
@@ -247,19 +271,51 @@ class NumericallyNotFull(_Numerical):
         """Whether the pair is numerically full: False."""
         return False
 
+    @property
+    def tolerance(self) -> float:
+        """Error of the data relative to their norm, a float."""
+        return self.gap * max(self.smallest, 1e-300)
+
     def __repr__(self) -> str:
         return f"<numerically not full: {_title(self.pair)}, least singular value {self.smallest:.3g}>"
 
 
-Verdict: TypeAlias = Full | NotFull | NumericallyFull | NumericallyNotFull
+@final
+class NumericallyUndecided(_Numerical):
+    """Numerically undecided: the data are too inexact, or nothing was found that shows 'full' or 'not full'.
+
+    Attributes
+    ----------
+    smallest, gap, tolerance, eta
+        As in `NumericallyFull` if a transitive group was found, so that `gap` is less than 100. Else `smallest` is the
+        least singular value that was found, as in `NumericallyNotFull`, and `gap` is `smallest` divided by `tolerance`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> nearly = lh.LieAlgebra({(0, 1): {2: 1.0}, (0, 2): {1: -1e-8}}, dimension=3)
+    >>> verdict = lh.decide_fullness(lh.Pair(nearly, [[1, 0, 0]]))
+    >>> verdict.full is None
+    True
+    >>> bool(verdict)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.UndecidedError: whether the pair is full is undecided: sigma_d = 0.707 at every eta, but its error ...
+    """
+
+    __slots__ = ()
+
+    @property
+    def full(self) -> None:
+        """Whether the pair is numerically full: None, since that is undecided."""
+        return
+
+    def __repr__(self) -> str:
+        return f"<numerically undecided: {_title(self.pair)}, least singular value {self.smallest:.3g}>"
+
+
+Verdict: TypeAlias = Full | NotFull | NumericallyFull | NumericallyNotFull | NumericallyUndecided
 """A result of `decide_fullness`."""
-
-
-def _verified(pair: Pair, certificate: Certificate, full: bool) -> bool:
-    if certificate.full != full:
-        other = "full" if certificate.full else "not full"
-        raise CertificateError("kind", f"a certificate of kind {certificate.kind!r} proves that a pair is {other}")
-    return verify_certificate(pair, certificate)
 
 
 def _title(pair: Pair) -> str:

@@ -60,6 +60,19 @@ def test_a_pickled_object_answers_as_a_new_one(name: str) -> None:
     assert repr(ask(pickle.loads(pickle.dumps(found)))) == repr(answer)
 
 
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("numerically full", "full (numerical, not proved): min sigma_d / sigma_1 >= 1 found in 62 starts"),
+        ("numerically not full", "not full (numerical, not proved): an eta with sigma_d / sigma_1 = "),
+    ],
+)
+def test_a_pickled_numerical_verdict_says_what_it_rested_on(name: str, sentence: str) -> None:
+    verdict = pickle.loads(PICKLES[name])
+    assert str(verdict).startswith(sentence)
+    assert verdict.to_json()["tolerance"] == pytest.approx(1e-9**0.5)
+
+
 def test_nearly_all_objects_are_read() -> None:
     """A control: refusing everything is no compatibility."""
     refused = [name for name, data in PICKLES.items() if is_refused(data)]

@@ -12,7 +12,8 @@ import pytest
 import liehom as lh
 from liehom.algebra.closure.closure import lie_closure
 from liehom.catalog import CLAIMS
-from liehom.fullness.numerical import least_singular_value, orthonormal_action, relative_singular_value
+from liehom.fullness.least_singular_value import least_singular_value
+from liehom.fullness.self_adjoint import orthonormal_span
 from liehom.scalars import QQ
 from tests.fullness.support import affine, in_basis, over, proved, random_invertible, turned
 
@@ -75,6 +76,21 @@ def random_pair(rng: random.Random) -> lh.Pair:
     if kind == 3:
         return in_basis(pair, random_invertible(QQ, n, lambda: small(rng)))
     return turned(pair, random_invertible(QQ, d, lambda: rng.randint(-3, 3))) if d else pair
+
+
+def orthonormal_action(matrices: list[Any], d: int) -> Any:
+    """Orthonormal basis (m, d, d), in the Frobenius product, of the span of the matrices and the identity."""
+    scaled = [a / (np.linalg.norm(a) or 1.0) for a in matrices]
+    return orthonormal_span(np.array([np.eye(d) / d**0.5, *scaled]), 1e-9)[1]
+
+
+def relative_singular_value(basis: Any, x: Any) -> float:
+    """Ratio sigma_d / sigma_1 of the matrix with columns A_a x."""
+    columns = (basis @ x).T
+    if columns.shape[1] < columns.shape[0]:
+        return 0.0
+    values = np.linalg.svd(columns, compute_uv=False)
+    return float(values[-1] / values[0]) if values[0] else 0.0
 
 
 def agree(pair: lh.Pair) -> str:

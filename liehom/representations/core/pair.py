@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
-from liehom.immutable import Immutable
 from liehom.scalars import Field, Matrix
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @final
-class Pair(Immutable):
+class Pair:
     """A pair (g, h) of a Lie algebra and a subalgebra.
 
     Parameters
@@ -36,8 +35,6 @@ class Pair(Immutable):
     -----
     The tangent space of G/H at the base point is V = g/h, on which h acts by the isotropy representation
     rho(z) (x + h) = [z, x] + h.
-
-    Two pairs are equal (``==``), and hash equal, if their algebras and subalgebras are; names are not compared.
 
     Examples
     --------
@@ -118,9 +115,6 @@ class Pair(Immutable):
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Pair) and self.algebra == other.algebra and self.subalgebra == other.subalgebra
-
-    def __hash__(self) -> int:
-        return hash(self.subalgebra)
 
     def __repr__(self) -> str:
         if self.name:
