@@ -66,16 +66,19 @@ if TYPE_CHECKING:
     from liehom.algebra import central_extension as central_extension
     from liehom.algebra import chevalley as chevalley
     from liehom.algebra import conformal as conformal
+    from liehom.algebra import dirac_matrices as dirac_matrices
     from liehom.algebra import direct_sum as direct_sum
     from liehom.algebra import dynkin_diagram as dynkin_diagram
     from liehom.algebra import euclidean as euclidean
     from liehom.algebra import filiform as filiform
     from liehom.algebra import free_nilpotent as free_nilpotent
     from liehom.algebra import galilei as galilei
+    from liehom.algebra import gell_mann_matrices as gell_mann_matrices
     from liehom.algebra import gl as gl
     from liehom.algebra import heisenberg as heisenberg
     from liehom.algebra import oscillator as oscillator
     from liehom.algebra import parabolic_subalgebra as parabolic_subalgebra
+    from liehom.algebra import pauli_matrices as pauli_matrices
     from liehom.algebra import poincare as poincare
     from liehom.algebra import real_forms as real_forms
     from liehom.algebra import realification as realification
@@ -88,6 +91,7 @@ if TYPE_CHECKING:
     from liehom.algebra import so_star as so_star
     from liehom.algebra import sp as sp
     from liehom.algebra import sp_form as sp_form
+    from liehom.algebra import spin_matrices as spin_matrices
     from liehom.algebra import strictly_upper_triangular as strictly_upper_triangular
     from liehom.algebra import su as su
     from liehom.algebra import u as u
@@ -112,6 +116,7 @@ if TYPE_CHECKING:
     from liehom.errors import JacobiError as JacobiError
     from liehom.errors import LiehomError as LiehomError
     from liehom.errors import NotASubalgebraError as NotASubalgebraError
+    from liehom.errors import NotInSpanError as NotInSpanError
     from liehom.errors import ParseError as ParseError
     from liehom.errors import RepresentationError as RepresentationError
     from liehom.errors import ShapeError as ShapeError
@@ -187,6 +192,7 @@ if TYPE_CHECKING:
     from liehom.representations import frobenius_schur_indicator as frobenius_schur_indicator
     from liehom.representations import hermitian_conjugation as hermitian_conjugation
     from liehom.representations import highest_weight_module as highest_weight_module
+    from liehom.representations import pair_from_matrices as pair_from_matrices
     from liehom.representations import real_module as real_module
     from liehom.representations import real_module_type as real_module_type
     from liehom.representations import spin_representation as spin_representation
@@ -232,10 +238,10 @@ _LAYERS = (
 _NAMES = {
     "liehom.algebra": (
         "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
-        "bargmann bianchi canonical_real_form cartan_matrix central_extension chevalley conformal direct_sum "
-        "dynkin_diagram euclidean filiform free_nilpotent galilei gl heisenberg oscillator "
-        "parabolic_subalgebra poincare real_forms realification root_system semidirect_sum simple sl so "
-        "so_form so_star sp sp_form strictly_upper_triangular su u upper_triangular"
+        "bargmann bianchi canonical_real_form cartan_matrix central_extension chevalley conformal dirac_matrices "
+        "direct_sum dynkin_diagram euclidean filiform free_nilpotent galilei gell_mann_matrices gl heisenberg "
+        "oscillator parabolic_subalgebra pauli_matrices poincare real_forms realification root_system semidirect_sum "
+        "simple sl so so_form so_star sp sp_form spin_matrices strictly_upper_triangular su u upper_triangular"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (
@@ -243,8 +249,8 @@ _NAMES = {
     ),
     "liehom.errors": (
         "CatalogError CertificateError ConvergenceError FieldError FormatError InputError JacobiError LiehomError "
-        "NotASubalgebraError ParseError RepresentationError ShapeError SingularError StructureError TraceError "
-        "UndecidedError"
+        "NotASubalgebraError NotInSpanError ParseError RepresentationError ShapeError SingularError StructureError "
+        "TraceError UndecidedError"
     ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
@@ -265,8 +271,8 @@ _NAMES = {
     "liehom.representations": (
         "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
         "dual_weight frobenius_schur_indicator hermitian_conjugation HermitianForms highest_weight_module "
-        "HighestWeightModule Pair real_module real_module_type RealModule Representation spin_representation "
-        "spinor_type sym_conjugation tensor_product_decomposition trivial weyl_dimension weyl_orbit"
+        "HighestWeightModule Pair pair_from_matrices real_module real_module_type RealModule Representation "
+        "spin_representation spinor_type sym_conjugation tensor_product_decomposition trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

@@ -108,6 +108,7 @@ ATTRIBUTES: dict[str, dict[str, str]] = {
 """Attributes with another name, 'old module:old name' -> {old: new}."""
 
 GROWN: dict[str, tuple[str, ...]] = {
+    "liehom.representations.representation:Representation": ("coordinates", "dropped"),
     "liehom.scalars.floating:FloatMatrix": ("_norm", "_spectral", "error"),
     "liehom.scalars.floating:RankDecision": ("error",),
 }

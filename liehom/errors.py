@@ -137,6 +137,15 @@ class DependentRowsError(InputError):
         )
 
 
+class NotInSpanError(InputError):
+    """A matrix is not in a span of matrices: `index` is its index, `residual` its relative distance from the span."""
+
+    def __init__(self, index: int, residual: float, what: str) -> None:
+        self.index = index
+        self.residual = residual
+        super().__init__(what)
+
+
 class NotAnIdealError(InputError):
     """A subspace that should be an ideal is not an ideal."""
 

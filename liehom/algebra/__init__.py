@@ -41,6 +41,10 @@ from liehom.algebra.core import LieAlgebra as LieAlgebra
 from liehom.algebra.core import StructureConstants as StructureConstants
 from liehom.algebra.core import Subalgebra as Subalgebra
 from liehom.algebra.involutions import CartanDecomposition as CartanDecomposition
+from liehom.algebra.matrices import dirac_matrices as dirac_matrices
+from liehom.algebra.matrices import gell_mann_matrices as gell_mann_matrices
+from liehom.algebra.matrices import pauli_matrices as pauli_matrices
+from liehom.algebra.matrices import spin_matrices as spin_matrices
 from liehom.algebra.roots import RealForm as RealForm
 from liehom.algebra.roots import RootSystem as RootSystem
 from liehom.algebra.roots import SatakeDiagram as SatakeDiagram

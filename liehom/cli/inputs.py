@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from liehom.algebra import LieAlgebra
+from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import CatalogError, FormatError
 from liehom.io import from_gap, from_sage, load, load_pair
 from liehom.io.json_reader import parse_object
@@ -71,7 +71,7 @@ def pair_argument(text: str) -> Pair:
 
 
 def object_argument(text: str) -> LieAlgebra | Pair | Representation:
-    """Algebra, pair or representation that a file or a name denotes.
+    """Algebra, pair or representation that a file or a name denotes; a subalgebra file denotes a pair.
 
     A file that ends in .g or .gap is in the format of GAP, a file that ends in .sage in the format of Sage. A name is
     an algebra or pair of the catalogue, a real form such as 'e8(-24)', or a type such as 'E8', which denotes the split
@@ -90,7 +90,8 @@ def object_argument(text: str) -> LieAlgebra | Pair | Representation:
     kind = os.path.splitext(text)[1]
     if kind in READERS:
         return READERS[kind](_text_of(file_argument(text)))
-    return load(file_argument(text)) if is_file(text) else _named(text)
+    found = load(file_argument(text)) if is_file(text) else _named(text)
+    return Pair(found.algebra, found) if isinstance(found, Subalgebra) else found
 
 
 READERS = {".g": from_gap, ".gap": from_gap, ".sage": from_sage}

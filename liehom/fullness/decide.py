@@ -21,6 +21,7 @@ from liehom.fullness.numerical import decide_numerically
 from liehom.fullness.reasons import full_reason
 from liehom.fullness.search.dominance import Dominant, find_dominant
 from liehom.fullness.search.eigenvector_witness import eigenvector_witness
+from liehom.fullness.search.enumeration import enumerate_dominant
 from liehom.fullness.search.frame import balanced_frame, plain_frame
 from liehom.fullness.search.positive_form import full_by_positive_form
 from liehom.fullness.search.reducible import certificate_of_reduction, kernel_witness
@@ -50,7 +51,8 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
     seed : int, optional
         Seed of the random choices, which affect the certificate that is found and the time, never the verdict.
     progress : callable, optional
-        Called with a line of text as each step begins.
+        Called with a line of text as each step begins, and after every 1000 elements of an enumeration. An error that
+        it raises ends the decision.
 
     Returns
     -------
@@ -67,6 +69,7 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
 
     Notes
     -----
+    The decision ends for every exact pair, with one of the two verdicts (docs/theory/fullness.md, "Termination").
     (g, h) is full if every eta outside h satisfies h + [h, eta] + R eta = g (Lewis and Olver 2001,
     Definition 6, (6.4)). The paper leaves open which pairs are full; the procedure decides it pair by pair.
     ``logging.getLogger("liehom.fullness").setLevel(logging.DEBUG)`` shows the steps with their outcomes.
@@ -93,13 +96,7 @@ def _verdict(pair: Pair, seed: int, progress: Progress | None) -> Verdict:
     if pair.dimension <= 1:
         reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
         return Full(pair, certificate_writer.trivial(pair.field), reason[pair.dimension])
-    action = TracelessIsotropyAction(pair)
-    for attempt in range(3):
-        verdict = _decide(action, seed + attempt, progress)
-        if verdict is not None:
-            return verdict
-        LOG.debug("attempt %d found no certificate", attempt + 1)
-    raise InternalError("no certificate was found, though one exists; please report this pair")
+    return _decide(TracelessIsotropyAction(pair), seed, progress)
 
 
 def _begin(step: str, progress: Progress | None) -> None:
@@ -108,7 +105,7 @@ def _begin(step: str, progress: Progress | None) -> None:
         progress(step)
 
 
-def _decide(action: TracelessIsotropyAction, seed: int, progress: Progress | None) -> Verdict | None:
+def _decide(action: TracelessIsotropyAction, seed: int, progress: Progress | None) -> Verdict:
     _begin("rank at sample points", progress)
     rng = random.Random(seed)
     x, certificate = _sample(action, rng)
@@ -180,7 +177,8 @@ def _reducible(action: TracelessIsotropyAction, certificate: Certificate) -> Not
     return _not_full(action, certificate, reason)
 
 
-def _by_dominance(action: TracelessIsotropyAction, seed: int, progress: Progress | None) -> NotFull | None:
+def _by_dominance(action: TracelessIsotropyAction, seed: int, progress: Progress | None) -> NotFull:
+    """Random rounds first, which nearly always end at once; then the enumeration, which always ends."""
     tries, frame = FIRST_TRIES, plain_frame(action)
     for round_number in range(ROUNDS):
         if frame is not None:
@@ -193,7 +191,9 @@ def _by_dominance(action: TracelessIsotropyAction, seed: int, progress: Progress
         if round_number == 0:
             _begin("coordinates in which floats see the spectrum", progress)
             frame = balanced_frame(action) or frame
-    return None
+    dominant = enumerate_dominant(action, frame, lambda step: _begin(step, progress))
+    LOG.debug("dominant element: found, so the pair is not full")
+    return _with_exact_eta(action, dominant)
 
 
 def _with_exact_eta(action: TracelessIsotropyAction, dominant: Dominant) -> NotFull:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias, final
 
-from liehom.errors import UndecidedError
+from liehom.errors import CertificateError, UndecidedError
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.checker.verify import verify_certificate
 from liehom.fullness.failure import FailureReport, failure_report
@@ -45,7 +45,7 @@ class Full:
 
     def verify(self) -> bool:
         """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
-        return verify_certificate(self.pair, self.certificate)
+        return _verified(self.pair, self.certificate, self.full)
 
     def to_json(self) -> dict[str, Any]:
         """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
@@ -93,10 +93,10 @@ class NotFull:
     pair: Pair
     certificate: Certificate
     reason: str
-    eta: list[Scalar] | None = None
+    eta: list[Scalar] | None = field(default=None, hash=False)
     eta_field: Field | None = None
     rank: int | None = None
-    eta_numerical: list[float] | None = None
+    eta_numerical: list[float] | None = field(default=None, hash=False)
 
     @property
     def full(self) -> Literal[False]:
@@ -121,7 +121,7 @@ class NotFull:
 
     def verify(self) -> bool:
         """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""
-        return verify_certificate(self.pair, self.certificate)
+        return _verified(self.pair, self.certificate, self.full)
 
     def to_json(self) -> dict[str, Any]:
         """Verdict as a JSON object: `full`, `proved`, `reason`, the evidence and the certificate."""
@@ -153,7 +153,7 @@ class _Numerical:
     reason: str
     smallest: float
     gap: float
-    eta: list[float] = field(default_factory=list)
+    eta: list[float] = field(default_factory=list, hash=False)
 
     @property
     def full(self) -> bool | None:
@@ -316,6 +316,13 @@ class NumericallyUndecided(_Numerical):
 
 Verdict: TypeAlias = Full | NotFull | NumericallyFull | NumericallyNotFull | NumericallyUndecided
 """A result of `decide_fullness`."""
+
+
+def _verified(pair: Pair, certificate: Certificate, full: bool) -> bool:
+    if certificate.full != full:
+        other = "full" if certificate.full else "not full"
+        raise CertificateError("kind", f"a certificate of kind {certificate.kind!r} proves that a pair is {other}")
+    return verify_certificate(pair, certificate)
 
 
 def _title(pair: Pair) -> str:

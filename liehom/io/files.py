@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal, overload
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
 from liehom.io.json_reader import kind_of, parse_object, read_object, shown
@@ -17,11 +18,21 @@ from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.typing import VectorLike
 
-FORMATS = (algebra_file.FORMAT, pair_file.FORMAT, representation_file.FORMAT)
+READERS = {
+    algebra_file.FORMAT: algebra_file.read_algebra,
+    pair_file.SUBALGEBRA: pair_file.read_subalgebra,
+    pair_file.FORMAT: pair_file.read_pair,
+    representation_file.FORMAT: representation_file.read_representation,
+}
+KINDS = {
+    algebra_file.FORMAT: "an algebra file",
+    pair_file.SUBALGEBRA: "a subalgebra file",
+    pair_file.FORMAT: "a pair file",
+}
 
 
-def load(path: str | os.PathLike[str]) -> LieAlgebra | Pair | Representation:
-    """LieAlgebra, Pair or Representation in a file.
+def load(path: str | os.PathLike[str]) -> LieAlgebra | Subalgebra | Pair | Representation:
+    """LieAlgebra, Subalgebra, Pair or Representation in a file.
 
     A representation file with a point gives the Pair that the point determines.
 
@@ -39,8 +50,8 @@ def load(path: str | os.PathLike[str]) -> LieAlgebra | Pair | Representation:
 
     Notes
     -----
-    An algebra file must state ``"format": "liehom-algebra"``. A file without `format` is a representation file if it
-    has `matrices`, else a pair file.
+    An algebra file must state ``"format": "liehom-algebra"``, a subalgebra file ``"liehom-subalgebra"``. A file
+    without `format` is a representation file if it has `matrices`, else a pair file.
 
     Examples
     --------
@@ -54,7 +65,7 @@ def load(path: str | os.PathLike[str]) -> LieAlgebra | Pair | Representation:
 
 
 def load_pair(path: str | os.PathLike[str]) -> Pair:
-    """Pair in a pair file, or in a representation file with a point.
+    """Pair in a pair or subalgebra file, or in a representation file with a point.
 
     Raises
     ------
@@ -73,6 +84,8 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
     found = load(path)
     if isinstance(found, LieAlgebra):
         raise FormatError("this is an algebra file, which names no subalgebra, so it describes no pair")
+    if isinstance(found, Subalgebra):
+        return Pair(found.algebra, found)
     if not isinstance(found, Pair):
         raise FormatError("this representation file has no 'point', so it describes no pair")
     return found
@@ -100,15 +113,15 @@ def load_problem(path: str | os.PathLike[str]) -> Problem:
 
 
 @overload
-def loads(text: str) -> LieAlgebra | Pair | Representation: ...
+def loads(text: str) -> LieAlgebra | Subalgebra | Pair | Representation: ...
 
 
 @overload
 def loads(text: str, *, problem: Literal[True]) -> Problem: ...
 
 
-def loads(text: str, *, problem: bool = False) -> LieAlgebra | Pair | Representation | Problem:
-    """LieAlgebra, Pair or Representation in a JSON string, as `load` reads a file; with `problem`, the Problem.
+def loads(text: str, *, problem: bool = False) -> LieAlgebra | Subalgebra | Pair | Representation | Problem:
+    """The object in a JSON string, as `load` reads a file; with `problem`, the Problem.
 
     Examples
     --------
@@ -119,8 +132,8 @@ def loads(text: str, *, problem: bool = False) -> LieAlgebra | Pair | Representa
     return _problem(data) if problem else from_json(data)
 
 
-def from_json(data: Mapping[str, Any]) -> LieAlgebra | Pair | Representation:
-    """LieAlgebra, Pair or Representation in a parsed JSON object, as `load` reads a file.
+def from_json(data: Mapping[str, Any]) -> LieAlgebra | Subalgebra | Pair | Representation:
+    """LieAlgebra, Subalgebra, Pair or Representation in a parsed JSON object, as `load` reads a file.
 
     Examples
     --------
@@ -129,17 +142,12 @@ def from_json(data: Mapping[str, Any]) -> LieAlgebra | Pair | Representation:
     ...
     liehom.errors.FormatError: structure_constants[0]: the index k = 2 is out of range, expected 0 to 1
     """
-    if _format(data) == representation_file.FORMAT:
-        return representation_file.read_representation(data)
-    if _format(data) == algebra_file.FORMAT:
-        return algebra_file.read_algebra(data)
-    return pair_file.read_pair(data)
+    return READERS[_format(data)](data)
 
 
 def _problem(data: Mapping[str, Any]) -> Problem:
-    if _format(data) != representation_file.FORMAT:
-        kind = "an algebra file" if _format(data) == algebra_file.FORMAT else "a pair file"
-        raise FormatError(f"this is {kind}, expected a representation file, with 'matrices'")
+    if _format(data) in KINDS:
+        raise FormatError(f"this is {KINDS[_format(data)]}, expected a representation file, with 'matrices'")
     return representation_file.read_problem(data)
 
 
@@ -148,17 +156,16 @@ def _format(data: object) -> str:
     if not isinstance(data, Mapping):
         raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
     stated = data.get("format")
-    if stated is not None and stated not in FORMATS:
-        raise FormatError(
-            f"format is {shown(stated)}, expected {', '.join(map(repr, FORMATS[:-1]))} or {FORMATS[-1]!r}"
-        )
+    if stated is not None and (not isinstance(stated, str) or stated not in READERS):
+        *others, last = map(repr, READERS)
+        raise FormatError(f"format is {shown(stated)}, expected {', '.join(others)} or {last}")
     if stated is None:
         return representation_file.FORMAT if "matrices" in data else pair_file.FORMAT
     return str(stated)
 
 
 def to_json(obj: object, *, point: VectorLike | None = None) -> dict[str, Any]:
-    """JSON object of an algebra, a pair, a representation (with a point, if given), a certificate or a verdict.
+    """JSON object of an algebra, subalgebra, pair, representation (with a point, if given), certificate or verdict.
 
     A mapping is returned as it is, as a dict.
 
@@ -175,6 +182,8 @@ def to_json(obj: object, *, point: VectorLike | None = None) -> dict[str, Any]:
     """
     if isinstance(obj, LieAlgebra):
         return algebra_file.write_algebra(obj)
+    if isinstance(obj, Subalgebra):
+        return pair_file.write_subalgebra(obj)
     if isinstance(obj, Pair):
         return pair_file.write_pair(obj)
     if isinstance(obj, Representation):
@@ -185,7 +194,7 @@ def to_json(obj: object, *, point: VectorLike | None = None) -> dict[str, Any]:
     if callable(made):
         return dict(made())
     raise FormatError(
-        f"a {type(obj).__name__} has no file format; expected an algebra, pair, representation or certificate"
+        f"a {type(obj).__name__} has no file format; expected a (sub)algebra, pair, representation or certificate"
     )
 
 

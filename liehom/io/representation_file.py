@@ -99,7 +99,7 @@ def _closed(matrices: Sequence[Matrix], data: Mapping[str, Any]) -> Representati
         made = lie_closure(matrices, close=dimension > len(matrices), limit=dimension)
         if made.algebra.dimension != dimension:
             raise FormatError(f"the matrices generate dimension {made.algebra.dimension}, the file says {dimension}")
-    return Representation.from_matrices(matrices)
+    return Representation.from_matrices(matrices, independent=False)
 
 
 def write_representation(representation: Representation, point: VectorLike | None = None) -> dict[str, Any]:

@@ -10,9 +10,10 @@ from typing import Any, TypeAlias
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import QQ, AlgebraicNumber, Field, FloatField, Matrix, NumberField, Scalar
+from liehom.scalars import QQ, AlgebraicNumber, Matrix
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.floating import FloatMatrix
+from liehom.scalars.fields.sympy_number import sympy_number
 
 SympyObject: TypeAlias = Any
 """An object of sympy, which has no types."""
@@ -61,11 +62,11 @@ def to_sympy(obj: object) -> SympyObject:
     if isinstance(obj, Representation):
         return [_matrix(a) for a in obj.matrices]
     if isinstance(obj, AlgebraicNumber):
-        return _number(obj.field, obj)
+        return sympy_number(obj.field, obj)
     if isinstance(obj, int | float) or type(obj) is type(QQ.one):
         import sympy
 
-        return sympy.Float(obj) if isinstance(obj, float) else _number(QQ, QQ.convert(obj))
+        return sympy.Float(obj) if isinstance(obj, float) else sympy_number(QQ, QQ.convert(obj))
     raise InputError(
         f"a {type(obj).__name__} has no form in sympy; "
         "expected an algebra, subalgebra, representation, matrix or number"
@@ -75,7 +76,7 @@ def to_sympy(obj: object) -> SympyObject:
 def _matrix(matrix: Matrix) -> SympyObject:
     import sympy
 
-    return sympy.Matrix(*matrix.shape, [_number(matrix.field, x) for row in matrix.to_rows() for x in row])
+    return sympy.Matrix(*matrix.shape, [sympy_number(matrix.field, x) for row in matrix.to_rows() for x in row])
 
 
 def _array(algebra: LieAlgebra) -> SympyObject:
@@ -83,25 +84,7 @@ def _array(algebra: LieAlgebra) -> SympyObject:
 
     n, entries = algebra.dimension, {}
     for i, j, k, v in algebra.structure_constants():
-        value = _number(algebra.field, v)
+        value = sympy_number(algebra.field, v)
         entries[(i * n + j) * n + k] = value
         entries[(j * n + i) * n + k] = -value
     return sympy.ImmutableSparseNDimArray(entries, (n, n, n))
-
-
-def _number(field: Field, value: Scalar) -> SympyObject:
-    import sympy
-
-    if isinstance(field, FloatField):
-        return sympy.Float(value)
-    if not isinstance(field, NumberField):
-        rational: Any = value
-        return sympy.Rational(int(rational.p), int(rational.q))
-    if field.symbol.startswith("sqrt("):
-        root = sympy.sqrt(int(field.symbol[5:-1]))
-    else:
-        t = sympy.Symbol("t")
-        # Real roots come first and in order, in sympy too.
-        root = sympy.CRootOf(sympy.Add(*(c * t**p for p, c in enumerate(field.minpoly))), field.root_index)
-    terms = (_number(QQ, c) * (field.leading * root) ** p for p, c in enumerate(field.coordinates(value)))
-    return sympy.Add(*terms)

@@ -9,6 +9,7 @@ from liehom.representations.constructions import adjoint as adjoint
 from liehom.representations.constructions import coadjoint as coadjoint
 from liehom.representations.constructions import defining as defining
 from liehom.representations.constructions import hermitian_conjugation as hermitian_conjugation
+from liehom.representations.constructions import pair_from_matrices as pair_from_matrices
 from liehom.representations.constructions import sym_conjugation as sym_conjugation
 from liehom.representations.constructions import symmetric_to_vector as symmetric_to_vector
 from liehom.representations.constructions import trivial as trivial

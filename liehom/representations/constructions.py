@@ -6,24 +6,29 @@ Constructions from a representation (dual, sums, products, powers, restriction) 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra import matrices as families
-from liehom.algebra.closure.closure import lie_closure
+from liehom.algebra.closure.closure import lie_closure, square_matrices
+from liehom.algebra.closure.complex_matrices import as_real_matrices
 from liehom.algebra.constructions.simple import simple
 from liehom.algebra.matrices.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
-from liehom.errors import InputError, RepresentationError, ShapeError
+from liehom.errors import DependentRowsError, InputError, NotASubalgebraError, RepresentationError, ShapeError
+from liehom.representations.core.coordinates import Coordinates
+from liehom.representations.core.elements import rows_of_matrices
+from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.highest_weight import highest_weight_module
 from liehom.representations.highest_weight.real_form_module import real_module
-from liehom.representations.invariants.induced import congruence_map, hermitian_map, monomials
+from liehom.representations.invariants.induced import congruence_map, monomials
 from liehom.scalars import QQ, ExactField, Field, Matrix
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import IntegerArray, VectorLike
 
 _CLASSICAL = re.compile(r"(gl|sl|so|su|u|sp|spin)\(([0-9]+)(?:,([0-9]+|[RCH]))?\)")
+_COMPLEX = re.compile(r"s?u\([0-9]+(,[0-9]+)?\)|(gl|sl|so|sp)\([0-9]+,C\)")
 _SO_STAR = re.compile(r"so\*\(([0-9]*[02468])\)")
 
 
@@ -69,12 +74,14 @@ def defining(algebra: LieAlgebra | str) -> Representation:
         return _of_algebra(least(), algebra)
     matrices = standard_matrices(name)
     size = int(matrices.shape[1])
+    coordinates = _coordinates(name)
     if isinstance(algebra, str) and not len(matrices):
-        return Representation(linear_lie_algebra(matrices, name), [], size=size, name="defining")
+        zero = linear_lie_algebra(matrices, name)
+        return Representation(zero, [], size=size, name="defining", coordinates=coordinates)
     if isinstance(algebra, str):
         made = lie_closure(matrices, close=False, name=name)
         # The constants are those of the commutators themselves.
-        return Representation(made.algebra, made.matrices, name="defining", check=False)
+        return Representation(made.algebra, made.matrices, name="defining", coordinates=coordinates, check=False)
     if isinstance(algebra.field, ExactField):
         over = [algebra.field.from_integers(a.ravel().tolist(), size, size) for a in matrices]
     else:
@@ -83,7 +90,12 @@ def defining(algebra: LieAlgebra | str) -> Representation:
         raise RepresentationError(
             (0, 0), f"{algebra!r} does not have the dimension {len(over)} of the standard matrices of {name}"
         )
-    return Representation(algebra, over, size=size, name="defining")
+    return Representation(algebra, over, size=size, name="defining", coordinates=coordinates)
+
+
+def _coordinates(name: str | None) -> Coordinates:
+    """Whether the standard matrices of a name are on C^n, in the convention of complex matrices."""
+    return "complex" if _COMPLEX.fullmatch((name or "").replace(" ", "")) else "real"
 
 
 def _of_algebra(rho: Representation, algebra: LieAlgebra | str) -> Representation:
@@ -258,23 +270,76 @@ def hermitian_conjugation(k: int, algebra: LieAlgebra | None = None) -> Represen
     Returns
     -------
     Representation
-        On K^(k^2). The coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
+        On K^(k^2), see `Representation.on_hermitian_matrices`. The coordinates are H[i, i], and Re H[i, j], Im H[i, j]
+        for i < j, in lexicographic order of (i, j).
 
     Examples
     --------
     The isotropy of diag(1, 0, 0) is u(2):
 
-    >>> hermitian_conjugation(3).isotropy([1, 0, 0, 0, 0, 0, 0, 0, 0]).dimension
-    4
+    >>> rho = hermitian_conjugation(3)
+    >>> rho.isotropy([1, 0, 0, 0, 0, 0, 0, 0, 0]).dimension, rho.isotropy([[1, 0, 0], [0, 0, 0], [0, 0, 0]]).dimension
+    (4, 4)
     """
     rho = defining(f"su({k})" if algebra is None else algebra)
-    induced = hermitian_map(k)
-    if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.size != 2 * k:
+    if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.complex_size != k:
         raise InputError(f"conjugation of Hermitian {k} x {k} matrices needs su({k}) by skew-Hermitian matrices")
-    made = [induced(a) for a in rho.matrices]
-    # [A, B] H - H [A, B] by the Jacobi identity for commutators.
+    made = rho.on_hermitian_matrices()
     title = f"conjugation of Hermitian {k} x {k} matrices"
-    return Representation(rho.algebra, made, size=induced.target, name=title, check=False)
+    # the same matrices with a name
+    return Representation(
+        rho.algebra, made.matrices, size=made.size, name=title, coordinates=made.coordinates, check=False
+    )
+
+
+def pair_from_matrices(
+    g_matrices: Iterable[MatrixLike],
+    h_matrices: Iterable[MatrixLike],
+    *,
+    field: Field | None = None,
+    hermitian: bool = False,
+    name: str | None = None,
+) -> Pair:
+    """The pair (g, h) of the real Lie algebras that two lists of real or complex matrices generate.
+
+    Parameters
+    ----------
+    g_matrices : sequence of (n, n) array_like
+        Generators of g, see `Representation.from_matrices`.
+    h_matrices : sequence of (n, n) array_like
+        Generators of h, in g. They are the basis of h if they are independent and span a Lie algebra.
+    field : Field, optional
+        By default the smallest real field that contains the entries of both lists, or their parts.
+    hermitian : bool
+        All matrices are Hermitian: each is multiplied by i.
+    name : str, optional
+        A name to print.
+
+    Raises
+    ------
+    NotInSpanError
+        If a matrix of h is not in g; `index` is its index in `h_matrices`.
+    ShapeError, InputError
+        See `Representation.from_matrices`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pauli = lh.pauli_matrices()
+    >>> pair = lh.pair_from_matrices(pauli[:2], [pauli[2]], hermitian=True)
+    >>> pair, lh.decide_fullness(pair).full
+    (<pair of dimensions 3/1 over QQ>, True)
+    """
+    first, second = list(g_matrices), list(h_matrices)
+    together, _ = as_real_matrices([*first, *second], field, hermitian=hermitian)
+    made = square_matrices(together, field)
+    rho = Representation.from_matrices(made[: len(first)])
+    rows = rows_of_matrices(rho, made[len(first) :], of=" of h")
+    try:
+        subalgebra = rho.algebra.subalgebra(rows)
+    except (DependentRowsError, NotASubalgebraError):
+        subalgebra = rho.algebra.subalgebra_generated_by(rows)
+    return Pair(rho.algebra, subalgebra, name=name)
 
 
 def symmetric_to_vector(matrix: MatrixLike) -> list[Any]:

@@ -288,7 +288,7 @@ def test_wrong_matrices_are_refused() -> None:
         Representation(lh.so(3), [good[0], good[2], good[1]])
     assert caught.value.pair == (0, 1)
     with pytest.raises(DependentRowsError):
-        Representation.from_matrices([good[0], good[0]])
+        Representation.from_matrices([good[0], good[0]], independent=False)
     with pytest.raises(NotClosedError):
         lie_closure(good[:2], close=False)
     with pytest.raises(ShapeError):

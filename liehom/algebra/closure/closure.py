@@ -13,6 +13,7 @@ from typing import Any, Literal, final
 
 import numpy as np
 
+from liehom.algebra.closure.complex_matrices import as_real_matrices
 from liehom.algebra.closure.generated_span import GeneratedSpan, commutator_pairs, generated_span, spanning_commutators
 from liehom.algebra.closure.sparse_commutators import entries_of, exclusive_entries, sparse_commutator_table
 from liehom.algebra.core.lie_algebra import LieAlgebra
@@ -107,6 +108,7 @@ def lie_closure(
     Parameters
     ----------
     matrices : sequence of (N, N) array_like
+        Complex matrices of size n become real matrices of size N = 2n, see `complex_matrices`.
     field : Field, optional
         By default the smallest field that contains the entries.
     independent : bool
@@ -141,15 +143,15 @@ def lie_closure(
     >>> made.algebra.dimension, made.appended
     (3, ((0, 1),))
     """
-    basis = square_matrices(matrices, field)
+    basis = square_matrices(as_real_matrices(matrices, field)[0], field)
     if not basis:
         raise InputError("no matrices were given; the size of the space would be unknown")
     if completion not in ("auto", "commutators", "reduced"):
         raise InputError(f"completion is 'auto', 'commutators' or 'reduced', got {completion!r}")
+    over = basis[0].field
     kept = _independent(basis, independent)
     basis = [basis[i] for i in kept]
     if not basis:
-        over = square_matrices(matrices, field)[0].field
         return Closure(LieAlgebra(StructureConstants(over, 0, []), name=name, check=False), (), kept, ())
     if completion == "reduced" and not (basis[0].field.exact and basis[0].field.degree == 1):
         raise InputError(f"a basis is completed by reduced matrices over QQ only, not over {basis[0].field.name}")

@@ -14,6 +14,7 @@ from liehom.algebra.cohomology.cochain_complex import CochainComplex
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import InputError, InternalError, ShapeError, SingularError
+from liehom.immutable import Immutable
 from liehom.scalars import Matrix, Subspace, as_exact
 from liehom.scalars.fields.field import MatricesLike
 from liehom.scalars.modular.modular import pivot_columns
@@ -27,7 +28,7 @@ MAX_PRIMES = 5
 
 
 @final
-class Cohomology:
+class Cohomology(Immutable):
     """The cohomology of a Lie algebra in one degree, the result of `LieAlgebra.cohomology`.
 
     A cochain is a row, as in `liehom.algebra.cohomology.cochain_complex`. `cochain` constructs it from its values on

@@ -19,12 +19,13 @@ from liehom.algebra.cohomology.word_basis import word_bases
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import InputError, InternalError
+from liehom.immutable import Immutable
 from liehom.scalars import Matrix
 from liehom.scalars.fields.field import MatrixLike
 
 
 @final
-class Derivations:
+class Derivations(Immutable):
     """The Lie algebra of derivations of a Lie algebra, the result of `LieAlgebra.derivations`.
 
     Attributes

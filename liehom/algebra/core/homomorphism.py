@@ -5,20 +5,21 @@ The matrix acts on columns of coefficients.
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, final
+from typing import Any, final
 
 import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import HomomorphismError, InputError, ShapeError
+from liehom.immutable import Immutable
 from liehom.scalars import Matrix
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
 
 @final
-class Homomorphism:
+class Homomorphism(Immutable):
     """A homomorphism of Lie algebras over the same field.
 
     Parameters
@@ -156,7 +157,8 @@ class Homomorphism:
             return NotImplemented
         return self.source == other.source and self.target == other.target and bool(self.matrix == other.matrix)
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((self.source, self.target, self.matrix))
 
     def __repr__(self) -> str:
         ends = [g.name or f"a Lie algebra of dimension {g.dimension}" for g in (self.source, self.target)]

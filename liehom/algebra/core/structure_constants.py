@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
-from typing import Any, ClassVar, TypeVar, cast, final
+from typing import Any, TypeVar, cast, final
 
 import numpy as np
 
+from liehom.immutable import Immutable
 from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.spaces.sparse import SparseInteger
@@ -25,7 +26,7 @@ LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries ar
 
 
 @final
-class StructureConstants:
+class StructureConstants(Immutable):
     """The entries c[i, j, k], i < j, of a bracket table over a field, sorted by (i, j, k).
 
     Parameters
@@ -130,9 +131,15 @@ class StructureConstants:
             return NotImplemented
         if self.field != other.field or self.dimension != other.dimension or len(self) != len(other):
             return False
-        return list(self) == list(other)
+        return self._content() == other._content()
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((self.field, self.dimension, self._content()))
+
+    def _content(self) -> tuple[Any, ...]:
+        """Indices, numerators and their common denominator, which is the least: equal tables have equal contents."""
+        index = (self.i.tobytes(), self.j.tobytes(), self.k.tobytes())
+        return (*index, self.den, *(tuple(part) for part in self.parts))
 
     def exact_field(self) -> ExactField:
         """The field of a table over an exact field; `TypeError` over floats."""

@@ -7,11 +7,12 @@ below the class implement the methods of `LieAlgebra` that return subalgebras.
 from __future__ import annotations
 
 import random
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, final
+from typing import TYPE_CHECKING, Any, TypeVar, final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
+from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike, rows_of
 from liehom.scalars.spaces.quotient import Quotient, echelon_quotient, quotient
@@ -27,7 +28,7 @@ SHOWN_ROWS = 8
 
 
 @final
-class Subalgebra:
+class Subalgebra(Immutable):
     """A subalgebra h of g, given by the rows of a basis.
 
     Parameters
@@ -47,6 +48,11 @@ class Subalgebra:
         If their span is not closed; names the bracket that leaves it.
     ShapeError
         If a row does not have length n.
+
+    Notes
+    -----
+    Two subalgebras of equal algebras are equal (``==``), and hash equal, if they are the same subspace, in whatever
+    basis.
 
     Examples
     --------
@@ -127,7 +133,8 @@ class Subalgebra:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Subalgebra) and self.algebra == other.algebra and self.subspace == other.subspace
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((self.algebra, self.subspace))
 
     # -- ideals, quotients, images -------------------------------------------------------------------------
     def intersection(self, other: Subalgebra) -> Subalgebra:

@@ -1,14 +1,15 @@
 """Cartan involutions from a rational minimal parabolic subalgebra, by linear algebra without a search.
 
-Let [h, e] = 2 e, [h, f] = -2 f, [e, f] = h with l = z(h) the Levi factor of a minimal parabolic subalgebra and e
-generic in g_2, g_k the eigenspaces of ad h.  Let theta_0 be 1 on [l, l], which is compact, and on the compact part of
-the centre of l, and -1 on its split part.  Then g_2 = [l, e], g_2 generates the sum of the g_k, k > 0, and
+Let [h, e] = 2 e, [h, f] = -2 f, [e, f] = h with l = z(h) the Levi factor of a minimal parabolic subalgebra, and let all
+eigenvalues of ad h be even, with eigenspaces g_k.  Let theta_0 be 1 on [l, l], which is compact, and on the compact
+part of the centre of l, and -1 on its split part.  Then g_2 = [l, e], g_2 generates the sum of the g_k, k > 0 (it is
+the sum of the simple restricted root spaces; with odd eigenvalues it need not generate), and
 
     theta = theta_0 on l,   theta [x, e] = -[theta_0 x, f],   theta [u, v] = [theta u, theta v],   theta theta = 1
 
 is a Cartan involution.  For a Cartan involution that is theta_0 on l maps the part e_a of e in a simple restricted root
 space to -c_a f_a, c_a > 0, and c_a = 1 after an automorphism from the split torus.  The split and the compact part of
-the centre are found in floating point.
+the centre are found in floating point; they need not be rational, and are then not recognized.
 """
 
 from __future__ import annotations

@@ -5,7 +5,8 @@ algebra has any with rational coefficients.  For nilpotent e, every h in [e, g] 
 [h, e] = 2 e, [h, f] = -2 f, [e, f] = h (Jacobson, Morozov), and f is unique.  A triple leads to more generic nilpotent
 elements: z(h) is a Levi factor of the parabolic subalgebra of the eigenvalues >= 0 of ad h, and a nilpotent element of
 z(h) plus a random sum of eigenvectors with eigenvalues > 0 is nilpotent.  The iteration ends when [z(h), z(h)] is
-compact, because then the parabolic subalgebra is minimal.
+compact, because then the parabolic subalgebra is minimal, and all eigenvalues of ad h are even, because then all simple
+restricted roots take the value 2 on h.
 """
 
 from __future__ import annotations

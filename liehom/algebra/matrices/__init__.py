@@ -1,5 +1,7 @@
 """Bases of linear Lie algebras: each is one int64 array of shape (dim, N, N), closed under commutators.
 
+The Hermitian matrices of physics are lists of sympy matrices.
+
 matrix_basis         join, combine, stabilizer_rows: operations on every basis
 general_linear       gl, sl over R, C, H (and forms over Q), with commuting scalars; triangular matrices
 form_preserving      so, u, su, sp(2n, R), sp(p, q), so*(2n), so(n, C), sp(2n, C)
@@ -8,6 +10,7 @@ spinors              spin(p, q) from Clifford generators
 composition_algebra  multiplication tables of quadratic, quaternion and octonion algebras
 octonionic           g2, spin(7), spin(4, 3)
 albert               f4, e6
+physics_matrices     Pauli, Gell-Mann, Dirac and spin matrices
 named_matrices       the table of names and parameters of all classical and exceptional bases
 
 The constructors of `liehom.algebra.constructions` and the catalogue build on this wing; the bases are described in
@@ -53,6 +56,10 @@ from liehom.algebra.matrices.named_matrices import linear_lie_algebra as linear_
 from liehom.algebra.matrices.octonionic import g2 as g2
 from liehom.algebra.matrices.octonionic import octonion_spin as octonion_spin
 from liehom.algebra.matrices.octonionic import octonion_table as octonion_table
+from liehom.algebra.matrices.physics_matrices import dirac_matrices as dirac_matrices
+from liehom.algebra.matrices.physics_matrices import gell_mann_matrices as gell_mann_matrices
+from liehom.algebra.matrices.physics_matrices import pauli_matrices as pauli_matrices
+from liehom.algebra.matrices.physics_matrices import spin_matrices as spin_matrices
 from liehom.algebra.matrices.spinors import clifford as clifford
 from liehom.algebra.matrices.spinors import spin as spin
 from liehom.algebra.matrices.tensor_products import companion_powers as companion_powers

@@ -42,6 +42,11 @@ class RealForm:
     vogan : VoganDiagram
         The Vogan diagram, from which the other properties are computed.
 
+    Notes
+    -----
+    The properties `vogan` and `satake` are diagrams as data. Methods whose names end in ``_diagram``, here
+    `satake_diagram` and in `RootSystem` ``dynkin_diagram``, construct networkx graphs.
+
     Examples
     --------
     >>> import liehom as lh

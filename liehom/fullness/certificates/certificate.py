@@ -81,6 +81,8 @@ class Certificate:
     def __post_init__(self) -> None:
         if not isinstance(self.field, ExactField):
             raise malformed(f"a certificate over {self.field!r} proves nothing; the field must be exact")
+        if isinstance(self.kind, str):  # a subclass could compare as it likes
+            object.__setattr__(self, "kind", str.__str__(self.kind))
         schema = READERS.get(self.kind) if isinstance(self.kind, str) else None
         if schema is None:
             raise malformed(f"the kind is {self.kind!r}, expected one of {', '.join(READERS)}")
@@ -146,6 +148,17 @@ class Certificate:
         """Whether the certificate claims that the pair is full (or else that it is not)."""
         return self.kind in ("trivial", "full")
 
+    def copied(self) -> Certificate:
+        """A certificate of the same data, checked anew and made of plain types only; the checker works on such a copy.
+
+        Examples
+        --------
+        >>> c = Certificate("trivial", {})
+        >>> c.copied() == c, c.copied() is c
+        (True, False)
+        """
+        return Certificate(self.kind, self.fields, self.field)
+
     # -- numbers -----------------------------------------------------------------------------------------
     def number(self, name: str) -> Scalar:
         """The number in the field `name`."""
@@ -209,7 +222,7 @@ class Certificate:
 
 
 def _read_also(value: object) -> Certificate:
-    inner = value if isinstance(value, Certificate) else Certificate.from_json(value)
+    inner = value.copied() if isinstance(value, Certificate) else Certificate.from_json(value)
     if inner.kind not in ("commutant", "dominance"):
         raise malformed(f"also is of kind {inner.kind!r}, expected commutant or dominance")
     return inner

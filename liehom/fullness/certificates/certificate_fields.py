@@ -40,8 +40,8 @@ def check_keys(data: Mapping[str, Any], required: set[str], optional: set[str], 
 
 # -- reading: each function checks one form and returns numbers, with tuples for lists ---------------------
 def _is_number(field: ExactField, value: object) -> bool:
-    """Whether a value is an element of the field already, or a string to be parsed as one."""
-    return isinstance(value, (str, type(field.one)))
+    """Whether a value is an element of the field already (no subclass), or a string to be parsed as one."""
+    return type(value) is type(field.one) or isinstance(value, str)
 
 
 def _read_number(field: ExactField, name: str, value: Any) -> Scalar:

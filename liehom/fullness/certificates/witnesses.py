@@ -50,7 +50,10 @@ def numerical_eta_of_commutant(action: TracelessIsotropyAction, certificate: Cer
     matrix = certificate.matrix("matrix", action.size, action.size).to_numpy()
     if not np.isfinite(matrix).all():
         return None
-    values, vectors = np.linalg.eig(matrix)
+    try:
+        values, vectors = np.linalg.eig(matrix)
+    except np.linalg.LinAlgError:
+        return None
     vector = vectors[:, int(values.real.argmax())]
     real = vector.real if np.abs(vector.real).max() > 1e-6 else vector.imag
     return numerical_eta(action, real / np.abs(real).max())

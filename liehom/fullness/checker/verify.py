@@ -62,8 +62,8 @@ def verify_certificate(pair: PairData, certificate: Certificate | Mapping[str, A
     ...
     liehom.errors.CertificateError: rank: h, eta and the brackets of eta with the elements span 2 dimensions of 3
     """
-    if not isinstance(certificate, Certificate):
-        certificate = Certificate.from_json(certificate)
+    given = certificate
+    certificate = given.copied() if isinstance(given, Certificate) else Certificate.from_json(given)
     checked = check_pair(pair)
     check_same_field(checked.field, certificate.field)
     _verify(checked, certificate)

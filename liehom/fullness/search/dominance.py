@@ -3,24 +3,24 @@
 The search serves irreducible, non-compact L0. For a random X in L0, the spectral projector for its largest real part is
 projected to L0 in the trace form. If the top space of X is a highest restricted weight space V_lambda, the result is a
 multiple of the dual X_lambda of the weight, and dim V_lambda + #{negative eigenvalues of ad X_lambda} < d if and only
-if L0 is not transitive. Floats propose elements, cuts lie between rigorous enclosures of roots, and counts are exact.
+if L0 is not transitive. Floats propose elements, and `exact_dominance` proves what they propose.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
-from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
+from liehom.fullness.search.exact_dominance import ExactDominance
 from liehom.fullness.search.frame import Frame
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
-from liehom.scalars import QQ, ExactMatrix, Polynomial, Scalar
-from liehom.scalars.modular.modular import independent_columns
-from liehom.scalars.roots.roots import bounds, complex_root_balls, count_or_none, simplest_between
+from liehom.representations.invariants.irreducibility import combination
+from liehom.scalars import Scalar
 from liehom.typing import Array
 
 ROUNDINGS = tuple(2**k for k in range(0, 40, 2))
@@ -47,10 +47,18 @@ class Dominant:
 
 
 def find_dominant(action: TracelessIsotropyAction, frame: Frame, tries: int, seed: int = 0) -> Dominant | None:
-    """A dominance certificate found in the coordinates of a frame, or None after `tries` random elements."""
-    search = _Search(action, frame)
+    """A dominance certificate found in the coordinates of a frame, or None after `tries` random elements.
+
+    Floats only propose, so numbers that exceed them, or an eigenvalue problem without convergence, find nothing.
+    """
+    with np.errstate(all="ignore"), suppress(np.linalg.LinAlgError):
+        return _found(_Search(action, frame), tries, seed)
+    return None
+
+
+def _found(search: _Search, tries: int, seed: int) -> Dominant | None:
     for coefficients in search.candidates(tries, seed):
-        if search.margin(coefficients) is None:
+        if not np.isfinite(coefficients).all() or search.margin(coefficients) is None:
             continue
         for rounded in _roundings(coefficients):
             if search.margin(rounded) is None:
@@ -75,7 +83,7 @@ def _roundings(coefficients: Array) -> Iterator[Array]:
 
 
 class _Search:
-    """Float64 matrices of an orthonormal basis of L0, which propose elements, and exact counts that decide."""
+    """Float64 matrices of an orthonormal basis of L0, which propose elements of one frame."""
 
     def __init__(self, action: TracelessIsotropyAction, frame: Frame) -> None:
         self.action, self.frame = action, frame
@@ -89,7 +97,7 @@ class _Search:
         self.side_by_side = self.matrices.transpose(1, 0, 2).reshape(d, -1)
         turned = self.matrices.transpose(0, 2, 1).reshape(len(raw), d * d)
         self.gram_inverse = np.linalg.pinv(self.basis @ turned.T)
-        self._columns: list[int] | None = None
+        self.exact = ExactDominance(action)
 
     def candidates(self, tries: int, seed: int) -> Iterator[Array]:
         """Coefficients in the frame's basis of L0: its unit vectors, then projected projectors of random elements."""
@@ -140,84 +148,29 @@ class _Search:
         return best
 
     def certified(self, coefficients: Array) -> Dominant | None:
-        """Certificate from exact counts, cuts chosen between enclosures of roots; None if no cut proves dominance."""
-        action = self.action
-        numbers, x = self.frame.element(action, coefficients)
-        weights = Polynomial(action.field, x.characteristic_coefficients())
-        roots = Polynomial(action.field, self._adjoint(x).characteristic_coefficients())
-        for cut, eps in _cuts(weights, roots):
-            above = count_or_none(weights, cut)
-            if above <= 0 or above != count_or_none(weights, cut - eps):
-                continue
-            right = count_or_none(roots, -eps)
-            if right >= 0 and above + roots.degree - right < action.size:
-                made = certificate_writer.dominance(action, action.element(numbers), cut, eps)
-                return Dominant(made, numbers, self._top_vector(coefficients))
-        return None
+        """Certificate of an element with integer coefficients in the frame's basis, from exact counts, or None."""
+        numbers = self.frame.numbers(self.action, coefficients)
+        made = self.exact.certificate(numbers)
+        return None if made is None else Dominant(made, numbers, self._top_vector(coefficients))
 
     def _top_vector(self, coefficients: Array) -> Array | None:
-        values, vectors = np.linalg.eig(np.tensordot(coefficients, self.flat, 1).reshape(self.action.size, -1))
-        top = vectors[:, int(values.real.argmax())]
-        vector = self.frame.vectors @ (top.real if np.abs(top.real).max() > 1e-6 else top.imag)
-        size = np.abs(vector).max()
-        return np.asarray(vector / size) if 0 < size < np.inf else None
-
-    def _adjoint(self, x: ExactMatrix) -> ExactMatrix:
-        """Matrix of ad x on L0, as rows of coordinates; scalars in rho(h) would add the eigenvalue 0 only."""
-        field, square = self.action.field, self.action.size**2
-        basis = self.action.traceless
-        flat = field.stack_rows([a.reshape(1, square) for a in basis], square)
-        if self._columns is None:
-            self._columns = independent_columns(flat)
-            self._inverse = flat.select(columns=self._columns).inverse()
-        images = field.stack_rows([(x @ a - a @ x).reshape(1, square) for a in basis], square)
-        return images.select(columns=self._columns) @ self._inverse
+        x = np.tensordot(coefficients, self.flat, 1).reshape(self.action.size, -1)
+        return _normalized(self.frame.vectors @ _top_eigenvector(x))
 
 
-def _cuts(weights: Polynomial, roots: Polynomial) -> Iterator[tuple[Scalar, Scalar]]:
-    """Pairs (cut, eps) that prove dominance by enclosures of the roots; pairs in the widest gaps of weights come first.
-
-    No weight lies in [cut - eps, cut], and #{weights above cut} + #{roots at most -eps} < d.
-    """
-    parts, levels, zero = _real_parts(weights), _real_parts(roots), QQ.zero
-    for low, high in sorted(_gaps(parts), key=lambda gap: gap[0] - gap[1]):
-        above = sum(m for a, _, m in parts if a >= high)
-        # eps between two levels; the larger it is, the fewer roots are at most -eps
-        negated = [(-b, -a, m) for a, b, m in levels]
-        for floor, ceiling in reversed(_gaps([(zero, zero, 0), *negated, (high - low, high - low, 0)])):
-            below = sum(m for a, _, m in negated if a >= ceiling)
-            if floor < 0 or ceiling > high - low:
-                continue
-            if above + below >= weights.degree:
-                break
-            for eps in _inside(floor, ceiling):
-                for cut in _inside(low + eps, high):
-                    yield cut, eps
+def top_vector(action: TracelessIsotropyAction, coefficients: Sequence[Scalar]) -> Array | None:
+    """A real vector of the top eigenspace of an element of L0, rounded; None if it exceeds float64."""
+    with np.errstate(all="ignore"), suppress(np.linalg.LinAlgError):
+        return _normalized(_top_eigenvector(combination(action.traceless, coefficients).to_numpy()))
+    return None
 
 
-def _inside(low: Scalar, high: Scalar) -> Iterator[Scalar]:
-    """Three simple rationals well inside an interval; three, because a cut fails if roots are symmetric about it."""
-    eighth = (high - low) / 8
-    for start in (3, 1, 5):
-        yield simplest_between(low + eighth * start, low + eighth * (start + 2))
+def _top_eigenvector(x: Array) -> Array:
+    values, vectors = np.linalg.eig(x)
+    top = vectors[:, int(values.real.argmax())]
+    return np.asarray(top.real if np.abs(top.real).max() > 1e-6 else top.imag)
 
 
-def _real_parts(f: Polynomial) -> list[tuple[Scalar, Scalar, int]]:
-    """Rational lower and upper bounds of the real parts of the roots, with multiplicities."""
-    found: list[tuple[Scalar, Scalar, int]] = []
-    for part, multiplicity in f.squarefree_parts():
-        for ball in complex_root_balls(part, 64):
-            found.append((*bounds(ball.real), multiplicity))
-    return found
-
-
-def _gaps(intervals: list[tuple[Scalar, Scalar, int]]) -> list[tuple[Scalar, Scalar]]:
-    """Open intervals between the given closed intervals, from left to right."""
-    gaps = []
-    ordered = sorted(intervals, key=lambda interval: interval[0])
-    reach = ordered[0][1]
-    for low, high, _ in ordered[1:]:
-        if low > reach:
-            gaps.append((reach, low))
-        reach = max(reach, high)
-    return gaps
+def _normalized(vector: Array) -> Array | None:
+    size = np.abs(vector).max()
+    return np.asarray(vector / size) if 0 < size < np.inf else None

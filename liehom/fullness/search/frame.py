@@ -12,6 +12,7 @@ from typing import Any, final
 
 import numpy as np
 
+from liehom.errors import SingularError
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.irreducibility import combination
 from liehom.scalars import QQ, ExactMatrix, Scalar
@@ -46,11 +47,10 @@ class Frame:
     members: ExactMatrix
     vectors: Array
 
-    def element(self, action: TracelessIsotropyAction, coefficients: Array) -> tuple[list[Scalar], ExactMatrix]:
-        """Coefficients in the basis of L0, and the exact matrix, of integer coefficients in the frame's basis."""
-        row = action.field.from_integers([int(c) for c in coefficients], 1, len(coefficients)) @ self.members
-        numbers = row.row(0)
-        return numbers, combination(action.traceless, numbers)
+    def numbers(self, action: TracelessIsotropyAction, coefficients: Array) -> list[Scalar]:
+        """Coefficients in the basis of L0 of an element with integer coefficients in the frame's basis."""
+        row: ExactMatrix = action.field.from_integers([int(c) for c in coefficients], 1, len(coefficients))
+        return (row @ self.members).row(0)
 
 
 def plain_frame(action: TracelessIsotropyAction) -> Frame | None:
@@ -80,7 +80,10 @@ def _balanced(action: TracelessIsotropyAction, bits: int) -> Frame | None:
             return None
         integers, scale = fixed_point(rows @ basis, 2 * bits)
         basis = integers.scale(scale)
-        flat, members = _in_frame(action, basis, bits)
+        try:
+            flat, members = _in_frame(action, basis, bits)
+        except SingularError:  # rounded to so few bits, the rows are dependent
+            return None
         matrices = flat.split_rows(d, d)
         turned = rows.to_numpy()
         if np.isfinite(turned).all() and np.linalg.cond(turned) < WELL_CONDITIONED:

@@ -8,11 +8,12 @@ definite form on V. The half-spin module of so(5,5) has the same dimensions and 
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
 
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import combination, trace_form
-from liehom.scalars import ExactMatrix, Scalar
+from liehom.scalars import ExactField, ExactMatrix, Scalar
 from liehom.scalars.spaces.forms import orthogonal_basis
 
 
@@ -61,21 +62,37 @@ def _small_module(action: TracelessIsotropyAction) -> list[ExactMatrix] | None:
             total = total + _moved(a, _moved(b, p))
         return total
 
-    # A random form has a component in both parts; a special one, such as the identity, may lie in one of them.
+    for start in _starts(field, d):
+        once = casimir(start)
+        if _dependent(start, once):
+            continue
+        values = _two_eigenvalues(start, once, casimir(once))
+        if values is None:
+            return None
+        # The Casimir of the trace form is smaller on the vector representation than on the 126.
+        return _spanned(action, once - start.scale(values[1]))
+    return None
+
+
+def _starts(field: ExactField, d: int) -> Iterator[ExactMatrix]:
+    """Symmetric forms, one of which has components in both parts if the forms on V have two parts.
+
+    A random form has both nearly always. If no form E_ij + E_ji has, some lie in the part of the first one and some
+    in the other part, so that its sum with one of them has both.
+    """
     rng = random.Random(10)
     half = field.from_integers([rng.randint(-3, 3) for _ in range(d * d)], d, d)
-    start = half + half.T
-    once = casimir(start)
-    twice = casimir(once)
-    values = _two_eigenvalues(start, once, twice)
-    if values is None:
-        return None
-    # The Casimir of the trace form is smaller on the vector representation than on the 126.
-    low, high = values
-    seed = once - start.scale(high)
-    if low == high or seed.is_zero():
-        return None
-    return _spanned(action, seed)
+    yield half + half.T
+    units = [field.unit(d, i).T @ field.unit(d, j) for i in range(d) for j in range(i + 1)]
+    basis = [unit + unit.T for unit in units]
+    yield from basis
+    yield from (basis[0] + other for other in basis[1:])
+
+
+def _dependent(start: ExactMatrix, once: ExactMatrix) -> bool:
+    """Whether the Casimir operator maps a form to a multiple of it: the form lies in one part."""
+    i, j = next((i, j) for i in range(start.nrows) for j in range(i + 1) if start[i, j] != 0)
+    return bool(once == start.scale(once[i, j] / start[i, j]))
 
 
 def _two_eigenvalues(start: ExactMatrix, once: ExactMatrix, twice: ExactMatrix) -> tuple[Scalar, Scalar] | None:
@@ -83,7 +100,7 @@ def _two_eigenvalues(start: ExactMatrix, once: ExactMatrix, twice: ExactMatrix) 
     field, d = start.field, start.nrows
     table = field.stack_rows([m.reshape(1, d * d) for m in (once, start, twice)], d * d)
     relation = table.left_null_space()
-    if relation.nrows != 1 or relation[0, 2] == 0:
+    if relation.nrows != 1:
         return None
     total, product = -relation[0, 0] / relation[0, 2], relation[0, 1] / relation[0, 2]
     try:

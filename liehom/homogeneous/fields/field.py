@@ -15,6 +15,7 @@ from liehom.homogeneous.fields.components import Components, GeneratorLike
 from liehom.homogeneous.fields.least_norm import RANK_RTOL, TANGENCY_RTOL, LeastNorm
 from liehom.homogeneous.maps import action_map
 from liehom.homogeneous.range.batched_ranks import batched_ranks
+from liehom.immutable import Immutable
 from liehom.representations import Representation
 from liehom.series.arrays import as_values, is_traced, namespace, zeros
 from liehom.series.jet import Jet
@@ -22,7 +23,7 @@ from liehom.typing import Array, IntegerArray, Real, Values, ValuesLike
 
 
 @final
-class GeneratorField:
+class GeneratorField(Immutable):
     """The vector field X(m, t) = rho(psi(m, t)) m.
 
     Parameters

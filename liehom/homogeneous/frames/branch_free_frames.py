@@ -20,7 +20,12 @@ from liehom.series.arrays import namespace
 from liehom.typing import Array, BooleanArray, Real, Values, ValuesLike
 
 SAMPLES = 16
+"""Number of random points at least; fewer initial points are used several times."""
+POINTS_AT_ONCE = 4096
+"""Points whose matrices are in memory at once."""
 TIGHT_RTOL = 1e-11
+OWN_STREAM = 20011
+"""Second word of the seed: points that a caller drew with the same seed must not be the random tangent vectors too."""
 
 
 class OrthogonalDecomposition(NamedTuple):
@@ -169,9 +174,12 @@ class ActionLike(Protocol):
 def tight_frame(action: ActionLike, points: Array, rank: int, seed: int = 0) -> TightFrame | None:
     """The tight frame of the orbits of points, all of one dimension, or None if their singular values differ.
 
-    Both conditions, on the singular values of A and on the action of the isotropy on tangent vectors, are checked to
-    round-off at the points and at random points of their orbits. They are identities between polynomials, which hold at
-    random points only if they hold everywhere.
+    Both conditions, on the singular values of A and on the action of the isotropy on tangent vectors, are identities
+    between polynomials. An orbit of a connected group is irreducible, so such an identity holds on all of it if it
+    holds at a random point of it. It says nothing about another orbit. Therefore the conditions are checked, to
+    round-off, on the orbit of each of the points, and `isotropy` must be one number for all of them. Where the group
+    acts by orthogonal matrices on V and on g, both conditions hold on a whole orbit if they hold at one point of it,
+    and the points themselves are used. Otherwise they are moved by random elements of the group.
 
     Parameters
     ----------
@@ -188,37 +196,62 @@ def tight_frame(action: ActionLike, points: Array, rank: int, seed: int = 0) -> 
     >>> tight_frame(lh.Action(lh.sym_conjugation(3)), np.array([[1.0, 0, 0, 2, 0, 3]]), 3) is None
     True
     """
-    if rank < 2:
+    if rank < 2 or not len(points):
         return None
-    rng = np.random.default_rng(seed)
-    some = points[rng.permutation(len(points))[:SAMPLES]]
-    some = np.repeat(some, -(-SAMPLES // len(some)), axis=0)[:SAMPLES]
-    x = rng.normal(size=(len(some), action.dimension))
-    moved = action.act(x / max(1.0, float(action.max_norm)), some)
+    rng = np.random.default_rng((seed, OWN_STREAM))
     basis = action.inner_product.orthonormal_basis()
-    if not bool(is_tight(action.infinitesimal.right(np.concatenate([points, moved])) @ basis, rank).all()):
+    rows = np.arange(max(len(points), SAMPLES)) % len(points)
+    mu, symmetric, orthogonal = None, True, _acts_orthogonally(action)
+    for first in range(0, len(rows), POINTS_AT_ONCE):
+        some = points[rows[first : first + POINTS_AT_ONCE]]
+        if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
+            return None
+        if not orthogonal:
+            x = rng.normal(size=(len(some), action.dimension))
+            some = action.act(x / max(1.0, float(action.max_norm)), some)
+            if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
+                return None
+        found = _isotropy_constant(action, some, rank, rng, mu)
+        if found is None:
+            return None
+        mu, symmetric = found[0], symmetric and found[1]
+    if mu is None:
         return None
-    columns = action.infinitesimal.right(moved) @ basis
-    square = np.sum(columns * columns, axis=(-2, -1))[:, None, None] / rank
-    tangent = columns @ np.swapaxes(columns, -1, -2) / square
-    kernel = np.eye(columns.shape[-1]) - np.swapaxes(columns, -1, -2) @ columns / square
-    u = (tangent @ rng.normal(size=(len(some), points.shape[-1], 1)))[..., 0]
-    u = u / np.sqrt(np.sum(u * u, axis=-1, keepdims=True))
-    across = action.infinitesimal.right(u) @ basis @ kernel
-    made = across @ np.swapaxes(across, -1, -2)
-    normal = tangent - u[:, :, None] * u[:, None, :]
-    mu = float(np.trace(made[0]) / (rank - 1))
-    if not (mu > TIGHT_RTOL and float(np.abs(made - mu * normal).max()) <= TIGHT_RTOL * max(mu, 1.0)):
-        return None
-    r = (tangent @ rng.normal(size=(len(some), points.shape[-1], 1)))[..., 0]
-    turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
-    outside = np.abs(turned - kernel @ turned).max()
-    symmetric = bool(outside <= TIGHT_RTOL * max(1.0, float(np.abs(turned).max())))
     inverse: Any = np.linalg.inv(action.inner_product.matrix)
     corners = action.infinitesimal.right(np.eye(points.shape[-1]))
     trace = np.einsum("pia,ab,qib->pq", corners, inverse, corners)
     near = float(Fraction(mu).limit_denominator(256))
     return TightFrame(trace, near if abs(near - mu) <= 1e-12 * mu else mu, inverse, symmetric)
+
+
+def _acts_orthogonally(action: ActionLike) -> bool:
+    """Whether the matrices rho(e_i) are skew-symmetric and the inner product on g is Ad-invariant."""
+    matrices = action.infinitesimal.right(np.eye(action.infinitesimal.shape[1]))  # [j, :, i]: rho(e_i) e_j
+    defect = np.abs(matrices + np.swapaxes(matrices, 0, 1)).max(initial=0.0)
+    return action.inner_product.invariant and bool(defect <= TIGHT_RTOL * np.abs(matrices).max(initial=0.0))
+
+
+def _isotropy_constant(
+    action: ActionLike, points: Array, rank: int, rng: np.random.Generator, given: float | None
+) -> tuple[float, bool] | None:
+    """`isotropy` and `symmetric` of a `TightFrame` at points; None unless `isotropy` is one number, the given one."""
+    basis = action.inner_product.orthonormal_basis()
+    columns = action.infinitesimal.right(points) @ basis
+    square = np.sum(columns * columns, axis=(-2, -1))[:, None, None] / rank
+    tangent = columns @ np.swapaxes(columns, -1, -2) / square
+    kernel = np.eye(columns.shape[-1]) - np.swapaxes(columns, -1, -2) @ columns / square
+    u = (tangent @ rng.normal(size=(*points.shape, 1)))[..., 0]
+    u = u / np.sqrt(np.sum(u * u, axis=-1, keepdims=True))
+    across = action.infinitesimal.right(u) @ basis @ kernel
+    made = across @ np.swapaxes(across, -1, -2)
+    normal = tangent - u[:, :, None] * u[:, None, :]
+    mu = float(np.trace(made[0]) / (rank - 1)) if given is None else given
+    if not (mu > TIGHT_RTOL and float(np.abs(made - mu * normal).max()) <= TIGHT_RTOL * max(mu, 1.0)):
+        return None
+    r = (tangent @ rng.normal(size=(*points.shape, 1)))[..., 0]
+    turned = np.swapaxes(action.infinitesimal.right(u) @ basis, -1, -2) @ r[..., None]
+    outside = np.abs(turned - kernel @ turned).max()
+    return mu, bool(outside <= TIGHT_RTOL * max(1.0, float(np.abs(turned).max())))
 
 
 def is_tight(matrix: Values, rank: int) -> BooleanArray:

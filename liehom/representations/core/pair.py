@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
+from liehom.immutable import Immutable
 from liehom.scalars import Field, Matrix
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @final
-class Pair:
+class Pair(Immutable):
     """A pair (g, h) of a Lie algebra and a subalgebra.
 
     Parameters
@@ -35,6 +36,8 @@ class Pair:
     -----
     The tangent space of G/H at the base point is V = g/h, on which h acts by the isotropy representation
     rho(z) (x + h) = [z, x] + h.
+
+    Two pairs are equal (``==``), and hash equal, if their algebras and subalgebras are; names are not compared.
 
     Examples
     --------
@@ -115,6 +118,9 @@ class Pair:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Pair) and self.algebra == other.algebra and self.subalgebra == other.subalgebra
+
+    def __hash__(self) -> int:
+        return hash(self.subalgebra)
 
     def __repr__(self) -> str:
         if self.name:

@@ -7,11 +7,17 @@ this folder: a method is short or delegates to the module that does the work.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, cast, final
+from math import isqrt
+from typing import TYPE_CHECKING, Any, cast, final
+
+import numpy.typing as npt
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure.closure import Completion, lie_closure, square_matrices
+from liehom.algebra.closure.complex_matrices import as_real_matrices
 from liehom.errors import FieldError, InputError, RepresentationError, ShapeError
+from liehom.immutable import Immutable
+from liehom.representations.core.coordinates import Coordinates, complex_matrix, real_point, require_coordinates
 from liehom.representations.core.pair import Pair
 from liehom.representations.invariants.bracket_proof import failing_pair
 from liehom.representations.invariants.induced import (
@@ -19,6 +25,7 @@ from liehom.representations.invariants.induced import (
     block_map,
     dual_map,
     exterior_power_map,
+    hermitian_map,
     left_factor_map,
     right_factor_map,
     symmetric_power_map,
@@ -28,7 +35,7 @@ from liehom.representations.invariants.irreducibility import is_irreducible
 from liehom.representations.invariants.stabilizer import orbit_dimension, stabilizer
 from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Subspace
 from liehom.scalars.fields.field import MatrixLike
-from liehom.typing import VectorLike
+from liehom.typing import ComplexArray, Expression, ScalarLike, VectorLike
 
 if TYPE_CHECKING:
     from liehom.representations.analysis.commutant_type import CommutantType
@@ -38,14 +45,14 @@ if TYPE_CHECKING:
 
 
 @final
-class Representation:
+class Representation(Immutable):
     """A representation of a Lie algebra on K^N.
 
     Parameters
     ----------
     algebra : LieAlgebra
     matrices : sequence of (N, N) array_like
-        rho(e_i), one per basis element.
+        rho(e_i), one per basis element. Complex matrices of size n act on K^(2n), see `complex_size`.
     size : int, optional
         N, needed only for an algebra of dimension 0.
     name : str, optional
@@ -53,6 +60,11 @@ class Representation:
         Number of basis elements that the user gave (default: all). Lie closure appended the others.
     appended : tuple of (int, int), optional
         The brackets (i, j) that Lie closure appended.
+    dropped : tuple of int, optional
+        Indices of given matrices that were left out, because they depend on earlier ones.
+    coordinates : {'real', 'complex', 'hermitian'}, optional
+        What the vectors of K^N are: nothing more (default), complex vectors (Re z_1, Im z_1, ...), or Hermitian
+        matrices H by their entries H[i, i], Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
     check : bool, optional
         Prove rho([x, y]) = [rho(x), rho(y)] (default). Pass False only after a proof.
 
@@ -63,6 +75,11 @@ class Representation:
     RepresentationError
         If the matrices do not respect the bracket; names i and j.
 
+    Notes
+    -----
+    Two representations are equal (``==``), and hash equal, if their algebras and matrices are; names, `given` and
+    `appended` are not compared.
+
     Examples
     --------
     >>> import liehom as lh
@@ -71,7 +88,7 @@ class Representation:
     (1, 2, 0)
     """
 
-    __slots__ = ("algebra", "appended", "given", "matrices", "name", "size")
+    __slots__ = ("algebra", "appended", "coordinates", "dropped", "given", "matrices", "name", "size")
 
     def __init__(
         self,
@@ -82,9 +99,12 @@ class Representation:
         name: str | None = None,
         given: int | None = None,
         appended: tuple[tuple[int, int], ...] = (),
+        dropped: tuple[int, ...] = (),
+        coordinates: Coordinates = "real",
         check: bool = True,
     ) -> None:
-        made: tuple[Matrix, ...] = tuple(square_matrices(matrices, algebra.field))
+        given_matrices, was_complex = as_real_matrices(matrices, algebra.field)
+        made: tuple[Matrix, ...] = tuple(square_matrices(given_matrices, algebra.field))
         if len(made) != algebra.dimension:
             raise ShapeError(f"{len(made)} matrices for an algebra of dimension {algebra.dimension}")
         if not made and size is None:
@@ -95,8 +115,16 @@ class Representation:
         self.name: str | None = name
         self.given: int = len(made) if given is None else given
         self.appended: tuple[tuple[int, int], ...] = appended
+        self.dropped: tuple[int, ...] = dropped
+        self.coordinates: Coordinates = "complex" if was_complex else coordinates
         if check:
+            require_coordinates(self.coordinates, made, self.size)
             self._prove()
+
+    def __setstate__(self, state: tuple[None, dict[str, Any]]) -> None:
+        # pickles of 0.1.0 have neither `dropped` nor `coordinates`
+        for name, value in {"dropped": (), "coordinates": "real", **state[1]}.items():
+            setattr(self, name, value)
 
     @classmethod
     def from_matrices(
@@ -104,22 +132,29 @@ class Representation:
         matrices: Iterable[MatrixLike],
         *,
         field: Field | None = None,
-        independent: bool = False,
+        independent: bool = True,
+        hermitian: bool = False,
         name: str | None = None,
         completion: Completion = "auto",
     ) -> Representation:
-        """The Lie algebra generated by matrices, represented by these matrices.
+        """The real Lie algebra generated by real or complex matrices, represented by these matrices.
 
-        The first basis elements are the given matrices in order. Missing brackets are appended in lexicographic
-        order of (i, j), or reduced matrices where the brackets would give numbers of thousands of digits.
+        The first basis elements are the given matrices in order, without those that depend on earlier ones: `kept`
+        lists the indices of these, `dropped` of the others. Missing brackets are appended in lexicographic order of
+        (i, j), or reduced matrices where the brackets would give numbers of thousands of digits.
 
         Parameters
         ----------
         matrices : sequence of (N, N) array_like
+            Complex if one entry is: a complex number of Python or numpy, a sympy expression with I, or a string with
+            i or I ("1+2i", "-i*sqrt(2)"). Matrices of size n then act on R^(2n), see `complex_size`.
         field : Field, optional
-            By default the smallest field that contains the entries (float64 if one is a float).
+            By default the smallest real field that contains the entries, or their real and imaginary parts (float64
+            if one is a float; complex numbers of Python and numpy are floats).
         independent : bool
-            Drop matrices that depend on earlier ones, instead of raising `DependentRowsError` (default).
+            Leave out matrices that depend on earlier ones (default). If False they raise `DependentRowsError`.
+        hermitian : bool
+            The matrices are Hermitian, as observables are in physics: each is multiplied by i.
         name : str, optional
         completion : {'auto', 'commutators', 'reduced'}
             Which matrices are appended; see `liehom.algebra.lie_closure`.
@@ -127,9 +162,10 @@ class Representation:
         Raises
         ------
         DependentRowsError
-            If the matrices are linearly dependent and `independent` is False.
+            If the matrices are linearly dependent over the reals and `independent` is False.
         ShapeError, InputError
-            If they are not square matrices of one size, or have entries in no common field.
+            If they are not square matrices of one size, have entries in no common field, or are not Hermitian but
+            `hermitian` is True.
 
         Examples
         --------
@@ -137,13 +173,152 @@ class Representation:
         >>> rho = lh.Representation.from_matrices([[[0, 1], [0, 0]], [[0, 0], [1, 0]]])
         >>> rho.given, rho.algebra.dimension, rho.appended
         (2, 3, ((0, 1),))
+        >>> pauli = [[[0, 1], [1, 0]], [[0, "-i"], ["i", 0]], [[1, 0], [0, -1]]]
+        >>> rho = lh.Representation.from_matrices(pauli, hermitian=True)
+        >>> rho.algebra.dimension, rho.algebra.real_form(), rho.complex_size
+        (3, 'so(3)', 2)
         """
-        made = lie_closure(matrices, field=field, independent=independent, completion=completion)
-        size = int(square_matrices(matrices, field)[0].nrows)
+        basis, was_complex = as_real_matrices(matrices, field, hermitian=hermitian)
+        basis = square_matrices(basis, field)
+        made = lie_closure(basis, independent=independent, completion=completion)
         # The constants are those of the commutators themselves.
         return cls(
-            made.algebra, made.matrices, size=size, name=name, given=len(made.kept), appended=made.appended, check=False
+            made.algebra,
+            made.matrices,
+            size=basis[0].nrows,
+            name=name,
+            given=len(made.kept),
+            appended=made.appended,
+            dropped=tuple(sorted(set(range(len(basis))) - set(made.kept))),
+            coordinates="complex" if was_complex else "real",
+            check=False,
         )
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Indices of the given matrices that are the first `given` basis elements, a tuple of int.
+
+        Dependent matrices are left out by `from_matrices`. A generator psi therefore has one coefficient per matrix in
+        `kept`, or one per basis element.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> rho = lh.Representation.from_matrices([[[0, 1], [0, 0]], [[0, 2], [0, 0]], [[0, 0], [1, 0]]])
+        >>> rho.kept, rho.dropped, rho.given
+        ((0, 2), (1,), 2)
+        """
+        total = range(self.given + len(self.dropped))
+        return tuple(x for x in total if x not in self.dropped)
+
+    # -- complex matrices --------------------------------------------------------------------------------
+    @property
+    def complex_size(self) -> int | None:
+        """The size n of the complex matrices if the representation is on C^n = R^(2n), else None.
+
+        A vector z has the real coordinates (Re z_1, Im z_1, ..., Re z_n, Im z_n), and a complex entry a + ib is the
+        real block [[a, -b], [b, a]]. Complex are: representations by complex matrices, `liehom.defining` of su(p,q),
+        u(p,q), gl(n,C), sl(n,C), so(n,C), sp(2n,C), and of these `over`, `restriction` and direct sums. Other
+        constructions are over the reals and do not carry the complex structure further: the dual of the real space
+        has two, with the complex matrices -A^T and the conjugates of these.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining("su(3)").complex_size, lh.defining("so(3)").complex_size
+        (3, None)
+        """
+        return self.size // 2 if self.coordinates == "complex" else None
+
+    def complex_structure(self) -> Matrix:
+        """The matrix J (2n, 2n) of the multiplication by i, which commutes with all rho(x).
+
+        Raises
+        ------
+        InputError
+            If the representation is not on C^n, see `complex_size`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.defining("su(1,1)").complex_structure())
+        [0, -1, 0, 0]
+        [1, 0, 0, 0]
+        [0, 0, 0, -1]
+        [0, 0, 1, 0]
+        """
+        from liehom.algebra.matrices.general_linear import complex_structure
+
+        made: Matrix = self.field.matrix(complex_structure(self._complex_size()))
+        return made
+
+    def complex_matrix(self, x: VectorLike) -> ComplexArray | Expression:
+        """The complex matrix (n, n) of an element x, given by its dim g coefficients.
+
+        Returns
+        -------
+        sympy.Matrix, or an array of complex128 for a representation over floats
+
+        Raises
+        ------
+        InputError
+            If the representation is not on C^n, see `complex_size`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining("u(1)").complex_matrix(["1/2"])
+        Matrix([[I/2]])
+        """
+        self._complex_size()
+        return complex_matrix(self(x))
+
+    def complex_matrices(self) -> list[ComplexArray | Expression]:
+        """The complex matrices (n, n) of the basis elements, as `complex_matrix` returns them.
+
+        Raises
+        ------
+        InputError
+            If the representation is not on C^n, see `complex_size`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.Representation.from_matrices([[[0, 1j], [1j, 0]]]).complex_matrices()
+        [array([[0.+0.j, 0.+1.j],
+               [0.+1.j, 0.+0.j]])]
+        """
+        self._complex_size()
+        return [complex_matrix(a) for a in self.matrices]
+
+    def _complex_size(self) -> int:
+        n = self.complex_size
+        if n is None:
+            raise InputError(f"{self!r} is not on C^n: build it from complex matrices, or with hermitian=True")
+        return n
+
+    def real_point(self, point: VectorLike | MatrixLike) -> list[ScalarLike]:
+        """The N real coordinates of a point, which may be complex.
+
+        Parameters
+        ----------
+        point : array_like
+            N real numbers; on C^n also n complex numbers; on Hermitian matrices also a Hermitian matrix (n, n).
+
+        Raises
+        ------
+        ShapeError, ParseError
+            If the point has another shape, or an entry is not a number.
+        InputError
+            If a matrix is not Hermitian.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining("su(2)").real_point([1, "i/2"])
+        [1, 0, 0, 1/2]
+        """
+        return real_point(self.coordinates, self.size, self.field, point)
 
     # -- elements and points -----------------------------------------------------------------------------
     @property
@@ -165,13 +340,72 @@ class Representation:
                 total = total + a.scale(value)
         return total
 
-    def isotropy(self, point: VectorLike) -> Subalgebra:
+    def element(self, matrix: MatrixLike, *, hermitian: bool = False) -> npt.NDArray[Any]:
+        """The element x of g with rho(x) = matrix, as a numpy array of its dim g coefficients.
+
+        Parameters
+        ----------
+        matrix : (N, N) array_like
+            On C^n also a complex matrix (n, n).
+        hermitian : bool
+            Multiply the matrix by i, after a check that it is Hermitian.
+
+        Raises
+        ------
+        NotInSpanError
+            If the matrix is not in rho(g); `residual` is its relative distance from rho(g).
+        InputError
+            If rho is not faithful, so that x is not unique.
+        ShapeError
+            If the matrix has another shape.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining("su(2)").element([["i/2", 0], [0, "-i/2"]])
+        array([0, 0, 1/2], dtype=object)
+        >>> lh.defining("so(3)").element([[0, 0, 0], [0, 0, 2], [0, -2, 0]])
+        array([0, 0, -2], dtype=object)
+        """
+        from liehom.representations.core.elements import coordinates_of
+
+        return self.algebra._vector(coordinates_of(self, matrix, hermitian=hermitian).row(0))
+
+    def subalgebra(self, matrices: Iterable[MatrixLike], *, hermitian: bool = False) -> Subalgebra:
+        """The subalgebra of g whose elements have these matrices as a basis.
+
+        Parameters
+        ----------
+        matrices : sequence of (N, N) array_like
+            In rho(g), see `element`.
+        hermitian : bool
+            Multiply the matrices by i, after a check that they are Hermitian.
+
+        Raises
+        ------
+        NotInSpanError
+            If a matrix is not in rho(g); `index` is its index.
+        DependentRowsError, NotASubalgebraError
+            If the matrices are dependent, or their span is not closed.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.defining("su(2)").subalgebra([[["i", 0], [0, "-i"]]]).rows()
+        [[0, 0, 1]]
+        """
+        from liehom.representations.core.elements import rows_of_matrices
+
+        return self.algebra.subalgebra(rows_of_matrices(self, matrices, hermitian=hermitian))
+
+    def isotropy(self, point: VectorLike | MatrixLike) -> Subalgebra:
         """The isotropy subalgebra {x : rho(x) point = 0}.
 
         Parameters
         ----------
         point : array_like of shape (N,)
-            Entries in the representation's field (floats for a float representation).
+            Entries in the representation's field (floats for a float representation). Complex vectors and Hermitian
+            matrices where `real_point` takes them.
 
         Raises
         ------
@@ -192,9 +426,9 @@ class Representation:
         >>> lh.defining(lh.so(4)).isotropy([0, 0, 0, 1]).dimension
         3
         """
-        return stabilizer(self.algebra, self.matrices, self.size, point)
+        return stabilizer(self.algebra, self.matrices, self.size, self.real_point(point))
 
-    def symbolic_isotropy(self, point: VectorLike) -> SymbolicIsotropy:
+    def symbolic_isotropy(self, point: VectorLike | MatrixLike) -> SymbolicIsotropy:
         """The isotropy subalgebra at a point with free symbols, for generic values of the symbols.
 
         Parameters
@@ -229,13 +463,13 @@ class Representation:
         """
         from liehom.representations.analysis.symbolic import symbolic_isotropy
 
-        return symbolic_isotropy(self, point)
+        return symbolic_isotropy(self, self.real_point(point))
 
-    def orbit_dimension(self, point: VectorLike) -> int:
+    def orbit_dimension(self, point: VectorLike | MatrixLike) -> int:
         """Dimension of the orbit through a point: dim g minus the dimension of the isotropy subalgebra."""
-        return orbit_dimension(self.algebra, self.matrices, self.size, point)
+        return orbit_dimension(self.algebra, self.matrices, self.size, self.real_point(point))
 
-    def pair(self, point: VectorLike) -> Pair:
+    def pair(self, point: VectorLike | MatrixLike) -> Pair:
         """The pair (g, g_point): the homogeneous space of the orbit through a point.
 
         Examples
@@ -268,7 +502,12 @@ class Representation:
         """
         self._require_same_algebra(other)
         total = self.size + other.size
-        return self._joined(other, block_map(self.size, total, 0), block_map(other.size, total, self.size))
+        return self._joined(
+            other,
+            block_map(self.size, total, 0),
+            block_map(other.size, total, self.size),
+            "complex" if self.coordinates == other.coordinates == "complex" else "real",
+        )
 
     def tensor(self, other: Representation) -> Representation:
         """The tensor product rho(x) (x) 1 + 1 (x) sigma(x), basis e_i (x) f_j in lexicographic order of (i, j).
@@ -312,6 +551,34 @@ class Representation:
         """
         return self._induced(exterior_power_map(self.size, k))  # [D_A, D_B] = D_[A, B] for derivations
 
+    def on_hermitian_matrices(self) -> Representation:
+        """The action H -> A H + H A^* on Hermitian matrices (n, n), for a representation by complex matrices A.
+
+        For skew-Hermitian A it is the conjugation [A, H], the action on density matrices and observables.
+
+        Returns
+        -------
+        Representation
+            On K^(n^2). The coordinates are H[i, i], and Re H[i, j], Im H[i, j] for i < j, in lexicographic order of
+            (i, j). `isotropy` and the other methods for points also take the matrix H.
+
+        Raises
+        ------
+        InputError
+            If the representation is not on C^n, see `complex_size`.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> rho = lh.defining("su(3)").on_hermitian_matrices()
+        >>> rho.isotropy([["1/2", 0, 0], [0, "1/2", 0], [0, 0, 0]]).dimension
+        4
+        """
+        induced = hermitian_map(self._complex_size())
+        made = [induced(a) for a in self.matrices]
+        # H -> A H + H A^* is the restriction of A (x) 1 + 1 (x) conj(A) to Hermitian matrices
+        return self._proved(self.algebra, made, induced.target, coordinates="hermitian")
+
     def restriction(self, subalgebra: Subalgebra) -> Representation:
         """The restriction to a subalgebra, as a representation of ``subalgebra.as_algebra()``.
 
@@ -325,7 +592,8 @@ class Representation:
         n = self.size
         flat = self.field.stack_rows([a.reshape(1, n * n) for a in self.matrices], n * n)
         made = (subalgebra.basis @ flat).split_rows(n, n) if self.matrices else []
-        return self._proved(subalgebra.as_algebra(), made, n)  # a homomorphism restricted to a subalgebra
+        # a homomorphism restricted to a subalgebra
+        return self._proved(subalgebra.as_algebra(), made, n, coordinates=self.coordinates)
 
     def over(self, field: Field) -> Representation:
         """The representation over another field that contains the entries of its matrices.
@@ -338,7 +606,8 @@ class Representation:
         [[0, -1/2*sqrt(2), 1]]
         """
         made = [self._read_in(field, a) for a in self.matrices]
-        return self._proved(self.algebra.over(field), made, self.size, name=self.name)  # the same identities
+        # the same identities
+        return self._proved(self.algebra.over(field), made, self.size, self.name, self.coordinates)
 
     # -- commuting matrices, invariant forms and vectors -----------------------------------------------------
     def commutant(self) -> list[ExactMatrix]:
@@ -792,16 +1061,23 @@ class Representation:
     def _induced(self, entry_map: EntryMap) -> Representation:
         return self._proved(self.algebra, [entry_map(a) for a in self.matrices], entry_map.target)
 
-    def _joined(self, other: Representation, left: EntryMap, right: EntryMap) -> Representation:
+    def _joined(
+        self, other: Representation, left: EntryMap, right: EntryMap, coordinates: Coordinates = "real"
+    ) -> Representation:
         pairs = zip(self.matrices, other.matrices, strict=True)
         # The two summands commute, and each is a representation.
-        return self._proved(self.algebra, [left(a) + right(b) for a, b in pairs], left.target)
+        return self._proved(self.algebra, [left(a) + right(b) for a, b in pairs], left.target, coordinates=coordinates)
 
     def _proved(
-        self, algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, name: str | None = None
+        self,
+        algebra: LieAlgebra,
+        matrices: Sequence[Matrix],
+        size: int,
+        name: str | None = None,
+        coordinates: Coordinates = "real",
     ) -> Representation:
         """A representation whose identity the caller has proved; a comment there gives the reason."""
-        return Representation(algebra, matrices, size=size, name=name, check=False)
+        return Representation(algebra, matrices, size=size, name=name, coordinates=coordinates, check=False)
 
     def _require_same_algebra(self, other: Representation) -> None:
         if not isinstance(other, Representation):
@@ -822,6 +1098,14 @@ class Representation:
             return NotImplemented
         return self.algebra == other.algebra and self.matrices == other.matrices and self.size == other.size
 
+    def __hash__(self) -> int:
+        return hash((self.algebra, self.size, self.matrices))
+
     def __repr__(self) -> str:
         title = f"{self.name!r} " if self.name else ""
-        return f"<representation {title}of {self.algebra!r} on {self.field.name}^{self.size}>"
+        space = f"{self.field.name}^{self.size}"
+        if self.coordinates != "real":
+            n = self.complex_size or isqrt(self.size)
+            space += f" = C^{n}" if self.coordinates == "complex" else f", the Hermitian {n} x {n} matrices"
+        left_out = f"; dependent matrices left out: {', '.join(map(str, self.dropped))}" if self.dropped else ""
+        return f"<representation {title}of {self.algebra!r} on {space}{left_out}>"

@@ -144,21 +144,23 @@ def congruence_map(n: int) -> EntryMap:
 
 
 def hermitian_map(k: int) -> EntryMap:
-    """The map A -> (H -> A H - H A) on Hermitian k x k matrices.
+    """The map A -> (H -> A H + H A^*) on Hermitian k x k matrices.
 
     A and H are real (2k, 2k) matrices with blocks [x, -y; y, x]. The coordinates are H[i, i], and
     Re H[i, j], Im H[i, j] for i < j, in lexicographic order of (i, j).
+
+    For skew-Hermitian A this is the conjugation H -> A H - H A.
     """
     places = [(i, j, part) for i in range(k) for j in range(i, k) for part in range(1 + (i < j))]
     terms: list[Term] = []
     for column, (i, j, part) in enumerate(places):
         for s, t, v in _hermitian_entries(i, j, part):
             for row, (a, b, half) in enumerate(places):
-                # the coordinate is the entry (2a + half, 2b) of A H - H A
+                # the coordinate is the entry (2a + half, 2b) of A H + H A^T
                 if t == 2 * b:
                     terms.append(((row, column), (2 * a + half, s), v))
                 if s == 2 * a + half:
-                    terms.append(((row, column), (t, 2 * b), -v))
+                    terms.append(((row, column), (2 * b, t), v))
     return EntryMap(2 * k, len(places), terms)
 
 

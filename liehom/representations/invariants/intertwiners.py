@@ -21,6 +21,7 @@ from liehom.scalars.modular.modular_maps import intertwining_residues
 from liehom.scalars.modular.modular_span import rational_lifts
 
 BATCH = 8  # matrices in a random combination
+DRAWS = 20  # random vectors from which a seed vector is taken
 LIFTED_SIZE = 150  # from this number of unknowns e d on, residues are lifted
 MIXED = 3  # random combinations that replace more matrices
 ROW_ENTRIES = 8  # non-zero entries that a combination should have in each row
@@ -67,16 +68,21 @@ def intertwiners(
     rng = random.Random(7)
     for _ in range(3):
         conditions.append(words.condition(*_mixed(source, target, rng), rng))
-    for _ in range(10 * len(source) + 100):
+    before = e * words.seeds + 1
+    while True:
         unknown = over.stack_rows(conditions, e * words.seeds).null_space()
         candidates = [words.map(unknown.select(rows=[i])) for i in range(unknown.nrows)]
         failing = _first_failing(candidates, source, target)
         if failing is None:
             return candidates
         conditions = [over.stack_rows(conditions, e * words.seeds).row_space()]
-        # Each round uses a generator that some candidate violates, at several vectors.
-        conditions += [words.condition(source[failing], target[failing], rng) for _ in range(2)]
-    raise InternalError("intertwiners: the conditions did not settle")
+        # Each round uses a generator that some candidate violates, at random vectors as long as that leaves fewer
+        # candidates, else at a whole basis. No candidate violates a generator after the second, so the loop ends.
+        if unknown.nrows < before:
+            conditions += [words.condition(source[failing], target[failing], rng) for _ in range(2)]
+        else:
+            conditions += words.conditions(source[failing], target[failing])
+        before = unknown.nrows
 
 
 def _lifted(
@@ -181,6 +187,10 @@ class _WordBasis:
                 y, image = y + v.scale(c), image + m.scale(c)
         return self.value(a @ y) - b @ image
 
+    def conditions(self, a: ExactMatrix, b: ExactMatrix) -> list[ExactMatrix]:
+        """All linear conditions on t that T a = b T imposes: those at the basis vectors."""
+        return [self.value(a @ v) - b @ m for v, m in zip(self.vectors, self.images, strict=True)]
+
     def map(self, t: ExactMatrix) -> ExactMatrix:
         """The map T for a row t, shape (1, e * seeds)."""
         e = self.shape[0]
@@ -198,14 +208,7 @@ def _word_basis(
     words: list[tuple[int, int]] = []  # (generator, parent), or (-1, seed number)
     seeds = 0
     while len(vectors) < d:
-        start = over.matrix([[rng.randint(-3, 3) for _ in range(d)]]).T if seeds < 3 else None
-        if start is None:  # after three random seeds: unit vectors in turn
-            start = over.unit(d, seeds % d).T
-        if not _extends(vectors, start, d):
-            seeds_left = seeds >= 3
-            start = _any_outside(over, vectors, d) if seeds_left else start
-            if not _extends(vectors, start, d):
-                continue
+        start = _seed_vector(over, vectors, seeds, d, rng)
         frontier = [len(vectors)]
         vectors.append(start)
         words.append((-1, seeds))
@@ -229,9 +232,14 @@ def _extends(vectors: list[ExactMatrix], candidate: ExactMatrix, d: int) -> bool
     return int(_residues([*vectors, candidate], d).rank()) == len(vectors) + 1
 
 
-def _any_outside(over: Field, vectors: list[ExactMatrix], d: int) -> ExactMatrix:
-    pivots = set(pivot_columns(_residues(vectors, d)))
-    found: ExactMatrix = over.unit(d, next(j for j in range(d) if j not in pivots)).T
+def _seed_vector(over: Field, vectors: list[ExactMatrix], seeds: int, d: int, rng: random.Random) -> ExactMatrix:
+    """A vector outside the span of fewer than d vectors; random for the first three seeds if a draw succeeds."""
+    random_rows = ([[rng.randint(-3, 3) for _ in range(d)]] for _ in range(DRAWS))
+    candidates = (over.matrix(rows).T for rows in random_rows) if seeds < 3 else iter([over.unit(d, seeds % d).T])
+    found = next((start for start in candidates if _extends(vectors, start, d)), None)
+    if found is None:
+        pivots = set(pivot_columns(_residues(vectors, d))) if vectors else set()
+        found = over.unit(d, next(j for j in range(d) if j not in pivots)).T
     return found
 
 

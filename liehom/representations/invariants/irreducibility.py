@@ -2,9 +2,10 @@
 
 A linear Lie algebra L is irreducible over the reals if and only if (1) the ideal [R, L] is zero, R the radical of
 the trace form on L, which acts nilpotently, and (2) the commutant of L is a division algebra over the reals.  Proof of
-"if": [R, L] = 0 means that R is central, so R lies in the commutant.  An element A of R has tr A^2 = 0, which in a
-division algebra R, C or H forces A = 0.  Hence the trace form is nondegenerate, and L is reductive and acts completely
-reducibly.
+"if": let S be the solvable radical of L.  [S, L] acts as 0 on the composition factors, so it lies in R, which is
+central as [R, L] = 0.  So [S, L] lies in the commutant and is nilpotent, hence 0: L is reductive.  Its centre lies in
+the commutant, so it consists of semisimple operators, and L acts completely reducibly.  (The trace form may be
+degenerate: L = R (1 + J), J^2 = -1.)
 """
 
 from __future__ import annotations

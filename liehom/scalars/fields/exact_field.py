@@ -11,13 +11,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from math import gcd, lcm
-from typing import Any, ClassVar, final
+from typing import Any, final
 
 import flint
 import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import FieldError, ShapeError, SingularError
+from liehom.immutable import Immutable
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.scalars.fields.integer_matrices import (
     cancelled,
@@ -32,10 +33,9 @@ from liehom.scalars.fields.integer_matrices import (
 )
 from liehom.typing import ScalarLike
 
-# from this ratio of rows to columns on, independent rows are chosen modulo a prime
-MIN_TALL_RATIO = 2
-# from this size on, an integral inverse is guessed modulo a prime
-MIN_GUESSED_SIZE = 40
+MIN_TALL_RATIO = 2  # of rows to columns, from which independent rows are chosen modulo a prime
+MIN_GUESSED_SIZE = 40  # from which an integral inverse is guessed modulo a prime
+_set = object.__setattr__
 
 
 class ExactField(Field["ExactMatrix"]):
@@ -83,8 +83,7 @@ class ExactField(Field["ExactMatrix"]):
     def from_entries(self, entries: Sequence[Scalar], nrows: int, ncols: int) -> ExactMatrix:
         """The matrix of shape (nrows, ncols) with these field elements, row after row."""
         if self.degree == 1:
-            rationals: list[Any] = list(entries)
-            numerators, common = flint.fmpq_mat(nrows, ncols, rationals).numer_denom()
+            numerators, common = flint.fmpq_mat(nrows, ncols, list[Any](entries)).numer_denom()
             return ExactMatrix(self, (numerators,), int(common))
         parts = list(zip(*map(self.coordinates, entries), strict=True)) or [()] * self.degree
         split = [flint.fmpq_mat(nrows, ncols, list(part)).numer_denom() for part in parts]
@@ -101,8 +100,8 @@ class ExactField(Field["ExactMatrix"]):
         self, parts: Sequence[Sequence[int | flint.fmpz]], nrows: int, ncols: int, den: int = 1
     ) -> ExactMatrix:
         """The matrix with these integer coordinates, one list per power of the generator, over a common denominator."""
-        made = tuple(flint.fmpz_mat(nrows, ncols, p if isinstance(p, list) else list(p)) for p in parts)
-        return ExactMatrix(self, made, den).normalized()
+        made = (flint.fmpz_mat(nrows, ncols, p if isinstance(p, list) else list(p)) for p in parts)
+        return ExactMatrix(self, tuple(made), den).normalized()
 
     def from_integer_coordinates(self, coordinates: Sequence[int], den: int = 1) -> Scalar:
         """The element with these integer coordinates over a denominator."""
@@ -124,7 +123,7 @@ class ExactField(Field["ExactMatrix"]):
 
 
 @final
-class ExactMatrix(Matrix):
+class ExactMatrix(Matrix, Immutable):
     """A matrix over an exact field; made by ``field.matrix(rows)``.
 
     Examples
@@ -137,10 +136,14 @@ class ExactMatrix(Matrix):
 
     __slots__ = ("_field", "den", "parts")
 
+    _field: ExactField
+    parts: tuple[flint.fmpz_mat, ...]
+    den: int
+
     def __init__(self, field: ExactField, parts: tuple[flint.fmpz_mat, ...], den: int) -> None:
-        self._field = field
-        self.parts: tuple[flint.fmpz_mat, ...] = parts
-        self.den: int = den
+        _set(self, "_field", field)  # object's own method: matrices are made in inner loops
+        _set(self, "parts", parts)
+        _set(self, "den", den)
 
     # -- shape and entries -------------------------------------------------------------------------------
     @property
@@ -161,9 +164,8 @@ class ExactMatrix(Matrix):
             first = self.parts[0]
             whole = flint.fmpq_mat(first) / self.den if self.den != 1 else flint.fmpq_mat(first)
             return list(whole.entries())
-        columns = [a.entries() for a in self.parts]
-        den = self.den
-        return [self._field.from_coordinates([flint.fmpq(c, den) for c in x]) for x in zip(*columns, strict=True)]
+        columns = zip(*(a.entries() for a in self.parts), strict=True)
+        return [self._field.from_coordinates([flint.fmpq(c, self.den) for c in x]) for x in columns]
 
     def to_rows(self) -> list[list[Scalar]]:
         n, entries = self.ncols, self.entries()
@@ -181,9 +183,8 @@ class ExactMatrix(Matrix):
         rows = range(self.nrows) if rows is None else rows
         columns = range(n) if columns is None else columns
         if 8 * len(rows) * len(columns) < self.nrows * n:
-            parts = ([a[i, j] for i in rows for j in columns] for a in self.parts)
-            made = tuple(flint.fmpz_mat(len(rows), len(columns), part) for part in parts)
-            return ExactMatrix(self._field, made, self.den)
+            parts = [[a[i, j] for i in rows for j in columns] for a in self.parts]
+            return self._field.from_parts(parts, len(rows), len(columns), self.den)
         return self._rearranged([i * n + j for i in rows for j in columns], len(rows), len(columns))
 
     def reshape(self, nrows: int, ncols: int) -> ExactMatrix:
@@ -193,18 +194,14 @@ class ExactMatrix(Matrix):
     def split_rows(self, nrows: int, ncols: int) -> list[ExactMatrix]:
         size = nrows * ncols
         tables = [a.entries() for a in self.parts]
-        blocks = []
-        for i in range(self.nrows):
-            parts = tuple(flint.fmpz_mat(nrows, ncols, t[i * size : (i + 1) * size]) for t in tables)
-            blocks.append(ExactMatrix(self._field, parts, self.den))
-        return blocks
+        cuts = [slice(i * size, (i + 1) * size) for i in range(self.nrows)]
+        parts = (tuple(flint.fmpz_mat(nrows, ncols, t[cut]) for t in tables) for cut in cuts)
+        return [ExactMatrix(self._field, part, self.den) for part in parts]
 
     def _rearranged(self, places: list[int], nrows: int, ncols: int) -> ExactMatrix:
-        parts = []
-        for a in self.parts:
-            e = a.entries()
-            parts.append(flint.fmpz_mat(nrows, ncols, [e[x] for x in places]))
-        return ExactMatrix(self._field, tuple(parts), self.den)
+        tables = [a.entries() for a in self.parts]
+        parts = tuple(flint.fmpz_mat(nrows, ncols, [t[x] for x in places]) for t in tables)
+        return ExactMatrix(self._field, parts, self.den)
 
     def normalized(self) -> ExactMatrix:
         """The matrix with its common denominator made as small as possible."""
@@ -230,7 +227,9 @@ class ExactMatrix(Matrix):
             return False
         return all(a * other.den == b * self.den for a, b in zip(self.parts, other.parts, strict=True))
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        parts, den = cancelled(self.parts, self.den)
+        return hash((self._field, self.shape, int(den), tuple(x for a in parts for x in a.entries())))
 
     def __repr__(self) -> str:
         return f"<matrix {self.nrows} x {self.ncols} over {self._field.name}>"
@@ -244,35 +243,52 @@ class ExactMatrix(Matrix):
         return ExactMatrix(self._field, tuple(a.transpose() for a in self.parts), self.den)
 
     def _combined(self, other: ExactMatrix, sign: int) -> ExactMatrix:
-        if self.den == other.den:
-            pairs = zip(self.parts, other.parts, strict=True)
-            return ExactMatrix(self._field, tuple(a + b if sign > 0 else a - b for a, b in pairs), self.den)
-        den = lcm(self.den, other.den)
-        left, right = den // self.den, sign * (den // other.den)
+        if self._field is not other._field:
+            self._require_field(other)
+        den, left, right = self.den, 1, sign
+        if den != other.den:
+            den = lcm(den, other.den)
+            left, right = den // self.den, sign * (den // other.den)
         pairs = zip(self.parts, other.parts, strict=True)
-        return ExactMatrix(self._field, tuple(a * left + b * right for a, b in pairs), den)
+        try:
+            if left == 1 and abs(right) == 1:
+                return ExactMatrix(self._field, tuple(a + b if right == 1 else a - b for a, b in pairs), den)
+            return ExactMatrix(self._field, tuple(a * left + b * right for a, b in pairs), den)
+        except ValueError:
+            raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not add") from None
 
     def __add__(self, other: ExactMatrix) -> ExactMatrix:
-        return self._combined(other, 1)
+        return self._combined(other, 1) if isinstance(other, ExactMatrix) else self.__radd__(other)
 
     def __sub__(self, other: ExactMatrix) -> ExactMatrix:
-        return self._combined(other, -1)
+        return self._combined(other, -1) if isinstance(other, ExactMatrix) else self.__radd__(other)
 
     def __neg__(self) -> ExactMatrix:
         return ExactMatrix(self._field, tuple(-a for a in self.parts), self.den)
 
+    def _require_field(self, other: ExactMatrix) -> None:
+        if self._field != other._field:
+            raise FieldError(f"matrices over {self._field.name} and {other._field.name}; convert one by field.read()")
+
     def __matmul__(self, other: ExactMatrix) -> ExactMatrix:
+        if not isinstance(other, ExactMatrix):
+            return NotImplemented
+        if self._field is not other._field:
+            self._require_field(other)
         if self.ncols != other.nrows:
             raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not multiply")
         den = self.den * other.den
         if self._field.degree == 1:
             return ExactMatrix(self._field, (self.parts[0] * other.parts[0],), den).normalized()
-        m = self._field.degree
-        powers: list[Any] = [None] * (2 * m - 1)
+        return ExactMatrix(self._field, self._convolved(other.parts), den).normalized()
+
+    def _convolved(self, factors: Sequence[Any]) -> tuple[flint.fmpz_mat, ...]:
+        """Parts of the product with an element or a matrix that has the given integer coordinates."""
+        powers: list[Any] = [None] * (2 * self._field.degree - 1)
         for s, a in enumerate(self.parts):
-            for t, b in enumerate(other.parts):
+            for t, b in enumerate(factors):
                 powers[s + t] = a * b if powers[s + t] is None else powers[s + t] + a * b
-        return ExactMatrix(self._field, self._reduced(powers), den).normalized()
+        return self._reduced(powers)
 
     def _reduced(self, powers: list[flint.fmpz_mat]) -> tuple[flint.fmpz_mat, ...]:
         """Coefficient matrices of b^0 .. b^(m-1), from those of b^0 .. b^(2m-2)."""
@@ -286,18 +302,9 @@ class ExactMatrix(Matrix):
 
     def scale(self, factor: ScalarLike) -> ExactMatrix:
         coordinates = self._field.coordinates(self._field.convert(factor))
-        if self._field.degree == 1:
-            by = coordinates[0]
-            return ExactMatrix(self._field, (self.parts[0] * by.p,), self.den * int(by.q)).normalized()
         den = lcm(*(int(c.q) for c in coordinates))
         integers = [int(c.p) * (den // int(c.q)) for c in coordinates]
-        m = self._field.degree
-        powers = [flint.fmpz_mat(*self.shape) for _ in range(2 * m - 1)]
-        for s, a in enumerate(self.parts):
-            for t, c in enumerate(integers):
-                if c:
-                    powers[s + t] = powers[s + t] + a * c
-        return ExactMatrix(self._field, self._reduced(powers), self.den * den).normalized()
+        return ExactMatrix(self._field, self._convolved(integers), self.den * den).normalized()
 
     def is_zero(self) -> bool:
         return all(a.is_zero() for a in self.parts)
@@ -328,9 +335,7 @@ class ExactMatrix(Matrix):
         if 0 in self.shape:
             return 0
         lower = int(self.modulo().rank())
-        if lower == min(self.shape):
-            return lower
-        return int(self._restricted().rank()) // self._field.degree
+        return lower if lower == min(self.shape) else int(self._restricted().rank()) // self._field.degree
 
     def echelon(self) -> tuple[ExactMatrix, list[int]]:
         """The non-zero rows of the reduced row echelon form, and the list of pivot columns."""
@@ -355,17 +360,15 @@ class ExactMatrix(Matrix):
         if rank == self.ncols:  # independent modulo a prime, so independent
             return self._field.identity(self.ncols), list(range(self.ncols))
         reduced, pivots = self.select(rows=rows).echelon()
-        if self.select(columns=pivots) @ reduced != self:
-            return None
-        return reduced, pivots
+        return (reduced, pivots) if self.select(columns=pivots) @ reduced == self else None
 
     def row_space(self) -> ExactMatrix:
         return self.echelon()[0]
 
     def null_space(self) -> ExactMatrix:
         reduced, pivots = self.echelon()
-        parts = (kernel_rows(a, pivots, 0 if s else reduced.den) for s, a in enumerate(reduced.parts))
-        return ExactMatrix(self._field, tuple(parts), reduced.den).normalized()
+        parts = tuple(kernel_rows(a, pivots, 0 if s else reduced.den) for s, a in enumerate(reduced.parts))
+        return ExactMatrix(self._field, parts, reduced.den).normalized()
 
     def solve(self, right: ExactMatrix) -> ExactMatrix:
         if right.nrows != self.nrows:
@@ -381,8 +384,7 @@ class ExactMatrix(Matrix):
         placed = self._field.zeros(n, len(pivots)).T.to_rows()
         for i, pivot in enumerate(pivots):
             placed[i][pivot] = self._field.one
-        spread: ExactMatrix = self._field.matrix(placed, (len(pivots), n)).T @ solution
-        return spread
+        return self._field.matrix(placed, (len(pivots), n)).T @ solution
 
     def inverse(self) -> ExactMatrix:
         n = self.nrows
@@ -392,15 +394,12 @@ class ExactMatrix(Matrix):
             guess = self._integral_inverse()
             if guess is not None:
                 return guess
-        if self._field.degree == 1 and n:
-            try:
-                numerators, den = (flint.fmpq_mat(self.parts[0]).inv() * self.den).numer_denom()
-            except ZeroDivisionError:
-                raise SingularError("the matrix is singular") from None
-            return ExactMatrix(self._field, (numerators,), int(den))
         if self.rank() < n:
             raise SingularError("the matrix is singular")
-        return self.solve(self._field.identity(n))
+        if self._field.degree > 1 or not n:
+            return self.solve(self._field.identity(n))
+        numerators, den = (flint.fmpq_mat(self.parts[0]).inv() * self.den).numer_denom()
+        return ExactMatrix(self._field, (numerators,), int(den))
 
     def _integral_inverse(self) -> ExactMatrix | None:
         """The inverse, guessed modulo a prime and verified, or None; it succeeds for unimodular numerators."""

@@ -8,7 +8,7 @@ field. The algebra of liehom is written once over these two. QQ and the real num
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeAlias
 
 import numpy as np
@@ -73,7 +73,10 @@ def rows_of(rows: MatrixLike) -> list[list[Any]]:
 class Matrix(ABC):
     """An immutable matrix over a field: the interface of exact and numerical matrices.
 
-    Vectors are rows: a subspace is given by the rows of a matrix, and ``null_space`` returns rows.
+    Vectors are rows: a subspace is given by the rows of a matrix, and ``null_space`` returns rows. Iteration gives the
+    rows as lists, ``len`` their number, and ``numpy.asarray`` an array of shape (nrows, ncols): of exact numbers as
+    objects, or of floats with ``dtype=float``. ``2 * A``, ``A / 3`` and ``sum([A, B])`` are matrices; ``A @ B`` is the
+    matrix product.
 
     Examples
     --------
@@ -81,9 +84,12 @@ class Matrix(ABC):
     >>> A = QQ.matrix([[1, 2], [2, 4]])
     >>> A.rank(), A.null_space().to_strings()
     (1, [['-2', '1']])
+    >>> [sum(row) for row in A], np.asarray(A / 2).tolist(), sum([A, 3 * A]) == A * 4
+    ([3, 6], [[1/2, 1], [1, 2]], True)
     """
 
     __slots__ = ()
+    __array_ufunc__ = None  # the operators of numpy's arrays and numbers leave a matrix to its own operators
 
     # -- shape and entries -------------------------------------------------------------------------------
     @property
@@ -112,6 +118,25 @@ class Matrix(ABC):
     @abstractmethod
     def to_rows(self) -> list[list[Scalar]]:
         """List of rows, each a list of field elements."""
+
+    def __len__(self) -> int:
+        return self.nrows
+
+    def __iter__(self) -> Iterator[list[Scalar]]:
+        return iter(self.to_rows())
+
+    def __array__(self, dtype: npt.DTypeLike = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        """What ``numpy.asarray(matrix)`` returns: exact numbers as objects, floats for a float or complex dtype."""
+        if copy is False:
+            raise ValueError(f"an array of {self!r} is always a copy; use numpy.asarray without copy=False")
+        wanted = np.dtype(dtype if dtype is not None else object if self.field.exact else np.float64)
+        if wanted.kind in "fc" or not self.field.exact:
+            return self.to_numpy().astype(wanted)
+        made: npt.NDArray[Any] = np.empty(self.shape, dtype=object)
+        made.reshape(-1)[:] = self.entries()
+        if wanted.kind in "iu" and any(x != int(x) for x in made.flat):
+            raise FieldError(f"{self!r} has entries that are not integers; use numpy.asarray(matrix, dtype=float)")
+        return made.astype(wanted)
 
     def to_strings(self) -> list[list[str]]:
         """List of rows of strings in the grammar of values, as in JSON files."""
@@ -148,6 +173,20 @@ class Matrix(ABC):
 
     @abstractmethod
     def __matmul__(self, other: Self) -> Self: ...
+
+    def __radd__(self, other: int) -> Self:
+        # sum(matrices) begins with 0
+        return self if isinstance(other, int) and other == 0 else NotImplemented
+
+    def __mul__(self, factor: ScalarLike) -> Self:
+        if isinstance(factor, (Matrix, np.ndarray, Sequence)):
+            raise TypeError(f"* multiplies a matrix by a number, @ by a matrix over the same field; got {factor!r}")
+        return self.scale(factor)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: ScalarLike) -> Self:
+        return self * (self.field.one / self.field.convert(divisor))
 
     @abstractmethod
     def scale(self, factor: ScalarLike) -> Self:

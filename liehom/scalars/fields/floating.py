@@ -12,12 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, final
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import FieldError, ShapeError, SingularError, UndecidedError
+from liehom.immutable import Immutable
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.typing import Array, ScalarLike
 
@@ -114,7 +115,7 @@ def _require_range(norm: float) -> None:
 
 
 @final
-class FloatField(Field["FloatMatrix"]):
+class FloatField(Field["FloatMatrix"], Immutable):
     """The field float64 with the relative accuracy of data.
 
     Parameters
@@ -218,7 +219,7 @@ class FloatField(Field["FloatMatrix"]):
 
 
 @final
-class FloatMatrix(Matrix):
+class FloatMatrix(Matrix, Immutable):
     """A float64 matrix with a bound on its uncertainty, constructed by ``FloatField().matrix(rows)``.
 
     Parameters
@@ -314,23 +315,30 @@ class FloatMatrix(Matrix):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, FloatMatrix) and np.array_equal(self.array, other.array)
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((self.shape, tuple((self.array + 0.0).ravel().tolist())))  # -0.0 + 0.0 is 0.0
 
     @property
     def T(self) -> FloatMatrix:
         return self._made(self.array.T, self.error, self._spectral)
 
     def __add__(self, other: FloatMatrix) -> FloatMatrix:
+        if not isinstance(other, FloatMatrix):
+            return self.__radd__(other)
         _require_range(max(self._norm + other._norm, SMALLEST * 2))
         return self._made(self.array + other.array, self.error + other.error)
 
     def __sub__(self, other: FloatMatrix) -> FloatMatrix:
+        if not isinstance(other, FloatMatrix):
+            return self.__radd__(other)
         return self + -other
 
     def __neg__(self) -> FloatMatrix:
         return self._made(-self.array, self.error, self._spectral)
 
     def __matmul__(self, other: FloatMatrix) -> FloatMatrix:
+        if not isinstance(other, FloatMatrix):
+            return NotImplemented
         if self.ncols != other.nrows:
             raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not multiply")
         _require_range(self._norm * other._norm if self._norm and other._norm else 1.0)

@@ -15,6 +15,7 @@ from typing import Any, final
 import flint
 
 from liehom.errors import FieldError
+from liehom.immutable import Immutable
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
 from liehom.scalars.fields.exact_field import ExactField
@@ -24,11 +25,12 @@ from liehom.scalars.fields.rational import QQ, ExactNumber, prime, rational_from
 from liehom.typing import ScalarLike
 
 MAX_PRECISION = 1 << 22
+_set = object.__setattr__
 _SYMBOL = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]*|sqrt\([0-9]+\)", re.ASCII)
 
 
 @final
-class NumberField(ExactField):
+class NumberField(ExactField, Immutable):
     """A real number field QQ(a), a the root of an irreducible polynomial in an isolating interval.
 
     Parameters
@@ -286,7 +288,7 @@ class NumberField(ExactField):
 
 
 @final
-class AlgebraicNumber(ExactNumber):
+class AlgebraicNumber(ExactNumber, Immutable):
     """An element of a real number field, constructed by arithmetic or ``field.convert``.
 
     Comparisons are those of the real embedding of the field.
@@ -301,9 +303,12 @@ class AlgebraicNumber(ExactNumber):
 
     __slots__ = ("field", "polynomial")
 
+    field: NumberField
+    polynomial: flint.fmpq_poly
+
     def __init__(self, field: NumberField, polynomial: flint.fmpq_poly) -> None:
-        self.field: NumberField = field
-        self.polynomial: flint.fmpq_poly = polynomial
+        _set(self, "field", field)  # object's own method: numbers are made in inner loops
+        _set(self, "polynomial", polynomial)
 
     @property
     def coordinates(self) -> list[flint.fmpq]:
@@ -378,14 +383,15 @@ class AlgebraicNumber(ExactNumber):
         return result
 
     def __eq__(self, other: object) -> bool:
-        right = self._operand(other)
+        right = None if isinstance(other, str) else self._operand(other)  # a string hashes otherwise
         return NotImplemented if right is None else bool(self.polynomial == right)
 
     def __abs__(self) -> AlgebraicNumber:
         return self if self.field.sign(self) >= 0 else -self
 
     def __hash__(self) -> int:
-        return hash(tuple((int(c.p), int(c.q)) for c in self.coordinates))
+        rational = self.rational()  # equal to a rational number, so hash like it
+        return hash(tuple(self.coordinates) if rational is None else rational)
 
     def __lt__(self, other: ScalarLike) -> bool:
         return self.field.sign(self - other) < 0

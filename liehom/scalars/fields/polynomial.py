@@ -14,6 +14,7 @@ from typing import TypeAlias, final
 import flint
 
 from liehom.errors import FieldError, InternalError
+from liehom.immutable import Immutable
 from liehom.scalars.fields.exact_field import ExactField
 from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.rational import QQ
@@ -24,7 +25,7 @@ RootCounter: TypeAlias = Callable[[ScalarLike | None, ScalarLike | None], int]
 
 
 @final
-class Polynomial:
+class Polynomial(Immutable):
     """A polynomial over an exact field; coefficients ascending, no leading zeros, zero is the empty tuple.
 
     Examples

@@ -5,6 +5,8 @@ Balls only choose cuts and intervals. The roots on each side of a cut are then c
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -83,18 +85,44 @@ def bounds(ball: flint.arb) -> tuple[flint.fmpq, flint.fmpq]:
     return middle - radius, middle + radius
 
 
+def gaps_between(intervals: Iterable[tuple[ScalarLike, ScalarLike]]) -> list[tuple[flint.fmpq, flint.fmpq]]:
+    """Open intervals between closed intervals with rational ends, from left to right.
+
+    Examples
+    --------
+    >>> gaps_between([(4, 5), (0, 1), (1, 2)])
+    [(2, 4)]
+    """
+    ordered = sorted((QQ.convert(low), QQ.convert(high)) for low, high in intervals)
+    gaps, reach = [], ordered[0][1]
+    for low, high in ordered[1:]:
+        if low > reach:
+            gaps.append((reach, low))
+        reach = max(reach, high)
+    return gaps
+
+
+def rationals_inside(low: flint.fmpq, high: flint.fmpq, count: int) -> Iterator[flint.fmpq]:
+    """`count` simple rational numbers in the middle three quarters of an interval, those near its middle first.
+
+    A cut fails if two roots are symmetric about it, so a larger count than the number of pairs always succeeds.
+
+    Examples
+    --------
+    >>> list(rationals_inside(QQ.convert(0), QQ.convert(8), 3))
+    [4, 2, 6]
+    """
+    start, width = low + (high - low) / 8, (high - low) * 3 / (4 * count)
+    for number in sorted(range(count), key=lambda i: abs(2 * i - count + 1)):
+        yield simplest_between(start + width * number, start + width * (number + 1))
+
+
 def cuts_between(balls: list[flint.arb]) -> list[flint.fmpq]:
     """Simple rational numbers in the gaps between consecutive disjoint real balls, widest gaps first."""
-    intervals = sorted((bounds(b) for b in balls), key=lambda pair: pair[0])
-    gaps = []
-    reach = intervals[0][1]
-    for low, high in intervals[1:]:
-        if low > reach:
-            # stay inside the middle half of the gap, so that the cut is robust
-            quarter = (low - reach) / 4
-            gaps.append((low - reach, simplest_between(reach + quarter, low - quarter)))
-        reach = max(reach, high)
-    return [cut for _, cut in sorted(gaps, key=lambda pair: pair[0], reverse=True)]
+    gaps = gaps_between(bounds(ball) for ball in balls)
+    # the middle half of a gap, so that the cut is robust
+    middle = [(high - low, low + (high - low) / 4, high - (high - low) / 4) for low, high in gaps]
+    return [simplest_between(low, high) for _, low, high in sorted(middle, key=lambda gap: gap[0], reverse=True)]
 
 
 def largest_real_root_interval(f: Polynomial) -> tuple[flint.fmpq, flint.fmpq]:
@@ -134,17 +162,38 @@ def largest_real_root_interval(f: Polynomial) -> tuple[flint.fmpq, flint.fmpq]:
 
 
 def real_part_cut(f: Polynomial) -> flint.fmpq | None:
-    """A rational number strictly between two different real parts of roots, or None if none is found.
+    """A rational number strictly between two different real parts of roots, or None if all real parts are equal.
 
-    It is proved that 0 < number of roots with larger real part < degree.
+    It is proved that 0 < number of roots with larger real part < degree. The precision and the number of cuts grow
+    until a cut is found, unless all roots are proved to lie on one line Re = c.
+
+    Parameters
+    ----------
+    f : Polynomial
+        Squarefree, of degree at least 1.
     """
-    for precision in (64, 128, 256):
-        parts = [r.real for r in complex_root_balls(f, precision)]
-        for cut in cuts_between(parts):
-            for shift in (0, flint.fmpq(1, 97), flint.fmpq(-1, 89)):
-                if 0 < count_or_none(f, cut + shift) < f.degree:
-                    return cut + shift
+    for attempt in itertools.count(1):
+        parts = [r.real for r in complex_root_balls(f, 32 << attempt)]
+        cuts = [cut + shift for cut in cuts_between(parts) for shift in (0, flint.fmpq(1, 97), flint.fmpq(-1, 89))]
+        for low, high in gaps_between(map(bounds, parts)):
+            cuts += rationals_inside(low, high, 4 * attempt)
+        found = next((cut for cut in cuts if 0 < count_or_none(f, cut) < f.degree), None)
+        if found is not None or (attempt == 1 and _on_one_line(f)):
+            return found
     return None
+
+
+def _on_one_line(f: Polynomial) -> bool:
+    """Whether the roots of a squarefree polynomial of degree at least 1 have equal real parts.
+
+    The centred polynomial is then t^e G(t^2), e = 0 or 1, where all roots of G are real and negative.
+    """
+    centred = f.shifted(-f.coefficients[-2] / (f.coefficients[-1] * f.degree)).coefficients
+    odd = f.degree % 2
+    if any(c != 0 for c in centred[1 - odd :: 2]):
+        return False
+    squares = Polynomial(f.field, centred[odd::2])
+    return squares.count_real_roots(None, 0) == squares.degree
 
 
 def count_or_none(f: Polynomial, cut: ScalarLike) -> int:

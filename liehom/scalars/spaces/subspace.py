@@ -6,16 +6,17 @@ orthonormal. Vectors are rows.
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, final
+from typing import Any, final
 
 from liehom.errors import ShapeError
+from liehom.immutable import Immutable
 from liehom.scalars.fields.exact_field import as_exact
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.typing import VectorLike
 
 
 @final
-class Subspace:
+class Subspace(Immutable):
     """The span of rows in K^n, with a canonical basis.
 
     Parameters
@@ -114,13 +115,15 @@ class Subspace:
         return lift, whole.inverse().select(columns=range(len(indices)))
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Subspace) or self.ambient != other.ambient:
+        if not isinstance(other, Subspace) or self.ambient != other.ambient or self.dimension != other.dimension:
             return False
-        if self.field.exact:
+        if self.field.exact or other.field.exact:
             return bool(self.basis == other.basis)
-        return self.dimension == other.dimension and self.includes(other)
+        return self.includes(other)
 
-    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        # over floats, equal subspaces have different bases
+        return hash((self.ambient, self.basis if self.field.exact else self.dimension))
 
     def rows(self) -> list[list[Scalar]]:
         """List of the rows of the canonical basis, each a list of field elements."""

@@ -192,3 +192,38 @@ def test_generating_matrices_have_the_same_commutant() -> None:
         [[[int(i == j == k) for j in range(60)] for i in range(60)] for k in range(6)]
     )
     assert generating_matrices(abelian) is abelian.matrices
+
+
+class AlwaysTheSame(random.Random):
+    """A generator without any chance: its random vectors are 0 or all equal, its combinations of matrices the same."""
+
+    value = 0
+
+    def randint(self, a: int, b: int) -> int:
+        return self.value
+
+    def choice(self, seq: Any) -> Any:
+        return seq[0]
+
+    def sample(self, population: Any, k: int, *, counts: Any = None) -> list[Any]:
+        return list(population)[:k]
+
+    def shuffle(self, x: Any) -> None:
+        pass
+
+
+@pytest.mark.parametrize("value", [0, 1])
+def test_unlucky_random_vectors_and_combinations_change_nothing(value: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AlwaysTheSame, "value", value)
+    names = ["affine(S3(gl(2)))", "affine(so(4))", "affine(sl(2,C))", "affine(upper(3))", "affine(copies(2,sl(3)))"]
+    for field in (QQ, ROOT2):
+        for name in names:
+            maps = [field.matrix(a.to_rows()) for a in lh.pair(name).isotropy_matrices()]
+            size = maps[0].nrows
+            duals = [-a.T for a in maps]
+            with monkeypatch.context() as patch:
+                patch.setattr(module.random, "Random", AlwaysTheSame)
+                found = intertwiners(maps, maps, (size, size), field), intertwiners(maps, duals, (size, size), field)
+            for target, basis in zip((maps, duals), found, strict=True):
+                assert all(t @ a == b @ t for t in basis for a, b in zip(maps, target, strict=True))
+                assert len(basis) == kernel_dimension(maps, target, size, size)
