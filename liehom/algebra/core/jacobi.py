@@ -23,6 +23,7 @@ from liehom.algebra.core.jacobi_by_generators import (
     failure_modulo_primes,
     products_fit,
 )
+from liehom.algebra.core.jacobi_over_floats import failure_over_floats
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import JacobiError
 from liehom.scalars import FloatField, Scalar
@@ -50,13 +51,15 @@ def prove_jacobi(table: StructureConstants, names: tuple[str, ...]) -> None:
     Raises
     ------
     JacobiError
-        If the identity fails; names i, j, k and the value of the cyclic sum. Over floats the sum counts as non-zero
-        if it exceeds the field's rtol times the square of the largest constant.
+        If the identity fails; names i, j, k and the value of the cyclic sum. Over floats the norm of all cyclic sums
+        is compared with their uncertainty (`jacobi_over_floats`).
     """
     if not len(table):
         return
     if isinstance(table.field, FloatField):
-        _check_float(table, table.field.rtol, names)
+        found = failure_over_floats(table)
+        if found is not None:
+            _fail(table, *found, names)
         return
     n, terms = table.dimension, table.jacobi_terms()
     over_rationals = len(table.parts) == 1
@@ -171,16 +174,3 @@ def _first_in(table: StructureConstants, pair: tuple[int, int] | None) -> Triple
     others = (k for k in range(n) if k not in (i, j) and _cyclic_sum(brackets, zero, i, j, k))
     a, b, c = sorted((i, j, next(others)))  # x is a combination of basis elements, so one of them fails
     return a, b, c
-
-
-def _check_float(table: StructureConstants, rtol: float, names: tuple[str, ...]) -> None:
-    n = table.dimension
-    c = table.dense().to_numpy().reshape(n, n, n)
-    double = np.einsum("ijl,lkm->ijkm", c, c, optimize=True)
-    cyclic = double + np.einsum("jkim->ijkm", double) + np.einsum("kijm->ijkm", double)
-    size = np.abs(cyclic).max(axis=3)
-    bound = rtol * max(1.0, float(np.abs(c).max())) ** 2
-    if size.max() > bound:
-        i, j, k = (int(x) for x in sorted(np.unravel_index(int(size.argmax()), size.shape)))
-        value = {m: v for m, v in enumerate(cyclic[i, j, k].tolist()) if abs(v) > bound}
-        _fail(table, (i, j, k), value, names)

@@ -7,6 +7,7 @@ dense flint product and sparse integer products that cannot overflow.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from math import gcd, lcm
 from typing import Any, TypeVar, cast, final
@@ -16,12 +17,14 @@ import numpy as np
 from liehom.immutable import Immutable
 from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
+from liehom.scalars.fields.floating import norm_of
 from liehom.scalars.spaces.sparse import SparseInteger
-from liehom.typing import IntegerArray
+from liehom.typing import Array, IntegerArray
 
 M = TypeVar("M", bound=Matrix)
 
 DENSE_DIMENSION = 64  # up to this dimension one dense product is faster than sparse ones, whatever the table
+NEGLIGIBLE = 1e-3  # fraction of the error up to which all dropped entries of a computed table add up
 LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries are contracted densely
 
 
@@ -35,16 +38,23 @@ class StructureConstants(Immutable):
     dimension : int
     entries : iterable of (i, j, k, value)
         Each position once, i < j, values non-zero elements of the field.
+
+    Attributes
+    ----------
+    error : float
+        Over floats a bound on the uncertainty of the table, as of the `FloatMatrix` of all c[i, j, k]; 0 over an
+        exact field.
     """
 
     den: int
+    error: float
     field: Field[Any]
     i: IntegerArray
     j: IntegerArray
     k: IntegerArray
     parts: tuple[Sequence[int], ...]
 
-    __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "field", "i", "j", "k", "parts")
+    __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "error", "field", "i", "j", "k", "parts")
 
     def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
         ordered = sorted(entries, key=lambda e: e[:3])
@@ -57,6 +67,7 @@ class StructureConstants(Immutable):
         self.parts: tuple[Any, ...]
         self.den: int
         self.parts, self.den = _integers(field, [e[3] for e in ordered])
+        self.error = self._error_of_data()
         self._dense: Matrix | None = None
         self._flat: Matrix | None = None
         self._sparse: SparseInteger | None = None
@@ -85,12 +96,57 @@ class StructureConstants(Immutable):
         made.parts = (first, *([0] * len(order) for _ in range(field.degree - 1)))
         made.den = den // common
         made._dense = made._flat = made._sparse = None
+        made.error = 0.0
         return made
+
+    @classmethod
+    def from_array(cls, field: FloatField, constants: Array, error: float | None = None) -> StructureConstants:
+        """The table over floats with the entries c[i, j, k], i < j, of an array of shape (n, n, n).
+
+        Parameters
+        ----------
+        field : FloatField
+        constants : ndarray
+        error : float, optional
+            The uncertainty of a computed array; entries that are negligible against it are dropped. By default the
+            array is data.
+        """
+        n = len(constants)
+        made = cls.__new__(cls)
+        made.field, made.dimension, made.den = field, n, 1
+        negligible = 0.0 if error is None else NEGLIGIBLE * error / max(n, 1) ** 1.5
+        upper = np.abs(constants) > negligible
+        upper &= np.triu(np.ones((n, n), dtype=bool), 1)[:, :, None]
+        made.i, made.j, made.k = np.nonzero(upper)
+        made.parts = (constants[upper],)
+        made.error = made._error_of_data() if error is None else error
+        made._dense = made._flat = made._sparse = None
+        return made
+
+    def __setstate__(self, state: tuple[None, dict[str, Any]]) -> None:
+        for name, value in state[1].items():
+            setattr(self, name, value)
+        if "error" not in state[1]:  # 0.1.0 wrote none
+            self.error = self._error_of_data()
+
+    def _error_of_data(self) -> float:
+        return self.field.rtol * self.norm() if isinstance(self.field, FloatField) else 0.0
+
+    def norm(self) -> float:
+        """Frobenius norm of all c[i, j, k] of a table over floats."""
+        return math.sqrt(2) * norm_of(np.asarray(self.parts[0], dtype=np.float64))
+
+    def is_zero(self) -> bool:
+        """Whether all brackets vanish; over floats, whether the norm of the table is within its error."""
+        return self.norm() <= self.error if isinstance(self.field, FloatField) else len(self) == 0
 
     @classmethod
     def from_blocks(cls, field: Field, n: int, blocks: Sequence[Any]) -> StructureConstants:
         """The table with [e_i, e_j] = row j of block i, a list of n matrices (n, n) known to be antisymmetric."""
-        if field.degree == 1 and field.exact:
+        if isinstance(field, FloatField):
+            array = np.array([block.array for block in blocks]).reshape(n, n, n)
+            return cls.from_array(field, array, math.hypot(*(block.error for block in blocks)))
+        if field.degree == 1:
             return cls._from_rational_blocks(field, n, blocks)
         entries, zero = [], field.zero
         for i, block in enumerate(blocks):
@@ -184,7 +240,7 @@ class StructureConstants(Immutable):
         if isinstance(self.field, FloatField):
             array = np.zeros(n**3)
             array[forward], array[backward] = self.parts[0], -np.array(self.parts[0])
-            return FloatMatrix(self.field, array.reshape(nrows, ncols))
+            return FloatMatrix(self.field, array.reshape(nrows, ncols), self.error)
         return _dense_exact(
             _exact(self.field), (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den
         )
@@ -245,8 +301,10 @@ class StructureConstants(Immutable):
         n, p, q, r = self.dimension, left.nrows, right.nrows, out.ncols
         if p == 0 or q == 0 or r == 0 or n == 0:
             return [self.field.zeros(q, r) for _ in range(p)]
+        if isinstance(left, FloatMatrix):
+            return cast(list[M], self._contract_floats(left, right, out).reshape(p, q * r).split_rows(q, r))
         if self.is_dense() or self.field.degree > 1:
-            if self.field.exact and self.field.degree == 1:
+            if self.field.degree == 1:
                 return self._contract_rational(left, right, out)
             one, flat = self.field.identity(n), cast(M, self.flat())
             blocks = (flat if left == one else left @ flat).split_rows(n, n)
@@ -256,6 +314,19 @@ class StructureConstants(Immutable):
         product = self._contract_sparse(left, right, out)
         dense: list[Any] = product.dense_blocks(_exact(self.field), p, q, r)
         return dense
+
+    def _contract_floats(self, left: FloatMatrix, right: Any, out: Any) -> FloatMatrix:
+        """All rows [left_a, right_b] @ out, shape (p * q, r), with one error for the whole."""
+        n, p, q = self.dimension, left.nrows, right.nrows
+        one = self.field.identity(n)
+        made: Any = self.flat()
+        if left != one:
+            made = left @ made
+        if right != one:
+            made = right @ made.regroup(p, n, n)
+            made = made.regroup(q, p, n)
+        made = made.reshape(p * q, n)
+        return made if out == one else made @ out
 
     def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
         """`contract` for a dense table over QQ: numerators are multiplied, denominators reduced once."""
@@ -273,14 +344,20 @@ class StructureConstants(Immutable):
         return made
 
     def first_nonzero(self, left: Matrix, right: Matrix, out: Matrix) -> tuple[int, int] | None:
-        """The first (a, b) with [left_a, right_b] @ out not zero, or None, which proves that all vanish."""
+        """The first (a, b) with [left_a, right_b] @ out not zero, or None, which proves that all vanish.
+
+        Over floats None says that all together are within the error, and the pair is the one with the largest row.
+        """
         if min(left.nrows, right.nrows, out.ncols, self.dimension) == 0:
             return None
+        if isinstance(left, FloatMatrix):
+            rows = self._contract_floats(left, right, out)
+            largest = int(np.linalg.norm(rows.array, axis=1).argmax())
+            return None if rows.is_zero() else (largest // right.nrows, largest % right.nrows)
         if self.is_dense() or self.field.degree > 1:
             for a, block in enumerate(self.contract(left, right, out)):
                 if not block.is_zero():
-                    rows = [b for b in range(block.nrows) if not block.select(rows=[b]).is_zero()]
-                    return a, rows[0]
+                    return a, next(b for b in range(block.nrows) if not block.select(rows=[b]).is_zero())
             return None
         product = self._contract_sparse(left, right, out)
         found = product.first_entry()
@@ -290,15 +367,21 @@ class StructureConstants(Immutable):
         return column // out.ncols, row
 
     def changed(self, rows: Matrix, inverse: Matrix) -> StructureConstants:
-        """The table in the basis given by the rows (n, n) of an invertible matrix and its inverse."""
-        n = self.dimension
+        """The table in the basis given by rows (p, n) and functionals (n, p) that read coordinates in it.
+
+        For an invertible matrix of rows these are its inverse. Fewer rows give a subalgebra or a quotient.
+        """
+        n, p = self.dimension, rows.nrows
+        if isinstance(rows, FloatMatrix):
+            made = self._contract_floats(rows, rows, inverse) if p else rows
+            return StructureConstants.from_array(rows.field, made.array.reshape(p, p, p), made.error)
         if n and not self.is_dense() and self.field.degree == 1:
             product = self._contract_sparse(rows, rows, inverse)  # (b, a n + c)
-            i, j, k = product.columns // n, product.rows, product.columns % n
+            i, j, k = product.columns // p, product.rows, product.columns % p
             upper = i < j
             values = product.values[upper].tolist()
-            return StructureConstants.from_integers(self.field, n, i[upper], j[upper], k[upper], values, product.den)
-        return StructureConstants.from_blocks(self.field, n, self.contract(rows, rows, inverse))
+            return StructureConstants.from_integers(self.field, p, i[upper], j[upper], k[upper], values, product.den)
+        return StructureConstants.from_blocks(self.field, p, self.contract(rows, rows, inverse))
 
     def _contract_sparse(self, left: Any, right: Any, out: Any) -> SparseInteger:
         """The contraction as one sparse matrix with rows b and columns a * r + c."""

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from numbers import Integral
-from typing import Any, Protocol, TypeAlias, TypeGuard
+from typing import Any, NoReturn, Protocol, TypeAlias, TypeGuard
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FieldError, ParseError, ShapeError, StructureError, shown
-from liehom.scalars import QQ, RR, AlgebraicNumber, Field, Scalar, common_field, number_field
+from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, Scalar, common_field, number_field
 from liehom.scalars.fields import grammar
-from liehom.typing import ScalarLike, VectorLike
+from liehom.scalars.fields.floating import norm_of
+from liehom.typing import Array, ScalarLike, VectorLike
 
 
 class SparseArray(Protocol):
@@ -104,10 +105,19 @@ def constants_from(constants: ConstantsLike, field: Field, dimension: int | None
     elif _is_sparse(constants):
         n, given = _from_sparse(constants, field)
     else:
-        n, given = _from_array(constants, field)
-    if dimension is not None and dimension != n:
-        raise ShapeError(f"the constants have dimension {n}, not {dimension}")
+        array = _cubic(constants)
+        n = len(array)
+        _require_dimension(n, dimension)
+        if isinstance(field, FloatField) and array.dtype.kind in "iuf":
+            return _from_numbers(array.astype(np.float64), field)
+        given = _from_array(array, field)
+    _require_dimension(n, dimension)
     return StructureConstants(field, n, _antisymmetric(given, field))
+
+
+def _require_dimension(found: int, expected: int | None) -> None:
+    if expected is not None and expected != found:
+        raise ShapeError(f"the constants have dimension {found}, not {expected}")
 
 
 def _from_mapping(constants: ConstantsMapping, field: Field, dimension: int | None) -> tuple[int, Entries]:
@@ -147,23 +157,37 @@ def _from_sparse(constants: SparseArray, field: Field) -> tuple[int, Entries]:
     return n, given
 
 
-def _from_array(constants: ConstantsLike, field: Field) -> tuple[int, Entries]:
+def _cubic(constants: ConstantsLike) -> npt.NDArray[Any]:
+    """Structure constants as an array of shape (n, n, n) with finite entries."""
     array = _array(constants)
     n = array.shape[0]
     if array.shape == (0,):
-        return 0, {}
+        return array.reshape(0, 0, 0)
     if array.shape != (n, n, n):
         raise ShapeError(f"structure constants have shape (n, n, n), got {array.shape}")
     if array.dtype.kind == "f" and not np.isfinite(array).all():
         i, j, k = np.argwhere(~np.isfinite(array))[0].tolist()
         raise StructureError(f"c[{i}, {j}, {k}] is {array[i, j, k]}, expected a finite number")
+    return array
+
+
+def _from_numbers(array: Array, field: FloatField) -> StructureConstants:
+    """The table over floats, if the norm of the symmetric part is within the uncertainty of the array."""
+    defect = array + array.transpose(1, 0, 2)
+    if norm_of(defect) > 2 * field.rtol * norm_of(array):
+        i, j, k = np.unravel_index(int(np.abs(defect).argmax()), array.shape)
+        _not_antisymmetric(field, (int(i), int(j), int(k)), array[i, j, k], array[j, i, k])
+    return StructureConstants.from_array(field, array)
+
+
+def _from_array(array: npt.NDArray[Any], field: Field) -> Entries:
     indices = np.argwhere(array != 0) if array.dtype.kind in "iuf" else np.argwhere(np.ones(array.shape, dtype=bool))
     given: Entries = {}
     for i, j, k in indices.tolist():
         value = field.convert(array[i, j, k])
         if value != 0:
             given[i, j, k] = value
-    return n, given
+    return given
 
 
 def _array(constants: ConstantsLike) -> npt.NDArray[Any]:
@@ -181,15 +205,28 @@ def _array(constants: ConstantsLike) -> npt.NDArray[Any]:
 
 
 def _antisymmetric(given: Entries, field: Field) -> Iterator[tuple[int, int, int, Scalar]]:
-    """The non-zero entries (i, j, k, value) with i < j; `StructureError` if c[i, j, k] + c[j, i, k] is not 0."""
-    bound = getattr(field, "rtol", 0.0) * max((abs(v) for v in given.values()), default=0.0) if not field.exact else 0
+    """The non-zero entries (i, j, k, value) with i < j; `StructureError` if c[i, j, k] + c[j, i, k] is not 0.
+
+    Over floats the norm of all these sums is compared with the uncertainty of the table.
+    """
+    zero = field.zero
+    failing = next(((x for x, v in given.items() if v + given.get((x[1], x[0], x[2]), zero) != 0)), None)
+    if failing is not None and isinstance(field, FloatField):
+        indices = list(given)
+        defects = np.array([float(given[i, j, k] + given.get((j, i, k), zero)) for i, j, k in indices])
+        within = norm_of(defects) <= 2 * field.rtol * norm_of(np.array([float(v) for v in given.values()]))
+        failing = None if within else indices[int(np.abs(defects).argmax())]
+    if failing is not None:
+        i, j, k = failing
+        _not_antisymmetric(field, failing, given[failing], given.get((j, i, k), zero))
     for (i, j, k), value in given.items():
-        defect = value + given.get((j, i, k), field.zero)
-        if (defect != 0) if field.exact else (abs(defect) > bound):
-            other = shown(field.format(given.get((j, i, k), field.zero)))
-            raise StructureError(
-                f"the bracket is not antisymmetric: c[{i}, {j}, {k}] = {shown(field.format(value))} but "
-                f"c[{j}, {i}, {k}] = {other}, expected {shown(field.format(-value)) if i != j else '0'}"
-            )
         if i < j and value != 0:
             yield i, j, k, value
+
+
+def _not_antisymmetric(field: Field, indices: tuple[int, int, int], value: Scalar, other: Scalar) -> NoReturn:
+    i, j, k = indices
+    raise StructureError(
+        f"the bracket is not antisymmetric: c[{i}, {j}, {k}] = {shown(field.format(value))} but "
+        f"c[{j}, {i}, {k}] = {shown(field.format(other))}, expected {shown(field.format(-value)) if i != j else '0'}"
+    )

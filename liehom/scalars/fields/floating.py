@@ -300,6 +300,10 @@ class FloatMatrix(Matrix, Immutable):
     def reshape(self, nrows: int, ncols: int) -> FloatMatrix:
         return self._made(self.array.reshape(nrows, ncols), self.error)
 
+    def regroup(self, p: int, q: int, r: int) -> FloatMatrix:
+        """The matrix (q, p * r) with entry (b, a r + c) the entry a, b, c of these numbers as an array (p, q, r)."""
+        return self._made(self.array.reshape(p, q, r).transpose(1, 0, 2).reshape(q, p * r), self.error)
+
     def split_rows(self, nrows: int, ncols: int) -> list[FloatMatrix]:
         return [self._made(row.reshape(nrows, ncols), self.error) for row in self.array]
 
@@ -359,32 +363,51 @@ class FloatMatrix(Matrix, Immutable):
     # -- singular values -----------------------------------------------------------------------------------
     def rank_decision(self) -> RankDecision:
         """`RankDecision`: the rank and the singular values on both sides of the error."""
-        values: Array = np.linalg.svd(self.array, compute_uv=False) if self.array.size else np.zeros(0)
+        values = np.zeros(0) if not self.array.size else np.asarray(np.linalg.svd(self.array, compute_uv=False), float)
         return rank_decision(values, self.error)
 
     def rank(self) -> int:
         return self.rank_decision().rank
 
-    def _decomposed(self) -> tuple[Array, Array, Array, int]:
-        """U, s, V and the rank r of the singular value decomposition U diag(s) V; all rows of V are given."""
+    def _right(self, question: str | None) -> tuple[float, Array, int]:
+        """The smallest singular value that counts, the right singular vectors as rows, the rank.
+
+        A rank that is not clear raises `UndecidedError` if a question is given.
+        """
         m, n = self.shape
         if not self.array.size:
-            return np.zeros((m, 0)), np.zeros(0), np.eye(n), 0
-        left, values, right = np.linalg.svd(self.array, full_matrices=m < n)
-        return left, values, right, int((values > self.error).sum())
+            return math.inf, np.eye(n), 0
+        small = np.linalg.qr(self.array, mode="r") if m > 2 * n else self.array
+        _, values, right = np.linalg.svd(small, full_matrices=m < n)
+        decision = rank_decision(values, self.error)
+        if question is not None:
+            decision.require_clear(question)
+        return float(values[decision.rank - 1]) if decision.rank else math.inf, right, decision.rank
 
-    def row_space(self) -> FloatMatrix:
-        _, values, right, rank = self._decomposed()
-        return self._made(right[:rank], self.error / values[rank - 1] if rank else 0.0, 1.0)
+    def row_space(self, question: str | None = None) -> FloatMatrix:
+        """An orthonormal basis of the span of the rows.
 
-    def null_space(self) -> FloatMatrix:
-        _, values, right, rank = self._decomposed()
-        return self._made(right[rank:], self.error / values[rank - 1] if rank else 0.0, 1.0)
+        Parameters
+        ----------
+        question : str, optional
+            What the dimension decides: `UndecidedError` names it if the rank is not clear (`RankDecision.clear`).
+        """
+        smallest, right, rank = self._right(question)
+        return self._made(right[:rank], self.error / smallest, 1.0)
+
+    def null_space(self, question: str | None = None) -> FloatMatrix:
+        """An orthonormal basis of {x : A x = 0}, as rows; `question` as for `row_space`."""
+        smallest, right, rank = self._right(question)
+        return self._made(right[rank:], self.error / smallest, 1.0)
 
     def solve(self, right: FloatMatrix) -> FloatMatrix:
         if right.nrows != self.nrows:
             raise ShapeError(f"the right-hand side has {right.nrows} rows, the matrix {self.nrows}")
-        left, values, rows, rank = self._decomposed()
+        if not self.array.size:
+            left, values, rows = np.zeros((self.nrows, 0)), np.zeros(0), np.zeros((0, self.ncols))
+        else:
+            left, values, rows = np.linalg.svd(self.array, full_matrices=False)
+        rank = int((values > self.error).sum())
         solution = rows[:rank].T @ ((left[:, :rank].T @ right.array) / values[:rank, None])
         error = right.error + self.error * norm_of(solution)
         if norm_of(self.array @ solution - right.array) > error:
