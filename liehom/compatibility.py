@@ -109,6 +109,7 @@ ATTRIBUTES: dict[str, dict[str, str]] = {
 
 GROWN: dict[str, tuple[str, ...]] = {
     "liehom.representations.representation:Representation": ("coordinates", "dropped"),
+    "liehom.algebra.structure_constants:StructureConstants": ("error",),
     "liehom.scalars.floating:FloatMatrix": ("_norm", "_spectral", "error"),
     "liehom.scalars.floating:RankDecision": ("error",),
 }

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.scalars import Scalar
 from liehom.scalars.fields.floating import norm_of
 from liehom.typing import Array
 
@@ -26,7 +27,7 @@ ALL_PAIRS = 20  # dimension up to which all pairs of basis elements are tried
 RANDOM_PAIRS = 16
 PRODUCTS = 6.0  # the error of J is at most this many times the norm of the table times its error
 
-Failure = tuple[tuple[int, int, int], dict[int, float]]
+Failure = tuple[tuple[int, int, int], dict[int, Scalar]]
 
 
 def failure_over_floats(table: StructureConstants) -> Failure | None:
@@ -78,8 +79,8 @@ class _Scaled:
     def ad(self, x: Array) -> Array:
         """The matrix of y -> [x, y] on columns."""
         weights = x[self.first] * self.values
-        made: Array = np.bincount(self.place, weights, self.n * self.n).reshape(self.n, self.n)
-        return made
+        made = np.bincount(self.place, weights, self.n * self.n).astype(np.float64)
+        return made.reshape(self.n, self.n)
 
     def defect(self, x: Array, y: Array) -> Array:
         """The matrix J(x, y), on columns."""
@@ -99,5 +100,7 @@ class _Scaled:
         cyclic = self.defect(one[i], one[j]) @ one[k]
         size = float(np.abs(cyclic).max())
         # the unit may be so large that its square is infinite
-        value = {m: float(v * unit) * unit for m, v in enumerate(cyclic.tolist()) if abs(v) > 1e-6 * size}
+        value: dict[int, Scalar] = {
+            m: float(v * unit) * unit for m, v in enumerate(cyclic.tolist()) if abs(v) > 1e-6 * size
+        }
         return (i, j, k), value

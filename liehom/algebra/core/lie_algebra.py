@@ -20,7 +20,7 @@ from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
 from liehom.errors import InputError, ShapeError
 from liehom.immutable import Immutable
-from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Scalar, Subspace
+from liehom.scalars import ExactMatrix, Field, FloatField, FloatMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
@@ -255,7 +255,14 @@ class LieAlgebra(Immutable):
 
     def killing_signature(self) -> tuple[int, int, int]:
         """Numbers of (positive, negative, zero) eigenvalues of the Killing form."""
-        return self.killing_form().signature()
+        return self._decided_killing_form().signature()
+
+    def _decided_killing_form(self) -> Matrix:
+        """The Killing form; over floats `UndecidedError` if its rank is not clear."""
+        form = self.killing_form()
+        if isinstance(form, FloatMatrix):
+            form.rank_decision().require_clear("the rank of the Killing form")
+        return form
 
     # -- subalgebras and ideals --------------------------------------------------------------------------
     def subalgebra(self, rows: MatrixLike) -> Subalgebra:
@@ -417,7 +424,7 @@ class LieAlgebra(Immutable):
     # -- solvable, nilpotent, semisimple -----------------------------------------------------------------
     def is_abelian(self) -> bool:
         """Whether all brackets vanish."""
-        return len(self._constants) == 0
+        return self._constants.is_zero()
 
     def is_nilpotent(self) -> bool:
         """Whether the lower central series ends in 0.
@@ -450,7 +457,7 @@ class LieAlgebra(Immutable):
         >>> lh.so(4).is_semisimple(), lh.gl(2).is_semisimple()
         (True, False)
         """
-        return self.killing_form().rank() == self.dimension
+        return self._decided_killing_form().rank() == self.dimension
 
     def is_reductive(self) -> bool:
         """Whether the radical is the centre.

@@ -118,7 +118,8 @@ class StructureConstants(Immutable):
         upper = np.abs(constants) > negligible
         upper &= np.triu(np.ones((n, n), dtype=bool), 1)[:, :, None]
         made.i, made.j, made.k = np.nonzero(upper)
-        made.parts = (constants[upper],)
+        values: Any = constants[upper]
+        made.parts = (values,)
         made.error = made._error_of_data() if error is None else error
         made._dense = made._flat = made._sparse = None
         return made
@@ -325,8 +326,8 @@ class StructureConstants(Immutable):
         if right != one:
             made = right @ made.regroup(p, n, n)
             made = made.regroup(q, p, n)
-        made = made.reshape(p * q, n)
-        return made if out == one else made @ out
+        rows: FloatMatrix = made.reshape(p * q, n)
+        return rows if out == one else rows @ out
 
     def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
         """`contract` for a dense table over QQ: numerators are multiplied, denominators reduced once."""
@@ -341,6 +342,23 @@ class StructureConstants(Immutable):
             inner = block.parts[0] if right == one else right.parts[0] * block.parts[0]
             inner = inner if out == one else inner * out.parts[0]
             made.append(ExactMatrix(field, (inner,), den).normalized())
+        return made
+
+    def bracket_rows(self, left: M, right: M) -> M:
+        """The matrix (p * q, n) with the rows [left_a, right_b] in lexicographic order of (a, b)."""
+        one = cast(M, self.field.identity(self.dimension))
+        if isinstance(left, FloatMatrix) and left.nrows and right.nrows:
+            return cast(M, self._contract_floats(left, right, one))
+        stacked: M = self.field.stack_rows(self.contract(left, right, one), self.dimension)
+        return stacked
+
+    def bracket_columns(self, left: M, out: M) -> M:
+        """The matrix (n, p * r) of x -> [left_a, x] @ out for all a, acting on rows x."""
+        n, p, one = self.dimension, left.nrows, cast(M, self.field.identity(self.dimension))
+        if isinstance(left, FloatMatrix) and p and n and out.ncols:
+            return cast(M, self._contract_floats(left, one, out).regroup(p, n, out.ncols))
+        blocks = self.contract(left, one, out)
+        made: M = self.field.stack_columns(blocks, n) if blocks else self.field.zeros(n, 0)
         return made
 
     def first_nonzero(self, left: Matrix, right: Matrix, out: Matrix) -> tuple[int, int] | None:

@@ -9,11 +9,13 @@ from __future__ import annotations
 import random
 from typing import TYPE_CHECKING, Any, TypeVar, final
 
+import numpy as np
+
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
 from liehom.immutable import Immutable
-from liehom.scalars import ExactMatrix, Matrix, Scalar, Subspace
+from liehom.scalars import ExactMatrix, FloatMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike, rows_of
 from liehom.scalars.spaces.quotient import Quotient, echelon_quotient, quotient
 from liehom.typing import VectorLike
@@ -25,6 +27,7 @@ M = TypeVar("M", bound=Matrix)
 
 SAMPLES = 3  # random combinations that are tried in place of all rows
 SHOWN_ROWS = 8
+GENERATED = "the dimension of a generated subalgebra or ideal"
 
 
 @final
@@ -83,12 +86,26 @@ class Subalgebra(Immutable):
             independent = set(independent_rows(self.basis))
             dependent = [i for i in range(self.basis.nrows) if i not in independent]
             raise DependentRowsError(rank, dependent, "rows of the subalgebra")
-        failure = self.algebra.table.first_nonzero(self.basis, self.basis, self._projection())
+        failure = self._not_closed()
         if failure is not None:
             a, b = failure
             bracket = self.algebra.bracket(self.basis.row(a), self.basis.row(b))
             values = ", ".join(shown(self.algebra.field.format(x)) for x in bracket)
             raise NotASubalgebraError((a, b), f"({values})")
+
+    def _not_closed(self) -> tuple[int, int] | None:
+        """The first two rows (over floats, the two with the largest part outside) whose bracket leaves the span."""
+        table: StructureConstants = self.algebra.table
+        projection: Any = self._projection()
+        if not isinstance(self.basis, FloatMatrix) or not self.dimension:
+            return table.first_nonzero(self.basis, self.basis, projection)
+        self.basis.rank_decision().require_clear("the span of the rows of the subalgebra")
+        rows = self.quotient().subspace  # orthonormal: how long the given rows are, and their angles, do not matter
+        if table.first_nonzero(rows, rows, projection) is None:
+            return None
+        outside: list[Any] = table.contract(self.basis, self.basis, projection)
+        a, b = divmod(int(np.concatenate([block.norms() for block in outside]).argmax()), self.dimension)
+        return a, b
 
     # -- properties --------------------------------------------------------------------------------------
     @property
@@ -165,13 +182,17 @@ class Subalgebra(Immutable):
         >>> lh.gl(2).subalgebra([[0, 1, 0, 0], [1, 0, 0, -1]]).as_algebra().dimension
         2
         """
-        k = self.dimension
-        whole = self.algebra.field.identity(self.algebra.dimension)
+        k, field = self.dimension, self.algebra.field
+        if isinstance(self.basis, FloatMatrix):
+            coordinates = self.basis.solve(field.identity(k))
+            # A closed subspace of a Lie algebra: the axioms hold.
+            return LieAlgebra(self.algebra.table.changed(self.basis, coordinates), name=name, check=False)
+        whole = field.identity(self.algebra.dimension)
         blocks = []
         for block in self.algebra.table.contract(self.basis, self.basis, whole):
             blocks.append(self.basis.T.solve(block.T).T)
         # A closed subspace of a Lie algebra: the axioms hold.
-        return LieAlgebra(StructureConstants.from_blocks(self.algebra.field, k, blocks), name=name, check=False)
+        return LieAlgebra(StructureConstants.from_blocks(field, k, blocks), name=name, check=False)
 
     def is_ideal(self) -> bool:
         """Whether [g, h] lies in h."""
@@ -180,7 +201,8 @@ class Subalgebra(Immutable):
     def _leaving(self) -> tuple[int, int] | None:
         """The first (a, b) with [row a of the basis, e_b] not in h, or None."""
         whole = self.algebra.field.identity(self.algebra.dimension)
-        return self.algebra.table.first_nonzero(self.basis, whole, self._projection())
+        rows = self.quotient().subspace if isinstance(self.basis, FloatMatrix) else self.basis
+        return self.algebra.table.first_nonzero(rows, whole, self._projection())
 
     def quotient_algebra(self, name: str | None = None) -> LieAlgebra:
         """The Lie algebra g/h of an ideal h, in the basis of the complement of `quotient`.
@@ -197,11 +219,8 @@ class Subalgebra(Immutable):
                 f"a quotient algebra needs an ideal, but the bracket of row {leaving[0]} with {other} is not in it"
             )
         data = self.quotient()
-        blocks = self.algebra.table.contract(data.lift, data.lift, data.projection)
         # The bracket of g descends to the quotient by an ideal.
-        return LieAlgebra(
-            StructureConstants.from_blocks(self.algebra.field, self.codimension, blocks), name=name, check=False
-        )
+        return LieAlgebra(self.algebra.table.changed(data.lift, data.projection), name=name, check=False)
 
     def conjugated(self, matrix: Matrix) -> Subalgebra:
         """The image of h under an automorphism of g, given by its matrix (n, n) on columns; closure is proved."""
@@ -326,11 +345,14 @@ def complement_rows(space: ExactMatrix, part: ExactMatrix) -> ExactMatrix:
 
 
 def _span(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Matrix:
-    """A basis of the span of the rows or of a subalgebra."""
+    """A basis of the span of the rows or of a subalgebra; over floats each given row has its own uncertainty."""
     if isinstance(rows, Subalgebra):
         require_inside(algebra, rows)
         rows = rows.basis
-    span: Matrix = _matrix(algebra, rows).row_space()
+    matrix = _matrix(algebra, rows)
+    if isinstance(matrix, FloatMatrix) and not isinstance(rows, FloatMatrix):
+        matrix = matrix.unit_rows()
+    span: Matrix = matrix.row_space("the span of the given rows")
     return span
 
 
@@ -342,13 +364,11 @@ def require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
 
 def products(algebra: LieAlgebra, left: M, right: M) -> M:
     """A basis, as rows, of the span of the brackets of rows of `left` with rows of `right`."""
-    n, field = algebra.dimension, algebra.field
-    if field.exact and left.nrows > SAMPLES:
+    if algebra.field.exact and left.nrows > SAMPLES:
         found = _sampled_products(algebra, left, right)
         if found is not None:
             return found
-    span: M = field.stack_rows(algebra.table.contract(left, right, field.identity(n)), n).row_space()
-    return span
+    return algebra.table.bracket_rows(left, right).row_space("the dimension of a span of brackets")
 
 
 def _sampled_products(algebra: LieAlgebra, left: M, right: M) -> M | None:
@@ -376,7 +396,7 @@ def generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
     span, before = _span(algebra, rows), -1
     while before < span.nrows:
         before = span.nrows
-        span = algebra.field.stack_rows([span, products(algebra, span, span)], n).row_space()
+        span = algebra.field.stack_rows([span, products(algebra, span, span)], n).row_space(GENERATED)
     return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
 
 
@@ -387,7 +407,7 @@ def ideal_generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subal
     span, before = _span(algebra, rows), -1
     while before < span.nrows:
         before = span.nrows
-        span = algebra.field.stack_rows([span, products(algebra, span, whole)], n).row_space()
+        span = algebra.field.stack_rows([span, products(algebra, span, whole)], n).row_space(GENERATED)
     return Subalgebra(algebra, span, check=False)  # an ideal is a subalgebra
 
 
@@ -400,18 +420,18 @@ def centralizer(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebr
         found = field.stack_rows([algebra.ad(x) for x in _samples(span)], n).null_space()
         if algebra.table.first_nonzero(found, span, field.identity(n)) is None:
             return Subalgebra(algebra, found, check=False)
-    blocks = algebra.table.contract(span, field.identity(n), field.identity(n))
-    conditions = field.stack_columns(blocks, n) if blocks else field.zeros(n, 0)
-    return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
+    conditions = algebra.table.bracket_columns(span, field.identity(n))
+    found = conditions.left_null_space("the dimension of a centralizer")
+    return Subalgebra(algebra, found, check=False)  # closed by the Jacobi identity
 
 
 def normalizer(subalgebra: Subalgebra) -> Subalgebra:
     """Implements `LieAlgebra.normalizer`."""
     algebra = subalgebra.algebra
-    n = algebra.dimension
-    blocks = algebra.table.contract(subalgebra.basis, algebra.field.identity(n), subalgebra._projection())
-    conditions = algebra.field.stack_columns(blocks, n) if blocks else algebra.field.zeros(n, 0)
-    return Subalgebra(algebra, conditions.left_null_space(), check=False)  # closed by the Jacobi identity
+    basis = subalgebra.quotient().subspace if isinstance(subalgebra.basis, FloatMatrix) else subalgebra.basis
+    conditions = algebra.table.bracket_columns(basis, subalgebra._projection())
+    found = conditions.left_null_space("the dimension of a normalizer")
+    return Subalgebra(algebra, found, check=False)  # closed by the Jacobi identity
 
 
 def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
@@ -419,12 +439,11 @@ def upper_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
     n, field = algebra.dimension, algebra.field
     terms = [Subalgebra(algebra, field.zeros(0, n), check=False)]
     while True:
-        whole = field.identity(n)
-        blocks = algebra.table.contract(whole, whole, terms[-1]._projection())
         # x with [e_i, x] in the last term for all i
-        conditions = field.stack_columns(blocks, n) if blocks else field.zeros(n, 0)
-        following = Subalgebra(algebra, conditions.left_null_space(), check=False)  # an ideal, as the last term is
-        if following.dimension == terms[-1].dimension:
+        conditions = algebra.table.bracket_columns(field.identity(n), terms[-1]._projection())
+        found = conditions.left_null_space("the upper central series")
+        following = Subalgebra(algebra, found, check=False)  # an ideal, as the last term is
+        if following.dimension <= terms[-1].dimension:
             return terms
         terms.append(following)
 
@@ -434,7 +453,7 @@ def derived_series(algebra: LieAlgebra) -> list[Subalgebra]:
     terms = [algebra.field.identity(algebra.dimension)]
     while True:
         following = products(algebra, terms[-1], terms[-1])
-        if following.nrows == terms[-1].nrows:
+        if following.nrows >= terms[-1].nrows:
             return [Subalgebra(algebra, t, check=False) for t in terms]  # [I, I] of an ideal is an ideal
         terms.append(following)
 
@@ -445,6 +464,6 @@ def lower_central_series(algebra: LieAlgebra) -> list[Subalgebra]:
     terms = [whole]
     while True:
         following = products(algebra, whole, terms[-1])
-        if following.nrows == terms[-1].nrows:
+        if following.nrows >= terms[-1].nrows:
             return [Subalgebra(algebra, t, check=False) for t in terms]  # [g, I] of an ideal is an ideal
         terms.append(following)

@@ -27,7 +27,7 @@ def radical(algebra: LieAlgebra) -> Subalgebra:
         return Subalgebra(algebra, field.zeros(0, n), check=False)  # Cartan's criterion: semisimple
     whole = field.identity(n)
     derived = products(algebra, whole, whole)
-    found = (derived @ killing).null_space() if derived.nrows else whole
+    found = (derived @ killing).null_space("the dimension of the radical") if derived.nrows else whole
     return Subalgebra(algebra, found, check=False)  # the radical is an ideal
 
 

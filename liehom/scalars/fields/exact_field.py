@@ -362,10 +362,10 @@ class ExactMatrix(Matrix, Immutable):
         reduced, pivots = self.select(rows=rows).echelon()
         return (reduced, pivots) if self.select(columns=pivots) @ reduced == self else None
 
-    def row_space(self) -> ExactMatrix:
+    def row_space(self, question: str = "") -> ExactMatrix:
         return self.echelon()[0]
 
-    def null_space(self) -> ExactMatrix:
+    def null_space(self, question: str = "") -> ExactMatrix:
         reduced, pivots = self.echelon()
         parts = tuple(kernel_rows(a, pivots, 0 if s else reduced.den) for s, a in enumerate(reduced.parts))
         return ExactMatrix(self._field, parts, reduced.den).normalized()

@@ -218,16 +218,20 @@ class Matrix(ABC):
         """Rank, an int."""
 
     @abstractmethod
-    def row_space(self) -> Self:
-        """A canonical basis of the span of the rows (reduced echelon form; orthonormal over floats)."""
+    def row_space(self, question: str = "") -> Self:
+        """A canonical basis of the span of the rows (reduced echelon form; orthonormal over floats).
+
+        Over floats a question that the dimension decides can be given: `UndecidedError` names it if the rank is not
+        clear (`RankDecision.clear`). The same holds for null spaces.
+        """
 
     @abstractmethod
-    def null_space(self) -> Self:
+    def null_space(self, question: str = "") -> Self:
         """A matrix whose rows are a basis of {x : A x = 0}."""
 
-    def left_null_space(self) -> Self:
+    def left_null_space(self, question: str = "") -> Self:
         """A matrix whose rows are a basis of {y : y A = 0}."""
-        return self.T.null_space()
+        return self.T.null_space(question)
 
     @abstractmethod
     def solve(self, right: Self) -> Self:

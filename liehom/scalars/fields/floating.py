@@ -354,6 +354,18 @@ class FloatMatrix(Matrix, Immutable):
         _require_range(self._norm * abs(number) if self._norm and number else 1.0)
         return self._made(self.array * number, self.error * abs(number), self._spectral * abs(number))
 
+    def norms(self) -> Array:
+        """Norms of the rows, shape (nrows,)."""
+        norms: Array = np.linalg.norm(self.array, axis=1)
+        return norms
+
+    def unit_rows(self) -> FloatMatrix:
+        """The matrix as data in which each row that is not 0 has length 1: rows with an uncertainty of their own."""
+        size = np.abs(self.array).max(axis=1, initial=0.0)
+        scaled = self.array / np.where(size > 0, size, 1.0)[:, None]
+        lengths = np.linalg.norm(scaled, axis=1)
+        return FloatMatrix(self._field, scaled / np.where(lengths > 0, lengths, 1.0)[:, None])
+
     def is_zero(self) -> bool:
         return self._norm <= self.error
 
@@ -369,7 +381,7 @@ class FloatMatrix(Matrix, Immutable):
     def rank(self) -> int:
         return self.rank_decision().rank
 
-    def _right(self, question: str | None) -> tuple[float, Array, int]:
+    def _right(self, question: str) -> tuple[float, Array, int]:
         """The smallest singular value that counts, the right singular vectors as rows, the rank.
 
         A rank that is not clear raises `UndecidedError` if a question is given.
@@ -380,23 +392,15 @@ class FloatMatrix(Matrix, Immutable):
         small = np.linalg.qr(self.array, mode="r") if m > 2 * n else self.array
         _, values, right = np.linalg.svd(small, full_matrices=m < n)
         decision = rank_decision(values, self.error)
-        if question is not None:
+        if question:
             decision.require_clear(question)
         return float(values[decision.rank - 1]) if decision.rank else math.inf, right, decision.rank
 
-    def row_space(self, question: str | None = None) -> FloatMatrix:
-        """An orthonormal basis of the span of the rows.
-
-        Parameters
-        ----------
-        question : str, optional
-            What the dimension decides: `UndecidedError` names it if the rank is not clear (`RankDecision.clear`).
-        """
+    def row_space(self, question: str = "") -> FloatMatrix:
         smallest, right, rank = self._right(question)
         return self._made(right[:rank], self.error / smallest, 1.0)
 
-    def null_space(self, question: str | None = None) -> FloatMatrix:
-        """An orthonormal basis of {x : A x = 0}, as rows; `question` as for `row_space`."""
+    def null_space(self, question: str = "") -> FloatMatrix:
         smallest, right, rank = self._right(question)
         return self._made(right[rank:], self.error / smallest, 1.0)
 
