@@ -7,6 +7,7 @@ The layers, in reading order; each imports only those above it in this list:
 `scalars`          QQ, real number fields, float64, and linear algebra over them
 `algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
 `representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners
+`pauli`            dynamical Lie algebras of Pauli words
 `tracing`          a computation recorded as a graph, and machine code of it
 `series`           truncated Taylor series on which numpy code runs, series in Lie algebras
 `homogeneous`      actions with an exponential, generator fields; the range condition, orbit types
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from liehom import io as io
     from liehom import paper as paper
     from liehom import parallel as parallel
+    from liehom import pauli as pauli
     from liehom import plotting as plotting
     from liehom import representations as representations
     from liehom import scalars as scalars
@@ -229,6 +231,7 @@ _LAYERS = (
     "io",
     "paper",
     "parallel",
+    "pauli",
     "plotting",
     "representations",
     "scalars",

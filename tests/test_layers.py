@@ -24,6 +24,7 @@ BELOW: dict[str, tuple[str, ...]] = {
     "scalars": ("errors", "immutable", "typing"),
     "algebra": ("scalars",),
     "representations": ("algebra",),
+    "pauli": ("representations",),
     "tracing": ("errors", "typing"),
     "series": ("scalars", "tracing"),
     "homogeneous": ("representations", "series"),
@@ -37,7 +38,7 @@ BELOW: dict[str, tuple[str, ...]] = {
     "plotting": ("io",),
     "paper": ("plotting", "instances"),
     "testing": ("catalog", "fullness", "integrators", "io"),
-    "cli": ("io", "atlas", "paper", "testing"),
+    "cli": ("io", "atlas", "paper", "pauli", "testing"),
     "__main__": ("cli",),
     "": ("cli", "compatibility"),  # liehom/__init__.py, which everybody below must leave alone
 }

@@ -1,0 +1,67 @@
+"""Closures of spin models beside PennyLane's `lie_closure`, in one run.
+
+    python -m tests.benchmarks.pauli_closures
+
+Both get the same Hamiltonians as single Pauli words: liehom as strings, PennyLane as its own `PauliWord` objects, which
+are made outside of the timed part. Times are processor time, the smallest of several runs. PennyLane belongs to the
+dependency group `bench`; without it its column is empty.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+import liehom as lh
+
+RUNS = 3
+MODELS = {"TFIM": lh.pauli.ising, "XY": lh.pauli.xy, "Heisenberg": lh.pauli.heisenberg}
+SITES = range(2, 7)
+
+
+def seconds(action: Callable[[], Any]) -> tuple[float, Any]:
+    best, found = float("inf"), None
+    for _ in range(RUNS):
+        begin = time.process_time()
+        found = action()
+        best = min(best, time.process_time() - begin)
+    return best, found
+
+
+def peer(words: list[str]) -> Callable[[], int] | None:
+    """The dimension by PennyLane, or None if it is not installed."""
+    try:
+        pennylane = import_module("pennylane")
+    except ImportError:
+        return None
+    made = [pennylane.pauli.PauliWord({q: letter for q, letter in enumerate(w) if letter != "I"}) for w in words]
+    return lambda: len(pennylane.lie_closure(made, pauli=True))
+
+
+def rows() -> list[tuple[str, int, int, float, float | None]]:
+    """Model, sites, dimension, seconds here, seconds of PennyLane."""
+    found = []
+    for name, model in MODELS.items():
+        for sites in SITES:
+            words = model(lh.pauli.chain(sites))
+            here, dimension = seconds(lambda words=words: lh.pauli.closure(words).dimension)  # type: ignore[misc]
+            other = peer(words)
+            there, theirs = (None, dimension) if other is None else seconds(other)
+            if theirs != dimension:
+                raise SystemExit(f"{name} on {sites} sites: dimension {dimension} here, {theirs} there")
+            found.append((name, sites, dimension, here, there))
+    return found
+
+
+def main() -> None:
+    print("| model | sites | dimension | liehom, ms | PennyLane, ms | ratio |")
+    print("|---|---|---|---|---|---|")
+    for name, sites, dimension, here, there in rows():
+        other, ratio = ("", "") if there is None else (f"{1000 * there:.2f}", f"{there / here:.0f}")
+        print(f"| {name} | {sites} | {dimension} | {1000 * here:.2f} | {other} | {ratio} |")
+
+
+if __name__ == "__main__":
+    main()
