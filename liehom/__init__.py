@@ -3,6 +3,7 @@
 The layers, in reading order; each imports only those above it in this list:
 
 `errors`           what the library refuses, and why
+`disk`             files that are written whole, checksums
 `parallel`         many tasks on any executor, and their results on disk
 `scalars`          QQ, real number fields, float64, and linear algebra over them
 `algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions

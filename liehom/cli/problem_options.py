@@ -10,10 +10,10 @@ from types import MappingProxyType
 from typing import Any, final
 
 from liehom.cli.inputs import file_argument, number_value
+from liehom.disk import check_target
 from liehom.errors import FormatError, InputError
 from liehom.io import Problem, load_problem
 from liehom.io.problem_file import read_options
-from liehom.io.solution_file import check_target
 
 PLOT_SUFFIXES = (".png", ".pdf", ".svg")
 

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, final
 from liehom.cli.guard import NO, YES
 from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json, show_table
+from liehom.disk import check_target
 from liehom.errors import FormatError, InputError
 from liehom.io import save_solution
-from liehom.io.solution_file import check_target, summary_json
+from liehom.io.solution_file import summary_json
 
 if TYPE_CHECKING:
     from liehom.integrators import Solution

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Literal, overload
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.disk import write_atomically
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
 from liehom.io.json_reader import kind_of, parse_object, read_object, shown
@@ -204,7 +204,7 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
     Raises
     ------
     FormatError
-        If `obj` has no file format, or the file cannot be written.
+        If `obj` has no file format, or the file cannot be written. An existing file is then unchanged.
 
     Examples
     --------
@@ -224,7 +224,7 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
     """
     text = _laid_out(to_json(obj, point=point))
     try:
-        Path(path).write_text(text, encoding="utf-8")
+        write_atomically(path, text.encode())
     except OSError as error:
         raise FormatError(f"{str(path)!r} cannot be written: {error.strerror}") from None
 

@@ -1,19 +1,19 @@
 """Solutions as .npz archives: the arrays t and y, and the report as a JSON string. An archive holds no pickles.
 
-The archive is written under a temporary name and then renamed, so a reader never sees a partial file.
+A reader never sees a partial file.
 """
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
 import math
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
+from liehom.disk import check_target, write_atomically
 from liehom.errors import FormatError
 
 if TYPE_CHECKING:
@@ -91,49 +91,15 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     check_target(target, force=force)
     text = json.dumps({"format": FORMAT, "version": 1, **summary_json(solution)}, allow_nan=False)
     arrays: dict[str, Any] = {"t": np.asarray(solution.t), "y": np.asarray(solution.y), "report": np.array(text)}
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+
+    def content(file: BinaryIO) -> None:
+        np.savez(file, **arrays)
+        check_target(target, force=force)  # again: another process may have made the file meanwhile
+
     try:
-        with open(temporary, "wb") as file:
-            np.savez(file, **arrays)
-            file.flush()
-            os.fsync(file.fileno())
-        check_target(target, force=force)
-        os.replace(temporary, target)
+        write_atomically(target, content)
     except OSError as error:
         raise FormatError(f"{str(path)!r} cannot be written: {error.strerror or error}") from None
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-
-
-def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Raise `FormatError` if a file cannot be written; called before the work.
-
-    Raises
-    ------
-    FormatError
-        If the folder does not exist or is not writable, or the file exists and `force` is False.
-
-    Examples
-    --------
-    >>> check_target("no/such/folder/out.npz")
-    Traceback (most recent call last):
-    ...
-    liehom.errors.FormatError: 'no/such/folder/out.npz' cannot be written: the folder 'no/such/folder' does not exist
-    """
-    text = os.fspath(path)
-    if not text or "\0" in text:
-        raise FormatError(f"{text!r} is not the name of a file")
-    target = Path(text)
-    folder = target.parent
-    if not folder.is_dir():
-        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} does not exist")
-    if target.is_dir():
-        raise FormatError(f"{text!r} cannot be written: it is a folder")
-    if not os.access(folder, os.W_OK):
-        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} is not writable")
-    if target.exists() and not force:
-        raise FormatError(f"{text!r} is there already and is not overwritten: give another name, or force it")
 
 
 def plain(value: Any) -> Any:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from liehom.disk import check_target, write_atomically
 from liehom.errors import FormatError, InputError
-from liehom.io.solution_file import check_target
 
 Cell: TypeAlias = Any
 """Content of a cell of a table: a string, a number of Python or numpy, or None."""
@@ -148,7 +148,7 @@ class Reproduction:
             target.mkdir(parents=True, exist_ok=True)
             for name, text in texts.items():
                 check_target(target / name, force=True)
-                (target / name).write_text(text, encoding="utf-8")
+                write_atomically(target / name, text.encode())
                 written.append(target / name)
         except OSError as error:
             raise FormatError(f"{os.fspath(folder)!r} cannot be written: {error.strerror or error}") from None

@@ -1,7 +1,8 @@
 """Stores of finished results on disk: a folder of .npz and .json files, or a zarr group.
 
-A shard is written under a temporary name and then renamed, so a reader never sees a partial shard. A store has the
-fingerprint of its problem and contains no pickles.
+A shard is written under a temporary name and then renamed, so a reader never sees a partial shard. Each shard, and the
+description of the store, has a checksum of its contents. A store has the fingerprint of its problem and contains no
+pickles. Stores of version 1 (liehom 0.1.0) have no checksums; they are read, and continued without checksums.
 """
 
 from __future__ import annotations
@@ -20,9 +21,12 @@ from typing import Any, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
+from liehom.disk import checksum, write_atomically
 from liehom.errors import FormatError, InputError
 
 FORMAT = "liehom-store"
+VERSION = 2
+MARK = "checksum"
 ABOUT = "store.json"
 """File in the folder of a store with its format, version and fingerprint."""
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
@@ -123,17 +127,16 @@ class _Folder(Store):
         if not about.exists():
             if fingerprint is None:
                 raise _no_store(path)
-            if self._folder.exists() and not _is_empty(self._folder):
+            if self._folder.exists() and not _is_empty(self._folder) and not about.exists():  # or just made by another
                 raise FormatError(f"{path!r} exists and is not a store of liehom: give the path of a new folder")
             with _writing(path):
                 self._folder.mkdir(parents=True, exist_ok=True)
             self._write(ABOUT, json.dumps(_about(fingerprint)).encode())
-        elif fingerprint is not None:
-            try:
-                found = json.loads(about.read_text(encoding="utf-8"))
-            except (OSError, ValueError) as error:
-                raise FormatError(f"{os.fspath(about)!r} is damaged: {error}") from None
-            _check(path, found, fingerprint)
+        try:
+            found = json.loads(about.read_text(encoding="utf-8"))
+        except DAMAGED as error:
+            raise FormatError(f"{os.fspath(about)!r} is damaged: {error}") from None
+        self._mark = _checked(path, found, fingerprint)
 
     def names(self) -> frozenset[str]:
         # shards end in .npz or .json; unfinished files begin with a dot
@@ -142,40 +145,40 @@ class _Folder(Store):
 
     def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         text = json.dumps(facts)
+        marks = {} if self._mark is None else {MARK: checksum(arrays, self._mark, name, text)}
         if not arrays:
-            self._write(f"{name}.json", text.encode())
+            self._write(f"{name}.json", json.dumps({**marks, "facts": facts} if marks else facts).encode())
             return
         from io import BytesIO
 
         buffer = BytesIO()
-        entries: dict[str, Any] = {"facts": np.array(text), **arrays}
+        entries: dict[str, Any] = {"facts": np.array(text), **{k: np.array(v) for k, v in marks.items()}, **arrays}
         np.savez(buffer, **entries)
         self._write(f"{name}.npz", buffer.getbuffer())
 
     def load(self, name: str) -> Shard:
         plain, packed = self._folder / f"{name}.json", self._folder / f"{name}.npz"
+        file = plain if plain.exists() else packed
         try:
-            if plain.exists():
-                return {}, json.loads(plain.read_text(encoding="utf-8"))
-            with open(packed, "rb") as file, np.load(file, allow_pickle=False) as archive:
+            if file is plain:
+                found = json.loads(plain.read_text(encoding="utf-8"))
+                if self._mark is None:
+                    return {}, _object(found)
+                facts = _object(found["facts"])
+                _compare(found.get(MARK), checksum({}, self._mark, name, json.dumps(facts)))
+                return {}, facts
+            with open(packed, "rb") as opened, np.load(opened, allow_pickle=False) as archive:
                 arrays = {key: archive[key] for key in archive.files}
-            return arrays, json.loads(str(arrays.pop("facts")))
+            text, mark = str(arrays.pop("facts")), arrays.pop(MARK, None)
+            if self._mark is not None:
+                _compare(str(mark), checksum(arrays, self._mark, name, text))
+            return arrays, _object(json.loads(text))
         except DAMAGED as error:
-            raise _damaged(os.fspath(plain if plain.exists() else packed), error) from None
+            raise _damaged(os.fspath(file), error) from None
 
     def _write(self, name: str, data: bytes | memoryview) -> None:
-        target = self._folder / name
-        temporary = target.with_name(f".{name}.{os.getpid()}.part")
-        try:
-            with _writing(self.path):
-                with open(temporary, "wb") as file:
-                    file.write(data)
-                    file.flush()
-                    os.fsync(file.fileno())
-                os.replace(temporary, target)
-        finally:
-            with contextlib.suppress(OSError):
-                temporary.unlink()
+        with _writing(self.path):
+            write_atomically(self._folder / name, data)
 
 
 @final
@@ -197,45 +200,67 @@ class _Zarr(Store):
         except DAMAGED as error:
             raise FormatError(f"{path!r} is not a zarr group: {error}") from None
         found = dict(self._root.attrs)
-        if fingerprint is not None and found:
-            _check(path, found, fingerprint)
-        elif not found:
+        if not found:
             if fingerprint is None:
                 raise _no_store(path)
-            self._root.attrs.update(_about(fingerprint))
+            found = _about(fingerprint)
+            self._root.attrs.update(found)
+        self._mark = _checked(path, found, fingerprint)
 
     def names(self) -> frozenset[str]:
         return frozenset(name for name, part in self._root.groups() if "facts" in part.attrs)
 
     def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
+        text = json.dumps(facts)
         with _writing(self.path):
             part = self._root.create_group(name, overwrite=True)
             for key, array in arrays.items():
                 part[key] = np.asarray(array)
-            part.attrs["facts"] = json.dumps(facts)  # last: a shard without facts is incomplete
+            marks = {} if self._mark is None else {MARK: checksum(arrays, self._mark, name, text)}
+            part.attrs.update({**marks, "facts": text})  # last: a shard without facts is incomplete
 
     def load(self, name: str) -> Shard:
         try:
             part = self._root[name]
             arrays = {key: np.asarray(part[key][...]) for key in part.array_keys()}
-            return arrays, json.loads(str(part.attrs["facts"]))
+            text = str(part.attrs["facts"])
+            if self._mark is not None:
+                _compare(part.attrs.get(MARK), checksum(arrays, self._mark, name, text))
+            return arrays, _object(json.loads(text))
         except DAMAGED as error:
             raise _damaged(f"{self.path}/{name}", error) from None
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _about(fingerprint: str) -> dict[str, str | int]:
-    return {"format": FORMAT, "version": 1, "fingerprint": fingerprint}
+def _about(fingerprint: str) -> dict[str, Any]:
+    about = {"format": FORMAT, "version": VERSION, "fingerprint": fingerprint}
+    return {**about, MARK: checksum({}, json.dumps(about))}
 
 
-def _check(path: str, found: Mapping[str, object], fingerprint: str) -> None:
-    if found.get("format") != FORMAT or found.get("version") != 1:
-        raise FormatError(f"{path!r} is not a store of liehom of this version")
-    if found.get("fingerprint") != fingerprint:
+def _checked(path: str, found: object, fingerprint: str | None) -> str | None:
+    """What enters the checksums of the shards: the fingerprint, or None for a store of version 1."""
+    if not isinstance(found, dict) or found.get("format") != FORMAT or found.get("version") not in (1, VERSION):
+        raise FormatError(f"{path!r} is not a store of liehom of this version, or is damaged")
+    own = str(found.get("fingerprint"))
+    if (found["version"] == 1 and MARK in found) or (found["version"] != 1 and found != _about(own)):
+        raise FormatError(f"the description of the store {path!r} is damaged: delete the store, or give another path")
+    if fingerprint is not None and own != fingerprint:
         raise InputError(
             f"the store {path!r} belongs to another problem (the computation, its numbers, options or chunk differ): "
             "delete it, or give another path"
         )
+    return None if found["version"] == 1 else own
+
+
+def _object(facts: object) -> dict[str, Any]:
+    if not isinstance(facts, dict):
+        raise ValueError(f"its facts are a {type(facts).__name__}, expected a JSON object")
+    return facts
+
+
+def _compare(stored: object, computed: str) -> None:
+    if stored != computed:
+        raise ValueError("its checksum does not agree with its contents")
 
 
 def _is_empty(folder: Path) -> bool:

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, final
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.real_form_names import join_real_forms
-from liehom.errors import InputError, LiehomError as LimitError
+from liehom.errors import InputError
+from liehom.errors import LiehomError as LimitError
 from liehom.pauli.identification import WordIdeal, word_ideals
 from liehom.pauli.symplectic import closed_words, word_table
 from liehom.pauli.words import Hamiltonian, PauliSums, read_sums, spell
 from liehom.scalars import Scalar
 
 if TYPE_CHECKING:
-    from liehom.representations.core.representation import Representation
+    pass
 
 MOST_WORDS = 20_000
 """Words in a closure, by default. The table of the algebra has at most a quarter of its square as entries."""

@@ -121,9 +121,7 @@ def _orthogonal(words: Sequence[int], translations: Sequence[int], count: int, q
     return f"so({k})" if len(found) == count == k * (k - 1) // 2 and found == set(classes) else None
 
 
-def _arf_invariant(
-    generators: Sequence[int], words: Sequence[int], radical: Sequence[int], qubits: int
-) -> int | None:
+def _arf_invariant(generators: Sequence[int], words: Sequence[int], radical: Sequence[int], qubits: int) -> int | None:
     """The Arf invariant of the quadratic form that is 1 on all words, or None if there is none on V.
 
     q(a + b) = q(a) + q(b) + <a, b>. It is carried along as one more bit of each word.
@@ -150,7 +148,7 @@ def _arf_invariant(
             basis[(left & (flag - 1)).bit_length()] = left
         elif left:
             return None  # q(0) = 1: the values at the generators contradict each other
-    if any(reduce(r) for r in radical) or any(not reduce(w) == flag for w in words):
+    if any(reduce(r) for r in radical) or any(reduce(w) != flag for w in words):
         return None  # q(r) = 1 for a central word, or q(w) = 0 for a word: read off the value left at 0
     return _arf_of(list(basis.values()), add, flag, qubits)
 

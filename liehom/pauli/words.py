@@ -144,8 +144,8 @@ def _terms(hamiltonian: Hamiltonian, index: int) -> list[Term]:
 
 
 def _real(coefficient: ScalarLike, index: int) -> ScalarLike:
-    if isinstance(coefficient, (float, complex)) or type(coefficient).__module__ == "numpy" and not hasattr(
-        coefficient, "__index__"
+    if isinstance(coefficient, (float, complex)) or (
+        type(coefficient).__module__ == "numpy" and not hasattr(coefficient, "__index__")
     ):
         raise FieldError(
             f"the coefficient {coefficient!r} of Hamiltonian {index} is not exact; write an integer, a Fraction, or a "

@@ -12,8 +12,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from liehom.disk import check_target, write_atomically
 from liehom.errors import FormatError, InputError
-from liehom.io.solution_file import check_target
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -116,7 +116,7 @@ def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
     check_target(target, force=True)
     try:
         with style():
-            figure.savefig(target, metadata=UNDATED.get(suffix))
+            write_atomically(target, lambda file: figure.savefig(file, format=suffix[1:], metadata=UNDATED.get(suffix)))
     except OSError as error:
         raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
     return figure

@@ -8,10 +8,10 @@ step that is not accepted changes only the step size.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import hashlib
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +20,7 @@ from typing import Any, TypeAlias, final
 
 import numpy.typing as npt
 
+from liehom.disk import write_atomically
 from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import TrajectoryConstant, needed
@@ -383,17 +384,9 @@ def _write(key: str, code: bytes) -> None:
     folder = cache_directory()
     if folder is None:
         return
-    try:
+    with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=folder)
-    except OSError:
-        return
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(hashlib.sha256(code).digest() + code)
-        os.replace(name, folder / f"{key}.o")
-    except OSError:  # leave no partial file on a full disk
-        Path(name).unlink(missing_ok=True)
+        write_atomically(folder / f"{key}.o", hashlib.sha256(code).digest() + code)
 
 
 def padded(count: int, width: int) -> int:

@@ -9,12 +9,13 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from liehom.disk import digest
 from liehom.errors import InputError, LiehomError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.ensembles.merging import from_shard, to_shard
 from liehom.integrators.integration import integrate
-from liehom.integrators.run.checkpoint import digest, stable_repr
+from liehom.integrators.run.checkpoint import stable_repr
 from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike, completed, open_store

@@ -1,16 +1,16 @@
 """Checkpoints: the whole state of a run in one .npz file, from which it continues bit for bit.
 
-A checkpoint is written to a temporary file first, so that an interruption leaves the older one whole, and it is read
-without pickles.
+An interruption leaves the older checkpoint whole. A checksum shows whether a file is damaged, and it is read without
+pickles. Checkpoints of liehom 0.1.0 (version 1) have no checksum.
 """
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import os
 import re
 import struct
+import threading
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -20,9 +20,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from liehom.disk import checksum, write_atomically
 from liehom.errors import FormatError, InputError
 
-FORMAT = "liehom-checkpoint 1"
+FORMAT = "liehom-checkpoint 2"
+FORMAT_OF_0_1_0 = "liehom-checkpoint 1"
+MARK = "checksum"
 FORMER_NAMES = {"NominalTimeCorrected(": "OnTime("}
 """Parts of a repr and their spelling in version 0.1.0, whose checkpoints and stores can still be continued."""
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError)
@@ -50,11 +53,10 @@ def checked_path(path: str | os.PathLike[str]) -> Path:
         raise InputError(f"checkpoint is {path!r}, expected the path of a file") from None
     if not target.name or os.path.isdir(target):
         raise InputError(f"the checkpoint {os.fsdecode(path)!r} is a directory, expected the path of a file")
-    temporary = _temporary(target)
+    trial = target.with_name(f".{target.name}.{os.getpid()}.{threading.get_ident()}.part")
     try:
-        with open(temporary, "wb"):
-            pass
-        temporary.unlink()
+        write_atomically(trial, b"")
+        trial.unlink()
     except (OSError, ValueError) as error:
         raise _not_writable(target, error) from None
     return target
@@ -76,20 +78,12 @@ def save(path: str | os.PathLike[str], fingerprint: str, state: Mapping[str, npt
     >>> load(path, "abc")["t"]
     array([0.5])
     """
-    target = Path(path)
-    temporary = _temporary(target)
+    arrays: dict[str, Any] = {"format": np.array(FORMAT), "fingerprint": np.array(fingerprint), **state}
+    arrays[MARK] = np.array(checksum(state, FORMAT, fingerprint))
     try:
-        with open(temporary, "wb") as file:
-            arrays: dict[str, Any] = dict(state)
-            np.savez(file, format=np.array(FORMAT), fingerprint=np.array(fingerprint), **arrays)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, target)
+        write_atomically(path, lambda file: np.savez(file, **arrays))
     except OSError as error:
-        raise _not_writable(target, error) from None
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
+        raise _not_writable(Path(path), error) from None
 
 
 def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArray[Any]]:
@@ -118,9 +112,15 @@ def load(path: str | os.PathLike[str], fingerprint: str) -> dict[str, npt.NDArra
             state = {key: archive[key] for key in archive.files}
     except (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error) as error:
         raise FormatError(f"{name!r} is not a checkpoint of liehom, or is damaged: {error}") from None
-    if str(state.pop("format", "")) != FORMAT:
+    version, own, mark = (state.pop(key, None) for key in ("format", "fingerprint", MARK))
+    if str(version) not in (FORMAT, FORMAT_OF_0_1_0):
         raise FormatError(f"{name!r} is not a checkpoint of liehom of this version")
-    if str(state.pop("fingerprint", "")) != fingerprint:
+    expected = checksum(state, FORMAT, str(own)) if str(version) == FORMAT else None
+    if (None if mark is None else str(mark)) != expected:
+        raise FormatError(
+            f"the checkpoint {name!r} is damaged, its checksum does not agree with its contents: delete it"
+        )
+    if str(own) != fingerprint:
         raise InputError(
             f"the checkpoint {name!r} belongs to another problem (field, start, time span, step or options "
             "differ): delete it, or give another path"
@@ -139,24 +139,6 @@ def remove(path: str | os.PathLike[str]) -> None:
         os.remove(path)
 
 
-def digest(*parts: npt.ArrayLike) -> str:
-    """SHA-256 fingerprint of arrays and strings, 64 hexadecimal digits.
-
-    Examples
-    --------
-    >>> digest("a", np.zeros(2)) == digest("a", np.zeros(2)), len(digest())
-    (True, 64)
-    """
-    found = hashlib.sha256()
-    for part in parts:
-        array = np.asarray(part)
-        found.update(f"{array.dtype}{array.shape}".encode())
-        if array.dtype == np.longdouble:  # its padding bytes are arbitrary
-            array = np.stack([array.astype(np.float64), (array - array.astype(np.float64)).astype(np.float64)])
-        found.update(np.ascontiguousarray(array).tobytes() if array.dtype.kind != "O" else repr(part).encode())
-    return found.hexdigest()
-
-
 def stable_repr(value: object) -> str:
     """String of a step or an option for fingerprints: its repr without addresses, spelled as in version 0.1.0.
 
@@ -169,10 +151,6 @@ def stable_repr(value: object) -> str:
     for name, former in FORMER_NAMES.items():
         text = text.replace(name, former)
     return text
-
-
-def _temporary(target: Path) -> Path:
-    return target.with_name(f".{target.name}.{os.getpid()}.part")
 
 
 def _not_writable(target: Path, error: Exception) -> InputError:

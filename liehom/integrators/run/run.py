@@ -20,6 +20,7 @@ from liehom.correctors.conserving import ConservingStep
 from liehom.correctors.expansion import flow_series
 from liehom.correctors.isotropy.corrected import CorrectedStep
 from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.disk import digest
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators.run import checkpoint as files
@@ -209,7 +210,7 @@ class Run:
         near = self.action.act((ahead * here).astype(self.dtype), self.start)
         there = np.asarray(field.psi(near, t + ahead))
         numbers = [np.array(self.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
-        return files.digest(strings, self.start, *numbers, *matrices, here, near, there, *self.state.event_values)
+        return digest(strings, self.start, *numbers, *matrices, here, near, there, *self.state.event_values)
 
     def _fraction(self) -> float:
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)

@@ -1,0 +1,152 @@
+"""Files that are written whole or not at all, and digests of what a file should contain."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import secrets
+import stat
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.errors import FormatError
+
+LONGEST_STEM = 200  # characters of a file name that its temporary name repeats; file systems allow 255 bytes
+
+
+def write_atomically(path: str | os.PathLike[str], content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
+    """Write a file so that any reader, and any interruption, finds the old file or the new one, never a part.
+
+    Parameters
+    ----------
+    path : path_like
+        A symbolic link is followed. A device or a pipe is written to directly.
+    content : bytes or callable
+        The content, or a function that writes it to a binary file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; an existing file is then unchanged.
+
+    Notes
+    -----
+    The content goes to a temporary file in the same folder, with a name that no other thread or process uses. It is
+    flushed to the disk and then renamed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "file"
+    >>> write_atomically(path, b"abc")
+    >>> path.read_bytes()
+    b'abc'
+    """
+    target = Path(os.path.realpath(path))
+    try:
+        mode = target.stat().st_mode
+    except OSError:
+        mode = None
+    if mode is not None and not stat.S_ISREG(mode):
+        with open(target, "wb") as file:
+            _fill(file, content)
+        return
+    temporary = target.with_name(f".{target.name[:LONGEST_STEM]}.{secrets.token_hex(8)}.part")
+    handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            _fill(file, content)
+            file.flush()
+            os.fsync(file.fileno())
+        if mode is not None:
+            os.chmod(temporary, stat.S_IMODE(mode))
+        os.replace(temporary, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise
+    _flush_folder(target.parent)
+
+
+def _fill(file: BinaryIO, content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
+    if callable(content):
+        content(file)
+    else:
+        file.write(content)
+
+
+def _flush_folder(folder: Path) -> None:
+    """Flush the new name to the disk, on systems on which a folder can be opened."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Raise `FormatError` if a file cannot be written; called before the work.
+
+    Raises
+    ------
+    FormatError
+        If the folder does not exist or is not writable, or the file exists and `force` is False.
+
+    Examples
+    --------
+    >>> check_target("no/such/folder/out.npz")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: 'no/such/folder/out.npz' cannot be written: the folder 'no/such/folder' does not exist
+    """
+    text = os.fspath(path)
+    if not text or "\0" in text:
+        raise FormatError(f"{text!r} is not the name of a file")
+    target = Path(text)
+    folder = target.parent
+    if not folder.is_dir():
+        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} does not exist")
+    if target.is_dir():
+        raise FormatError(f"{text!r} cannot be written: it is a folder")
+    if not os.access(folder, os.W_OK) and not (target.exists() and os.access(target, os.W_OK)):
+        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} is not writable")
+    if target.exists() and not force:
+        raise FormatError(f"{text!r} is there already and is not overwritten: give another name, or force it")
+
+
+def digest(*parts: npt.ArrayLike) -> str:
+    """SHA-256 fingerprint of arrays and strings, 64 hexadecimal digits.
+
+    Examples
+    --------
+    >>> digest("a", np.zeros(2)) == digest("a", np.zeros(2)), len(digest())
+    (True, 64)
+    """
+    found = hashlib.sha256()
+    for part in parts:
+        array = np.asarray(part)
+        found.update(f"{array.dtype}{array.shape}".encode())
+        if array.dtype == np.longdouble:  # its padding bytes are arbitrary
+            array = np.stack([array.astype(np.float64), (array - array.astype(np.float64)).astype(np.float64)])
+        found.update(np.ascontiguousarray(array).tobytes() if array.dtype.kind != "O" else repr(part).encode())
+    return found.hexdigest()
+
+
+def checksum(arrays: Mapping[str, npt.ArrayLike], *texts: str) -> str:
+    """Digest of named arrays and of strings: names, types, shapes and contents, whatever the order of the names.
+
+    Examples
+    --------
+    >>> checksum({"a": [1], "b": [2]}) == checksum({"b": [2], "a": [1]}) != checksum({"a": [2], "b": [1]})
+    True
+    """
+    parts: list[npt.ArrayLike] = [*texts]
+    for name in sorted(arrays):
+        parts += [name, arrays[name]]
+    return digest(*parts)
