@@ -203,6 +203,10 @@ class ConvergenceError(LiehomError, ArithmeticError):
     """An iteration did not converge: an implicit step, a time reparametrization, a point of an orbit."""
 
 
+class DamageWarning(UserWarning):
+    """A file of stored results is damaged; its name is given, and its results are computed again."""
+
+
 class WorkerLostError(LiehomError, RuntimeError):
     """Workers were lost before all tasks were done; `done` and `missing` count the tasks."""
 

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, final
 
 from liehom.catalog import pair as named_pair
-from liehom.errors import InputError
+from liehom.errors import FormatError, InputError, shown
 from liehom.fullness import Certificate, verify_certificate
 from liehom.representations import Pair
+
+KINDS: dict[str, Any] = {
+    "name": str,
+    "dimension": int | None,
+    "subalgebra_dimension": int | None,
+    "verdict": Mapping,
+    "verified": bool,
+    "failure": str,
+}
+"""Types of the attributes of an entry in JSON."""
 
 
 @final
@@ -44,6 +54,27 @@ class Entry:
     verdict: Mapping[str, Any]
     verified: bool
     failure: str = ""
+
+    @classmethod
+    def from_json(cls, facts: Mapping[str, Any]) -> Entry:
+        """The entry with these attributes, a JSON object as ``dataclasses.asdict(entry)`` gives.
+
+        Raises
+        ------
+        FormatError
+            If an attribute is missing or unknown, or is not of the type stated above.
+        """
+        expected = {field.name: KINDS[field.name] for field in fields(cls)}
+        unknown = sorted(set(facts) - set(expected))
+        if unknown or set(expected) - set(facts) - {"failure"}:
+            raise FormatError(f"an entry has the keys {', '.join(expected)}; found {', '.join(map(str, facts))}")
+        for key, value in facts.items():
+            if not isinstance(value, expected[key]) or (isinstance(value, bool) and key != "verified"):
+                raise FormatError(f"{key} of an entry is {shown(repr(value))}, which is not of its type")
+        entry = cls(**facts)
+        if entry.certificate is not None and entry.certificate.full is not entry.full:
+            raise FormatError(f"the entry of {entry.name} and its certificate do not agree whether it is full")
+        return entry
 
     @property
     def full(self) -> bool | None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import os
-from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any, NamedTuple
 
 from liehom.atlas.entry import Atlas, Entry
 from liehom.catalog import pair as named_pair
@@ -25,6 +26,7 @@ def sweep(
     retries: int = 2,
     seed: int = 0,
     verify: bool = True,
+    recheck: bool = False,
     progress: Callable[[Entry], object] | None = None,
 ) -> Atlas:
     """An `Atlas` of the fullness decisions of many pairs.
@@ -47,6 +49,10 @@ def sweep(
         The seed of `decide_fullness`.
     verify : bool
         Whether the worker runs the independent checker on each certificate.
+    recheck : bool
+        Whether the independent checker runs again on the certificates of stored entries. Each entry has a checksum, and
+        a damaged one is decided again with a `DamageWarning`. Entries that liehom 0.1.0 has stored have no checksum;
+        their certificates are always checked again.
     progress : callable, optional
         Called with each entry when the pair is decided, in order of completion.
 
@@ -81,7 +87,10 @@ def sweep(
     found: dict[str, Entry] = {}
     for task in tasks:
         if results is not None and task.key in stored and task.key not in found:
-            found[task.key] = Entry(**results.load(task.key)[1])
+            again = recheck or not results.has_checksums
+            entry = results.restored(task.key, partial(_stored_entry, task=task, recheck=again))
+            if entry is not None:
+                found[task.key] = entry
     todo = list({task.key: task for task in tasks if task.key not in found}.values())
     for number, entry in completed(_decided, todo, executor, retries=retries):
         if results is not None and not entry.failure:
@@ -125,6 +134,14 @@ def _key(text: str) -> str:
     """A file name from a string: its first 40 characters, letters and digits only, and a digest of the string."""
     short = "".join(c if c.isalnum() else "-" for c in text[:40]).strip("-")
     return f"{short}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
+
+
+def _stored_entry(arrays: object, facts: Mapping[str, Any], *, task: _Task, recheck: bool) -> Entry:
+    """The entry that a shard holds; `FormatError` or `CertificateError` if it cannot be believed."""
+    entry = Entry.from_json(facts)
+    if recheck and entry.proved:
+        entry.verify(None if isinstance(task.pair, str) else task.pair)
+    return entry
 
 
 def _decided(task: _Task) -> Entry:

@@ -61,7 +61,7 @@ def fullness(
 
 
 def _fullness(text: str, out: str | None, as_json: bool) -> int:
-    from liehom.cli.inputs import pair_argument
+    from liehom.cli.inputs import check_output, pair_argument
     from liehom.cli.show import show_answer, show_json
     from liehom.errors import InputError
     from liehom.fullness.decide import decide_fullness
@@ -70,6 +70,8 @@ def _fullness(text: str, out: str | None, as_json: bool) -> int:
     pair = pair_argument(text)
     if out is not None and not pair.field.exact:
         raise InputError("a numerical answer has no certificate; give exact numbers, or leave --certificate out")
+    if out is not None:
+        check_output(out, text)
     verdict = decide_fullness(pair)
     proved = verdict.certificate is not None
     if proved:

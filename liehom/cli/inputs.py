@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.disk import check_target
 from liehom.errors import CatalogError, FormatError
 from liehom.io import from_gap, from_sage, load, load_pair
 from liehom.io.json_reader import parse_object
@@ -53,6 +54,23 @@ def file_argument(text: str) -> str:
 def is_file(text: str) -> bool:
     """Whether an argument names a file rather than an entry of the catalogue."""
     return os.path.exists(text) or text.endswith(".json")
+
+
+def check_output(path: str, *inputs: str) -> None:
+    """Raise `FormatError`, before the work, if a file cannot be written or is one of the files that were read.
+
+    Examples
+    --------
+    >>> check_output(__file__, __file__)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: ... is read by this command, so it is not overwritten: give another name
+    """
+    check_target(path, force=True)
+    for text in inputs:
+        name = file_argument(text)
+        if os.path.exists(path) and os.path.exists(name) and os.path.samefile(path, name):
+            raise FormatError(f"{path!r} is read by this command, so it is not overwritten: give another name")
 
 
 def pair_argument(text: str) -> Pair:

@@ -11,18 +11,21 @@ import contextlib
 import json
 import os
 import struct
+import warnings
 import zipfile
 import zlib
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeAlias, final
+from typing import Any, TypeAlias, TypeVar, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.disk import checksum, write_atomically
-from liehom.errors import FormatError, InputError
+from liehom.errors import CertificateError, DamageWarning, FormatError, InputError
+
+T = TypeVar("T")
 
 FORMAT = "liehom-store"
 VERSION = 2
@@ -50,6 +53,7 @@ class Store(ABC):
     """
 
     path: str
+    _mark: str | None  # what enters the checksums; None in stores of version 1, which have none
 
     @abstractmethod
     def names(self) -> frozenset[str]:
@@ -74,6 +78,27 @@ class Store(ABC):
         FormatError
             If the shard does not exist or is damaged.
         """
+
+    @property
+    def has_checksums(self) -> bool:
+        """Whether damage is always noticed; False for stores that liehom 0.1.0 has made."""
+        return self._mark is not None
+
+    def restored(self, name: str, read: Callable[[dict[str, npt.NDArray[Any]], dict[str, Any]], T]) -> T | None:
+        """What `read` makes of the arrays and facts of a shard, or None, with a `DamageWarning`, if it is damaged.
+
+        Parameters
+        ----------
+        name : str
+        read : callable
+            A function of the arrays and the facts, which may raise `FormatError` or `CertificateError`.
+        """
+        try:
+            return read(*self.load(name))
+        except (FormatError, CertificateError) as error:
+            text = f"the shard {name!r} of the store {self.path!r} is damaged and is computed again: {error}"
+            warnings.warn(DamageWarning(text), stacklevel=2)
+            return None
 
     def __repr__(self) -> str:
         return f"<store {self.path!r}>"

@@ -95,7 +95,7 @@ def integrate_ensemble(
     WorkerLostError
         If workers are lost more often than `retries` allows.
     FormatError
-        If `store` is not a store, or a shard in it is damaged.
+        If `store` is not a store. A damaged shard is computed again, with a `DamageWarning`.
 
     Notes
     -----
@@ -190,7 +190,11 @@ def ensemble_parts(
     def parts() -> Iterator[EnsemblePart]:
         for rows in bounds:
             if kept is not None and _name(rows) in done:
-                yield EnsemblePart(*rows, from_shard(*kept.load(_name(rows))))
+                stored = kept.restored(_name(rows), from_shard)
+                if stored is None:
+                    todo.append(rows)
+                else:
+                    yield EnsemblePart(*rows, stored)
         for number, solution in completed(solved, [problem.task(rows) for rows in todo], executor, retries=retries):
             rows = todo[number]
             if kept is not None:

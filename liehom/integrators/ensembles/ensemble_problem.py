@@ -140,7 +140,8 @@ def all_solved(
         marks = [problem.fingerprint(problem.made(), []) for problem in problems]
         kept = open_store(store, digest(repr(marks)))
     done = frozenset() if kept is None else kept.names()
-    found = {i: from_shard(*kept.load(names[i])) for i in range(len(names)) if kept is not None and names[i] in done}
+    read = {i: kept.restored(names[i], from_shard) for i in range(len(names)) if kept is not None and names[i] in done}
+    found = {i: solution for i, solution in read.items() if solution is not None}
     todo = [i for i in range(len(problems)) if i not in found]
     for number, solution in completed(solved, [problems[i] for i in todo], executor, retries=retries):
         if kept is not None:
