@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, final
+from typing import final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
@@ -12,8 +12,9 @@ from liehom.algebra.roots.real_form_names import join_real_forms
 from liehom.errors import InputError
 from liehom.errors import LiehomError as LimitError
 from liehom.pauli.identification import WordIdeal, word_ideals
-from liehom.pauli.symplectic import closed_words, word_table
+from liehom.pauli.symplectic import closed_words, real_matrix, word_table
 from liehom.pauli.words import Hamiltonian, PauliSums, read_sums, spell
+from liehom.representations.core.representation import Representation
 from liehom.scalars import Scalar
 
 if TYPE_CHECKING:
@@ -140,6 +141,33 @@ class DynamicalLieAlgebra:
             number = len(ideal.words)
             lines.append(f"  {count}, spanned by {number} Pauli word{'s' if number > 1 else ''}")
         return "\n".join(lines)
+
+    def representation(self) -> Representation:
+        """The representation on C^N, N = 2 to the number of qubits: basis elements as N x N skew-Hermitian matrices.
+
+        Raises
+        ------
+        LimitError
+            If the matrices have more entries than `liehom.limits` allows.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> rho = lh.pauli.closure(["X", "Y"]).representation()
+        >>> rho.complex_size, rho.complex_matrices()[1]
+        (2, Matrix([
+        [ 0, 1],
+        [-1, 0]]))
+        """
+        size = 2 ** (self.qubits + 1)
+        within("entries", self.dimension * size * size, "the matrices of the representation have {} entries")
+        field = self.word_algebra.field
+        words = [field.matrix(real_matrix(word, self.qubits)) for word in self._integers]
+        flat = field.stack_rows([a.reshape(1, size * size) for a in words], size * size)
+        matrices = (self.subalgebra.basis @ flat).split_rows(size, size)
+        return Representation(
+            self.algebra, matrices, size=size, name=f"C^{2**self.qubits}", coordinates="complex", check=False
+        )
 
     def element(self, hamiltonian: Hamiltonian) -> list[Scalar]:
         """The coefficients in the basis of `algebra` of i times a Hamiltonian, a list of length `dimension`.

@@ -76,3 +76,27 @@ def bits(words: Sequence[int], qubits: int) -> tuple[IntegerArray, IntegerArray]
     letters = [f"{word:0{2 * qubits}b}" for word in words]
     table = np.array([[int(b) for b in row] for row in letters], dtype=np.int64).reshape(len(words), 2 * qubits)
     return table[:, :qubits], table[:, qubits:]
+
+
+def real_matrix(word: int, qubits: int) -> IntegerArray:
+    """The real matrix of iP on (Re z_1, Im z_1, ...), shape (2N, 2N) with N = 2 to the number of qubits.
+
+    Examples
+    --------
+    >>> from liehom.pauli.words import encode
+    >>> real_matrix(encode({0: "Z"}, 1), 1)
+    array([[ 0, -1,  0,  0],
+           [ 1,  0,  0,  0],
+           [ 0,  0,  0,  1],
+           [ 0,  0, -1,  0]])
+    """
+    size = 1 << qubits
+    x, z = word >> qubits, word & (size - 1)
+    made = np.zeros((2 * size, 2 * size), dtype=np.int64)
+    powers = ((1, 0), (0, 1), (-1, 0), (0, -1))  # of i
+    for column in range(size):
+        # i P e_b = i^(1 + x.z) (-1)^(z.b) e_(b + x)
+        real, imaginary = powers[(1 + (x & z).bit_count() + 2 * (z & column).bit_count()) % 4]
+        row = column ^ x
+        made[2 * row : 2 * row + 2, 2 * column : 2 * column + 2] = ((real, -imaginary), (imaginary, real))
+    return made
