@@ -10,18 +10,20 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.real_form_names import join_real_forms
 from liehom.errors import InputError
-from liehom.errors import LiehomError as LimitError
 from liehom.pauli.identification import WordIdeal, word_ideals
 from liehom.pauli.symplectic import closed_words, real_matrix, word_table
 from liehom.pauli.words import Hamiltonian, PauliSums, read_sums, spell
 from liehom.representations.core.representation import Representation
 from liehom.scalars import Scalar
 
-if TYPE_CHECKING:
-    pass
-
 MOST_WORDS = 20_000
 """Words in a closure, by default. The table of the algebra has at most a quarter of its square as entries."""
+MOST_ENTRIES = 50_000_000
+"""Entries of all matrices of a representation together."""
+
+
+MOST_WORDS = 20_000
+"""Words in a closure, by default."""
 MOST_ENTRIES = 50_000_000
 """Entries of all matrices of a representation together."""
 
@@ -147,8 +149,8 @@ class DynamicalLieAlgebra:
 
         Raises
         ------
-        LimitError
-            If the matrices have more entries than `liehom.limits` allows.
+        InputError
+            If the matrices have more than 50 million entries together.
 
         Examples
         --------
@@ -160,7 +162,10 @@ class DynamicalLieAlgebra:
         [-1, 0]]))
         """
         size = 2 ** (self.qubits + 1)
-        within("entries", self.dimension * size * size, "the matrices of the representation have {} entries")
+        if self.dimension * size * size > MOST_ENTRIES:
+            raise InputError(
+                f"the {self.dimension} matrices have size {size}, more than {MOST_ENTRIES} entries together"
+            )
         field = self.word_algebra.field
         words = [field.matrix(real_matrix(word, self.qubits)) for word in self._integers]
         flat = field.stack_rows([a.reshape(1, size * size) for a in words], size * size)
@@ -227,7 +232,7 @@ def closure(
     ------
     ParseError, FieldError, InputError
         If a Hamiltonian is not a sum of words with exact real coefficients.
-    LimitError
+    InputError
         If nested commutators reach more than `most_words` words.
 
     Notes
@@ -245,5 +250,5 @@ def closure(
     sums = read_sums(hamiltonians, qubits)
     words = closed_words([word for terms in sums.terms for word in terms], sums.qubits, most_words)
     if len(words) > most_words:
-        raise LimitError("most_words", f"more than {most_words}", most_words)
+        raise InputError(f"nested commutators reach more than {most_words} words; raise most_words")
     return DynamicalLieAlgebra(sums, words)

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.errors import InputError
-from liehom.errors import LiehomError as LimitError
 from tests.sampling import examples
 
 MATRICES = {"I": np.eye(2), "X": [[0, 1], [1, 0]], "Y": [[0, -1j], [1j, 0]], "Z": [[1, 0], [0, -1]]}
@@ -157,7 +156,7 @@ def test_repeated_and_dependent_hamiltonians_do_not_change_the_algebra() -> None
 
 def test_too_many_words_are_refused_before_they_are_made() -> None:
     words = [*lh.pauli.heisenberg(lh.pauli.chain(9)), "X" + "I" * 8]
-    with pytest.raises(LimitError, match="dimension"):
+    with pytest.raises(InputError, match="more than 20000 words"):
         lh.pauli.closure(words)
 
 
@@ -173,3 +172,25 @@ def test_bad_edges_are_refused() -> None:
     for sites in (1, 0, True, 2.0):
         with pytest.raises(InputError):
             lh.pauli.chain(sites)  # type: ignore[arg-type]
+
+
+@given(word_sets(2, 4))
+@settings(max_examples=examples(20), deadline=None)
+def test_representation_has_the_matrices_of_the_words(words: list[str]) -> None:
+    rho = lh.pauli.closure(words).representation()
+    lh.Representation(rho.algebra, rho.matrices)  # proves the representation identity
+    for word, found in zip(rho.algebra.basis_names, rho.over(lh.scalars.RR).complex_matrices(), strict=True):
+        np.testing.assert_array_equal(found, 1j * matrix(word))
+
+
+def test_representation_of_sums_is_a_representation() -> None:
+    rho = lh.pauli.closure(["XX + sqrt(2)*YY", "ZI"]).representation()
+    assert lh.Representation(rho.algebra, rho.matrices).size == 8 and rho.complex_size == 4
+    assert lh.pauli.closure(["XX", "ZI", "IZ"]).representation().isotropy([1, 0, 0, 1]).dimension == 3
+
+
+def test_words_and_matrices_generate_the_same_algebra() -> None:
+    words = ["ZZ", "XI", "IX"]
+    by_matrices = lh.Representation.from_matrices([matrix(w).real.astype(int).tolist() for w in words], hermitian=True)
+    made = lh.pauli.closure(words)
+    assert by_matrices.algebra.real_form() == made.name == "so(3) + so(3)"
