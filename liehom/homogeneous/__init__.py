@@ -11,6 +11,8 @@ from liehom.homogeneous.exponentials import exponential_of as exponential_of
 from liehom.homogeneous.fields import GeneratorField as GeneratorField
 from liehom.homogeneous.frames import InnerProduct as InnerProduct
 from liehom.homogeneous.frames import inner_product as inner_product
+from liehom.homogeneous.orbits import ConjugacyInvariants as ConjugacyInvariants
+from liehom.homogeneous.orbits import ConjugacyProof as ConjugacyProof
 from liehom.homogeneous.orbits import OrbitType as OrbitType
 from liehom.homogeneous.orbits import Stratum as Stratum
 from liehom.homogeneous.orbits import adjoint_strata as adjoint_strata

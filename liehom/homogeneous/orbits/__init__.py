@@ -1,8 +1,10 @@
-"""Orbit types: the isotropy of points, of strata, and short names for both.
+"""Orbit types: the isotropy of points up to conjugation, of strata, and short names for both.
 
-Used by the instances and by `liehom.orbit_types`; see docs/notation.md.
+Used by the instances and by `liehom.orbit_types`; see docs/theory/representations.md.
 """
 
+from liehom.homogeneous.orbits.conjugacy_invariants import ConjugacyInvariants as ConjugacyInvariants
+from liehom.homogeneous.orbits.conjugacy_proof import ConjugacyProof as ConjugacyProof
 from liehom.homogeneous.orbits.orbit_types import OrbitType as OrbitType
 from liehom.homogeneous.orbits.orbit_types import orbit_types as orbit_types
 from liehom.homogeneous.orbits.strata import Stratum as Stratum

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactMatrix
-from liehom.scalars.fields.number_field import NumberField
+from liehom.scalars.spaces.ball_matrices import ball_matrix
 
 Balls = tuple[flint.acb, ...]
 
@@ -108,15 +108,8 @@ def joint_spectrum(matrices: Sequence[ExactMatrix], weights: Sequence[int], prec
 
 
 def enclosure(matrix: ExactMatrix, precision: int) -> flint.acb_mat:
-    """Enclosure (``flint.acb_mat``) of a matrix over an exact field, with the current working precision."""
-    total = flint.arb_mat(matrix.parts[0])
-    if isinstance(matrix.field, NumberField):
-        generator = matrix.field.generator_ball(precision)
-        power = generator
-        for part in matrix.parts[1:]:
-            total += flint.arb_mat(part) * power
-            power = power * generator
-    return flint.acb_mat(total * (flint.arb(1) / matrix.den))
+    """Complex enclosure (``flint.acb_mat``) of a matrix over an exact field, with the current working precision."""
+    return flint.acb_mat(ball_matrix(matrix, precision))
 
 
 def _eigenvalues(parts: list[flint.acb_mat], weights: Sequence[int]) -> list[tuple[flint.acb, Balls]]:

@@ -9,8 +9,7 @@ import flint
 from liehom.errors import ShapeError
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactMatrix
-from liehom.scalars.fields.number_field import NumberField
-from liehom.scalars.fields.rational import QQ
+from liehom.scalars.spaces.ball_matrices import ball_matrix
 
 PRECISION_LIMIT = 1 << 14
 
@@ -44,15 +43,8 @@ def is_basis_of_reals(blocks: Sequence[ExactMatrix], n: int) -> bool:
     precision = 128
     while precision <= PRECISION_LIMIT:
         with working_precision(precision):
-            table = [row for block in blocks for row in _balls(block, precision)]
+            table = [row for block in blocks for row in ball_matrix(block, precision).tolist()]
             if not table or not flint.arb_mat(table).det().contains(0):
                 return True
         precision *= 2
     return False
-
-
-def _balls(block: ExactMatrix, precision: int) -> list[list[flint.arb]]:
-    field = block.field
-    if isinstance(field, NumberField):
-        return [[field.ball(x, precision) for x in row] for row in block.to_rows()]
-    return [[flint.arb(QQ.convert(x)) for x in row] for row in block.to_rows()]
