@@ -21,6 +21,7 @@ from liehom.scalars import QQ, RR, NumberField
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 MINUS_ROOT2 = NumberField("a", [-2, 0, 1], (-2, -1))
+FIRST_PRIME = str(next(verify_modular._primes(QQ, 4))[0])
 
 
 @dataclass(frozen=True)
@@ -389,7 +390,10 @@ def naive(pair: Pair) -> bool:
 
 @pytest.mark.parametrize("dense", [True, False])
 def test_one_wrong_constant_is_seen(dense: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Dense and sparse checks agree with the definition on mutated tables; some mutations do no harm."""
+    """Dense and sparse checks agree with the definition on mutated tables; some mutations do no harm.
+
+    One of the constants is 0 modulo the first prime of the checker.
+    """
     monkeypatch.setattr(verify_modular, "_is_dense", lambda n, number: dense)
     rng, verdicts = random.Random(1), []
     for name in ("affine plane", "cone", "tensor", "borel", "so(6)/so(5)"):
@@ -398,7 +402,7 @@ def test_one_wrong_constant_is_seen(dense: bool, monkeypatch: pytest.MonkeyPatch
         for _ in range(12):
             entries = {(i, j, k): c for i, j, k, c in pair.algebra.entries}
             i, j = sorted(rng.sample(range(n), 2))
-            entries[i, j, rng.randrange(n)] = QQ.convert(rng.choice(["1", "-1/3", "1/1000003", "16777213"]))
+            entries[i, j, rng.randrange(n)] = QQ.convert(rng.choice(["1", "-1/3", "1/1000003", FIRST_PRIME]))
             mutated = make(n, entries, basis.to_rows())
             if name != "so(6)/so(5)":
                 expected = naive(mutated)
@@ -432,7 +436,7 @@ def test_dense_and_sparse_agree_over_a_number_field(monkeypatch: pytest.MonkeyPa
 
 
 def test_large_denominators() -> None:
-    """Many primes are needed, and enough are used: the error is one part in 10^60."""
+    """Many primes are needed to accept the pair; the error is one part in 10^60, and any of them refuses it."""
     big = 10**60 + 7
     brackets = {(0, 2, 3): Fraction(1, big), (0, 3, 2): -big, (1, 2, 3): 1, (1, 3, 2): -(big**2)}
     assert check_pair(make(4, brackets, [[1, 0, 0, 0], [0, 1, 0, 0]])).codimension == 2
