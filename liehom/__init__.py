@@ -79,6 +79,7 @@ if TYPE_CHECKING:
     from liehom.algebra import gell_mann_matrices as gell_mann_matrices
     from liehom.algebra import gl as gl
     from liehom.algebra import heisenberg as heisenberg
+    from liehom.algebra import low_dimensional as low_dimensional
     from liehom.algebra import oscillator as oscillator
     from liehom.algebra import parabolic_subalgebra as parabolic_subalgebra
     from liehom.algebra import pauli_matrices as pauli_matrices
@@ -86,6 +87,7 @@ if TYPE_CHECKING:
     from liehom.algebra import real_forms as real_forms
     from liehom.algebra import realification as realification
     from liehom.algebra import root_system as root_system
+    from liehom.algebra import schroedinger as schroedinger
     from liehom.algebra import semidirect_sum as semidirect_sum
     from liehom.algebra import simple as simple
     from liehom.algebra import sl as sl
@@ -244,8 +246,9 @@ _NAMES = {
         "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
         "bargmann bianchi canonical_real_form cartan_matrix central_extension chevalley conformal dirac_matrices "
         "direct_sum dynkin_diagram euclidean filiform free_nilpotent galilei gell_mann_matrices gl heisenberg "
-        "oscillator parabolic_subalgebra pauli_matrices poincare real_forms realification root_system semidirect_sum "
-        "simple sl so so_form so_star sp sp_form spin_matrices strictly_upper_triangular su u upper_triangular"
+        "low_dimensional oscillator parabolic_subalgebra pauli_matrices poincare real_forms realification root_system "
+        "schroedinger semidirect_sum simple sl so so_form so_star sp sp_form spin_matrices "
+        "strictly_upper_triangular su u upper_triangular"
     ),
     "liehom.catalog": "pair",
     "liehom.correctors": (

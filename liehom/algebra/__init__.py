@@ -20,10 +20,12 @@ from liehom.algebra.constructions import free_nilpotent as free_nilpotent
 from liehom.algebra.constructions import galilei as galilei
 from liehom.algebra.constructions import gl as gl
 from liehom.algebra.constructions import heisenberg as heisenberg
+from liehom.algebra.constructions import low_dimensional as low_dimensional
 from liehom.algebra.constructions import oscillator as oscillator
 from liehom.algebra.constructions import parabolic_subalgebra as parabolic_subalgebra
 from liehom.algebra.constructions import poincare as poincare
 from liehom.algebra.constructions import realification as realification
+from liehom.algebra.constructions import schroedinger as schroedinger
 from liehom.algebra.constructions import semidirect_sum as semidirect_sum
 from liehom.algebra.constructions import simple as simple
 from liehom.algebra.constructions import sl as sl

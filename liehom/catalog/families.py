@@ -1,13 +1,14 @@
 """Names of families of Lie algebras without matrices: kinematical, conformal, solvable, free nilpotent.
 
 iso(p,q)                poincare(p, q)
-galilei(n), bargmann(n) without and with mass
+galilei(n), bargmann(n) without and with mass; schroedinger(n)
 conformal(p), conformal(p,q), aff(n), filiform(n), oscillator(n), free_nilpotent(g,k)
-bianchi(I), ..., bianchi(VI;a), bianchi(VII;a)
+bianchi(I), ..., bianchi(VI;a), bianchi(VII;a), A1,1, ..., A4,12 with parameters as in A4,2(1/2)
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from liehom.algebra import (
@@ -19,10 +20,12 @@ from liehom.algebra import (
     filiform,
     free_nilpotent,
     galilei,
+    low_dimensional,
     oscillator,
     poincare,
+    schroedinger,
 )
-from liehom.catalog.names import Term
+from liehom.catalog.names import Term, Value
 from liehom.errors import CatalogError, InputError
 
 MAX_PARAMETER = 64
@@ -33,7 +36,7 @@ MAX_FREE_LENGTH = 3000
 
 def is_family(term: Term) -> bool:
     """Whether the head of a term names a family."""
-    return term.head in _FAMILIES
+    return term.head in _FAMILIES or _NUMBERED.fullmatch(term.head) is not None
 
 
 def family_algebra(term: Term) -> LieAlgebra:
@@ -51,6 +54,8 @@ def family_algebra(term: Term) -> LieAlgebra:
     """
     if term.head == "bianchi":
         return _bianchi(term)
+    if numbered := _NUMBERED.fullmatch(term.head):
+        return _built(term, low_dimensional, int(numbered[1]), int(numbered[2]), *term.after)
     build, least, most = _FAMILIES[term.head]
     values = term.integers()
     if term.after or not least <= len(values) <= most:
@@ -59,6 +64,10 @@ def family_algebra(term: Term) -> LieAlgebra:
     too_many = term.head == "free_nilpotent" and max(values[0], 2) ** values[1] > MAX_FREE_LENGTH
     if max(values) > MAX_PARAMETER or too_many:
         raise CatalogError(f"{term} is larger than the catalogue builds; call the function of liehom for this family")
+    return _built(term, build, *values)
+
+
+def _built(term: Term, build: Callable[..., LieAlgebra], *values: Value | str) -> LieAlgebra:
     try:
         return build(*values)
     except CatalogError:
@@ -71,16 +80,15 @@ def _bianchi(term: Term) -> LieAlgebra:
     kind = term.items[0] if len(term.items) == 1 else None
     if not isinstance(kind, Term) or kind.items or len(term.after) > 1:
         raise CatalogError(f"bianchi takes a Roman numeral, and perhaps a parameter as in bianchi(VII;2); got {term}")
-    try:
-        return bianchi(kind.head, *term.after)
-    except InputError as error:
-        raise CatalogError(f"{term}: {error}") from None
+    return _built(term, bianchi, kind.head, *term.after)
 
 
+_NUMBERED = re.compile(r"A(\d),(\d+)", re.ASCII)
 _FAMILIES: dict[str, tuple[Callable[..., LieAlgebra], int, int]] = {
     "iso": (poincare, 2, 2),
     "galilei": (galilei, 1, 1),
     "bargmann": (bargmann, 1, 1),
+    "schroedinger": (schroedinger, 1, 1),
     "conformal": (conformal, 1, 2),
     "aff": (affine, 1, 1),
     "filiform": (filiform, 1, 1),

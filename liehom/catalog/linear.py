@@ -7,7 +7,8 @@ forms           form(d1,...,dn): so of the diagonal quadratic form
 commutative     field(c0,...,c_(n-1)): Q[t]/(t^n + ... + c0) on itself; diag(...), spiral(a,b), R (scalars)
 triangular      upper(n), strict(n)
 from others     dual(X), tensor(X,Y), blocks(X,Y,...), copies(k,X), Sk(X), Lk(X); sym(n): so(n) on Sym(n)
-with scalars    X+R, X+u(1), X+sp(1), X+sl(1,Q(a,b)): scalars that commute with X
+with scalars    X+R, X+u(1), X+sp(1), X+sl(1,Q(a,b)), X+spiral(a,b): scalars that commute with X, spiral(a,b) being
+                the one matrix a + bJ with J the complex structure
 """
 
 from __future__ import annotations
@@ -135,16 +136,30 @@ def _scalars(first: Term, extra: Term, size: int) -> IntegerArray:
     if extra == Term("R"):
         return np.eye(size, dtype=np.int64)[None]
     ground = scalar_parameters(first)
-    if extra == Term("u", (1,)) and len(ground) == 1:
-        return families.complex_structure(size // 2, parameter=ground[0])[None]
+    if len(ground) == 1:
+        unit = families.complex_structure(size // 2, parameter=ground[0])[None]
+        if extra == Term("u", (1,)):
+            return unit
+        if extra.head == "spiral" and len(extra.items) == 2:
+            return _spiral_scalar(extra, unit)
     if len(ground) == 2:
         units = families.quaternion_scalars(size // 4, parameters=(ground[0], ground[1]))
         if extra == Term("u", (1,)):
             return units[:1]
+        if extra.head == "spiral" and len(extra.items) == 2:
+            return _spiral_scalar(extra, units[:1])
         same = extra.head == "sl" and len(extra.items) == 2 and scalar_parameters(extra) == ground
         if (extra == Term("sp", (1,)) and ground == (-1, -1)) or (same and extra.items[0] == 1):
             return units
     raise CatalogError(f"{extra} does not act by scalars that commute with {first}; for blocks write blocks(X,Y)")
+
+
+def _spiral_scalar(extra: Term, unit: IntegerArray) -> IntegerArray:
+    """The matrix a + b J, shape (1, N, N), for the complex structure J."""
+    growth, frequency = extra.integers()
+    if not frequency:
+        raise CatalogError(f"{extra} is a real multiple of the identity; write R")
+    return growth * np.eye(unit.shape[1], dtype=np.int64) + frequency * unit
 
 
 def _expression(item: Item) -> Expression:

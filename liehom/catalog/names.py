@@ -2,12 +2,14 @@
 
     pair    =  sum '/' sum  |  term                 so(4)/so(3), sp(3)/sp(2)+sp(1), affine(g2), sym(4;3,1)
     sum     =  term { '+' term }
-    term    =  head [ '(' items [ ';' items ] ')' ]
+    term    =  head [ '(' items [ ';' values ] ')' ]  |  'A' digit ',' digits [ '(' values ')' ]
     items   =  item { ',' item },   item = integer | sum
+    values  =  value { ',' value },  value = integer | integer '/' integer (a fraction only in bianchi and A4,2)
     head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
 
 Blanks are ignored. Printing a tree and parsing the string gives the same tree. `parse` drops parameters that are the
-default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)'.
+default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)', and replaces other spellings: 'schrodinger(3)' prints
+as 'schroedinger(3)', 'poincare(3)' as 'iso(3,1)'.
 """
 
 from __future__ import annotations
@@ -16,11 +18,14 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from fractions import Fraction
 from typing import TypeAlias, final
 
 from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS
 from liehom.errors import CatalogError
 
+SPELLINGS = {"schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e"}
+"""Other spellings of heads."""
 _TOKEN = re.compile(r"\s*(?:(R\^\d+)|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
 
 
@@ -33,19 +38,17 @@ class Term:
     ----------
     head : str
     items : tuple of int, Term or Sum
-    after : tuple of int
-        The integers after the semicolon.
+    after : tuple of int or Fraction
+        The values after the semicolon, or those of a name such as A4,2(1/2).
     """
 
     head: str
     items: tuple[Item, ...] = ()
-    after: tuple[int, ...] = ()
+    after: tuple[Value, ...] = ()
 
     def __str__(self) -> str:
-        if not self.items:
-            return self.head
-        inside = ",".join(map(str, self.items))
-        return f"{self.head}({inside};{','.join(map(str, self.after))})" if self.after else f"{self.head}({inside})"
+        parts = [",".join(map(str, part)) for part in (self.items, self.after) if part]
+        return f"{self.head}({';'.join(parts)})" if parts else self.head
 
     def integers(self) -> tuple[int, ...]:
         """The parameters as integers; raises `CatalogError` if one is not an integer."""
@@ -78,6 +81,7 @@ class Quotient:
         return f"{self.top}/{self.bottom}"
 
 
+Value: TypeAlias = int | Fraction
 Expression: TypeAlias = Term | Sum
 Item: TypeAlias = int | Term | Sum
 Name: TypeAlias = Term | Sum | Quotient
@@ -146,7 +150,10 @@ def _article(noun: str) -> str:
 
 
 def canonical(term: Term) -> Term:
-    """The term without a second parameter that is the default."""
+    """The term in its usual spelling, without a second parameter that is the default."""
+    if term.head in SPELLINGS:
+        added = (1,) if term.head == "poincare" and len(term.items) == 1 else ()
+        return Term(SPELLINGS[term.head], term.items + added, term.after)
     if len(term.items) == 2 and not term.after:
         silent: Item = Term("R") if term.head in ("gl", "sl") else 0
         if term.items[1] == silent and term.head in CLASSICAL_KINDS:
@@ -212,18 +219,41 @@ class _Parser:
         if head.startswith("R^"):
             n = int(head[2:])
             return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
+        if re.fullmatch(r"A\d", head) and self.accept(","):
+            return self.numbered(head)
         if not self.accept("("):
             return Term(head)
         items = [self.item()]
         while self.accept(","):
             items.append(self.item())
-        after: list[int] = []
-        if self.accept(";"):
-            after.append(self.integer())
-            while self.accept(","):
-                after.append(self.integer())
+        after = self.values(fractions=head == "bianchi") if self.accept(";") else ()
         self.expect(")")
-        return canonical(Term(head, tuple(items), tuple(after)))
+        return canonical(Term(head, tuple(items), after))
+
+    def numbered(self, head: str) -> Term:
+        """A name such as A4,2(1/2) after its first comma."""
+        name = f"{head},{self.integer()}"
+        if not self.accept("("):
+            return Term(name)
+        values = self.values(fractions=True)
+        self.expect(")")
+        return Term(name, (), values)
+
+    def values(self, *, fractions: bool) -> tuple[Value, ...]:
+        found = [self.value(fractions)]
+        while self.accept(","):
+            found.append(self.value(fractions))
+        return tuple(found)
+
+    def value(self, fractions: bool) -> Value:
+        top = self.integer()
+        if not (fractions and self.accept("/")):
+            return top
+        position, bottom = self.position(), self.integer()
+        if bottom <= 0:
+            raise self.error("expected a positive denominator", position)
+        value = Fraction(top, bottom)
+        return value if value.denominator > 1 else int(value)
 
     def item(self) -> Item:
         return self.integer() if self.peek().lstrip("-").isdigit() else self.sum()

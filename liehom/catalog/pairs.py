@@ -1,7 +1,8 @@
 """Pairs by name: the linear Lie algebra G and the subalgebra H of a name ``G/H``.
 
 affine(H)       H + R^N over H                       sym(n;m1,m2,...)   so(n), a symmetric matrix with multiplicities
-G/0, G/G        trivial ones                         e(n)/so(n), aff(1)/R, R^n/R^m, heisenberg(n)/R
+G/0, G/G        trivial ones                         e(n)/so(n), iso(p,q)/so(p,q), galilei(n)/so(n), bargmann(n)/so(n),
+                                                     schroedinger(n)/so(n), aff(n)/gl(n), R^n/R^m, heisenberg(n)/R
 G/Pk, G/P       the stabilizer of a k-dimensional subspace over the scalars, isotropic if G preserves a form; P = P1;
                 in e6 the stabilizer of the line of an idempotent, in g2(2) of a null line
 G/B             in sl(n) and gl(n) the stabilizer of a complete flag
@@ -19,12 +20,15 @@ from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.catalog.algebras import affine_algebra, algebra_of
 from liehom.catalog.claims import CLAIMS
 from liehom.catalog.linear import is_linear, linear_matrices
-from liehom.catalog.names import Expression, Quotient, Term, parse, terms, unknown
+from liehom.catalog.names import Expression, Quotient, Term, canonical, parse, terms, unknown
 from liehom.catalog.special import parabolic_rows, special_rows
 from liehom.catalog.subalgebras import coordinates, placements, preserving
 from liehom.errors import CatalogError
 from liehom.representations import Pair
 from liehom.typing import IntegerArray
+
+_ROTATING = ("e", "iso", "galilei", "bargmann", "schroedinger")
+"""Families whose first basis elements are those of so(n) or so(p,q)."""
 
 
 def pair(name: str) -> Pair:
@@ -95,10 +99,11 @@ def _affine(tree: Term) -> Pair:
 def _symmetric(tree: Term) -> Pair:
     """so(n) with the stabilizer of diag(1, ..., 1, 2, ..., 2, ...) in the symmetric matrices."""
     (n,) = tree.integers() if len(tree.items) == 1 else (0,)
-    if n < 1 or any(m < 1 for m in tree.after) or sum(tree.after) != n:
+    multiplicities = [int(m) for m in tree.after]
+    if n < 1 or any(m < 1 for m in multiplicities) or sum(multiplicities) != n:
         raise CatalogError(f"sym(n;m1,m2,...) needs positive multiplicities with sum n; got {tree}")
     matrices = linear_matrices(Term("so", (n,)))
-    point = np.diag(np.repeat(np.arange(1, len(tree.after) + 1), tree.after))
+    point = np.diag(np.repeat(np.arange(1, len(multiplicities) + 1), multiplicities))
     rows = preserving(matrices, commuting=[point])
     return _made(linear_lie_algebra(matrices, f"so({n})"), rows, tree)  # a stabilizer
 
@@ -156,7 +161,7 @@ def _not_linear(top: Expression, bottom: Expression) -> tuple[LieAlgebra, Intege
     """Abelian, Euclidean, affine and Heisenberg algebras with the rows of a named subalgebra, or None."""
     if not isinstance(top, Term) or not isinstance(bottom, Term):
         return None
-    known = top.head in ("0", "R", "e", "heisenberg", "aff", "affine") or top.head.startswith("R^")
+    known = top.head in ("0", "R", "heisenberg", "aff", "affine", *_ROTATING) or top.head.startswith("R^")
     if not known or (top.head == "R" and bottom.head not in ("0", "R")):
         return None
     algebra = algebra_of(top)
@@ -165,7 +170,8 @@ def _not_linear(top: Expression, bottom: Expression) -> tuple[LieAlgebra, Intege
         return algebra, _first(0, n)
     if top.head[0] in "0R" and bottom.head[0] == "R" and algebra_of(bottom).dimension <= n:
         return algebra, _first(algebra_of(bottom).dimension, n)
-    if (top.head == "e" and bottom == Term("so", top.items)) or (top.head == "aff" and bottom == Term("R")):
+    beginning = {"aff": Term("gl", top.items)}.get(top.head, canonical(Term("so", top.items)))
+    if (top.head in (*_ROTATING, "aff") and bottom == beginning) or (str(top) == "aff(1)" and bottom == Term("R")):
         return algebra, _first(algebra_of(bottom).dimension, n)
     if top.head == "heisenberg" and bottom == Term("R"):
         return algebra, np.eye(n, dtype=np.int64)[-1:]

@@ -108,14 +108,28 @@ def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Ro
 
 
 def _symmetric(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """Stabilizers for su(n)/so(n), sp(n)/u(n), sp(2n,R)/u(n), sp(2n,R)/gl(n), sp(2n,R)/sp(2p,R)+sp(2q,R), or None."""
+    """Stabilizers for su(n)/so(n), sp(n)/u(n), sp(2n,R)/u(n), sp(2n,R)/gl(n), sp(2n,R)/sp(2p,R)+sp(2q,R), or None.
+
+    Also for su(2n)/sp(n) with signatures, so*(2n)/u(n), and a complex algebra over a real form: sl(n,C)/sl(n),
+    so(n,C)/so(n), sp(2n,C)/sp(2n,R), sp(2n,C)/sp(n).
+    """
     size = matrices.shape[1]
     if isinstance(bottom, Sum):
         return _symplectic_sum(top, bottom, matrices)
     real_symplectic = top.head == "sp" and top.items[1:] == (Term("R"),)
+    conjugation = np.diag(np.tile(np.array([1, -1], dtype=np.int64), size // 2))
     if top.head == "su" and bottom == Term("so", top.items):
-        conjugation = np.diag(np.tile(np.array([1, -1], dtype=np.int64), size // 2))
         return preserving(matrices, commuting=[conjugation])
+    if top.head == "su" and bottom == _halved(top):
+        turn = np.array([[0, -1], [1, 0]], dtype=np.int64)  # with the conjugation: (z, w) -> (-conj w, conj z)
+        antilinear = np.kron(np.eye(size // 4, dtype=np.int64), np.kron(turn, np.diag([1, -1])))
+        return preserving(matrices, commuting=[antilinear])
+    if top.items[1:] == (Term("C"),) and bottom in _real_forms(top):
+        return preserving(matrices, commuting=[conjugation])
+    star, complex_symplectic = top.head == "so*", top.head == "sp" and top.items[1:] == (Term("C"),)
+    half = Term("u" if star else "sp", (_integer(top.items[0]) // 2 if top.items else 0,))
+    if (star or complex_symplectic) and bottom == half:
+        return preserving(matrices, forms=[np.eye(size, dtype=np.int64)])
     if top.head == "sp" and not real_symplectic and bottom == Term("u", top.items):
         left = families.quaternionic_gl(1)[1]
         return preserving(matrices, commuting=[np.kron(np.eye(size // 4, dtype=np.int64), left)])
@@ -124,6 +138,18 @@ def _symmetric(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
     if real_symplectic and bottom == Term("gl", (size // 2,)):
         return preserving(matrices, subspaces=_split(size, size // 2))
     return None
+
+
+def _halved(top: Term) -> Term | None:
+    """sp(p/2, q/2) for su(p, q) with even p and q."""
+    values = tuple(map(_integer, top.items))
+    return None if any(x % 2 for x in values) else Term("sp", tuple(x // 2 for x in values))
+
+
+def _real_forms(top: Term) -> list[Term]:
+    """The algebras of real matrices in sl(n,C), so(n,C) or sp(2n,C)."""
+    n = top.items[:1]
+    return {"sl": [Term("sl", n)], "so": [Term("so", n)], "sp": [Term("sp", (*n, Term("R")))]}.get(top.head, [])
 
 
 def _symplectic_sum(top: Term, bottom: Sum, matrices: IntegerArray) -> Rows:

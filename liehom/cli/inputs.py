@@ -126,9 +126,11 @@ def _text_of(path: str) -> str:
 
 def _named(text: str) -> LieAlgebra | Pair:
     from liehom.algebra import RealForm, chevalley, simple
-    from liehom.catalog import algebra, pair
+    from liehom.catalog import algebra, pair, parse
+    from liehom.catalog.names import Quotient, Term
 
-    if "/" in text or (";" in text and not text.lstrip().startswith("bianchi")):  # sym(4;3,1), but bianchi(VI;2)
+    tree = parse(text)
+    if isinstance(tree, Quotient) or (isinstance(tree, Term) and tree.head == "sym" and tree.after):
         return pair(text)
     try:
         return algebra(text)

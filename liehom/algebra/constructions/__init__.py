@@ -26,6 +26,8 @@ from liehom.algebra.constructions.kinematical_families import conformal as confo
 from liehom.algebra.constructions.kinematical_families import euclidean as euclidean
 from liehom.algebra.constructions.kinematical_families import galilei as galilei
 from liehom.algebra.constructions.kinematical_families import poincare as poincare
+from liehom.algebra.constructions.kinematical_families import schroedinger as schroedinger
+from liehom.algebra.constructions.low_dimensional import low_dimensional as low_dimensional
 from liehom.algebra.constructions.simple import simple as simple
 from liehom.algebra.constructions.solvable_families import abelian as abelian
 from liehom.algebra.constructions.solvable_families import almost_abelian as almost_abelian

@@ -1,4 +1,4 @@
-"""Lie algebras of affine and kinematical groups: Euclidean, Poincaré, Galilei, Bargmann, conformal, gl(n) + R^n.
+"""Lie algebras of affine and kinematical groups: Euclidean, Poincaré, Galilei, Schrödinger, conformal, gl(n) + R^n.
 
 Each is over QQ, with named basis elements.
 """
@@ -7,16 +7,20 @@ from __future__ import annotations
 
 import itertools
 
+import numpy as np
+
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.constructions.classical_algebras import so
 from liehom.algebra.constructions.form_algebras import form_brackets, index_name
-from liehom.algebra.constructions.sums import semidirect_sum
+from liehom.algebra.constructions.solvable_families import heisenberg
+from liehom.algebra.constructions.sums import direct_sum, semidirect_sum
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.algebra.matrices.named_matrices import classical_matrices, linear_lie_algebra
 from liehom.scalars import QQ
 from liehom.scalars.fields.field import MatricesLike
+from liehom.typing import IntegerArray
 
 
 def euclidean(n: int) -> LieAlgebra:
@@ -115,6 +119,45 @@ def bargmann(n: int) -> LieAlgebra:
     (<Lie algebra bargmann(3) of dimension 11 over QQ>, True)
     """
     return _galilean(n, massive=True)
+
+
+def schroedinger(n: int) -> LieAlgebra:
+    """The Schrödinger algebra of R^n with mass: `bargmann`, with dilations d and expansions c.
+
+    Its basis is: rotations m_ij, then h, d, c, boosts k_i, translations p_i, mass.
+
+    Parameters
+    ----------
+    n : int
+        Dimension of space, at least 1.
+
+    Raises
+    ------
+    InputError
+        If n is not a positive integer.
+
+    Notes
+    -----
+    It is (so(n) + sl(2)) + heisenberg(n), a semidirect sum, with [k_i, h] = p_i, [k_i, p_i] = mass, [d, h] = -2 h,
+    [d, c] = 2 c, [c, h] = d, [d, k_i] = k_i, [d, p_i] = -p_i and [c, p_i] = -k_i: the symmetries of the free
+    Schrödinger equation.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.schroedinger(3)
+    >>> g, g.semisimple_type(), g.radical().dimension
+    (<Lie algebra schroedinger(3) of dimension 13 over QQ>, 'A1 + A1', 7)
+    """
+    require_size("n", n)
+    sl2 = LieAlgebra({(1, 0): {0: -2}, (1, 2): {2: 2}, (2, 0): {1: 1}})
+    matrices = _rotations_of_vectors(n, 2 * n + 1)
+    for block in ([[0, 0], [-1, 0]], [[1, 0], [0, -1]], [[0, -1], [0, 0]]):  # h, d, c on the pairs (k_i, p_i)
+        matrices.append(np.pad(np.kron(np.array(block, dtype=np.int64), np.eye(n, dtype=np.int64)), (0, 1)))
+    names = [*_rotations(n), *"hdc", *(index_name(letter, i) for letter in "kp" for i in range(n)), "mass"]
+    acting = direct_sum(so(n), sl2)
+    # Rotations and sl(2) = sp(2, R) preserve the form of the Heisenberg algebra, and commute with each other.
+    return semidirect_sum(acting, matrices, heisenberg(n), basis=names, name=f"schroedinger({n})", check=False)
 
 
 def conformal(p: int, q: int = 0) -> LieAlgebra:
@@ -220,6 +263,12 @@ def _rotations(n: int) -> list[str]:
     return [index_name("m", i, j) for i, j in itertools.combinations(range(n), 2)]
 
 
+def _rotations_of_vectors(n: int, size: int) -> list[IntegerArray]:
+    """The matrices of so(n) on two vectors, the first 2n of `size` coordinates."""
+    twice = np.eye(2, dtype=np.int64)
+    return [np.pad(np.kron(twice, matrix), (0, size - 2 * n)) for matrix in classical_matrices("so", n)]
+
+
 def _galilean(n: int, massive: bool) -> LieAlgebra:
     """so(n) acting by rotations on the nilpotent ideal of boosts, translations, time and, if massive, mass."""
     require_size("n", n)
@@ -228,12 +277,7 @@ def _galilean(n: int, massive: bool) -> LieAlgebra:
         brackets |= {(i, n + i): {2 * n + 1: 1} for i in range(n)}
     d = 2 * n + 1 + massive
     ideal = LieAlgebra(brackets, dimension=d)
-    rotations = []
-    for matrix in classical_matrices("so", n):
-        rows = [[0] * d for _ in range(d)]
-        for i, j in itertools.product(range(n), repeat=2):
-            rows[i][j] = rows[n + i][n + j] = int(matrix[i, j])
-        rotations.append(rows)
+    rotations = _rotations_of_vectors(n, d)
     vectors = [index_name(letter, i) for letter in "kp" for i in range(n)]
     names = [*_rotations(n), *vectors, "h", *(["mass"] if massive else [])]
     name = f"{'bargmann' if massive else 'galilei'}({n})"

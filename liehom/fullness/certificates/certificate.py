@@ -149,7 +149,7 @@ class Certificate:
         return self.kind in ("trivial", "full")
 
     def copied(self) -> Certificate:
-        """A certificate of the same data, checked anew and made of plain types only; the checker works on such a copy.
+        """A certificate of the same data, checked again and made of plain types only; the checker works on such a copy.
 
         Examples
         --------

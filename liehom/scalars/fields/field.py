@@ -126,7 +126,7 @@ class Matrix(ABC):
         return iter(self.to_rows())
 
     def __array__(self, dtype: npt.DTypeLike = None, copy: bool | None = None) -> npt.NDArray[Any]:
-        """What ``numpy.asarray(matrix)`` returns: exact numbers as objects, floats for a float or complex dtype."""
+        """Array for ``numpy.asarray(matrix)``: exact numbers as objects, or floats for a float or complex dtype."""
         if copy is False:
             raise ValueError(f"an array of {self!r} is always a copy; use numpy.asarray without copy=False")
         wanted = np.dtype(dtype if dtype is not None else object if self.field.exact else np.float64)
