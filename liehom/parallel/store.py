@@ -233,7 +233,15 @@ class _Zarr(Store):
         self._mark = _checked(path, found, fingerprint)
 
     def names(self) -> frozenset[str]:
-        return frozenset(name for name, part in self._root.groups() if "facts" in part.attrs)
+        with os.scandir(self.path) as entries:
+            return frozenset(entry.name for entry in entries if entry.is_dir() and self._is_complete(entry.name))
+
+    def _is_complete(self, name: str) -> bool:
+        """Whether a shard has facts, or is damaged: `load` then says so."""
+        try:
+            return "facts" in self._root[name].attrs
+        except DAMAGED:
+            return True
 
     def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         text = json.dumps(facts)
