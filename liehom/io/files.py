@@ -12,7 +12,7 @@ from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.disk import write_atomically
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
-from liehom.io.json_reader import kind_of, parse_object, read_object, shown
+from liehom.io.json_reader import CHECKSUM, json_checksum, kind_of, parse_object, read_object, shown
 from liehom.io.problem_file import Problem
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
@@ -198,8 +198,19 @@ def to_json(obj: object, *, point: VectorLike | None = None) -> dict[str, Any]:
     )
 
 
-def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None = None) -> None:
+def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None = None, checksum: bool = False) -> None:
     """Write the JSON object `to_json(obj)` to a file, with one line per entry or row.
+
+    Parameters
+    ----------
+    obj : object
+        What `to_json` accepts.
+    path : path_like
+    point : array_like, optional
+        The point of a representation file.
+    checksum : bool
+        Whether the file has a checksum, so that reading it notices every change. The file cannot then be edited
+        without deleting the key `checksum`, and liehom 0.1.0 does not read it.
 
     Raises
     ------
@@ -222,7 +233,10 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
       ["1", "0"]
      ]}
     """
-    text = _laid_out(to_json(obj, point=point))
+    data = to_json(obj, point=point)
+    if checksum:
+        data[CHECKSUM] = json_checksum(data)
+    text = _laid_out(data)
     try:
         write_atomically(path, text.encode())
     except OSError as error:

@@ -9,8 +9,11 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NoReturn
 
+from liehom.disk import checksum
 from liehom.errors import FormatError
 
+CHECKSUM = "checksum"
+"""Key of the checksum, which any file may have."""
 MAX_SHOWN = 60
 """Characters of a value that a message shows."""
 OTHER_TOOLS = (
@@ -57,7 +60,7 @@ def parse_object(text: str) -> dict[str, Any]:
     Raises
     ------
     FormatError
-        If the string is not JSON, is not an object, repeats a key, or holds NaN or an infinity.
+        If the string is not JSON, is not an object, repeats a key, holds NaN or an infinity, or has a wrong checksum.
 
     Examples
     --------
@@ -74,6 +77,30 @@ def parse_object(text: str) -> dict[str, Any]:
         raise FormatError("not a file of liehom: its lists or objects are nested too deeply") from None
     if not isinstance(data, dict):
         raise FormatError(f"a file holds one JSON object {{...}}, this one holds {kind_of(data)}")
+    return _without_checksum(data)
+
+
+def json_checksum(data: Mapping[str, Any]) -> str:
+    """Checksum of a JSON object, whatever the order of its keys.
+
+    Examples
+    --------
+    >>> json_checksum({"a": 1, "b": 2}) == json_checksum({"b": 2, "a": 1})
+    True
+    """
+    return checksum({}, json.dumps(data, sort_keys=True))
+
+
+def _without_checksum(data: dict[str, Any]) -> dict[str, Any]:
+    """The object without its checksum, if it has one; `FormatError` if the checksum does not agree."""
+    if CHECKSUM not in data:
+        return data
+    stored = data.pop(CHECKSUM)
+    if stored != json_checksum(data):
+        raise FormatError(
+            f"the file is damaged: its {CHECKSUM!r} does not agree with its contents; if it was edited on purpose, "
+            f"delete the key {CHECKSUM!r}"
+        )
     return data
 
 
