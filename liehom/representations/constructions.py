@@ -12,7 +12,12 @@ from typing import Any
 from liehom.algebra import LieAlgebra
 from liehom.algebra import matrices as families
 from liehom.algebra.closure.closure import lie_closure, square_matrices
-from liehom.algebra.closure.complex_matrices import as_real_matrices
+from liehom.algebra.closure.complex_matrices import (
+    field_of_matrices,
+    has_complex_entry,
+    list_of_matrices,
+    real_matrices,
+)
 from liehom.algebra.constructions.simple import simple
 from liehom.algebra.matrices.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
 from liehom.errors import DependentRowsError, InputError, NotASubalgebraError, RepresentationError, ShapeError
@@ -330,11 +335,12 @@ def pair_from_matrices(
     >>> pair, lh.decide_fullness(pair).full
     (<pair of dimensions 3/1 over QQ>, True)
     """
-    first, second = list(g_matrices), list(h_matrices)
-    together, _ = as_real_matrices([*first, *second], field, hermitian=hermitian)
-    made = square_matrices(together, field)
-    rho = Representation.from_matrices(made[: len(first)])
-    rows = rows_of_matrices(rho, made[len(first) :], of=" of h")
+    first, second = list_of_matrices(g_matrices), list_of_matrices(h_matrices)
+    field = field_of_matrices([*first, *second]) if field is None else field
+    if hermitian or any(has_complex_entry(a, field) for a in (*first, *second)):
+        first, second = ([*real_matrices(part, field, hermitian=hermitian)] for part in (first, second))
+    rho = Representation.from_matrices(square_matrices(first, field))
+    rows = rows_of_matrices(rho, square_matrices(second, field), of=" of h")
     try:
         subalgebra = rho.algebra.subalgebra(rows)
     except (DependentRowsError, NotASubalgebraError):

@@ -18,6 +18,7 @@ from liehom.errors import FieldError, InputError, ParseError, ShapeError
 from liehom.scalars import Field, FloatField, Matrix, Scalar
 from liehom.scalars.fields.complex_parts import complex_parts, field_determining_values, is_complex
 from liehom.scalars.fields.field import MatrixLike, rows_of
+from liehom.typing import ComplexArray
 
 Part = list[list[Scalar]]
 
@@ -60,18 +61,73 @@ def as_real_matrices(
     [0, -1, 0, 0]
     [1, 0, 0, 0]
     """
-    if isinstance(matrices, str) or not hasattr(matrices, "__iter__"):
-        raise InputError(f"a list of square matrices was expected, got {matrices!r}")
-    given = [a if isinstance(a, Matrix) or _kind(a) in "biuf" else rows_of(a) for a in matrices]
-    if not hermitian and not any(_has_complex_entry(a, field) for a in given):
-        return list(given), False
+    given = list_of_matrices(matrices)
+    if not hermitian and not any(has_complex_entry(a, field) for a in given):
+        return given, False
     return list(real_matrices(given, field, hermitian=hermitian)), True
 
 
+def list_of_matrices(matrices: Iterable[MatrixLike]) -> list[MatrixLike]:
+    """A list of the matrices, each of which can be read twice: real arrays and `Matrix` as they are, others as rows.
+
+    Raises
+    ------
+    InputError, ShapeError
+        If the argument is not a list, or a matrix is not given by its rows.
+
+    Examples
+    --------
+    >>> list_of_matrices(zip([1, 2], [3, 4]) for _ in range(2))
+    [[[1, 3], [2, 4]], [[1, 3], [2, 4]]]
+    """
+    if isinstance(matrices, str) or not hasattr(matrices, "__iter__"):
+        raise InputError(f"a list of square matrices was expected, got {matrices!r}")
+    return [a if isinstance(a, Matrix) or _kind(a) in "biuf" else rows_of(a) for a in matrices]
+
+
+def has_complex_entry(matrix: MatrixLike, field: Field | None = None) -> bool:
+    """Whether an entry of a matrix from `list_of_matrices` is complex, see `is_complex`.
+
+    Examples
+    --------
+    >>> has_complex_entry([[0, "i"], [0, 0]]), has_complex_entry([[0, 1], [0, 0]])
+    (True, False)
+    """
+    if isinstance(matrix, Matrix) or _kind(matrix) in "biuf":
+        return False
+    return any(is_complex(x, field) for row in matrix for x in row)
+
+
+def field_of_matrices(matrices: Sequence[MatrixLike]) -> Field:
+    """The smallest real field that contains the parts of all entries; float64 if one is a float.
+
+    A `Matrix` over floats decides by its field, which has its own tolerance.
+
+    Examples
+    --------
+    >>> field_of_matrices([[["i*sqrt(2)"]], [["1/2"]]]), field_of_matrices([[[1j]]])
+    (QQ(sqrt(2)), float64)
+    """
+    for a in matrices:
+        if isinstance(a, Matrix) and not a.field.exact:
+            return a.field
+    return field_of_values(x for a in matrices for row in _table(a) for v in row for x in field_determining_values(v))
+
+
 def real_matrices(
-    matrices: Sequence[MatrixLike], field: Field | None = None, *, hermitian: bool = False
+    matrices: Sequence[MatrixLike], field: Field | None = None, *, hermitian: bool = False, start: int = 0
 ) -> list[Matrix]:
     """The real matrices (2n, 2n) of matrices (n, n) over the complex numbers, whether their entries are real or not.
+
+    Parameters
+    ----------
+    matrices : sequence of (n, n) array_like
+    field : Field, optional
+        The real field of the parts; by default the smallest one that contains them.
+    hermitian : bool
+        Multiply every matrix by i, after a check that it is Hermitian.
+    start : int, optional
+        The index of the first matrix in messages.
 
     Raises
     ------
@@ -84,15 +140,13 @@ def real_matrices(
     [1, -2]
     [2, 1]
     """
-    tables = [a.to_rows() if isinstance(a, Matrix) else rows_of(a) for a in matrices]
-    for k, table in enumerate(tables):
+    tables = [_table(a) for a in matrices]
+    for k, table in enumerate(tables, start):
         _require_numbers(table, k, len(tables[0]))
     if field is None:
-        field = field_of_values(
-            x for table in tables for row in table for v in row for x in field_determining_values(v)
-        )
+        field = field_of_matrices(tables)
     made: list[Matrix] = []
-    for k, table in enumerate(tables):
+    for k, table in enumerate(tables, start):
         x, y = _parts(table, field, k)
         if hermitian:
             _require_hermitian(x, y, field, k)
@@ -129,15 +183,25 @@ def is_complex_linear(matrix: Matrix) -> bool:
     return (x - below).is_zero() and (y + right).is_zero()
 
 
+def is_hermitian_array(array: ComplexArray, rtol: float) -> bool:
+    """Whether A - A^* is at most `rtol` times A in the Frobenius norm.
+
+    Examples
+    --------
+    >>> is_hermitian_array(np.array([[0, -1e-200j], [1e-200j, 0]]), 1e-9), is_hermitian_array(np.array([[1j]]), 1e-9)
+    (True, False)
+    """
+    scaled = array / (np.abs(array).max(initial=0.0) or 1.0)  # squares of the entries can leave the range of floats
+    return bool(np.linalg.norm(scaled - scaled.conj().T) <= rtol * np.linalg.norm(scaled))
+
+
 def _kind(matrix: object) -> str:
     """The kind of the entries of an array: 'i', 'u', 'f', 'c', or 'O' for everything else."""
     return str(getattr(getattr(matrix, "dtype", None), "kind", "O"))
 
 
-def _has_complex_entry(matrix: MatrixLike, field: Field | None) -> bool:
-    if isinstance(matrix, Matrix) or _kind(matrix) in "biuf":
-        return False
-    return any(is_complex(x, field) for row in matrix for x in row)
+def _table(matrix: MatrixLike) -> list[list[Any]]:
+    return matrix.to_rows() if isinstance(matrix, Matrix) else rows_of(matrix)
 
 
 def _require_numbers(table: list[list[Any]], k: int, n: int) -> None:
@@ -183,14 +247,17 @@ def _blocks(x: Part, y: Part, field: Field) -> Matrix:
     return made
 
 
+def _array(x: Part, y: Part) -> ComplexArray:
+    n = len(x)
+    made: ComplexArray = np.array(x, dtype=complex).reshape(n, n) + 1j * np.array(y, dtype=complex).reshape(n, n)
+    return made
+
+
 def _require_hermitian(x: Part, y: Part, field: Field, k: int) -> None:
     """Raise `InputError` unless X + i Y is Hermitian, for floats up to the relative tolerance in the Frobenius norm."""
     n = len(x)
-    if isinstance(field, FloatField):
-        real, imaginary = np.array(x, dtype=float).reshape(n, n), np.array(y, dtype=float).reshape(n, n)
-        defect = np.hypot(np.linalg.norm(real - real.T), np.linalg.norm(imaginary + imaginary.T))
-        if defect <= field.rtol * np.hypot(np.linalg.norm(real), np.linalg.norm(imaginary)):
-            return
+    if isinstance(field, FloatField) and is_hermitian_array(_array(x, y), field.rtol):
+        return
     wrong = [(i, j) for i in range(n) for j in range(i, n) if x[i][j] != x[j][i] or y[i][j] != -y[j][i]]
     if wrong:
         i, j = wrong[0]

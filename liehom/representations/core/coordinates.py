@@ -12,7 +12,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from liehom.algebra.closure.complex_matrices import is_complex_linear, parts_of_real_matrix
+from liehom.algebra.closure.complex_matrices import is_complex_linear, is_hermitian_array, parts_of_real_matrix
 from liehom.errors import InputError, ShapeError
 from liehom.scalars import RR, Field, Matrix
 from liehom.scalars.fields.complex_parts import complex_parts, is_complex
@@ -24,7 +24,6 @@ Coordinates: TypeAlias = Literal["real", "complex", "hermitian"]
 """What the vectors of a representation are."""
 
 KINDS = ("real", "complex", "hermitian")
-ROUNDING = 1e-9  # a float matrix is Hermitian if H - H^* is at most this factor smaller than H, in the Frobenius norm
 
 
 def require_coordinates(coordinates: Coordinates, matrices: Sequence[Matrix], size: int) -> None:
@@ -116,7 +115,7 @@ def _hermitian_coordinates(rows: list[list[Any]], n: int, field: Field) -> list[
     floats = any(isinstance(v, (float, np.floating)) for row in parts for pair in row for v in pair)
     if floats or not field.exact:
         array = np.array([[complex(*map(RR.convert, pair)) for pair in row] for row in parts]).reshape(n, n)
-        is_hermitian = bool(np.linalg.norm(array - array.conj().T) <= ROUNDING * np.linalg.norm(array))
+        is_hermitian = is_hermitian_array(array, RR.rtol if field.exact else field.rtol)
     else:
         x, y = ([[_exact(pair[part], field) for pair in row] for row in parts] for part in range(2))
         is_hermitian = all(x[i][j] == x[j][i] and y[i][j] == -y[j][i] for i in range(n) for j in range(i, n))

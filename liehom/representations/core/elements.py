@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from liehom.algebra.closure.complex_matrices import as_real_matrices, real_matrices
+from liehom.algebra.closure.complex_matrices import has_complex_entry, list_of_matrices, real_matrices
 from liehom.errors import InputError, NotInSpanError, ShapeError, SingularError
 from liehom.representations.core.representation import Representation
 from liehom.scalars import Matrix
-from liehom.scalars.fields.field import MatrixLike, rows_of
+from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import Array
 
 
@@ -48,7 +48,7 @@ def coordinates_of(
     >>> coordinates_of(lh.defining("so(3)"), [[0, 0, 0], [0, 0, 2], [0, -2, 0]]).to_rows()
     [[0, 0, -2]]
     """
-    made = _real_matrix(rho, matrix, hermitian, what)
+    made = _real_matrix(rho, matrix, hermitian, what, index)
     size = rho.size**2
     flat: Any = rho.field.stack_rows([a.reshape(1, size) for a in rho.matrices], size)
     kernel = rho.algebra.dimension - flat.rank()
@@ -108,14 +108,14 @@ def rows_of_matrices(
     return made
 
 
-def _real_matrix(rho: Representation, matrix: MatrixLike, hermitian: bool, what: str) -> Matrix:
+def _real_matrix(rho: Representation, matrix: MatrixLike, hermitian: bool, what: str, index: int) -> Matrix:
     """The matrix (N, N) over the field of the representation."""
-    given: MatrixLike = matrix if isinstance(matrix, Matrix) else rows_of(matrix)
+    (given,) = list_of_matrices([matrix])
     count = given.nrows if isinstance(given, Matrix) else len(given)
     n = rho.complex_size
     if n is not None and count == n:
-        return real_matrices([given], rho.field, hermitian=hermitian)[0]
-    if as_real_matrices([given], rho.field, hermitian=hermitian)[1]:
+        return real_matrices([given], rho.field, hermitian=hermitian, start=index)[0]
+    if hermitian or has_complex_entry(given, rho.field):
         expected = f"on C^{n}" if n is not None else f"on the real space {rho.field.name}^{rho.size}"
         raise ShapeError(f"{what} is a complex matrix with {count} rows, the representation acts {expected}")
     made: Matrix = rho.field.read(given)
