@@ -13,6 +13,7 @@ from liehom.homogeneous.orbits.conjugacy_search import prove_conjugate
 from liehom.homogeneous.orbits.structure_name import structure_name
 from liehom.representations import Representation
 from liehom.scalars import Scalar
+from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
 
@@ -89,13 +90,14 @@ class OrbitType:
         )
 
 
-def orbit_types(rho: Representation, points: Iterable[VectorLike]) -> list[OrbitType]:
+def orbit_types(rho: Representation, points: Iterable[VectorLike | MatrixLike]) -> list[OrbitType]:
     """Points sorted by their isotropy subalgebras up to inner automorphisms, largest orbits first.
 
     Parameters
     ----------
     rho : Representation
     points : iterable of sequences, shape (N,)
+        Complex vectors and Hermitian matrices where `Representation.real_point` takes them.
 
     Returns
     -------
@@ -126,7 +128,7 @@ def orbit_types(rho: Representation, points: Iterable[VectorLike]) -> list[Orbit
     <orbit type: orbits of dimension 2, isotropy of dimension 1, points 3>
     <orbit type: orbits of dimension 0, isotropy of dimension 3, points 0>
     """
-    given = [tuple(rho.field.matrix([list(point)], (1, rho.size)).row(0)) for point in points]
+    given = [tuple(rho.field.matrix([rho.real_point(point)], (1, rho.size)).row(0)) for point in points]
     isotropies = [rho.isotropy(point) for point in given]
     invariants = ConjugacyInvariants(rho)
     known: list[tuple[Subalgebra, dict[str, Value]]] = []
