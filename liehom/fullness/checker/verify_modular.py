@@ -13,6 +13,7 @@ Modulo one prime, numpy computes in float64; for large sparse pairs, scipy compu
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from math import isqrt
 from typing import Any, SupportsInt, TypeAlias
 
@@ -121,15 +122,22 @@ def _primes(field: ExactField, n: int) -> Iterator[tuple[int, int]]:
     if not isinstance(field, NumberField):
         yield from ((p, 0) for p in range(limit, 2, -1) if _is_prime(p))
         return
-    modulus = [int(c) for c in field.modulus.coeffs()]
+    modulus = tuple(int(c) for c in field.modulus.coeffs())
     for p in filter(_is_prime, range(min(1 << 15, limit), limit)):
-        points = np.arange(p, dtype=np.int64)
-        values = np.zeros(p, dtype=np.int64)
-        for c in reversed(modulus):
-            values = (values * points + c % p) % p
-        roots = np.flatnonzero(values == 0)
-        if len(roots):
-            yield p, int(roots[0])
+        root = _root(modulus, p)
+        if root is not None:
+            yield p, root
+
+
+@lru_cache(maxsize=1 << 12)
+def _root(modulus: tuple[int, ...], p: int) -> int | None:
+    """The smallest root modulo p < 2^31 of a polynomial with these ascending coefficients, or None."""
+    points = np.arange(p, dtype=np.int64)
+    values = np.zeros(p, dtype=np.int64)
+    for c in reversed(modulus):
+        values = (values * points + c % p) % p
+    roots = np.flatnonzero(values == 0)
+    return int(roots[0]) if len(roots) else None
 
 
 def _is_prime(candidate: int) -> bool:
