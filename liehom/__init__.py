@@ -3,6 +3,7 @@
 The layers, in reading order; each imports only those above it in this list:
 
 `errors`           what the library refuses, and why
+`budget`           how large an input may be, how long a computation may take
 `disk`             files that are written whole, checksums
 `parallel`         many tasks on any executor, and their results on disk
 `scalars`          QQ, real number fields, float64, and linear algebra over them
@@ -101,6 +102,9 @@ if TYPE_CHECKING:
     from liehom.algebra import su as su
     from liehom.algebra import u as u
     from liehom.algebra import upper_triangular as upper_triangular
+    from liehom.budget import Limits as Limits
+    from liehom.budget import current_limits as current_limits
+    from liehom.budget import limits as limits
     from liehom.catalog import pair as pair
     from liehom.correctors import Conserving as Conserving
     from liehom.correctors import Corrected as Corrected
@@ -120,6 +124,7 @@ if TYPE_CHECKING:
     from liehom.errors import InputError as InputError
     from liehom.errors import JacobiError as JacobiError
     from liehom.errors import LiehomError as LiehomError
+    from liehom.errors import LimitError as LimitError
     from liehom.errors import NotASubalgebraError as NotASubalgebraError
     from liehom.errors import NotInSpanError as NotInSpanError
     from liehom.errors import ParseError as ParseError
@@ -250,13 +255,15 @@ _NAMES = {
         "schroedinger semidirect_sum simple sl so so_form so_star sp sp_form spin_matrices "
         "strictly_upper_triangular su u upper_triangular"
     ),
+    "liehom.budget": "Limits current_limits limits",
     "liehom.catalog": "pair",
     "liehom.correctors": (
         "Conserving Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
     ),
     "liehom.errors": (
         "CatalogError CertificateError ConvergenceError FieldError FormatError InputError JacobiError LiehomError "
-        "NotASubalgebraError NotInSpanError ParseError RepresentationError ShapeError SingularError StructureError "
+        "LimitError NotASubalgebraError NotInSpanError ParseError RepresentationError ShapeError SingularError "
+        "StructureError "
         "TraceError UndecidedError"
     ),
     "liehom.fullness": (

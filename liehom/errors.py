@@ -45,6 +45,20 @@ def shown(value: str) -> str:
     return value if len(value) <= 200 else f"{value[:40]}...{value[-10:]} ({len(value)} characters)"
 
 
+def displayed(value: object) -> str:
+    """The repr of any object as a message shows it: shortened, and never an exception itself.
+
+    Examples
+    --------
+    >>> displayed([1, "x"]), displayed(10**5000), displayed("1" * 1000)
+    ("[1, 'x']", 'a very long int', "'111111111111111111111111111111111111111...111111111' (1002 characters)")
+    """
+    try:
+        return shown(repr(value))
+    except Exception:  # noqa: BLE001  integers of more digits than Python prints, nested lists, a repr of the caller
+        return f"a very long {type(value).__name__}" if isinstance(value, int) else f"a {type(value).__name__}"
+
+
 class InputError(LiehomError, ValueError):
     """An argument has a wrong value: a parameter out of range, a shape that does not fit, a bad option."""
 
@@ -79,6 +93,36 @@ class SeriesError(InputError):
 
 class TraceError(InputError):
     """A step cannot be compiled: it branches on values, or calls a function that compiled code does not have."""
+
+
+class LimitError(InputError):
+    """An input or a computation is larger than a limit allows: `limit` is its name, see `liehom.limits`.
+
+    Attributes
+    ----------
+    limit : str
+        Name of the limit.
+    found, allowed : int or float
+        What was found, and the limit in force.
+    """
+
+    def __init__(self, limit: str, found: float, allowed: float, what: str) -> None:
+        self.limit = limit
+        self.found = found
+        self.allowed = allowed
+        enough = _rounded_up(found)
+        super().__init__(
+            f"{what.format(enough)}, the limit is {allowed}; raise it by `with liehom.limits({limit}={enough})`, on "
+            f"the command line by `--limit {limit}={enough}`"
+        )
+
+
+def _rounded_up(size: float) -> str:
+    """The size as a number that is at least as large; short if it has many digits."""
+    if isinstance(size, float):
+        return f"{size:.0f}" if size < 1e15 else f"{size:.0e}"
+    bits = size.bit_length()
+    return str(size) if bits <= 64 else f"10**{int(bits * 0.30103) + 1}"
 
 
 class SingularError(LiehomError, ArithmeticError):

@@ -19,14 +19,15 @@ BELOW: dict[str, tuple[str, ...]] = {
     "errors": (),
     "typing": (),
     "compatibility": ("errors",),
+    "budget": ("errors",),
     "disk": ("errors",),
-    "parallel": ("disk", "typing"),
+    "parallel": ("budget", "disk", "typing"),
     "immutable": (),
-    "scalars": ("errors", "immutable", "typing"),
+    "scalars": ("budget", "errors", "immutable", "typing"),
     "algebra": ("scalars",),
     "representations": ("algebra",),
     "pauli": ("representations",),
-    "tracing": ("disk", "typing"),
+    "tracing": ("budget", "disk", "typing"),
     "series": ("scalars", "tracing"),
     "homogeneous": ("representations", "series"),
     "fullness": ("homogeneous",),
@@ -99,7 +100,7 @@ CHECKER = (
     "liehom.fullness.certificates.certificate_fields",
     "liehom.fullness.checker",
 )
-CHECKER_MAY_IMPORT = (*CHECKER, "liehom.scalars", "liehom.errors")
+CHECKER_MAY_IMPORT = (*CHECKER, "liehom.scalars", "liehom.errors", "liehom.budget")
 
 MAX_FILE_LINES = 450
 MAX_FUNCTION_LINES = 60

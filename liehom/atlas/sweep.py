@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from liehom.atlas.entry import Atlas, Entry
 from liehom.catalog import pair as named_pair
 from liehom.catalog import parse
-from liehom.errors import InputError, LiehomError
+from liehom.errors import InputError, LiehomError, LimitError
 from liehom.fullness import decide_fullness
 from liehom.parallel import ExecutorLike, completed, open_store
 from liehom.representations import Pair
@@ -153,5 +153,7 @@ def _decided(task: _Task) -> Entry:
         data = verdict.to_json()
         verified = bool(task.verify and data["proved"] and verdict.verify())
     except LiehomError as error:
+        if isinstance(error, LimitError) and error.limit == "seconds":
+            raise  # it says nothing about this pair
         return Entry(name, None, None, {}, False, f"{type(error).__name__}: {error}")
     return Entry(name, pair.algebra.dimension, pair.subalgebra.dimension, data, verified)

@@ -26,12 +26,7 @@ from liehom.algebra import (
     schroedinger,
 )
 from liehom.catalog.names import Term, Value
-from liehom.errors import CatalogError, InputError
-
-MAX_PARAMETER = 64
-"""Largest integer parameter of a family in a name."""
-MAX_FREE_LENGTH = 3000
-"""Largest number of words of maximal length, g^k, of free_nilpotent(g,k) in a name."""
+from liehom.errors import CatalogError, InputError, LimitError
 
 
 def is_family(term: Term) -> bool:
@@ -45,7 +40,7 @@ def family_algebra(term: Term) -> LieAlgebra:
     Raises
     ------
     CatalogError
-        If the parameters are not valid for the family, or exceed the limits of names.
+        If the parameters are not valid for the family, or are too large.
 
     Examples
     --------
@@ -61,16 +56,13 @@ def family_algebra(term: Term) -> LieAlgebra:
     if term.after or not least <= len(values) <= most:
         wanted = f"{least}" if least == most else f"{least} or {most}"
         raise CatalogError(f"{term.head} takes {wanted} integer(s), got {term}")
-    too_many = term.head == "free_nilpotent" and max(values[0], 2) ** values[1] > MAX_FREE_LENGTH
-    if max(values) > MAX_PARAMETER or too_many:
-        raise CatalogError(f"{term} is larger than the catalogue builds; call the function of liehom for this family")
     return _built(term, build, *values)
 
 
 def _built(term: Term, build: Callable[..., LieAlgebra], *values: Value | str) -> LieAlgebra:
     try:
         return build(*values)
-    except CatalogError:
+    except (CatalogError, LimitError):
         raise
     except InputError as error:
         raise CatalogError(f"{term}: {error}") from None

@@ -19,22 +19,18 @@ from collections.abc import Callable
 import numpy as np
 
 from liehom.algebra import matrices as families
-from liehom.algebra.matrices.matrix_basis import stack
+from liehom.algebra.matrices.matrix_basis import require_basis, stack
 from liehom.algebra.matrices.named_matrices import (
     CLASSICAL_KINDS,
     EXCEPTIONAL_MATRICES,
     classical_matrices,
     exceptional_matrices,
 )
-from liehom.catalog.names import Expression, Item, Sum, Term, terms
+from liehom.catalog.names import Expression, Item, Sum, Term, small_integer, terms
 from liehom.errors import CatalogError
 from liehom.typing import IntegerArray
 
 EXCEPTIONAL_KINDS = frozenset(name.partition("(")[0] for name in EXCEPTIONAL_MATRICES)
-MAX_SIZE = 64
-"""Largest real dimension on which matrices of a name act."""
-MAX_SPIN = 16
-"""Largest p + q of spin(p,q) in a name."""
 
 
 def linear_matrices(tree: Expression) -> IntegerArray:
@@ -100,7 +96,7 @@ def _term_matrices(term: Term) -> IntegerArray:
     power = re.fullmatch(r"([SL])(\d+)", term.head)
     if power:
         build = families.symmetric_power if power[1] == "S" else families.exterior_power
-        return build(linear_matrices(_one(term)), int(power[2]))
+        return build(linear_matrices(_one(term)), small_integer(power[2]))
     if term.head not in _HEADS:
         raise CatalogError(f"{term} is not a linear Lie algebra of the catalogue; heads: see liehom.catalog.linear")
     return _HEADS[term.head](term)
@@ -110,7 +106,6 @@ def _classical(term: Term) -> IntegerArray:
     if not 1 <= len(term.items) <= 2 or not isinstance(term.items[0], int):
         raise CatalogError(f"{term.head} takes a size and perhaps a second parameter, as in {term.head}(3); got {term}")
     n, second = term.items[0], term.items[1] if len(term.items) == 2 else 0
-    _refuse_large(term, n, second if isinstance(second, int) else 0)
     if isinstance(second, int):
         return classical_matrices(term.head, n, second)
     if isinstance(second, Sum):
@@ -123,12 +118,6 @@ def _classical(term: Term) -> IntegerArray:
     if len(ground) == 1:
         return families.complex_sl(n, parameter=ground[0])
     return families.quaternionic_sl(n, parameters=(ground[0], ground[1]))
-
-
-def _refuse_large(term: Term, first: int, second: int = 0) -> None:
-    total, limit = first + second, MAX_SPIN if term.head == "spin" else MAX_SIZE
-    if total * 2 ** len(scalar_parameters(term)) > limit:
-        raise CatalogError(f"{term} is larger than the catalogue builds, {limit} real dimensions")
 
 
 def _scalars(first: Term, extra: Term, size: int) -> IntegerArray:
@@ -178,7 +167,6 @@ def _size(term: Term) -> int:
     values = term.integers()
     if len(values) != 1 or values[0] < 1:
         raise CatalogError(f"{term.head} takes one positive integer, got {term}")
-    _refuse_large(term, values[0])
     return values[0]
 
 
@@ -194,10 +182,17 @@ def _spiral(term: Term) -> IntegerArray:
     if len(values) < 2:
         raise CatalogError(f"spiral takes the growth and at least one frequency, got {term}")
     growth, *frequencies = values
+    require_basis(1, 2 * len(frequencies))
     matrix = growth * np.eye(2 * len(frequencies), dtype=np.int64)
     for k, omega in enumerate(frequencies):
         matrix[2 * k, 2 * k + 1], matrix[2 * k + 1, 2 * k] = -omega, omega
     return matrix[None]
+
+
+def _diagonal(term: Term) -> IntegerArray:
+    values = term.integers()
+    require_basis(1, len(values))
+    return np.diag(np.array(values, dtype=np.int64))[None]
 
 
 def _tensor(term: Term) -> IntegerArray:
@@ -220,6 +215,7 @@ def _blocks(term: Term) -> IntegerArray:
 def at_offset(matrices: IntegerArray, offset: int, size: int) -> IntegerArray:
     """Matrices (dim, size, size) with the given matrices as the diagonal block that begins at `offset`."""
     n = matrices.shape[1]
+    require_basis(len(matrices), size)
     out = np.zeros((len(matrices), size, size), dtype=np.int64)
     out[:, offset : offset + n, offset : offset + n] = matrices
     return out
@@ -228,8 +224,9 @@ def at_offset(matrices: IntegerArray, offset: int, size: int) -> IntegerArray:
 def _copies(term: Term) -> IntegerArray:
     if len(term.items) != 2 or not isinstance(term.items[0], int) or term.items[0] < 1:
         raise CatalogError(f"copies takes a positive number and a linear Lie algebra, got {term}")
-    one = np.eye(term.items[0], dtype=np.int64)
     matrices = linear_matrices(_expression(term.items[1]))
+    require_basis(len(matrices), term.items[0] * matrices.shape[1])
+    one = np.eye(term.items[0], dtype=np.int64)
     return stack((np.kron(one, a) for a in matrices), len(one) * matrices.shape[1])
 
 
@@ -238,7 +235,7 @@ _HEADS: dict[str, Callable[[Term], IntegerArray]] = {
     "R": lambda term: np.ones((1, 1, 1), dtype=np.int64),
     "form": lambda term: families.orthogonal(term.integers()),
     "field": lambda term: families.companion_powers(term.integers()),
-    "diag": lambda term: np.diag(np.array(term.integers(), dtype=np.int64))[None],
+    "diag": _diagonal,
     "spiral": _spiral,
     "upper": lambda term: families.triangular(_size(term)),
     "strict": lambda term: families.triangular(_size(term), 1),

@@ -22,10 +22,14 @@ from fractions import Fraction
 from typing import TypeAlias, final
 
 from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS
-from liehom.errors import CatalogError
+from liehom.budget import current_limits, within
+from liehom.errors import CatalogError, LimitError, displayed, shown
 
 SPELLINGS = {"schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e"}
 """Other spellings of heads."""
+MAX_LIKENESS = 100
+"""Characters of the longest name to which similar names are looked for."""
+MAX_PARAMETER_DIGITS = 18
 _TOKEN = re.compile(r"\s*(?:(R\^\d+)|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
 
 
@@ -105,7 +109,8 @@ def parse(name: str) -> Name:
     liehom.errors.CatalogError: 'g2/su(3' is not a name of the catalogue: expected ')' at position 7
     """
     if not isinstance(name, str):
-        raise CatalogError(f"a name is a string such as 'so(4)/so(3)', got {name!r}")
+        raise CatalogError(f"a name is a string such as 'so(4)/so(3)', got {displayed(name)}")
+    within("characters", len(name), "the name has {} characters")
     return _Parser(name).name()
 
 
@@ -119,7 +124,7 @@ def parse_expression(name: str) -> Expression:
     """
     tree = parse(name)
     if isinstance(tree, Quotient):
-        raise CatalogError(f"{name!r} is the name of a pair, not of an algebra")
+        raise CatalogError(f"{shown(name)!r} is the name of a pair, not of an algebra")
     return tree
 
 
@@ -139,9 +144,10 @@ def unknown(name: str, known: Iterable[str], kind: str) -> CatalogError:
     CatalogError("'G2/SU3' is not the name of a pair in the catalogue; the nearest are g2/su(3)")
     """
     by_folded = {other.casefold(): other for other in known}
-    near = [by_folded[other] for other in get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.5)]
+    close = get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.5) if len(name) <= MAX_LIKENESS else ()
+    near = [by_folded[other] for other in close]
     hint = f"; the nearest are {', '.join(near)}" if near else ""
-    return CatalogError(f"{name!r} is not the name of {_article(kind)} in the catalogue{hint}")
+    return CatalogError(f"{shown(name)!r} is not the name of {_article(kind)} in the catalogue{hint}")
 
 
 def _article(noun: str) -> str:
@@ -167,7 +173,7 @@ class _Parser:
     def __init__(self, text: str) -> None:
         self.text = text
         self.tokens: list[tuple[str, int]] = []
-        self.at = 0
+        self.at = self.depth = 0
         position = 0
         while text[position:].strip():
             match = _TOKEN.match(text, position)
@@ -178,7 +184,7 @@ class _Parser:
             position = match.end()
 
     def error(self, what: str, position: int) -> CatalogError:
-        return CatalogError(f"{self.text!r} is not a name of the catalogue: {what} at position {position}")
+        return CatalogError(f"{shown(self.text)!r} is not a name of the catalogue: {what} at position {position}")
 
     def peek(self) -> str:
         return self.tokens[self.at][0] if self.at < len(self.tokens) else ""
@@ -217,17 +223,20 @@ class _Parser:
             raise self.error("expected a name such as so(3)", self.position())
         self.at += 1
         if head.startswith("R^"):
-            n = int(head[2:])
+            n = small_integer(head[2:])
             return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
         if re.fullmatch(r"A\d", head) and self.accept(","):
             return self.numbered(head)
         if not self.accept("("):
             return Term(head)
+        self.depth += 1
+        within("nesting", self.depth, "the parentheses of the name are nested {} deep")
         items = [self.item()]
         while self.accept(","):
             items.append(self.item())
         after = self.values(fractions=head == "bianchi") if self.accept(";") else ()
         self.expect(")")
+        self.depth -= 1
         return canonical(Term(head, tuple(items), after))
 
     def numbered(self, head: str) -> Term:
@@ -263,4 +272,17 @@ class _Parser:
         if not token.lstrip("-").isdigit():
             raise self.error("expected an integer", self.position())
         self.at += 1
-        return int(token)
+        return small_integer(token)
+
+
+def small_integer(digits: str) -> int:
+    """The integer with these digits; `LimitError` if it has more than 18, since no dimension is so large.
+
+    Examples
+    --------
+    >>> small_integer("12")
+    12
+    """
+    if len(digits) > MAX_PARAMETER_DIGITS:
+        raise LimitError("dimension", 10 ** (len(digits) - 1), current_limits().dimension, "a parameter is about {}")
+    return int(digits)

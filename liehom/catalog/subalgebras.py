@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liehom.algebra.closure.closure import square_matrices
-from liehom.algebra.closure.sparse_commutators import entries_of, exclusive_entries
+from liehom.algebra.closure.sparse_commutators import exclusive_entries
 from liehom.algebra.matrices.matrix_basis import null_space
 from liehom.catalog.linear import at_offset
 from liehom.typing import IntegerArray
+
+MAX_PERMUTED = 6
 
 
 def preserving(
@@ -74,7 +75,7 @@ def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray 
         return rows if not elements.any() else None
     flat = matrices.reshape(len(matrices), -1)
     wanted = elements.reshape(len(elements), -1)
-    positions = exclusive_entries([entries_of(a) for a in square_matrices(list(matrices))], matrices.shape[1])
+    positions = exclusive_entries([_entries(a) for a in matrices], matrices.shape[1])
     if positions is None:
         return _solved(flat, wanted)
     own = flat[range(len(flat)), positions]
@@ -85,6 +86,12 @@ def coordinates(matrices: IntegerArray, elements: IntegerArray) -> IntegerArray 
     kind = np.dtype(float if largest < 2**53 else object)  # float64 products below 2^53 are exact, and faster
     product: npt.NDArray[Any] = rows[:, used].astype(kind) @ flat[used].astype(kind)
     return rows if np.array_equal(product, scale * wanted.astype(kind)) else None
+
+
+def _entries(matrix: IntegerArray) -> dict[tuple[int, int], int]:
+    """The non-zero entries of a matrix as {(row, column): value}, row by row."""
+    rows, columns = matrix.nonzero()
+    return dict(zip(zip(rows.tolist(), columns.tolist(), strict=True), matrix[rows, columns].tolist(), strict=True))
 
 
 def _solved(flat: IntegerArray, wanted: IntegerArray) -> IntegerArray | None:
@@ -106,10 +113,21 @@ def placements(parts: Sequence[IntegerArray], size: int) -> Iterator[IntegerArra
     total = sum(part.shape[1] for part in parts)
     if total > size:
         return
-    for order in permutations(parts):
+    for order in _orders(parts):
         for start in sorted({0, size - total}):
             offset, placed = start, []
             for part in order:
                 placed.append(at_offset(part, offset, size))
                 offset += part.shape[1]
             yield np.concatenate(placed)
+
+
+def _orders(parts: Sequence[IntegerArray]) -> Iterator[Sequence[IntegerArray]]:
+    """The different orders of the parts; of more than `MAX_PERMUTED` parts only the given one and its reverse."""
+    if len(parts) > MAX_PERMUTED:
+        yield parts
+        yield parts[::-1]
+        return
+    kinds = [next(i for i, other in enumerate(parts) if np.array_equal(part, other)) for part in parts]
+    for order in dict.fromkeys(permutations(kinds)):
+        yield [parts[i] for i in order]

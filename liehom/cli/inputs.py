@@ -11,7 +11,7 @@ from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.disk import check_target
 from liehom.errors import CatalogError, FormatError
 from liehom.io import from_gap, from_sage, load, load_pair
-from liehom.io.json_reader import parse_object
+from liehom.io.json_reader import parse_object, read_text
 from liehom.io.number_lists import vector
 from liehom.representations import Pair, Representation
 from liehom.scalars import RR, Field, Scalar, common_field
@@ -107,21 +107,12 @@ def object_argument(text: str) -> LieAlgebra | Pair | Representation:
     """
     kind = os.path.splitext(text)[1]
     if kind in READERS:
-        return READERS[kind](_text_of(file_argument(text)))
+        return READERS[kind](read_text(file_argument(text), "a file of GAP or Sage"))
     found = load(file_argument(text)) if is_file(text) else _named(text)
     return Pair(found.algebra, found) if isinstance(found, Subalgebra) else found
 
 
 READERS = {".g": from_gap, ".gap": from_gap, ".sage": from_sage}
-
-
-def _text_of(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise FormatError(f"{path!r} is not text in UTF-8 (byte {error.start})") from None
-    except (OSError, ValueError) as error:
-        raise FormatError(f"{path!r} cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _named(text: str) -> LieAlgebra | Pair:

@@ -12,6 +12,7 @@ import numpy as np
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.budget import within
 from liehom.errors import FormatError
 from liehom.io.json_reader import as_list, check_header, check_keys, is_float64, kind_of, shown
 from liehom.io.number_lists import RawList, field_for, write_field, write_number
@@ -21,7 +22,6 @@ from liehom.typing import IntegerArray
 FORMAT = "liehom-algebra"
 REQUIRED = ("dimension", "structure_constants")
 OPTIONAL = ("format", "version", "name", "basis", "field", "arithmetic")
-MAX_DIMENSION = 4096
 MAX_NAME = 100
 """Characters of the longest name."""
 
@@ -79,11 +79,10 @@ def algebra_keys(algebra: LieAlgebra) -> dict[str, Any]:
 
 # -- parts of a file ----------------------------------------------------------------------------------------------
 def read_dimension(value: object) -> int:
-    """Dimension from 0 to `MAX_DIMENSION`; `FormatError` if the value is not one."""
+    """Dimension, an integer from 0; `FormatError` if the value is not one, `LimitError` if it is too large."""
     if type(value) is not int or value < 0:
         raise FormatError(f"dimension is {shown(value)}, expected an integer from 0")
-    if value > MAX_DIMENSION:
-        raise FormatError(f"dimension is {shown(value)}, files go up to {MAX_DIMENSION}")
+    within("dimension", value, "the dimension is {}")
     return value
 
 
@@ -114,6 +113,7 @@ Index: TypeAlias = tuple[IntegerArray, IntegerArray, IntegerArray]
 def read_entries(value: object, n: int, floats: bool) -> tuple[Index, RawList]:
     """Columns i, j, k of the structure constants as arrays, and their values."""
     entries = as_list(value, "structure_constants")
+    within("entries", len(entries), "there are {} structure constants")
     if not entries:
         empty = np.zeros(0, dtype=np.int64)
         return (empty, empty, empty), RawList.checked((), str)
@@ -122,7 +122,7 @@ def read_entries(value: object, n: int, floats: bool) -> tuple[Index, RawList]:
     i, j, k, values = zip(*entries, strict=True)
     if set(map(type, i)) | set(map(type, j)) | set(map(type, k)) != {int}:
         _refuse_entry(entries, n)
-    if min(i) < 0 or max(j) >= n or min(k) < 0 or max(k) >= n:
+    if min(i) < 0 or max(i) >= n or min(j) < 0 or max(j) >= n or min(k) < 0 or max(k) >= n:
         _refuse_entry(entries, n)
     index = (np.array(i, dtype=np.int64), np.array(j, dtype=np.int64), np.array(k, dtype=np.int64))
     if (index[0] >= index[1]).any():

@@ -14,8 +14,8 @@ import re
 from typing import Any, NoReturn, TypeAlias
 
 from liehom.algebra import LieAlgebra
+from liehom.budget import within
 from liehom.errors import FormatError
-from liehom.io.algebra_file import MAX_DIMENSION
 from liehom.io.json_reader import shown
 from liehom.scalars import QQ, Scalar
 
@@ -128,7 +128,7 @@ class _Script:
         # GAP breaks long lines inside numbers, with a backslash
         joined = _COMMENT.sub(lambda found: found[1] or "", text.replace("\\\r\n", "").replace("\\\n", ""))
         self.tokens: list[tuple[str, str]] = []
-        self.at = 0
+        self.at = self.numbers = 0  # position; how many integers the ranges before it stand for
         self.variables: dict[str, Value] = {}
         self.names: tuple[str, ...] | None = None
         position, end = 0, len(joined.rstrip())
@@ -202,7 +202,10 @@ class _Script:
             found.append(self.value(depth + 1))
             if self.peek() == "..":
                 self.at += 1
-                found += _range(found.pop(), self.value(depth + 1))
+                integers = _range(found.pop(), self.value(depth + 1))
+                self.numbers += len(integers)
+                within("entries", self.numbers, "the ranges of the table stand for {} integers")
+                found += integers
             if self.peek() != "]":
                 self.take(",")
         self.at += 1
@@ -291,8 +294,9 @@ def _from_lists(rows: list[Value]) -> _Table:
 
 
 def _dimension(n: Value) -> int:
-    if not isinstance(n, type(QQ.one)) or n.q != 1 or not 0 <= n <= MAX_DIMENSION:
-        raise FormatError(f"the dimension of the table is {shown(n)}, expected an integer up to {MAX_DIMENSION}")
+    if not isinstance(n, type(QQ.one)) or n.q != 1 or n < 0:
+        raise FormatError(f"the dimension of the table is {shown(n)}, expected an integer from 0")
+    within("dimension", int(n.p), "the dimension of the table is {}")
     return int(n.p)
 
 
@@ -304,8 +308,9 @@ def _number(token: str) -> Scalar:
 
 
 def _range(first: Value, last: Value) -> list[Value]:
-    if any(not isinstance(x, type(QQ.one)) or x.q != 1 for x in (first, last)) or last - first > MAX_DIMENSION:
+    if any(not isinstance(x, type(QQ.one)) or x.q != 1 for x in (first, last)):
         _refuse("a range [ a .. b ] needs two integers")
+    within("dimension", int((last - first).p), "a range has {} integers")
     return [QQ.convert(k) for k in range(int(first.p), int(last.p) + 1)]
 
 

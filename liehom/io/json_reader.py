@@ -6,9 +6,9 @@ import json
 import os
 from collections.abc import Collection, Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, NoReturn
 
+from liehom.budget import current_limits, within
 from liehom.disk import checksum
 from liehom.errors import FormatError
 
@@ -20,6 +20,8 @@ OTHER_TOOLS = (
     "`liehom describe` reads a file of GAP if it ends in .g or .gap, one of Sage if it ends in .sage; "
     "liehom.io.from_gap and from_sage read strings"
 )
+CHUNK = 1 << 20
+"""Bytes that are read at once."""
 MAX_INTEGER_DIGITS = 4000
 """Longer integers stay strings: Python refuses to convert them, the grammar of values does not."""
 
@@ -39,19 +41,46 @@ def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
     ...
     liehom.errors.FormatError: 'no/such/file.json' cannot be read: No such file or directory
     """
-    try:
-        text = Path(path).read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise FormatError(f"{str(path)!r} is not text in UTF-8 (byte {error.start}), so not a JSON file") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise FormatError(f"{str(path)!r} cannot be read: {reason}") from None
+    text = read_text(path, "a JSON file")
     try:
         return parse_object(text)
     except FormatError as error:
         if str(error).startswith("not JSON") and not text.lstrip().startswith("{"):
             raise FormatError(f"{error}; {OTHER_TOOLS}") from None
         raise
+
+
+def read_text(path: str | os.PathLike[str], expected: str) -> str:
+    """Text of a file in UTF-8, of which no more is read than the limit allows, even if the file has no end.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be read, or is not UTF-8.
+    LimitError
+        If it is larger than the limit.
+
+    Examples
+    --------
+    >>> read_text("/dev/zero", "a JSON file")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.LimitError: the file '/dev/zero' has 67108865 bytes or more, the limit is 67108864; raise it by ...
+    """
+    allowed = current_limits().file_bytes
+    found = bytearray()
+    try:
+        with open(path, "rb", buffering=0) as file:
+            while len(found) <= allowed and (part := file.read(min(CHUNK, allowed + 1 - len(found)))):
+                found += part
+    except (OSError, ValueError, TypeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise FormatError(f"{shown(str(path))} cannot be read: {reason}") from None
+    within("file_bytes", len(found), f"the file {shown(str(path))} has {{}} bytes or more")
+    try:
+        return found.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FormatError(f"{shown(str(path))} is not text in UTF-8 (byte {error.start}), so not {expected}") from None
 
 
 def parse_object(text: str) -> dict[str, Any]:
@@ -69,6 +98,7 @@ def parse_object(text: str) -> dict[str, Any]:
     ...
     liehom.errors.FormatError: the key 'dimension' is given twice
     """
+    within("file_bytes", len(text), "the string has {} characters")
     try:
         data = _decoded(text)
     except json.JSONDecodeError as error:

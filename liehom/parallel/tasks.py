@@ -11,9 +11,11 @@ import pickle
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
+from dataclasses import asdict, dataclass
 from queue import SimpleQueue
 from typing import Generic, Protocol, TypeAlias, TypeGuard, TypeVar, final
 
+from liehom.budget import Limits, limits, remaining_limits
 from liehom.errors import InputError, WorkerLostError
 
 Task = TypeVar("Task")
@@ -84,6 +86,19 @@ def completed(
 
 
 @final
+@dataclass(frozen=True, slots=True)
+class _Limited(Generic[Task, Result]):
+    """A function that runs under given limits, in whatever thread or process."""
+
+    function: Callable[[Task], Result]
+    limits: Limits
+
+    def __call__(self, task: Task) -> Result:
+        with limits(**asdict(self.limits)):
+            return self.function(task)
+
+
+@final
 class _Pool:
     """The current executor, replaced by another one when it breaks."""
 
@@ -114,7 +129,7 @@ class _Pool:
         if self._executor is None:
             raise BrokenExecutor("there is no executor")
         try:
-            return self._executor.submit(function, task)
+            return self._executor.submit(_Limited(function, remaining_limits()), task)
         except RuntimeError as error:  # raised also by an executor that was shut down
             if isinstance(error, BrokenExecutor):
                 raise

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.catalog.algebras import EXAMPLES
 from liehom.catalog.names import Quotient, Sum, Term, canonical, parse
-from liehom.errors import CatalogError
+from liehom.errors import CatalogError, LimitError
 
 heads = st.sampled_from(["so", "su", "sl", "sp", "g2", "affine", "tensor", "so*", "P1", "R", "R^3", "f4", "S2", "Q"])
 integers = st.integers(-40, 40)
@@ -142,9 +142,24 @@ def test_representations(name: str, dimension: int, size: int) -> None:
     [
         *("heisenberg(1)", "so(3)+so(2)", "su(2)+sp(1)", "sl(2)+u(1)", "S2(3)", "tensor(so(3))", "copies(0,so(3))"),
         *("field(R)", "so*(5)", "spiral(1)", "sl(2,Q(5))", "gl(2,Q(-1,-1))", "sl(2,so(2)+so(3))", "sym(3;2,1)"),
-        *("sl(2,Q(-1,3))+sp(1)", "so(1000)", "spin(30)", "upper(100)"),
+        "sl(2,Q(-1,3))+sp(1)",
     ],
 )
 def test_name_that_is_not_a_representation_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError):
         lh.catalog.representation(name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("so(1000)", "so(3000)", "spin(30)", "upper(100)", "S2(sl(60))", "S9(gl(20))", "copies(100000,so(3))"),
+        *("so(" + "9" * 5000 + ")", "L200(gl(400))", "tensor(gl(40),gl(40))", "galilei(2000)", "heisenberg(3000)"),
+        *("free_nilpotent(2,1000)", "free_nilpotent(10,10)", "conformal(90)", "R^5000", "R^" + "9" * 5000),
+        "sp(" * 300,
+    ],
+)
+def test_what_is_too_large_is_refused_at_once(name: str) -> None:
+    """No array is made, so that no memory is needed."""
+    with pytest.raises(LimitError, match=r"raise it by `with liehom.limits\("):
+        lh.catalog.algebra(name)

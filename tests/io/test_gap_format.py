@@ -101,7 +101,6 @@ def test_an_entry_of_an_antisymmetric_table_sets_both_orders() -> None:
         ("[" * 100, "nested too deeply"),
         ('T := EmptySCTable( 2, 0, "symmetric" );', "EmptySCTable"),
         ("T := EmptySCTable( 10^6, 0 );", "is not read"),
-        ("T := EmptySCTable( 1000000, 0 );", "dimension of the table"),
         ("T := EmptySCTable( 2, 0 ); SetEntrySCTable( T, 1, 2, [ 1 ] );", r"entry \(1, 2\)"),
         ("T := EmptySCTable( 2, 0 ); SetEntrySCTable( T, 1, 3, [ 1, 1 ] );", "index 3"),
         ("L := LieAlgebraByStructureConstants( GF(2), [ -1, 0 ] );", "GF with 1 arguments"),
@@ -111,6 +110,20 @@ def test_an_entry_of_an_antisymmetric_table_sets_both_orders() -> None:
 )
 def test_malformed_table_raises_with_the_fault(text: str, says: str) -> None:
     with pytest.raises(errors.FormatError, match=says):
+        io.from_gap(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("T := EmptySCTable( 1000000, 0 );", "dimension of the table"),
+        ("T := EmptySCTable( 1" + "0" * 5000 + ", 0 );", "dimension of the table"),
+        ("x := [ 1 .. 1000000 ];", "range"),
+        ("x := [ " + "1 .. 4000, " * 6000 + " ];", "ranges"),
+    ],
+)
+def test_a_table_that_is_too_large_is_refused(text: str, says: str) -> None:
+    with pytest.raises(errors.LimitError, match=says):
         io.from_gap(text)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import random
 import time
 from collections.abc import Callable
@@ -250,10 +251,24 @@ def test_other_format_or_version(keys: dict[str, Any]) -> None:
         pair(**keys)
 
 
-@pytest.mark.parametrize("value", [-1, "3", 3.0, True, None, [3], 10**9])
+@pytest.mark.parametrize("value", [-1, "3", 3.0, True, None, [3]])
 def test_dimension_is_a_sensible_integer(value: Any) -> None:
     with refuses(errors.FormatError, "dimension"):
         pair(dimension=value)
+
+
+@pytest.mark.parametrize("value", [4097, 10**9, 10**21])
+def test_a_dimension_beyond_the_limit(value: int) -> None:
+    with refuses(errors.LimitError, "dimension"):
+        pair(dimension=value)
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_an_index_of_more_than_64_bits(place: int) -> None:
+    entry: list[Any] = [1, 2, 1, "1"]
+    entry[place] = 10**21
+    with refuses(errors.FormatError, "out of range"):
+        pair(structure_constants=[entry])
 
 
 @pytest.mark.parametrize("entry", [[0, 1, 2], [0, 1, 2, "1", "1"], [], 7, "0 1 2", {"i": 0}, None])
@@ -411,7 +426,6 @@ def test_dependent_matrices() -> None:
         ({"name": "a", "minpoly": ["-2", "1"], "interval": ["1", "3"]}, "degree"),
         ({"name": "a", "minpoly": ["-2", "0", 1.0], "interval": ["1", "3"]}, r"minpoly\[2\]"),
         ({"name": "a", "minpoly": ["-2", "0", "1"], "interval": ["1"]}, "two ends"),
-        ({"name": "a", "minpoly": ["-2", *["0"] * 70, "1"], "interval": ["1", "2"]}, "degree"),
         ({"name": "sqrt", "minpoly": ["-2", "0", "1"], "interval": ["1", "2"]}, "name"),
         ({"name": "a b", "minpoly": ["-2", "0", "1"], "interval": ["1", "2"]}, "name"),
         ({"name": "sqrt(3)", "minpoly": ["-2", "0", "1"], "interval": ["1", "2"]}, r"sqrt\(3\)"),
@@ -421,6 +435,11 @@ def test_dependent_matrices() -> None:
 def test_malformed_field_raises(field: Any, named: str) -> None:
     with refuses(errors.FormatError, "field", named):
         pair(field=field)
+
+
+def test_a_field_of_a_degree_beyond_the_limit() -> None:
+    with refuses(errors.LimitError, "degree"):
+        pair(field={"name": "a", "minpoly": ["-2", *["0"] * 70, "1"], "interval": ["1", "2"]})
 
 
 def test_a_field_and_float64_exclude_each_other() -> None:
@@ -442,10 +461,22 @@ def test_integers_of_many_digits_are_right(digits: int, tmp_path: Path) -> None:
     big = "7" * digits
     text = json.dumps(changed(SPHERE, subalgebra=[["0", "0", big]]))
     for written in (text, text.replace(f'"{big}"', big)):
-        found = io.loads(written)
-        assert found.subalgebra.rows()[0][2] == QQ.convert(big)
-        io.dump(found, tmp_path / "big.json")
-        assert io.load(tmp_path / "big.json") == found
+        with lh.limits(digits=digits):
+            found = io.loads(written)
+            assert found.subalgebra.rows()[0][2] == QQ.convert(big)
+            io.dump(found, tmp_path / "big.json")
+            assert io.load(tmp_path / "big.json") == found
+        with lh.limits(digits=digits - 1), pytest.raises(errors.LimitError, match=f"digits={digits}"):
+            io.loads(written)
+
+
+@pytest.mark.parametrize("path", ["/dev/zero", "/dev/full"])
+@pytest.mark.parametrize("reader", [io.load, io.load_pair, io.load_problem, io.read_object])
+def test_a_file_without_end_is_read_up_to_the_limit(path: str, reader: Callable[[str], object]) -> None:
+    if not os.path.exists(path):
+        pytest.skip("this system has no such file")
+    with lh.limits(file_bytes=1000), pytest.raises(errors.LimitError, match="file_bytes=1001"):
+        reader(path)
 
 
 @given(

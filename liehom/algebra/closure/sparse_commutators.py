@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import compress
 from math import lcm
 from typing import Any
 
@@ -56,8 +57,8 @@ def sparse_commutator_table(
 def entries_of(matrix: ExactMatrix, factor: int = 1) -> Entries:
     """The non-zero numerators of a matrix over QQ times a factor, as {(row, column): value}."""
     n = matrix.ncols
-    found = enumerate(matrix.parts[0].entries())
-    return {divmod(x, n): int(v) * factor for x, v in found if v}
+    entries = matrix.parts[0].entries()
+    return {divmod(x, n): int(v) * factor for x, v in compress(enumerate(entries), entries)}
 
 
 def exclusive_entries(tables: list[Entries], n: int) -> list[int] | None:

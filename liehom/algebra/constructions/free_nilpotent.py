@@ -18,6 +18,7 @@ from typing import final
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.budget import current_limits, within
 from liehom.scalars import QQ
 
 Word = tuple[int, ...]
@@ -61,6 +62,8 @@ def free_nilpotent(generators: int, step: int) -> LieAlgebra:
     """
     require_size("generators", generators)
     require_size("step", step)
+    dimension = _dimension(generators, step, current_limits().dimension)
+    within("dimension", dimension, "the algebra has dimension {} or more")
     free = _FreeLie(generators, step)
     index = {word: i for i, word in enumerate(free.words)}
     entries = []
@@ -74,6 +77,18 @@ def free_nilpotent(generators: int, step: int) -> LieAlgebra:
     table = StructureConstants(QQ, len(names), entries)
     # Brackets of a quotient of the free Lie algebra, rewritten by antisymmetry and the Jacobi identity only.
     return LieAlgebra(table, basis=names, name=f"free_nilpotent({generators},{step})", check=False)
+
+
+def _dimension(generators: int, step: int, enough: int) -> int:
+    """Number of Lyndon words up to length `step` by Witt's formula; the count ends when it exceeds `enough`."""
+    ending: dict[int, int] = {}  # length k: k times the number of Lyndon words of length k
+    total = 0
+    for k in range(1, step + 1):
+        ending[k] = generators**k - sum(ending[d] for d in range(1, k // 2 + 1) if k % d == 0)
+        total += ending[k] // k
+        if total > enough or generators == 1:
+            break
+    return total
 
 
 @final

@@ -16,8 +16,9 @@ from liehom.algebra.constructions.solvable_families import heisenberg
 from liehom.algebra.constructions.sums import direct_sum, semidirect_sum
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.algebra.matrices.matrix_basis import require_basis, require_size
 from liehom.algebra.matrices.named_matrices import classical_matrices, linear_lie_algebra
+from liehom.budget import within
 from liehom.scalars import QQ
 from liehom.scalars.fields.field import MatricesLike
 from liehom.typing import IntegerArray
@@ -191,6 +192,7 @@ def conformal(p: int, q: int = 0) -> LieAlgebra:
     require_size("q", q, 0)
     require_size("p + q", p + q)
     n = p + q
+    within("dimension", (n + 1) * (n + 2) // 2, "the algebra has dimension {}")
     rows = [[int(i == j) * (1 if i < p else -1) for j in range(n + 2)] for i in range(n)]
     form = QQ.matrix([*rows, [0] * (n + 1) + [1], [0] * n + [1, 0]])
     pairs = [(i, n) for i in range(n)] + list(itertools.combinations(range(n), 2)) + [(n + 1, n)]
@@ -265,6 +267,7 @@ def _rotations(n: int) -> list[str]:
 
 def _rotations_of_vectors(n: int, size: int) -> list[IntegerArray]:
     """The matrices of so(n) on two vectors, the first 2n of `size` coordinates."""
+    require_basis(n * (n - 1) // 2, size)
     twice = np.eye(2, dtype=np.int64)
     return [np.pad(np.kron(twice, matrix), (0, size - 2 * n)) for matrix in classical_matrices("so", n)]
 

@@ -86,6 +86,8 @@ class Subalgebra(Immutable):
             independent = set(independent_rows(self.basis))
             dependent = [i for i in range(self.basis.nrows) if i not in independent]
             raise DependentRowsError(rank, dependent, "rows of the subalgebra")
+        if rank <= 1 or not len(self.algebra.table):
+            return  # all brackets of rows vanish
         failure = self._not_closed()
         if failure is not None:
             a, b = failure

@@ -16,7 +16,7 @@ import numpy as np
 
 from liehom.algebra.matrices.composition_algebra import cayley_dickson, conjugation, left_multiplications
 from liehom.algebra.matrices.general_linear import complexify, with_complex_scalars, with_quaternion_scalars
-from liehom.algebra.matrices.matrix_basis import primitive, require_nonzero, require_size, stack, unit
+from liehom.algebra.matrices.matrix_basis import primitive, require_basis, require_nonzero, require_size, stack, unit
 from liehom.typing import IntegerArray
 
 
@@ -183,6 +183,7 @@ def so_star(n: int) -> IntegerArray:
     (15, 12, 12)
     """
     require_size("n", n)
+    require_basis(n * (2 * n - 1), 4 * n)
     units = left_multiplications(cayley_dickson((-1, -1)))
     j = units[2]
     diagonal = [np.kron(unit(n, i, i), j) for i in range(n)]
@@ -216,6 +217,7 @@ def sp(n: int) -> IntegerArray:
     """
     require_size("n", n)
     size = 2 * n
+    require_basis(n * (size + 1), size)
     linear = [unit(size, i, j) - unit(size, n + j, n + i) for i in range(n) for j in range(n)]
     pairs = [(i, j) for i in range(n) for j in range(i, n)]
     upper = [unit(size, i, n + j) + (i != j) * unit(size, j, n + i) for i, j in pairs]
@@ -289,6 +291,7 @@ def _skew_hermitian(diagonal: Sequence[int], table: IntegerArray) -> IntegerArra
     require_nonzero("diagonal", diagonal)
     n = len(diagonal)
     units = left_multiplications(table)
+    require_basis(n * (len(units) * (n + 1) - 2) // 2, n * len(units))
     on = [np.kron(unit(n, i, i), q) for q in units[1:] for i in range(n)]
     d = [int(value) * (1 if diagonal[0] > 0 else -1) for value in diagonal]
     off = [

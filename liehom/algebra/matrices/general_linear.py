@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from liehom.algebra.matrices.composition_algebra import cayley_dickson, left_multiplications, right_multiplications
-from liehom.algebra.matrices.matrix_basis import as_matrices, join, require_size, stack, unit
+from liehom.algebra.matrices.matrix_basis import as_matrices, join, require_basis, require_size, stack, unit
 from liehom.errors import InputError
 from liehom.typing import IntegerArray
 
@@ -97,6 +97,7 @@ def triangular(n: int, above: int = 0) -> IntegerArray:
     ((6, 3, 3), (3, 3, 3))
     """
     require_size("n", n)
+    require_basis(n * (n + 1) // 2, n)
     return stack((unit(n, i, j) for i in range(n) for j in range(i + above, n)), n)
 
 
@@ -243,6 +244,7 @@ def complexify(matrices: ArrayLike, *, parameter: int = -1) -> IntegerArray:
     [[[1, 0], [0, 1]], [[0, -1], [1, 0]]]
     """
     basis = as_matrices(matrices)
+    require_basis(2 * len(basis), 2 * basis.shape[1])
     units = left_multiplications(cayley_dickson((parameter,)))
     return stack((np.kron(a, u) for a in basis for u in units), 2 * basis.shape[1])
 
@@ -337,6 +339,7 @@ def quaternion_table(parameters: tuple[int, int]) -> IntegerArray:
 def _gl_over(n: int, table: IntegerArray) -> IntegerArray:
     """Basis of gl(n) over the algebra: all E_ij (x) L_q."""
     units = left_multiplications(table)
+    require_basis(n * n * len(units), n * len(units))
     entries = ((i, j) for i in range(n) for j in range(n))
     return stack((np.kron(unit(n, i, j), u) for i, j in entries for u in units), n * len(units))
 
@@ -347,6 +350,7 @@ def _sl_over(n: int, table: IntegerArray) -> IntegerArray:
     E_ij (x) L_q for i != j, then E_ii (x) L_q for imaginary units q, then the differences of the E_ii (x) 1.
     """
     units = left_multiplications(table)
+    require_basis(n * n * len(units) - 1, n * len(units))
     off = [np.kron(unit(n, i, j), u) for i in range(n) for j in range(n) if i != j for u in units]
     imaginary = [np.kron(unit(n, i, i), u) for i in range(n) for u in units[1:]]
     real = [np.kron(unit(n, i, i) - unit(n, i + 1, i + 1), units[0]) for i in range(n - 1)]

@@ -11,14 +11,18 @@ are computed exactly, as rows of integer coefficients c.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import gcd
+from math import gcd, log10
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.errors import InputError, ShapeError
+from liehom.budget import current_limits, within
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
+
+BYTES = 8
+"""Bytes of an entry of a matrix, an int64 or a small integer of flint."""
 
 
 def combine(rows: ArrayLike, matrices: ArrayLike) -> IntegerArray:
@@ -221,6 +225,8 @@ def require_size(name: str, value: int, least: int = 1) -> None:
     ------
     InputError
         With the name of the parameter, what was expected and what was given.
+    LimitError
+        If the parameter is larger than the limit of dimensions, as no parameter exceeds the dimension.
 
     Examples
     --------
@@ -230,7 +236,42 @@ def require_size(name: str, value: int, least: int = 1) -> None:
     liehom.errors.InputError: n must be an integer >= 1; got 0
     """
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise InputError(f"{name} must be an integer >= {least}; got {value!r}")
+        raise InputError(f"{name} must be an integer >= {least}; got {displayed(value)}")
+    within("dimension", int(value), f"{name} is {{}}")
+
+
+def require_basis(count: int, size: int) -> None:
+    """Raise `LimitError` if a Lie algebra of so many matrices (size, size) has too large a dimension or array.
+
+    Examples
+    --------
+    >>> require_basis(4498500, 3000)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.LimitError: the algebra has dimension 4498500, the limit is 4096; raise it by ...
+    """
+    within("dimension", count, "the algebra has dimension {}")
+    require_room(count, size)
+
+
+def require_room(count: int, size: int, hint: str = "") -> None:
+    """Raise `LimitError` if so many dense matrices (size, size) need too much memory; `hint` says what helps.
+
+    Examples
+    --------
+    >>> require_room(248, 30380)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.LimitError: 248 dense matrices of size 30380 are 1.83e+03 GB: 1831124569600 bytes, the limit is ...
+    """
+    needed = BYTES * count * size**2
+    if needed > current_limits().memory:
+        # the logarithm of an integer of any length is a float; the integer itself may be too large
+        gigabytes = f"{needed / 1e9:.3g}" if needed < 10**16 else f"about 10^{int(log10(needed)) - 9}"
+        dimension = str(size) if size < 10**15 else f"about 10^{int(log10(size))}"
+        advice = f"; {hint}" if hint else ""
+        what = f"{displayed(count)} dense matrices of size {dimension} are {gigabytes} GB{advice}: {{}} bytes"
+        within("memory", needed, what)
 
 
 def require_nonzero(name: str, values: Sequence[int]) -> None:

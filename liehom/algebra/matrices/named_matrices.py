@@ -24,6 +24,7 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.matrices import albert, form_preserving, general_linear, octonionic, spinors
 from liehom.algebra.matrices.composition_algebra import SPLIT_OCTONIONS
+from liehom.budget import within
 from liehom.errors import CatalogError, InputError
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
@@ -114,6 +115,7 @@ def linear_lie_algebra(matrices: IntegerArray, name: str | None = None) -> LieAl
     >>> linear_lie_algebra(classical_matrices("so", 3), "so(3)")
     <Lie algebra so(3) of dimension 3 over QQ>
     """
+    within("dimension", len(matrices), "the algebra has dimension {}")
     if len(matrices) == 0:
         return LieAlgebra(StructureConstants(QQ, 0, []), name=name, check=False)  # no bracket, nothing to prove
     return lie_closure(matrices, close=False, name=name).algebra

@@ -20,7 +20,7 @@ from itertools import combinations
 import numpy as np
 
 from liehom.algebra.matrices.composition_algebra import OCTONIONS, cayley_dickson, left_multiplications
-from liehom.algebra.matrices.matrix_basis import require_size, stack
+from liehom.algebra.matrices.matrix_basis import require_basis, require_room, require_size, stack
 from liehom.errors import InputError
 from liehom.typing import IntegerArray
 
@@ -57,6 +57,7 @@ def clifford(p: int, q: int) -> IntegerArray:
     """
     require_size("p", p, 0)
     require_size("q", q, 0)
+    require_room(p + q, 2 ** ((p + q) // 2))
     common = min(p, q)
     start = _positive(p - common) if p > q else _negative(q - common)
     plus, minus = [*start[: p - common]], [*start[p - common :]]
@@ -99,6 +100,7 @@ def spin(p: int, q: int = 0, *, chirality: int = 1) -> IntegerArray:
     if chirality not in (1, -1):
         raise InputError(f"chirality must be 1 or -1; got {chirality!r}")
     generators = chirality * (clifford(p, q - 1) if q else clifford(0, p - 1))
+    require_basis(len(generators) * (len(generators) + 1) // 2, generators.shape[1])
     products = [a @ b for a, b in combinations(generators, 2)]
     return stack([*generators, *products], generators.shape[1])
 

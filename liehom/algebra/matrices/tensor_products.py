@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations, combinations_with_replacement
+from math import comb
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.algebra.matrices.matrix_basis import as_matrices, require_size, stack
+from liehom.algebra.matrices.matrix_basis import BYTES, as_matrices, require_basis, require_size, stack
+from liehom.budget import within
 from liehom.errors import InputError
 from liehom.typing import IntegerArray
 
@@ -41,6 +43,7 @@ def tensor_sum(first: ArrayLike, second: ArrayLike) -> IntegerArray:
     """
     left, right = as_matrices(first), as_matrices(second)
     p, q = left.shape[1], right.shape[1]
+    require_basis(len(left) + len(right), p * q)
     one_p, one_q = np.eye(p, dtype=np.int64), np.eye(q, dtype=np.int64)
     return stack([*(np.kron(a, one_q) for a in left), *(np.kron(one_p, b) for b in right)], p * q)
 
@@ -75,6 +78,8 @@ def symmetric_power(matrices: ArrayLike, k: int) -> IntegerArray:
     """
     basis = as_matrices(matrices)
     require_size("k", k, 0)
+    n = basis.shape[1]
+    require_basis(len(basis), comb(n + k - 1, k) if n else 1)
     return _induced(basis, list(combinations_with_replacement(range(basis.shape[1]), k)), alternating=False)
 
 
@@ -109,6 +114,7 @@ def exterior_power(matrices: ArrayLike, k: int) -> IntegerArray:
     n = basis.shape[1]
     if k > n:
         raise InputError(f"Lambda^k of a space of dimension {n} needs k <= {n}; got k = {k}")
+    require_basis(len(basis), comb(n, k))
     return _induced(basis, list(combinations(range(n), k)), alternating=True)
 
 
@@ -139,6 +145,8 @@ def congruence(matrices: ArrayLike) -> IntegerArray:
     n = basis.shape[1]
     rows, columns = np.triu_indices(n)
     m = len(rows)
+    require_basis(len(basis), m)
+    within("memory", BYTES * len(basis) * m * n * n, "the images of symmetric matrices need {} bytes")
     elements = np.zeros((m, n, n), dtype=np.int64)
     elements[np.arange(m), rows, columns] = 1
     elements[np.arange(m), columns, rows] = 1
@@ -174,6 +182,10 @@ def companion_powers(coefficients: Sequence[int]) -> IntegerArray:
     n = len(coefficients)
     if n == 0:
         raise InputError("the polynomial must have degree at least 1; got no coefficient")
+    require_basis(n, n)
+    size = 1 + max(abs(int(c)) for c in coefficients)
+    if n * size.bit_length() > 62:
+        raise InputError("the powers of the companion matrix have entries of more than 63 bits; use smaller numbers")
     companion: IntegerArray = np.eye(n, k=-1, dtype=np.int64)
     companion[:, -1] = -np.asarray(coefficients, dtype=np.int64)
     return stack((np.linalg.matrix_power(companion, k) for k in range(n)), n)

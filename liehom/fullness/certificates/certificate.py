@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from liehom.errors import CertificateError
+from liehom.errors import CertificateError, displayed
 from liehom.fullness.certificates.certificate_fields import (
     READERS,
     check_keys,
@@ -85,7 +85,7 @@ class Certificate:
             object.__setattr__(self, "kind", str.__str__(self.kind))
         schema = READERS.get(self.kind) if isinstance(self.kind, str) else None
         if schema is None:
-            raise malformed(f"the kind is {self.kind!r}, expected one of {', '.join(READERS)}")
+            raise malformed(f"the kind is {displayed(self.kind)}, expected one of {', '.join(READERS)}")
         optional = {"also"} if self.kind == "witness" else set()
         check_keys(self.fields, set(schema), optional, f"a certificate of kind {self.kind!r}")
         frozen = {name: read(self.field, name, self.fields[name]) for name, read in schema.items()}
@@ -118,7 +118,7 @@ class Certificate:
             raise malformed(f"a certificate is a JSON object, not {type(data).__name__}")
         for key, expected in (("format", FORMAT), ("version", VERSION)):
             if key not in data or data[key] != expected or isinstance(data[key], (bool, float)):
-                raise malformed(f"{key} is {data.get(key)!r}, expected {expected!r}")
+                raise malformed(f"{key} is {displayed(data.get(key))}, expected {expected!r}")
         if "kind" not in data:
             raise malformed("the key 'kind' is missing")
         field = read_number_field(data["field"]) if "field" in data else QQ
@@ -131,7 +131,7 @@ class Certificate:
         if isinstance(self.field, NumberField):
             out["field"] = {
                 "name": self.field.symbol,
-                "minpoly": [str(c) for c in self.field.minpoly],
+                "minpoly": [QQ.format(QQ.convert(c)) for c in self.field.minpoly],
                 "interval": [str(end) for end in self.field.interval],
             }
         return out | self.to_fields()

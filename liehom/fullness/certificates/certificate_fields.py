@@ -11,7 +11,8 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from liehom.errors import CertificateFormatError, FieldError, InputError, ParseError
+from liehom.budget import within
+from liehom.errors import CertificateFormatError, FieldError, InputError, LimitError, ParseError, displayed
 from liehom.scalars import QQ, ExactField, Matrix, NumberField, Scalar
 
 Vector: TypeAlias = tuple[Scalar, ...]
@@ -29,7 +30,7 @@ def malformed(message: str) -> CertificateFormatError:
 
 def check_keys(data: Mapping[str, Any], required: set[str], optional: set[str], what: str) -> None:
     """Raise `CertificateFormatError` if a key is unknown or missing; it names the key."""
-    unknown = sorted(repr(key) for key in data if key not in required | optional)
+    unknown = sorted(displayed(key) for key in data if key not in required | optional)
     if unknown:
         known = ", ".join(sorted(required | optional)) or "none"
         raise malformed(f"unknown key {', '.join(unknown)} in {what} (its fields: {known})")
@@ -47,7 +48,7 @@ def _is_number(field: ExactField, value: object) -> bool:
 def _read_number(field: ExactField, name: str, value: Any) -> Scalar:
     if not _is_number(field, value):
         kind = "a float" if isinstance(value, float) else f"of type {type(value).__name__}"
-        raise malformed(f"{name} holds {value!r}, {kind}; write numbers as strings such as '3' or '-1/2'")
+        raise malformed(f"{name} holds {displayed(value)}, {kind}; write numbers as strings such as '3' or '-1/2'")
     try:
         number: Scalar = field.convert(value)
     except (ParseError, FieldError) as error:
@@ -74,6 +75,7 @@ def _read_interval(field: ExactField, name: str, value: object) -> Vector:
 
 def _read_minpoly(field: ExactField, name: str, value: object) -> Vector:
     coefficients = _read_vector(field, name, value)
+    within("minpoly_degree", len(coefficients) - 1, f"{name} has degree {{}}")
     if len(coefficients) < 2 or coefficients[-1] == 0:
         raise malformed(f"{name} must have degree at least 1 and a leading (last) coefficient that is not 0")
     return coefficients
@@ -111,9 +113,11 @@ def _read_sparse(field: ExactField, name: str, rows: Sequence[Any]) -> Rows:
     indices = set()
     for row in rows:
         if len(row) != 3 or any(type(index) is not int or index < 0 for index in row[:2]):
-            raise malformed(f"{name} holds {row!r}, expected [i, j, number] with indices from 0 (or rows of numbers)")
+            raise malformed(
+                f"{name} holds {displayed(row)}, expected [i, j, number] with indices from 0 (or rows of numbers)"
+            )
         if (row[0], row[1]) in indices:
-            raise malformed(f"{name} gives the entry ({row[0]}, {row[1]}) twice")
+            raise malformed(f"{name} gives the entry {displayed(tuple(row[:2]))} twice")
         indices.add((row[0], row[1]))
     return tuple((i, j, _read_number(field, name, x)) for i, j, x in rows)
 
@@ -147,11 +151,13 @@ def read_number_field(data: object) -> NumberField:
     check_keys(data, {"name", "minpoly", "interval"}, set(), "field")
     name = data["name"]
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise malformed(f"the name of the field is {name!r}, expected an identifier such as 'a'")
+        raise malformed(f"the name of the field is {displayed(name)}, expected an identifier such as 'a'")
     minpoly = _read_minpoly(QQ, "minpoly of the field", data["minpoly"])
     ends = _read_interval(QQ, "interval of the field", data["interval"])
     try:
         return NumberField(name, minpoly, (ends[0], ends[1]))
+    except LimitError:
+        raise
     except InputError as error:
         raise CertificateFormatError("field", str(error)) from None
 

@@ -20,6 +20,7 @@ from typing import Any, SupportsInt, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from liehom.budget import in_time
 from liehom.errors import CertificateError
 from liehom.fullness.checker.integral_pair import Integers, IntegralPair
 from liehom.fullness.checker.verify_sparse import check_sparse
@@ -81,6 +82,7 @@ def check_representation(pair: IntegralPair) -> None:
     for prime, root in _primes(pair.field, n):
         if product > bound:
             return
+        in_time()
         constants, quotient, isotropy = (x.image(prime, root) for x in numbers)
         if _is_dense(n, len(pair.places)):
             _check_dense(prime, pair, constants[0], quotient, isotropy)

@@ -24,7 +24,7 @@ from typing import Protocol
 
 import numpy as np
 
-from liehom.errors import CertificateError, InputError
+from liehom.errors import CertificateError, InputError, shown
 from liehom.fullness.checker.integral_pair import Integers, IntegralPair
 from liehom.fullness.checker.verify_modular import check_representation
 from liehom.fullness.checker.verify_roots import count_real_roots, trimmed, value
@@ -133,8 +133,9 @@ def check_same_field(field: ExactField, other: ExactField) -> None:
     if field.minpoly != other.minpoly or not low < high or count_real_roots(QQ, f, low, high) != 1:
         raise CertificateError(
             "field",
-            f"the certificate is over {other.name} with minpoly {other.minpoly} on {other.interval}, "
-            f"the pair over {field.name} with {field.minpoly} on {field.interval}: not the same number",
+            f"the certificate is over {other.name} with minpoly {_listed(other.minpoly)} on {_listed(other.interval)}, "
+            f"the pair over {field.name} with {_listed(field.minpoly)} on {_listed(field.interval)}: not the same "
+            "number",
         )
 
 
@@ -151,7 +152,13 @@ def _check_field(field: ExactField) -> None:
     except InputError as error:
         raise CertificateError("field", str(error)) from None
     if not low < high or value(f, low) == 0 or value(f, high) == 0 or count_real_roots(QQ, f, low, high) != 1:
-        raise CertificateError("field", f"the interval ({low}, {high}) does not hold exactly one root of {f}")
+        interval = _listed(field.interval)
+        raise CertificateError("field", f"the interval {interval} does not hold exactly one root of {_listed(f)}")
+
+
+def _listed(numbers: Iterable[int | Scalar]) -> str:
+    """Rational numbers of any number of digits in a message."""
+    return shown(f"({', '.join(QQ.format(QQ.convert(c)) for c in numbers)})")
 
 
 def _checked_constants(

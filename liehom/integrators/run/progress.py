@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Any, final
 
+from liehom.budget import in_time
 from liehom.errors import InputError
 
 INTERVAL = 0.1
@@ -56,7 +57,8 @@ class Progress:
         return self
 
     def update(self, fraction: Callable[[], float], *, last: bool = False) -> None:
-        """Report the fraction done; `fraction` is called only if it is shown."""
+        """Report the fraction done; `fraction` is called only if it is shown. Raises `LimitError` after a deadline."""
+        in_time()
         if self._silent:
             return
         now = time.monotonic()

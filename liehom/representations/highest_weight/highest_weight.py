@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import log10
 from typing import final
 
 from liehom.algebra import LieAlgebra, StructureConstants
+from liehom.algebra.matrices.matrix_basis import require_room
 from liehom.algebra.roots.chevalley import chevalley, chevalley_constants
 from liehom.algebra.roots.root_system import RootSystem
-from liehom.errors import InputError, RepresentationError
+from liehom.errors import RepresentationError
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, add_multiple, lattice_of
 from liehom.representations.highest_weight.characters import weyl_dimension
@@ -24,7 +24,6 @@ from liehom.representations.invariants.generator_proof import SparseStack, faili
 from liehom.scalars import QQ, ExactMatrix
 
 Columns = Sequence[Vector]
-MAX_ENTRIES = 1 << 28
 OTHER_WAYS = "liehom.representations.admissible_lattice gives the generators sparsely, liehom.character the weights"
 
 
@@ -145,22 +144,6 @@ def highest_weight_module(
     name = f"V({', '.join(map(str, top))})"
     rho = Representation(algebra, [sparse_matrix(c, size) for c in columns], size=size, name=name, check=False)
     return HighestWeightModule(roots, top, lattice.weights, rho)
-
-
-def require_room(count: int, size: int, hint: str) -> None:
-    """Raise `InputError` if the dense matrices of a module have more than 2^28 entries; `hint` names an alternative.
-
-    Raises
-    ------
-    InputError
-        If there are more than 2^28 entries.
-    """
-    entries = count * size**2
-    if entries > MAX_ENTRIES:
-        # The logarithm of an integer of any length is a float; the integer itself may be too large.
-        gigabytes = f"{entries * 8 / 1e9:.3g}" if entries < 10**15 else f"about 10^{int(log10(entries)) - 8}"
-        shown = str(size) if size < 10**15 else f"about 10^{int(log10(size))}"
-        raise InputError(f"{count} dense matrices of size {shown} are {gigabytes} GB; {hint}")
 
 
 def chevalley_matrices(roots: RootSystem, lattice: AdmissibleLattice) -> list[Columns]:

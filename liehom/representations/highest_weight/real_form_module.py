@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import final
 
+from liehom.algebra.matrices.matrix_basis import require_room
 from liehom.algebra.roots.compact_form import real_form_of
 from liehom.algebra.roots.real_form import RealForm
 from liehom.algebra.roots.root_system import RootSystem
@@ -23,7 +24,6 @@ from liehom.representations.highest_weight.highest_weight import (
     OTHER_WAYS,
     Columns,
     chevalley_matrices,
-    require_room,
     sparse_matrix,
 )
 from liehom.representations.highest_weight.real_structure import Operator, RealBasis, commutant_letter

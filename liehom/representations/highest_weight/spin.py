@@ -16,10 +16,9 @@ import numpy as np
 
 from liehom.algebra import matrices as families
 from liehom.algebra import so
-from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.algebra.matrices.matrix_basis import require_room, require_size
 from liehom.errors import InputError
 from liehom.representations.core.representation import Representation
-from liehom.representations.highest_weight.highest_weight import require_room
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import flint
 
-from liehom.errors import FieldError
+from liehom.budget import within
+from liehom.errors import FieldError, shown
 
 
 @contextmanager
@@ -86,9 +87,11 @@ def isolate_real_root(
     """
     low, high = interval
     if not low < high:
-        raise FieldError(f"the interval ({low}, {high}) of a number field is empty")
+        raise FieldError(f"the interval ({shown(str(low))}, {shown(str(high))}) of a number field is empty")
     precision = 64
     while True:
+        bits = precision * polynomial.degree()
+        within("coefficient_bits", bits, "an end of the interval is so close to a root that {} bits are needed")
         balls = real_root_balls(polynomial, precision)
         with working_precision(precision):
             left, right = flint.arb(low), flint.arb(high)
@@ -98,7 +101,8 @@ def isolate_real_root(
             if len(inside) == 1:
                 return interval, inside[0]
             raise FieldError(
-                f"the interval ({low}, {high}) contains {len(inside)} real roots of {polynomial}; "
+                f"the interval ({shown(str(low))}, {shown(str(high))}) contains {len(inside)} real roots of "
+                f"{shown(str(polynomial))}; "
                 f"it must contain exactly one ({len(balls)} real roots in all)"
             )
         precision *= 2

@@ -17,11 +17,11 @@ from typing import Any
 
 import flint
 
+from liehom.budget import digits_within, in_time, within
 from liehom.errors import ParseError
 
-MAX_DEPTH = 100
-MAX_EXPONENT = 4096
 MAX_BITS = 10**8
+"""Numbers that may be larger than this are not computed, even where they would cancel."""
 _TOKEN = re.compile(r"\s*(?:([0-9]+)|([A-Za-z_][A-Za-z_0-9]*)|(\*\*|[-+*/()]))", re.ASCII)
 
 
@@ -64,6 +64,7 @@ class _Parser:
     __slots__ = ("functions", "names", "position", "text", "tokens")
 
     def __init__(self, text: str, names: Collection[str], functions: Collection[str]) -> None:
+        within("characters", len(text), "a value has {} characters")
         self.text, self.names, self.functions = text, names, functions
         self.tokens = self._tokenize(text)
         self.position = 0
@@ -92,8 +93,7 @@ class _Parser:
         return token
 
     def expression(self, depth: int) -> Node:
-        if depth > MAX_DEPTH:
-            raise self.error(f"parentheses or signs nested deeper than {MAX_DEPTH}")
+        within("nesting", depth, "parentheses or signs of a value are nested {} deep")
         left = self.term(depth)
         while self.token in ("+", "-"):
             left = Operation(self.take(), (left, self.term(depth)))
@@ -106,8 +106,7 @@ class _Parser:
         return left
 
     def unary(self, depth: int) -> Node:
-        if depth > MAX_DEPTH:
-            raise self.error(f"parentheses or signs nested deeper than {MAX_DEPTH}")
+        within("nesting", depth, "parentheses or signs of a value are nested {} deep")
         if self.token == "-":
             self.take()
             return Operation("neg", (self.unary(depth + 1),))
@@ -125,7 +124,7 @@ class _Parser:
         if not token:
             raise self.error("it ends too early" if self.tokens else "it is empty")
         if token[0].isdigit():
-            return Number(flint.fmpz(token))
+            return Number(read_integer(token))
         if token == "(":
             return self.closed(depth)
         if token in self.functions:
@@ -165,6 +164,8 @@ def parse(text: str, names: Collection[str] = (), functions: Collection[str] = (
     ------
     ParseError
         If the string is not in the grammar; the message says where and why.
+    LimitError
+        If it has more digits, characters or nested parentheses than the limits allow.
 
     Examples
     --------
@@ -176,12 +177,27 @@ def parse(text: str, names: Collection[str] = (), functions: Collection[str] = (
     liehom.errors.ParseError: "__import__('os')" is not a value: unexpected character "'"; ...
     """
     parser = _Parser(text, names, functions)
-    tree = parser.expression(0)
+    try:
+        tree = parser.expression(0)
+    except RecursionError:  # only if the limit was raised
+        raise parser.error("parentheses or signs are nested deeper than Python's stack") from None
     if parser.token:
         raise parser.error(f"unexpected {parser.token!r}")
-    if _bits(tree) > MAX_BITS:
-        raise parser.error("its powers make a number too large to hold")
+    if (bits := _bits(tree)) > MAX_BITS:
+        digits_within(bits, "the powers in a value make a number of up to {} digits")
     return tree
+
+
+def read_integer(digits: str) -> flint.fmpz:
+    """The integer with these decimal digits, perhaps after a sign; `LimitError` if there are too many.
+
+    Examples
+    --------
+    >>> read_integer("-12")
+    -12
+    """
+    within("digits", len(digits), "the number has {} digits")
+    return flint.fmpz(digits)
 
 
 def _chain(tree: Node) -> tuple[Node, list[tuple[str, Node]]]:
@@ -254,24 +270,49 @@ def evaluate(
 
 
 def _combined(operator: str, left: Any, right: Any) -> Any:
+    in_time()
     match operator:
         case "+":
-            return left + right
+            return checked_size(left + right)
         case "-":
-            return left - right
+            return checked_size(left - right)
         case "*":
-            return left * right
+            return checked_size(left * right)
     try:
-        return left / right
+        return checked_size(left / right)
     except ZeroDivisionError:
         raise ParseError("division by zero in a value") from None
 
 
 def _power(base: Any, exponent: int) -> Any:
-    try:
-        return base**exponent
-    except ZeroDivisionError:
-        raise ParseError("a negative power of zero in a value") from None
+    """The power by repeated squaring, so that no intermediate result is much larger than the limit."""
+    if exponent <= 0 and base == 0:
+        if exponent == 0:
+            return base**0
+        raise ParseError("a negative power of zero in a value")
+    power: Any = None
+    square, left = base, abs(exponent)
+    while left:
+        if left & 1:
+            power = square if power is None else checked_size(power * square)
+        left >>= 1
+        square = checked_size(square * square) if left else square
+    return base**0 if power is None else power if exponent > 0 else 1 / power
+
+
+def checked_size(value: Any) -> Any:
+    """The value; `LimitError` if it is an exact number of more digits than the limit allows.
+
+    Examples
+    --------
+    >>> checked_size(flint.fmpq(1, 2))
+    1/2
+    """
+    if isinstance(value, flint.fmpq):
+        digits_within(max(value.p.bit_length(), value.q.bit_length()))
+    elif hasattr(value, "bit_length"):
+        digits_within(value.bit_length())
+    return value
 
 
 def _bits(tree: Node) -> int:
@@ -293,8 +334,11 @@ def _bits(tree: Node) -> int:
 
 def _integer_exponent(tree: Node) -> int:
     match tree:
-        case Number(value) if value <= MAX_EXPONENT:
-            return int(value)
-        case Operation("neg", (Number(value),)) if value <= MAX_EXPONENT:
-            return -int(value)
-    raise ParseError(f"an exponent must be an integer between -{MAX_EXPONENT} and {MAX_EXPONENT}")
+        case Number(value):
+            sign = 1
+        case Operation("neg", (Number(value),)):
+            sign = -1
+        case _:
+            raise ParseError("an exponent must be an integer")
+    within("exponent", int(value), "an exponent is {}")
+    return sign * int(value)

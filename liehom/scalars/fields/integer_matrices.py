@@ -12,6 +12,8 @@ from collections.abc import Sequence
 
 import flint
 
+from liehom.budget import in_time
+
 # up to this number of entries their gcd is taken one by one
 MAX_DIRECT_ENTRIES = 64
 
@@ -52,6 +54,7 @@ def cancelled(parts: tuple[flint.fmpz_mat, ...], den: int) -> tuple[tuple[flint.
     >>> cancelled((flint.fmpz_mat([[2, 4]]),), 6)
     (([1, 2],), 3)
     """
+    in_time()  # after every product of matrices
     common = flint.fmpz(den)
     for a in parts:
         if common == 1:
@@ -82,6 +85,7 @@ def echelon_pivots(parts: Sequence[flint.fmpz_mat | flint.nmod_mat], rank: int) 
     >>> echelon_pivots([flint.fmpz_mat([[0, 1, 0], [0, 0, 1]])], 2)
     [1, 2]
     """
+    in_time()
     pivots, column = [], 0
     for i in range(rank):
         while all(a[i, column] == 0 for a in parts):

@@ -14,7 +14,8 @@ from typing import Any, final
 
 import flint
 
-from liehom.errors import FieldError
+from liehom.budget import within
+from liehom.errors import FieldError, shown
 from liehom.immutable import Immutable
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
@@ -73,17 +74,20 @@ class NumberField(ExactField, Immutable):
     )
 
     def __init__(self, symbol: str, minpoly: Sequence[ScalarLike], interval: tuple[ScalarLike, ScalarLike]) -> None:
+        within("minpoly_degree", len(minpoly) - 1, "the minimal polynomial has degree {}")
         polynomial = flint.fmpq_poly([QQ.convert(c) for c in minpoly])
         if polynomial.degree() < 2:
             raise FieldError("the minimal polynomial of a number field must have degree at least 2")
         integral = polynomial.numer()
+        bits = int(integral.height_bits()) * polynomial.degree()
+        within("coefficient_bits", bits, "the minimal polynomial has coefficients of {} bits together")
         integral = (
             integral // integral.content() if integral[integral.degree()] > 0 else -(integral // integral.content())
         )
         factors = integral.factor()[1]
         if len(factors) != 1 or factors[0][1] != 1:
-            shown = ", ".join(str(f) for f, _ in factors)
-            raise FieldError(f"the minimal polynomial {integral} is reducible: factors {shown}; use one of them")
+            found = shown(", ".join(str(f) for f, _ in factors))
+            raise FieldError(f"the minimal polynomial {shown(str(integral))} is reducible: factors {found}; use one")
         self.symbol: str = symbol
         self.minpoly: tuple[int, ...] = tuple(int(c) for c in integral.coeffs())
         self.leading: int = self.minpoly[-1]
@@ -103,7 +107,7 @@ class NumberField(ExactField, Immutable):
             raise FieldError(f"the symbol of a generator is {self.symbol!r}; expected an identifier such as 'a'")
         if not self.symbol.startswith("sqrt("):
             return
-        if self.minpoly != (-int(self.symbol[5:-1]), 0, 1) or self.root_index != 1:
+        if self.minpoly != (-int(flint.fmpz(self.symbol[5:-1])), 0, 1) or self.root_index != 1:
             raise FieldError(f"the generator is not {self.symbol}, which is positive; give it another name")
 
     @property
@@ -317,6 +321,10 @@ class AlgebraicNumber(ExactNumber, Immutable):
 
     def rational(self) -> flint.fmpq | None:
         return self.polynomial[0] if self.polynomial.degree() < 1 else None
+
+    def bit_length(self) -> int:
+        """Bits of the largest integer among the numerators of the coordinates and their common denominator."""
+        return max(int(self.polynomial.numer().height_bits()), int(self.polynomial.denom().bit_length()))
 
     def is_rational(self) -> bool:
         """Whether the number is rational."""

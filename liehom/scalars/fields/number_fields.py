@@ -6,11 +6,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import gcd, prod
 from typing import Any
 
 import flint
 
-from liehom.errors import FieldError
+from liehom.budget import current_limits, within
+from liehom.errors import FieldError, shown
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import real_root_balls, working_precision
 from liehom.scalars.fields.field import Scalar
@@ -18,8 +20,10 @@ from liehom.scalars.fields.number_field import NumberField
 from liehom.scalars.fields.rational import QQ, RationalField
 from liehom.typing import Number, ScalarLike
 
-MAX_RADICALS = 4
-MAX_RADICAND_BITS = 200
+TRIAL_PRIMES = 6542
+"""Primes below 2^16, by which the number under a square root is divided."""
+FACTORED_BITS = 128
+"""A rest of more bits after these divisions is not factored."""
 
 
 def number_field(
@@ -90,11 +94,9 @@ def common_field(texts: Iterable[str]) -> RationalField | NumberField:
             kernel = _kernel(grammar.evaluate(argument, flint.fmpq, {}, {}))
             if kernel != 1 and kernel not in radicals:
                 radicals.append(kernel)
-            if len(radicals) + len(nested) > 16 * MAX_RADICALS:
-                raise _too_many_radicals()
+            _check_radicals((len(radicals) + len(nested) - 1) // 16)
     radicals = _independent(radicals)
-    if len(radicals) + len(nested) > MAX_RADICALS:
-        raise _too_many_radicals()
+    _check_radicals(len(radicals) + len(nested))
     if not nested and len(radicals) <= 1:
         return _quadratic(radicals[0]) if radicals else QQ
     terms: list[grammar.Node] = [grammar.Call("sqrt", grammar.Number(flint.fmpz(d))) for d in radicals]
@@ -115,27 +117,41 @@ def exact_value(text: str) -> Scalar:
     return common_field([text]).convert(text)
 
 
-def _too_many_radicals() -> FieldError:
-    return FieldError(
-        f"more than {MAX_RADICALS} different square roots: a field with all of them has a very large degree; "
-        "state a field by its minimal polynomial, or use fewer"
+def _check_radicals(count: int) -> None:
+    within(
+        "radicals",
+        count,
+        "the values have {} different square roots or more, and a field with all of them has a large degree: state a "
+        "field by its minimal polynomial, or use fewer",
     )
 
 
 def _kernel(value: flint.fmpq) -> int:
-    """The squarefree integer d with sqrt(value) a rational multiple of sqrt(d)."""
+    """An integer d such that sqrt(value) is a rational multiple of sqrt(d), 1 if that is rational.
+
+    It is squarefree if at most `FACTORED_BITS` bits are left after trial division. Of a larger rest only squares are
+    recognized, so the field is the same, but its generator may be a multiple of the smallest square root.
+    """
     if value < 0:
-        raise FieldError(f"sqrt({value}) is not real")
-    product = flint.fmpz(value.p) * flint.fmpz(value.q)
-    if product == 0 or product.isqrt() ** 2 == product:
+        raise FieldError(f"sqrt({shown(str(value))}) is not real")
+    rest = flint.fmpz(value.p) * flint.fmpz(value.q)
+    if rest == 0 or rest.is_square():
         return 1
-    if product.bit_length() > MAX_RADICAND_BITS:
-        raise FieldError(f"the number under a square root has {product.bit_length()} bits, too many to factor")
     kernel = flint.fmpz(1)
-    for prime, multiplicity in product.factor():
+    for factor, multiplicity in rest.factor(trial_limit=TRIAL_PRIMES):
         if multiplicity % 2:
-            kernel *= prime
+            kernel *= _squarefree_rest(factor)
     return int(kernel)
+
+
+def _squarefree_rest(factor: flint.fmpz) -> flint.fmpz:
+    """What trial division leaves, a prime or a composite number, without its squares if these are easy to find."""
+    if factor.is_square():
+        return flint.fmpz(1)
+    if factor.bit_length() > FACTORED_BITS:
+        return factor
+    odd = [prime for prime, multiplicity in factor.factor() if multiplicity % 2]
+    return prod(odd, start=flint.fmpz(1))
 
 
 def _independent(radicals: list[int]) -> list[int]:
@@ -143,18 +159,19 @@ def _independent(radicals: list[int]) -> list[int]:
     kept: list[int] = []
     products = {1}
     for d in radicals:
-        if len(kept) > MAX_RADICALS:
+        if len(kept) > current_limits().radicals:
             break
-        if d in products:
+        if any(flint.fmpz(d * e).is_square() for e in products):
             continue
         kept.append(d)
-        products |= {_kernel(flint.fmpq(d * e)) for e in products}
+        products |= {d * e // gcd(d, e) ** 2 for e in products}
     return kept
 
 
 def _quadratic(d: int) -> NumberField:
-    root = int(flint.fmpz(d).isqrt())
-    return NumberField(f"sqrt({d})", [-d, 0, 1], (root, root + 1))
+    number = flint.fmpz(d)  # prints any number of digits
+    root = int(number.isqrt())
+    return NumberField(f"sqrt({number})", [-d, 0, 1], (root, root + 1))
 
 
 def _field_of_tree(tree: grammar.Node, name: str) -> RationalField | NumberField:
@@ -164,6 +181,8 @@ def _field_of_tree(tree: grammar.Node, name: str) -> RationalField | NumberField
             return QQ if kernel == 1 else _quadratic(kernel)
     import sympy
 
+    roots = {str(argument) for argument in grammar.sqrt_arguments(tree)}
+    within("minpoly_degree", 2 ** len(roots), "the square roots of a value give a field of degree up to {}")
     # Trees hold only integers, operators and sqrt, so building the expression executes nothing else.
     expression = grammar.evaluate(tree, lambda n: sympy.Integer(int(n)), {}, {"sqrt": sympy.sqrt})
     return _field_of_sympy(expression, name)

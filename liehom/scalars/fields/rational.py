@@ -55,11 +55,11 @@ def rational_from_text(text: str) -> flint.fmpq | None:
     """The rational number that a string such as '-3' or '1/2' denotes, else None (fast path of the grammar)."""
     stripped = text.strip()
     if _INTEGER.fullmatch(stripped):
-        return flint.fmpq(flint.fmpz(stripped.removeprefix("+")))
+        return flint.fmpq(grammar.read_integer(stripped.removeprefix("+")))
     if _FRACTION.fullmatch(stripped):
         top, bottom = stripped.removeprefix("+").split("/")
         if bottom.strip("0"):
-            return flint.fmpq(flint.fmpz(top), flint.fmpz(bottom))
+            return flint.fmpq(grammar.read_integer(top), grammar.read_integer(bottom))
     return None
 
 

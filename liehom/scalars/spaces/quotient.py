@@ -12,6 +12,7 @@ from typing import Generic, final, overload
 
 import flint
 
+from liehom.budget import within
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.field import M, Matrix
 from liehom.scalars.fields.floating import FloatMatrix
@@ -90,8 +91,12 @@ def echelon_quotient(basis: ExactMatrix) -> Quotient[ExactMatrix]:
 def _from_echelon(reduced: ExactMatrix, pivots: list[int]) -> Quotient[ExactMatrix]:
     n, chosen = reduced.ncols, set(pivots)
     free = [j for j in range(n) if j not in chosen]
-    lift = reduced.field.identity(n).select(rows=free)
-    return Quotient(reduced, lift, _projection(reduced, pivots, free))
+    within("memory", 2 * 8 * n * len(free), "the coordinates on the quotient need {} bytes")
+    unit = flint.fmpz_mat(len(free), n)
+    for f, j in enumerate(free):
+        unit[f, j] = 1
+    rest = tuple(flint.fmpz_mat(len(free), n) for _ in range(reduced.field.degree - 1))
+    return Quotient(reduced, ExactMatrix(reduced.field, (unit, *rest), 1), _projection(reduced, pivots, free))
 
 
 def _projection(reduced: ExactMatrix, pivots: list[int], free: list[int]) -> ExactMatrix:
@@ -99,16 +104,16 @@ def _projection(reduced: ExactMatrix, pivots: list[int], free: list[int]) -> Exa
     n, d = reduced.ncols, len(free)
     parts = []
     for s, part in enumerate(reduced.parts):
-        entries = part.entries()
-        out: list[int | flint.fmpz] = [0] * (n * d)
+        out = flint.fmpz_mat(n, d)
         for i, pivot in enumerate(pivots):
             for f, j in enumerate(free):
-                out[pivot * d + f] = -entries[i * n + j]
+                if x := part[i, j]:
+                    out[pivot, f] = -x
         if s == 0:
             for f, j in enumerate(free):
-                out[j * d + f] = reduced.den
+                out[j, f] = reduced.den
         parts.append(out)
-    return reduced.field.from_parts(parts, n, d, reduced.den)
+    return ExactMatrix(reduced.field, tuple(parts), reduced.den).normalized()
 
 
 def _is_small(matrix: ExactMatrix) -> bool:

@@ -1,0 +1,255 @@
+"""Budgets: how large an input may be, how long a computation may take, and how a caller changes that.
+
+Every door of the library (values, names, files, constructors) asks `within` before it works on something whose size
+the caller chose, and long loops call `in_time`. What exceeds a limit is a `LimitError`, which names the limit. Limits
+are context variables: `with limits(...)` changes them for the code inside, in this thread or asynchronous task only.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, fields, replace
+from typing import final
+
+from liehom.errors import InputError, LimitError
+
+VARIABLE = "LIEHOM_LIMITS"
+"""Environment variable with other defaults, such as ``digits=100000,seconds=60``."""
+DIGITS_PER_BIT = 0.30103
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """The limits in force; `current_limits` returns them, `limits` changes them.
+
+    Attributes
+    ----------
+    digits : int
+        Decimal digits of the numerator or denominator of a number that is read or evaluated.
+    characters : int
+        Characters of a value, a name or the text of an expression.
+    nesting : int
+        Depth of parentheses, signs and functions in a value or name.
+    exponent : int
+        Exponent in a value, in absolute value.
+    radicals : int
+        Different square roots in the values of one object.
+    minpoly_degree : int
+        Degree of a minimal polynomial: of a number field, or of the number in a certificate.
+    coefficient_bits : int
+        Bits of all coefficients together of a minimal polynomial, and of its roots where they are separated.
+    dimension : int
+        Dimension of an algebra or a module.
+    entries : int
+        Entries of a table, matrix or array.
+    memory : int
+        Bytes of a table, matrix or array, estimated before it is allocated.
+    file_bytes : int
+        Bytes of a file.
+    seconds : float, optional
+        Seconds of time by the clock, from the start of the ``with`` block (or of the process). No limit if None.
+
+    Examples
+    --------
+    >>> current_limits().nesting
+    100
+    """
+
+    digits: int = 10_000
+    characters: int = 200_000
+    nesting: int = 100
+    exponent: int = 4096
+    radicals: int = 4
+    minpoly_degree: int = 64
+    coefficient_bits: int = 500_000
+    dimension: int = 4096
+    entries: int = 20_000_000
+    memory: int = 2 * 1024**3
+    file_bytes: int = 64 * 1024**2
+    seconds: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in NAMES:
+            value = getattr(self, name)
+            if name == "seconds":
+                if value is not None and not (_is_number(value) and value >= 0):
+                    raise InputError(f"the limit seconds is {value!r}, expected a number from 0, or None")
+            elif not (type(value) is int and value >= 0):
+                raise InputError(f"the limit {name} is {value!r}, expected an integer from 0")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+NAMES = tuple(field.name for field in fields(Limits))
+"""Names of all limits."""
+
+
+def parsed_limits(text: str) -> dict[str, int | float]:
+    """The limits in a string such as ``digits=100000,seconds=60``.
+
+    Raises
+    ------
+    InputError
+        If the string is not of this form; lists the names.
+
+    Examples
+    --------
+    >>> parsed_limits("digits=100000, seconds=2.5")
+    {'digits': 100000, 'seconds': 2.5}
+    """
+    found: dict[str, int | float] = {}
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        name, _, value = (x.strip() for x in part.partition("="))
+        _check_name(name)
+        try:
+            found[name] = float(value) if name == "seconds" else int(value)
+        except ValueError:
+            raise InputError(f"the limit {name} is {value[:40]!r}, expected a number, as in 'digits=100000'") from None
+    return found
+
+
+def _check_name(name: str) -> None:
+    if name not in NAMES:
+        raise InputError(f"there is no limit {name[:40]!r}; expected one of {', '.join(NAMES)}")
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class _InForce:
+    limits: Limits
+    deadline: float | None  # of time.monotonic
+
+
+def _of_process() -> _InForce:
+    """The limits of the environment variable; seconds count from the first question."""
+    global _defaults
+    if _defaults is None:
+        made = Limits(**parsed_limits(os.environ.get(VARIABLE, "")))  # type: ignore[arg-type]
+        _defaults = _InForce(made, _deadline(made.seconds))
+    return _defaults
+
+
+_defaults: _InForce | None = None
+_in_force: ContextVar[_InForce | None] = ContextVar("liehom limits", default=None)
+
+
+def _deadline(seconds: float | None) -> float | None:
+    return None if seconds is None else time.monotonic() + seconds
+
+
+def _now() -> _InForce:
+    return _in_force.get() or _defaults or _of_process()
+
+
+def current_limits() -> Limits:
+    """The limits in force here.
+
+    Examples
+    --------
+    >>> with limits(digits=20000):
+    ...     current_limits().digits
+    20000
+    """
+    return _now().limits
+
+
+def remaining_limits() -> Limits:
+    """The limits in force, with the seconds that are left: what a task in another process may use."""
+    state = _now()
+    if state.deadline is None:
+        return state.limits
+    return replace(state.limits, seconds=max(0.0, state.deadline - time.monotonic()))
+
+
+@contextmanager
+def limits(**changes: float | None) -> Iterator[Limits]:
+    """Context manager that changes limits for the code inside; the others stay as they are.
+
+    Parameters
+    ----------
+    **changes
+        New values by name, see `Limits`. With `seconds`, the code inside must end in this time; an outer deadline that
+        comes earlier stays in force.
+
+    Raises
+    ------
+    InputError
+        If there is no limit of a given name, or a value is not an integer from 0 (for `seconds` a number, or None).
+
+    Notes
+    -----
+    The limits hold in this thread or asynchronous task. `liehom.parallel` hands them to its workers, whatever the
+    executor. Other threads and processes start from the defaults, which the environment variable ``LIEHOM_LIMITS``
+    changes; to hand limits on, run the work in ``contextvars.copy_context()``, or pass ``current_limits()`` and enter
+    ``limits(**dataclasses.asdict(these))`` in the worker.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> with limits(digits=3):
+    ...     QQ.convert("12345")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.LimitError: the number has 5 digits, the limit is 3; raise it by `with liehom.limits(digits=5)` ...
+    """
+    for name in changes:
+        _check_name(name)
+    outer = _now()
+    made = replace(outer.limits, **changes)  # type: ignore[arg-type]
+    ends = [t for t in (outer.deadline, _deadline(changes.get("seconds"))) if t is not None]
+    token = _in_force.set(_InForce(made, min(ends, default=None)))
+    try:
+        yield made
+    finally:
+        _in_force.reset(token)
+
+
+def change_defaults(changes: Mapping[str, int | float]) -> None:
+    """Change the limits of the whole process, as the command line does; seconds count from now."""
+    global _defaults
+    made = replace(_of_process().limits, **changes)  # type: ignore[arg-type]
+    _defaults = _InForce(made, _deadline(made.seconds))
+
+
+def within(limit: str, found: int, what: str) -> None:
+    """Raise `LimitError` if `found` is more than the limit of this name.
+
+    Parameters
+    ----------
+    limit : str
+        Name of an attribute of `Limits`.
+    found : int
+    what : str
+        What has this size, a sentence with ``{}`` for the number: ``"the file has {} bytes"``.
+
+    Examples
+    --------
+    >>> within("nesting", 101, "the name is nested {} deep")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.LimitError: the name is nested 101 deep, the limit is 100; raise it by ...
+    """
+    allowed: int = getattr(_now().limits, limit)
+    if found > allowed:
+        raise LimitError(limit, found, allowed, what)
+
+
+def in_time() -> None:
+    """Raise `LimitError` if the seconds in force have passed; long loops call this."""
+    state = _in_force.get() or _defaults or _of_process()
+    if state.deadline is not None and time.monotonic() > state.deadline:
+        allowed = state.limits.seconds or 0.0
+        found = time.monotonic() - state.deadline + allowed
+        raise LimitError("seconds", found, allowed, "the computation has taken {} seconds")
+
+
+def digits_within(bits: int, what: str = "the number has {} digits") -> None:
+    """Raise `LimitError` if a number of so many bits has more decimal digits than are allowed."""
+    within("digits", int(bits * DIGITS_PER_BIT) if bits > 64 else 0, what)
