@@ -13,13 +13,14 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import flint
 
 from liehom.budget import digits_within, in_time, within
 from liehom.errors import ParseError
 
+T = TypeVar("T")
 MAX_BITS = 10**8
 """Numbers that may be larger than this are not computed, even where they would cancel."""
 _TOKEN = re.compile(r"\s*(?:([0-9]+)|([A-Za-z_][A-Za-z_0-9]*)|(\*\*|[-+*/()]))", re.ASCII)
@@ -300,7 +301,7 @@ def _power(base: Any, exponent: int) -> Any:
     return base**0 if power is None else power if exponent > 0 else 1 / power
 
 
-def checked_size(value: Any) -> Any:
+def checked_size(value: T) -> T:
     """The value; `LimitError` if it is an exact number of more digits than the limit allows.
 
     Examples
