@@ -18,6 +18,7 @@ import numpy.typing as npt
 from liehom.algebra.core.jacobi import prove_jacobi
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
+from liehom.budget import within
 from liehom.errors import InputError, ShapeError
 from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, Field, FloatField, FloatMatrix, Matrix, Scalar, Subspace
@@ -111,6 +112,7 @@ class LieAlgebra(Immutable):
             over = field if field is not None else field_of_constants(constants)
             self._constants = constants_from(constants, over, dimension)
         n = self._constants.dimension
+        within("dimension", n, "the algebra has dimension {}")
         self.basis_names: tuple[str, ...] = (
             tuple(f"e{i}" for i in range(n)) if basis is None else _checked_names(basis, n)
         )

@@ -14,7 +14,6 @@ from typing import Any, TypeVar, cast, final
 
 import numpy as np
 
-from liehom.budget import within
 from liehom.immutable import Immutable
 from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
@@ -58,7 +57,6 @@ class StructureConstants(Immutable):
     __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "error", "field", "i", "j", "k", "parts")
 
     def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
-        within("dimension", dimension, "the algebra has dimension {}")
         ordered = sorted(entries, key=lambda e: e[:3])
         self.field: Field = field
         self.dimension: int = dimension
@@ -89,7 +87,6 @@ class StructureConstants(Immutable):
 
         Zero entries are dropped.  This is fast for large tables because it constructs no field element.
         """
-        within("dimension", dimension, "the algebra has dimension {}")
         made = cls.__new__(cls)
         made.field, made.dimension = field, dimension
         order = [x for x in np.lexsort((k, j, i)).tolist() if numerators[x]]
