@@ -321,10 +321,11 @@ def _adjoint_on_image(pair: CheckedPair, rho: ExactMatrix) -> ExactMatrix:
         return pair.field.zeros(0, 0)
     is_basis = basis.nrows == r and basis.select(columns=places) == pair.field.identity(r)
     is_basis = is_basis and isotropy == isotropy.select(columns=places) @ basis
+    _require(is_basis, "image", "no basis of rho(h) was found")
     # B -> v B is the map first, so rho(X) B - B rho(X) has the matrix R_B R_X - R_X R_B
     left = (basis.reshape(r * d, d) @ rho).reshape(r, d * d)
     right = _stacked(rho @ _side_by_side(basis, r, d), r, d).reshape(r, d * d)
     brackets = left - right
     adjoint = brackets.select(columns=places)
-    _require(is_basis and brackets == adjoint @ basis, "image", "no basis of rho(h) was found")
+    _require(brackets == adjoint @ basis, "image", "a bracket with rho(X) is not in rho(h)")
     return adjoint

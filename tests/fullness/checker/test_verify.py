@@ -655,6 +655,27 @@ def test_the_cut_is_for_the_traceless_part() -> None:
     refused(shifted, Certificate("dominance", fields | {"cut": "3/4", "eps": "1/8"}), "top")
 
 
+# -- wrong arithmetic --------------------------------------------------------------------------------------
+def doubled(reduced: Any, pivots: Any) -> Any:
+    return reduced.scale(2), pivots
+
+
+def shortened(reduced: Any, pivots: Any) -> Any:
+    return reduced.select(rows=range(reduced.nrows - 1)), list(pivots)[:-1]
+
+
+@pytest.mark.parametrize("spoiled", [doubled, shortened])
+@pytest.mark.parametrize(("of", "check"), [("h", "independent"), ("image", "image")])
+def test_a_wrong_echelon_form_is_noticed(spoiled: Any, of: str, check: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The coordinates of V and of rho(h) rest on an echelon form, which is not trusted."""
+    pair, certificate = moved(TENSOR, TENSOR_NOT, 0)
+    kind = type(QQ.identity(1))
+    echelon, columns = kind.echelon, {"h": 17, "image": 36}[of]
+    right = lambda matrix: echelon(matrix) if matrix.ncols != columns else spoiled(*echelon(matrix))  # noqa: E731
+    monkeypatch.setattr(kind, "echelon", right)
+    refused(pair, certificate, check)
+
+
 # -- certificates of other pairs ---------------------------------------------------------------------------
 def test_no_certificate_passes_for_a_pair_with_the_other_verdict() -> None:
     pairs = [pair for pair, _ in GOOD.values()] + [affine([[[0, -1], [1, 0]]]), make(3, SO3, [])]

@@ -18,7 +18,7 @@ from liehom.fullness.checker import verify_modular, verify_pair
 from liehom.fullness.checker.integral_pair import IntegralPair
 from liehom.fullness.checker.verify_pair import check_pair
 from liehom.scalars import QQ, NumberField
-from tests.fullness.checker.test_verify import Pair, make, orthogonal
+from tests.fullness.checker.test_verify import GOOD, Pair, make, moved, orthogonal
 
 ROOT2 = NumberField("a", [-2, 0, 1], (1, 2))
 HALF_ROOT = NumberField("b", [-3, 0, 2], (1, 2))  # 2 b^2 = 3: the integral generator is 2 b
@@ -363,6 +363,24 @@ def test_blocks_of_any_size_check_the_same(entries: int, monkeypatch: pytest.Mon
         for key in brackets:
             changed = failed(make(15, brackets | {key: brackets[key] * 2}, basis))
             assert (changed is None) is (key[0] < 5 and key[1] < 5), key  # brackets of two elements of V
+
+
+@pytest.mark.parametrize("name", ["sphere", "disc", "affine plane", "cone", "borel", "so(6)/so(5)"])
+def test_dense_and_sparse_agree_in_any_basis(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """h is spanned by rows in general position, so that its complement enters all products; one constant is changed."""
+    rng = random.Random(name)
+    for seed in range(3):
+        pair, _ = moved(*GOOD[name], seed)
+        n, rows = pair.algebra.dimension, pair.subalgebra.basis.to_rows()
+        brackets = {(i, j, k): c for i, j, k, c in pair.algebra.entries}
+        i, j, k = rng.choice([key for key in itertools.product(range(n), repeat=3) if key[0] < key[1]])
+        wrong = make(n, brackets | {(i, j, k): brackets.get((i, j, k), QQ.zero) + rng.choice([1, -2, 10**7])}, rows)
+        answers = []
+        for dense in (True, False):
+            monkeypatch.setattr(verify_modular, "_is_dense", lambda n, number, dense=dense: dense)
+            assert failed(pair) is None
+            answers.append(failed(wrong))
+        assert answers[0] == answers[1]
 
 
 def test_catalogue_pairs_pass_both_ways(both_ways: bool) -> None:
