@@ -15,6 +15,7 @@ from typing import Any, TypeAlias, final
 from liehom.errors import FieldError, FormatError, InputError, LimitError, ParseError, ShapeError
 from liehom.io.json_reader import as_list, check_keys, fraction_for, kind_of, shown
 from liehom.scalars import QQ, RR, ExactField, Field, FloatField, Matrix, NumberField, Scalar, common_field
+from liehom.scalars.fields.complex_parts import field_determining_values, is_complex
 
 DIGITS = b"0123456789-,"
 FIELD_NAME = re.compile(r"(?!sqrt$)[A-Za-z][A-Za-z_0-9]{0,40}|sqrt\([0-9]+\)", re.ASCII)
@@ -58,8 +59,16 @@ class RawList:
         return cls(values, where, set(values))
 
     def radicals(self) -> set[str]:
-        """Distinct strings with an "s" in them, hence all with a square root, on which the field depends."""
-        return {v for v in self.distinct if type(v) is str and "s" in v}
+        """Distinct strings with an "s" in them, hence all with a square root, on which the field depends.
+
+        Complex values are replaced by real ones with the same square roots.
+        """
+        radicals = (v for v in self.distinct if type(v) is str and "s" in v)
+        return {str(x) for v in radicals for x in field_determining_values(v)}
+
+    def has_complex(self) -> bool:
+        """Whether a string has the imaginary unit i or I."""
+        return any(type(v) is str and is_complex(v) for v in self.distinct)
 
     def integers(self) -> list[int] | None:
         """Values as Python integers if all are plain integers of moderate length, else None."""
@@ -173,7 +182,7 @@ def field_for(data: Mapping[str, Any], lists: Sequence[RawList], numerical: bool
         for raw in lists:  # one by one, to name the position
             for x, value in enumerate(raw.values):
                 if type(value) is str:
-                    _own_field(value, raw.where(x))
+                    _own_field(str(field_determining_values(value)[0]), raw.where(x))
         raise FormatError(
             "the radicals of this file together need a number field that must be stated as 'field'"
         ) from None

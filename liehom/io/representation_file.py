@@ -10,18 +10,22 @@ from types import MappingProxyType
 from typing import Any
 
 from liehom.algebra.closure.closure import lie_closure
-from liehom.errors import FormatError, ShapeError
+from liehom.algebra.closure.complex_matrices import real_matrices
+from liehom.errors import FieldError, FormatError, InputError, ShapeError
 from liehom.io.algebra_file import read_dimension
-from liehom.io.json_reader import as_list, check_header, check_keys, is_float64
+from liehom.io.json_reader import as_list, check_header, check_keys, is_float64, shown
 from liehom.io.number_lists import RawList, field_for, table_of_rows, vector, write_field, write_number
 from liehom.io.problem_file import NUMERICAL, Problem, read_fields, read_options
+from liehom.representations.core.coordinates import KINDS, Coordinates, require_coordinates
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.scalars import RR, Field, Matrix
+from liehom.scalars.fields.complex_parts import UNITS
+from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
 FORMAT = "liehom-representation"
-OPTIONAL = ("format", "version", "field", "arithmetic", "dimension", "point", *NUMERICAL)
+OPTIONAL = ("format", "version", "field", "arithmetic", "coordinates", "dimension", "point", *NUMERICAL)
 
 
 def read_problem(data: Mapping[str, Any]) -> Problem:
@@ -38,20 +42,26 @@ def read_problem(data: Mapping[str, Any]) -> Problem:
     check_keys(data, ("matrices",), OPTIONAL, "a representation file")
     numerical = is_float64(data)
     tables, size = _read_matrices(data["matrices"], numerical)
+    is_complex = any(raw.has_complex() for raw in tables) and not _is_generator_called_i(data)
     point = vector(data["point"], "point", floats=True) if "point" in data else None
+    size = 2 * size if is_complex else size
     if point is not None and len(point.values) != size:
-        raise ShapeError(f"point has {len(point.values)} coordinates, the matrices act on {size}")
+        what = f"{size // 2} complex coordinates, so a point has {size} real ones" if is_complex else f"{size}"
+        raise ShapeError(f"point has {len(point.values)} coordinates, the matrices act on {what}")
     in_field = point is not None and (numerical or float not in set(map(type, point.values)))
     field: Field = field_for(data, [*tables, point] if point is not None and in_field else tables, numerical)
     fields = read_fields(data, len(tables), size)
     options = read_options(data)
-    matrices = [raw.matrix(field, size, size) for raw in tables]
+    if is_complex:
+        matrices = [_complex_matrix(raw, field, size // 2, a) for a, raw in enumerate(tables)]
+    else:
+        matrices = [raw.matrix(field, size, size) for raw in tables]
     exact_point = tuple(point.numbers(field)) if point is not None and in_field else None
     if exact_point is not None:
         start: tuple[float, ...] | None = tuple(field.to_float(x) for x in exact_point)
     else:
         start = None if point is None else tuple(map(RR.convert, point.numbers(RR)))
-    representation = _closed(matrices, data)
+    representation = _closed(matrices, data, _coordinates(data, is_complex))
     return Problem(
         representation,
         exact_point,
@@ -92,18 +102,60 @@ def _read_matrices(value: object, floats: bool) -> tuple[list[RawList], int]:
     return found, size
 
 
-def _closed(matrices: Sequence[Matrix], data: Mapping[str, Any]) -> Representation:
+def _is_generator_called_i(data: Mapping[str, Any]) -> bool:
+    """Whether the file states a number field whose generator is called i or I: the letter is then a real number."""
+    field = data.get("field")
+    return isinstance(field, Mapping) and field.get("name") in UNITS
+
+
+def _complex_matrix(raw: RawList, field: Field, n: int, index: int) -> Matrix:
+    """Real matrix (2n, 2n) of n rows of n complex values."""
+    try:
+        return real_matrices([[raw.values[i * n : (i + 1) * n] for i in range(n)]], field, start=index)[0]
+    except FieldError as error:
+        raise FormatError(str(error)) from None
+
+
+def _coordinates(data: Mapping[str, Any], is_complex: bool) -> Coordinates:
+    """What the vectors are: complex if the matrices are, else the value of the key `coordinates`."""
+    found = data.get("coordinates", "complex" if is_complex else "real")
+    for kind in KINDS:
+        if found == kind and (kind == "complex" or not is_complex):
+            return kind
+    known = "'complex', since the matrices are" if is_complex else ", ".join(map(repr, KINDS))
+    raise FormatError(f"coordinates is {shown(found)}, expected {known}")
+
+
+def _closed(matrices: Sequence[Matrix], data: Mapping[str, Any], coordinates: Coordinates) -> Representation:
     """Representation that the matrices generate; a dimension that the file states must be right."""
     if "dimension" in data:
         dimension = read_dimension(data["dimension"])
         made = lie_closure(matrices, close=dimension > len(matrices), limit=dimension)
         if made.algebra.dimension != dimension:
             raise FormatError(f"the matrices generate dimension {made.algebra.dimension}, the file says {dimension}")
-    return Representation.from_matrices(matrices, independent=False)
+    rho = Representation.from_matrices(matrices, independent=False)
+    if coordinates == "real":
+        return rho
+    try:
+        require_coordinates(coordinates, rho.matrices, rho.size)
+    except InputError as error:
+        raise FormatError(f"coordinates: {error}") from None
+    # the same matrices, which act on such vectors
+    return Representation(
+        rho.algebra,
+        rho.matrices,
+        size=rho.size,
+        given=rho.given,
+        appended=rho.appended,
+        coordinates=coordinates,
+        check=False,
+    )
 
 
-def write_representation(representation: Representation, point: VectorLike | None = None) -> dict[str, Any]:
-    """JSON object of a representation by matrices, with a point if one is given.
+def write_representation(
+    representation: Representation, point: VectorLike | MatrixLike | None = None
+) -> dict[str, Any]:
+    """JSON object of a representation by real matrices, with a point if one is given.
 
     Examples
     --------
@@ -114,7 +166,9 @@ def write_representation(representation: Representation, point: VectorLike | Non
     field = representation.field
     out: dict[str, Any] = {"format": FORMAT, "version": 1, **write_field(field)}
     given = representation.matrices[: representation.given]
+    if representation.coordinates != "real":
+        out["coordinates"] = representation.coordinates
     out["matrices"] = [[[write_number(field, x) for x in row] for row in a.to_rows()] for a in given]
     if point is not None:
-        out["point"] = [write_number(field, field.convert(x)) for x in point]
+        out["point"] = [write_number(field, field.convert(x)) for x in representation.real_point(point)]
     return out

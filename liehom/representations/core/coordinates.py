@@ -23,7 +23,7 @@ from liehom.typing import ComplexArray, Expression, ScalarLike, VectorLike
 Coordinates: TypeAlias = Literal["real", "complex", "hermitian"]
 """What the vectors of a representation are."""
 
-KINDS = ("real", "complex", "hermitian")
+KINDS: tuple[Coordinates, ...] = ("real", "complex", "hermitian")
 
 
 def require_coordinates(coordinates: Coordinates, matrices: Sequence[Matrix], size: int) -> None:
