@@ -127,6 +127,7 @@ if TYPE_CHECKING:
     from liehom.errors import LimitError as LimitError
     from liehom.errors import NotASubalgebraError as NotASubalgebraError
     from liehom.errors import NotInSpanError as NotInSpanError
+    from liehom.errors import OrderWarning as OrderWarning
     from liehom.errors import ParseError as ParseError
     from liehom.errors import RepresentationError as RepresentationError
     from liehom.errors import ShapeError as ShapeError
@@ -262,8 +263,8 @@ _NAMES = {
     ),
     "liehom.errors": (
         "CatalogError CertificateError ConvergenceError FieldError FormatError InputError JacobiError LiehomError "
-        "LimitError NotASubalgebraError NotInSpanError ParseError RepresentationError ShapeError SingularError "
-        "StructureError "
+        "LimitError NotASubalgebraError NotInSpanError OrderWarning ParseError RepresentationError ShapeError "
+        "SingularError StructureError "
         "TraceError UndecidedError"
     ),
     "liehom.fullness": (

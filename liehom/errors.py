@@ -286,3 +286,24 @@ class ConformanceError(LiehomError):
     def __init__(self, check: str, message: str) -> None:
         self.check = check
         super().__init__(f"{check}: {message}")
+
+
+class OrderWarning(UserWarning):
+    """A run did not keep the order of its `Corrected` step; `time` is where this was first noticed.
+
+    The `status` of the solution is -2 then, `success` is False, and `message` and `report` say why.
+
+    Attributes
+    ----------
+    order : int
+        The order of the step.
+    time : float
+    """
+
+    def __init__(self, message: str, order: int = 0, time: float = float("nan")) -> None:
+        self.order = order
+        self.time = time
+        super().__init__(message)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (*self.args, self.order, self.time)

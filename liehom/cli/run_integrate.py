@@ -62,6 +62,8 @@ def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
     """Integrate, write the files, print the table and the report; returns the exit code."""
     import numpy as np
 
+    from liehom.integrators.integration import without_order_warning
+
     output = wanted.checked(file)
     problem = problem_of(file, given)
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
@@ -69,7 +71,8 @@ def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
     options["dense_output"] = output.plot is not None
     options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
     try:
-        with np.errstate(all="ignore"):  # a number that is not finite ends the run with a message
+        # a number that is not finite ends the run with a message, and that message also says which order was kept
+        with np.errstate(all="ignore"), without_order_warning():
             solution = problem.integrate(checkpoint=output.checkpoint, **options)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(_how_to_continue(output.checkpoint)) from None

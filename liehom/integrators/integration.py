@@ -6,7 +6,9 @@ This module checks the arguments; the loop over steps is in `liehom.integrators.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -26,11 +28,30 @@ from liehom.integrators.run.events import EventFunction
 from liehom.integrators.run.options import Options, Span
 from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.run import Run
-from liehom.integrators.run.solution import Solution
+from liehom.integrators.run.solution import Solution, warn_of_order
 from liehom.series.arrays import is_jax
 from liehom.typing import Array, IntegerArray
 
 CLOCKS = ("corrected", "nominal")
+WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)
+"""Whether `integrate` issues an `OrderWarning`."""
+
+
+@contextmanager
+def without_order_warning() -> Iterator[None]:
+    """A context in which `integrate` issues no `OrderWarning`, for callers that show the message or merge reports.
+
+    Examples
+    --------
+    >>> with without_order_warning():
+    ...     WARNS.get()
+    False
+    """
+    token = WARNS.set(False)
+    try:
+        yield
+    finally:
+        WARNS.reset(token)
 
 
 def integrate(
@@ -121,6 +142,11 @@ def integrate(
     FormatError
         If the file at `checkpoint` is not a checkpoint, or is damaged.
 
+    Warns
+    -----
+    OrderWarning
+        If a `Corrected` step does not keep its order: see Notes.
+
     Notes
     -----
     The last step is shortened (τ(h) = remaining time, by Newton), so that t[-1] == t_span[1]. If trajectories take
@@ -139,6 +165,11 @@ def integrate(
     * the equations of an implicit step have no solution;
     * `max_steps` is reached.
 
+    A `Corrected` step claims its order only if every linear system of its corrections has a solution, and if no step
+    comes within its own length of the cone on which the range condition fails (docs/theory/correctors.md). Both are
+    checked at every step. A trajectory that reaches its end without its order has status -2, so that `success` is
+    False, and an `OrderWarning` names the first time.
+
     With ``compile`` the step is traced once, with everything that derives it, and compiled to machine code, which is
     cached on disk. Compiled code makes the ordinary steps. The first and the last step, steps that pass a time of
     `t_eval` and steps that fail are made without it. The results agree to round-off. psi is called while the step is
@@ -148,8 +179,8 @@ def integrate(
     accepted by less than that may be rejected.
 
     With ``compile="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default the initial and the
-    final time), and works under jax.jit, jax.grad and jax.vmap. It needs `dt`, and `report` then only says what was
-    asked for.
+    final time), and works under jax.jit, jax.grad and jax.vmap. It needs `dt`. Under jax.jit and
+    jax.vmap `report` only says what was asked for, and there is no warning; `statuses` is a JAX array.
 
     Examples
     --------
@@ -199,7 +230,10 @@ def integrate(
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
         if compile is not None:
             run.fast_path = compiled_steps(run, compile)
-        return run.execute(progress, path)
+        solution = run.execute(progress, path)
+    if WARNS.get():
+        warn_of_order(solution.report, stacklevel=2)
+    return solution
 
 
 def _with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: int | IntegerArray) -> Action:
@@ -235,7 +269,10 @@ def _on_jax(
     ends: Any = np.unique(span)[:: 1 if span[1] >= span[0] else -1]
     times = ends if t_eval is None else _times(t_eval, span)
     action = Action(field.representation, exponential)
-    return integrate_on_jax(action, field, step, span, y0, size, times, nominal=clock == "nominal")
+    solution = integrate_on_jax(action, field, step, span, y0, size, times, nominal=clock == "nominal")
+    if WARNS.get():
+        warn_of_order(solution.report, stacklevel=3)
+    return solution
 
 
 def _check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) -> None:

@@ -92,7 +92,7 @@ def test_integrate_json_is_one_object() -> None:
 
 def test_a_correction_that_fails_is_said() -> None:
     result = liehom("integrate", SYM3)
-    assert result.exit_code == 0
+    assert result.exit_code == 1 and "but order 4 was not kept" in result.stdout and not result.stderr
     assert "order 4 NOT reached" in result.stdout
     assert "FAILS" in result.stdout
     assert json_of(liehom("integrate", SYM3, "--json", "--force"))["report"]["range_condition"] is False
@@ -222,7 +222,7 @@ def test_a_compiled_step_gives_the_same(file: str, tmp_path: Path, monkeypatch: 
     found = []
     for name, words in (("plain.npz", ()), ("made.npz", ("--compile", "llvm"))):
         result = liehom("integrate", file, "--t-span", "0", "2", "--dt", "0.05", "--out", name, *words)
-        assert result.exit_code == 0, result.stderr
+        assert result.exit_code == (1 if file == SYM3 else 0), result.stderr
         found.append(np.load(name)["y"])
     np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-13)
     refused = liehom("integrate", file, "--dt", "0.05", "--compile", "fortran", "--out", "other.npz")

@@ -18,12 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from liehom.correctors.isotropy.order_by_order import OrderRecursion, Part, norm
+from liehom.correctors.isotropy.range_solver import RangeSolver
 from liehom.correctors.step import ExponentialLike, Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.series.arrays import as_values, is_exact, namespace
-from liehom.typing import IntegerArray, Real, Values
+from liehom.typing import BooleanArray, IntegerArray, Real, Values
 
 
 @final
@@ -79,6 +80,40 @@ class Correction:
     def rank(self) -> Values:
         """Rank that must be the dimension of the orbit for (6.2) to hold, shape (...,); 0 at an equilibrium."""
         return self._of_parts("rank", 0)
+
+    def near_cone(self, h: Values) -> BooleanArray:
+        """Whether the cone on which the range condition fails is within a step of size h, bool (...,); cf. Notes.
+
+        Parameters
+        ----------
+        h : array of shape (...,)
+            Signed step sizes.
+
+        Notes
+        -----
+        To first order in h, forwards and backwards: `RangeSolver.is_near_cone` with the change h rho(psi_1) m of the
+        velocity. Equilibria, orbits with a tight frame (where there is no cone) and points at which isotropy makes only
+        a fraction of the correction count as far from it.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["1", "1/4 + m1", "0"])
+        >>> found = lh.correction(field, lh.Euler(), np.array([1.0, 0.0, 0.0]), order=3)
+        >>> [bool(found.near_cone(np.array(h))) for h in (0.25, 0.75)]
+        [False, True]
+        """
+        xp = namespace(self.residual)
+        near: BooleanArray = xp.zeros(xp.shape(self.residual), dtype=bool)
+        for part in self.parts:
+            if part.drift is None or not isinstance(part.solver, RangeSolver):
+                continue
+            found = part.solver.is_near_cone(part.drift * h[..., None])
+            if part.fraction is not None:
+                found = found & (part.fraction == 1)
+            near = near | (found if part.here is None else found & part.here)
+        return near
 
     def _of_parts(self, name: str, otherwise: float) -> Values:
         xp = namespace(self.residual)

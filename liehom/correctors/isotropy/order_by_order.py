@@ -41,12 +41,15 @@ class Part:
         None if isotropy does not enter at any order.
     fraction : array of shape (...,), or None
         Fraction of a correction that isotropy makes; None is 1 in all trajectories.
+    drift : array of shape (..., N), or None
+        rho(psi_1) m, the rate at which the velocity w_1 changes in a frame that the flow carries along; None if l > 1.
     """
 
     leading: int
     here: Values | None
     solver: RangeSolver | TightFrameSolver | None
     fraction: Values | None
+    drift: Values | None = None
 
 
 @final
@@ -153,8 +156,14 @@ class OrderRecursion:
             fraction = isotropy_fraction(self.action, self.flow, l, self.total) if self.flow.time_dependent else None
             if fraction is not None and not is_lazy(fraction) and bool(np.all(fraction == 1)):
                 fraction = None
-            parts.append(Part(l, here, solver, fraction))
+            parts.append(Part(l, here, solver, fraction, self._drift(l, solver)))
         return parts
+
+    def _drift(self, leading: int, solver: RangeSolver | TightFrameSolver) -> Values | None:
+        if leading > 1 or self.total < 2 or type(solver) is TightFrameSolver or is_jax(self.m):
+            return None
+        made: Values = self.action.infinitesimal(self.flow.psi(1), self.m)
+        return made
 
     # -- one order ---------------------------------------------------------------------------------------
     def level(self, n: int) -> None:

@@ -23,7 +23,7 @@ from liehom.homogeneous import Action, IsotropyFrame
 from liehom.homogeneous.frames.branch_free_frames import orthogonal_decomposition
 from liehom.series.arrays import across_lanes, namespace
 from liehom.tracing.array import Traced
-from liehom.typing import IntegerArray, Values
+from liehom.typing import BooleanArray, IntegerArray, Values
 
 RANK_RTOL = 1e-8
 """Singular values of M below this fraction of the largest possible one count as 0."""
@@ -31,6 +31,13 @@ REACHED_RTOL = 1e-7
 """p counts as 0 if |p| is at most this."""
 REFINEMENTS = 3
 """Iterations by which extended precision is reached."""
+FRACTIONS = (-1.0, -0.5, 0.5, 1.0)
+"""Fractions of a step at which the determinant of `RangeSolver.is_near_cone` is evaluated."""
+NEAR_CONE = 1 / 8
+"""The cone counts as near if the determinant falls below this fraction of its value at the point. A zero of odd order
+between half a step and a step away makes the determinant negative at an end, a double zero leaves at most 1/9."""
+REGULAR = 1e-12
+"""A Gram determinant below this fraction of the product of its diagonal is that of a matrix without full rank."""
 
 
 @final
@@ -88,6 +95,7 @@ class RangeSolver:
         if unit.dtype == np.longdouble:
             self._basis = _polished(frame.basis, action.inner_product.matrix)
         moved = action.infinitesimal(xp.swapaxes(self._basis, -1, -2), unit[..., None, :])
+        self._action, self._factor = action, factor
         self._moves = factor * (self._down @ xp.swapaxes(moved, -1, -2))
         self._unit = _apply(self._down, unit)
         self._cutoff = factor * RANK_RTOL * action.max_norm
@@ -114,6 +122,54 @@ class RangeSolver:
     def matrix(self) -> Values:
         """The matrix [e rho(g_m) u, u] in orthonormal bases, shape (..., d, s + 1)."""
         found: Values = self._xp.concatenate([self._moves, self._unit[..., None]], axis=-1)
+        return found
+
+    def is_near_cone(self, change: Values) -> BooleanArray:
+        """Whether the velocity leaves the full rank of the range condition, bool (...,), within a given change of it.
+
+        Let A(v) = [e rho(g_m) v, v], which depends linearly on v; the cone is where its rank is less than d. The
+        velocity w becomes w + s v for s in [-1, 1], where v is `change` without its component along w. The test is
+        whether det A(w + s v) A(w)^T falls below 1/8 of its value at s = 0, at one of s = -1, -1/2, 1/2, 1. The ratio
+        does not depend on the bases, nor on the lengths of w and of the generators.
+
+        Parameters
+        ----------
+        change : array of shape (..., N)
+            A tangent vector, in the scale of w_l.
+
+        Examples
+        --------
+        On the hyperboloid x^2 + y^2 - z^2 = 1 the cone consists of the velocities that are null vectors:
+
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> action, m = lh.Action(lh.defining(lh.so(2, 1))), np.array([1.0, 0.0, 0.0])
+        >>> solver = RangeSolver(action, action.isotropy_frame(m, 2), np.array([0, 1.0, 0.25]), 1, 0.5)
+        >>> [bool(solver.is_near_cone(np.array([0, 0, x]))) for x in (0.25, 0.75)]
+        [False, True]
+        """
+        xp = self._xp
+        v = _apply(self._down, change / self._size)
+        v = v - xp.sum(v * self._unit, axis=-1, keepdims=True) * self._unit
+        turned = xp.swapaxes(self._basis, -1, -2)
+        along = _apply(self._frame.tangent, v)
+        moved = self._factor * (
+            self._down @ xp.swapaxes(self._action.infinitesimal(turned, along[..., None, :]), -1, -2)
+        )
+        gram = self._moves @ xp.swapaxes(self._moves, -1, -2) + self._unit[..., :, None] * self._unit[..., None, :]
+        tilt = moved @ xp.swapaxes(self._moves, -1, -2) + v[..., :, None] * self._unit[..., None, :]
+        d = gram.shape[-1]
+        rank = np.asarray(self._frame.orbit_dimension)
+        if int(rank.min()) < d:  # zero columns fill the bases of tangent spaces of smaller dimension
+            gram = gram + np.eye(d) * (np.arange(d) >= rank[..., None])[..., None, :]
+        whole = _determinant(gram)
+        least = _determinant(gram + FRACTIONS[0] * tilt)
+        for s in FRACTIONS[1:]:
+            least = xp.minimum(least, _determinant(gram + s * tilt))
+        diagonal = gram[..., 0, 0]
+        for i in range(1, d):
+            diagonal = diagonal * gram[..., i, i]
+        found: BooleanArray = (least < NEAR_CONE * whole) & (whole > REGULAR * diagonal)
         return found
 
     def _singular_values(self) -> Values:
@@ -241,6 +297,23 @@ def inner(a: Values, b: Values) -> Values:
     """
     found: Values = np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
     return found
+
+
+def _determinant(matrix: Values) -> Values:
+    """Determinants of matrices (..., d, d); of tracers by elimination without pivots, which is exact up to round-off
+    where no leading minor vanishes."""
+    if type(matrix) is not Traced:
+        found: Values = np.linalg.det(_single(matrix))
+        return found
+    rows = [[matrix[..., i, j] for j in range(matrix.shape[-1])] for i in range(matrix.shape[-1])]
+    made = rows[0][0]
+    for k in range(1, len(rows)):
+        top = rows[k - 1]
+        for i in range(k, len(rows)):
+            factor = rows[i][k - 1] / top[k - 1]
+            rows[i] = [*rows[i][:k], *(a - factor * b for a, b in zip(rows[i][k:], top[k:], strict=True))]
+        made = made * rows[k][k]
+    return made
 
 
 def _polished(basis: Values, gram: Values) -> Values:

@@ -272,7 +272,7 @@ class _Lanes:
             run.state.h = self.h.reshape(shape)
         run.state.taken = run.state.taken + new.reshape(shape)
         for lanes, extra in self.totals:
-            run.state.statistics.add_compiled(lanes, extra)
+            run.state.statistics.add_compiled(lanes, extra, float(run.direction))
         if run.keeps:
             self._record(new, most)
 

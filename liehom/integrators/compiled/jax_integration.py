@@ -6,6 +6,7 @@ step that contains it, at the parameter s with τ(s) = time - t, by Newton's met
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil
 from typing import Any
 
@@ -19,16 +20,19 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.run.clock import SLACK
-from liehom.integrators.run.options import Span
+from liehom.integrators.run.options import ORDER_NOT_KEPT, Span
+from liehom.integrators.run.records import time_of
 from liehom.integrators.run.solution import Report, Solution
 from liehom.series.arrays import is_traced
 from liehom.tracing import StepGraph
 from liehom.tracing.jax_code import evaluate_with_jax
-from liehom.typing import Array
+from liehom.typing import Array, Values
 
 STEPS_PER_NOMINAL_STEP = 1.5
 """Largest number of steps of a step with a τ of its own, in units of the nominal number; beyond it points are NaN."""
 NEWTON_ITERATIONS = 6
+LOSSES = ("unkept", "failed", "near")
+"""Numbers of a corrected step on its order: the largest of the first one is stored, the others are summed up."""
 
 
 def integrate_on_jax(
@@ -83,10 +87,16 @@ def integrate_on_jax(
         )
     dimension = int(dimensions.max())
     graph = traced_step(action, field, step, points, dimension, nominal=nominal)
-    found, taken = _through(graph, jnp.moveaxis(start, -1, 0), span, dt, times)
+    found, taken, seen = _through(graph, jnp.moveaxis(start, -1, 0), span, dt, times)
     y: Any = jnp.moveaxis(jnp.moveaxis(found, 0, -1), 0, -2)
     t: Any = jnp.asarray(times)
-    statuses: Any = jnp.zeros(start.shape[:-1], dtype=int) if start.ndim > 1 else 0
+    lost: Any = seen[0] > 0
+    statuses: Any = jnp.where(lost, ORDER_NOT_KEPT, 0)
+    report = _report(action, step, dimension, nominal=nominal)
+    status, message = 0, "Integrated by JAX; where a time was not reached, y is nan."
+    if known is not None and not is_traced(statuses) and bool(lost.any()):
+        report = _with_loss(report, np.asarray(seen), 1.0 if span[1] >= span[0] else -1.0)
+        status, message = ORDER_NOT_KEPT, f"{message} The order {step.order} was not kept: {report.loss}."
     return Solution(
         t=t,
         y=y,
@@ -94,11 +104,11 @@ def integrate_on_jax(
         t_events=None,
         y_events=None,
         nfev=0,
-        status=0,
-        message="Integrated by JAX; where a time was not reached, y is nan.",
+        status=status,
+        message=message,
         n_steps=taken,
-        report=_report(action, step, dimension, nominal=nominal),
-        statuses=statuses,
+        report=report,
+        statuses=statuses if start.ndim > 1 or is_traced(statuses) else status,
     )
 
 
@@ -121,8 +131,20 @@ def _report(action: Action, step: Step, dimension: int, *, nominal: bool) -> Rep
     )
 
 
-def _through(graph: StepGraph, m: Any, span: Span, dt: float, times: Array) -> tuple[Any, Any]:
-    """Points (k, N, ...) at the times, and the numbers of steps."""
+def _with_loss(report: Report, seen: Array, direction: float) -> Report:
+    """The report with the totals of `LOSSES` of all trajectories, shape (3, ...)."""
+    earliest = time_of(np.max(seen[0]))
+    return replace(
+        report,
+        order=report.base_order,
+        failed_steps=int(seen[1].sum()),
+        near_steps=int(seen[2].sum()),
+        unkept_from=direction * float(earliest),
+    )
+
+
+def _through(graph: StepGraph, m: Any, span: Span, dt: float, times: Array) -> tuple[Any, Any, Any]:
+    """Points (k, N, ...) at the times, the numbers of steps, and the totals (3, ...) of `LOSSES`."""
     from jax import lax
     from jax import numpy as jnp
 
@@ -132,14 +154,22 @@ def _through(graph: StepGraph, m: Any, span: Span, dt: float, times: Array) -> t
     gaps = np.abs(np.diff(np.concatenate([[span[0]], np.asarray(times)])))
     most = ceil(float(gaps.max(initial=0.0)) / dt * (1.0 if graph.elapsed is None else STEPS_PER_NOMINAL_STEP)) + 1
 
-    def step(m: Any, t: Any, size: Any) -> tuple[Any, Any]:
-        outputs = [*graph.point, *[x for x in (graph.elapsed, graph.solved) if x is not None]]
+    numbers = {**graph.largest, **graph.summed}
+    losses = [numbers[name] for name in LOSSES] if LOSSES[0] in numbers else []
+
+    def step(m: Any, t: Any, size: Any) -> tuple[Any, Any, Any]:
+        outputs = [*graph.point, *losses, *[x for x in (graph.elapsed, graph.solved) if x is not None]]
         made = evaluate_with_jax(outputs, {**dict(enumerate(m)), n: t, n + 1: size, **constants}, differentiable=True)
         made = [jnp.broadcast_to(x, t.shape) for x in made]
         point = jnp.stack(made[:n])
         if graph.solved is not None:
             point = jnp.where(made[-1], point, jnp.nan)
-        return point, made[n] if graph.elapsed is not None else jnp.broadcast_to(size, t.shape)
+        new = jnp.stack(made[n : n + len(LOSSES)]) if losses else jnp.zeros((len(LOSSES), *t.shape))
+        return point, made[n + len(losses)] if graph.elapsed is not None else jnp.broadcast_to(size, t.shape), new
+
+    def added(seen: Values, new: Values) -> Values:
+        made: Values = jnp.concatenate([jnp.maximum(seen[:1], new[:1]), seen[1:] + new[1:]])
+        return made
 
     def size_for(m: Any, t: Any, left: Any) -> Any:
         coefficients = [c for _, c in graph.clock]
@@ -153,21 +183,25 @@ def _through(graph: StepGraph, m: Any, span: Span, dt: float, times: Array) -> t
 
     def towards(state: Any, time: Any) -> Any:
         def plain(state: Any, _: Any) -> Any:
-            m, t, count = state
-            new, passed = step(m, t, h)
+            m, t, count, seen = state
+            new, passed, loss = step(m, t, h)
             after = span[0] + (count + 1) * h if graph.elapsed is None else t + passed
             go = direction * (time - after) > SLACK * dt
-            return (jnp.where(go, new, m), jnp.where(go, after, t), count + go), None
+            seen = jnp.where(go, added(seen, loss), seen)
+            return (jnp.where(go, new, m), jnp.where(go, after, t), count + go, seen), None
 
         state, _ = lax.scan(plain, state, None, length=most)
-        m, t, _ = state
+        m, t, count, seen = state
         left = time - t
         reached = direction * left <= STEPS_PER_NOMINAL_STEP * 2 * dt
-        return state, jnp.where(reached, step(m, t, size_for(m, t, left))[0], jnp.nan)
+        new, _, loss = step(m, t, size_for(m, t, left))
+        return (m, t, count, jnp.where(left == 0, seen, added(seen, loss))), jnp.where(reached, new, jnp.nan)
 
     t = jnp.full(m.shape[1:], span[0], dtype=m.dtype)
-    state, found = lax.scan(towards, (m, t, jnp.zeros_like(t)), jnp.asarray(np.asarray(times, dtype=np.float64)))
-    return found, state[2].astype(int) + 1
+    state, found = lax.scan(
+        towards, (m, t, jnp.zeros_like(t), jnp.zeros((3, *t.shape))), jnp.asarray(np.asarray(times, dtype=np.float64))
+    )
+    return found, state[2].astype(int) + 1, state[3]
 
 
 def _constants(graph: StepGraph, m: Any) -> list[Any]:

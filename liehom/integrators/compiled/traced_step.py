@@ -19,6 +19,7 @@ from liehom.integrators.compiled.traced_size import SizeLimits, judgement, tried
 from liehom.integrators.run.clock import clock_at, has_clock
 from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
 from liehom.integrators.run.control import ERROR_TERMS
+from liehom.integrators.run.records import earliness
 from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
 from liehom.typing import Array, Real, Values
 
@@ -107,7 +108,7 @@ def _traced(
     if given_limits is not None:
         passed = _number(tape, h) if passed is None else passed
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
-    worst, summed = _statistics(tape, local, step, size)
+    worst, summed = _statistics(tape, local, step, t, size)
     solved = reduce(tape.both, tape.required) if tape.required else None
     plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
     runs = reduce(tape.both, plain) if plain else None
@@ -166,7 +167,9 @@ def _clock_is_admissible(tape: Tape, clock: Sequence[Any], h: Values) -> Expr | 
     return None if total is None else _number(tape, total < MAX_CLOCK_DEVIATION)
 
 
-def _statistics(tape: Tape, local: LocalStep, step: Step, size: Values) -> tuple[dict[str, Expr], dict[str, Expr]]:
+def _statistics(
+    tape: Tape, local: LocalStep, step: Step, t: Values, size: Values
+) -> tuple[dict[str, Expr], dict[str, Expr]]:
     """Numbers of a step for the report: those of which the largest is stored, and those that are summed up."""
     largest: dict[str, Any] = {}
     summed: dict[str, Any] = {}
@@ -186,6 +189,9 @@ def _statistics(tape: Tape, local: LocalStep, step: Step, size: Values) -> tuple
         summed["equilibria"] = np.where(rest, 1.0, 0.0)
         if not all(isinstance(part.solver, TightFrameSolver) for part in found.parts):
             short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
-            largest |= {"residual": found.residual, "short": short}
-            summed["failed"] = np.where(short > 0, 1.0, 0.0)
+            near = np.where(found.near_cone(size[..., 0]), 1.0, 0.0)
+            failed = np.where(short > 0, 1.0, 0.0)
+            now = earliness(np.where(size[..., 0] < 0, -t, t))
+            largest |= {"residual": found.residual, "short": short, "unkept": now * np.maximum(failed, near)}
+            summed |= {"failed": failed, "near": near}
     return ({k: _number(tape, x) for k, x in largest.items()}, {k: _number(tape, x) for k, x in summed.items()})

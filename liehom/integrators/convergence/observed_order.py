@@ -97,7 +97,7 @@ def observed_order(
     options = {"step": step, "exponential": exponential, "clock": clock, "compile": compile}
     problems = [EnsembleProblem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
-    if not any(run.success for run in runs):
+    if all(run.status == -1 for run in runs):
         raise ConvergenceError(f"no step size came through; the smallest, {sizes[-1]}: {runs[-1].message}")
     if reference is None:
         reference = Reference(field, start.astype(np.longdouble), first)
@@ -120,7 +120,7 @@ def observed_order(
         trajectory_errors=tuple(e[1] for e in errors),
         floors=tuple(_floor(reference(last), start.dtype, run, accuracy) for run in runs),
         reference_accuracy=accuracy,
-        messages=tuple("" if run.success else run.message for run in runs),
+        messages=tuple(run.message if run.status == -1 else "" for run in runs),
     )
 
 
@@ -137,7 +137,7 @@ def _sizes(dts: Iterable[float]) -> tuple[float, ...]:
 
 def _errors(reference: Reference, run: Solution, end: np.floating[Any], has_orbits: bool) -> tuple[float, float]:
     """(orbit error, trajectory error) at the end of a run."""
-    if not run.success:
+    if run.status == -1:
         return NAN, NAN
     last = _end_points(run)
     trajectory = _mean(np.linalg.norm(last - reference(end), axis=-1))

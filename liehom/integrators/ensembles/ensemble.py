@@ -22,7 +22,7 @@ from liehom.integrators.ensembles.merging import from_shard, merged, to_shard
 from liehom.integrators.run.options import EnsembleOptions
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.progress import Progress
-from liehom.integrators.run.solution import Solution
+from liehom.integrators.run.solution import Solution, warn_of_order
 from liehom.parallel import ExecutorLike, completed, open_store
 
 CHUNK = 1024
@@ -134,7 +134,9 @@ def integrate_ensemble(
             shown.update(lambda done=done: done)  # type: ignore[misc]
         shown.update(lambda: 1.0, last=True)
     sampled = options.get("t_eval") is not None
-    return merged([part.solution for part in sorted(parts, key=lambda part: part.first)], sampled=sampled)
+    solution = merged([part.solution for part in sorted(parts, key=lambda part: part.first)], sampled=sampled)
+    warn_of_order(solution.report, stacklevel=2)
+    return solution
 
 
 def ensemble_parts(

@@ -14,7 +14,7 @@ from liehom.errors import InputError, LiehomError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.ensembles.merging import from_shard, to_shard
-from liehom.integrators.integration import integrate
+from liehom.integrators.integration import integrate, without_order_warning
 from liehom.integrators.run.checkpoint import stable_repr
 from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
@@ -109,7 +109,7 @@ class EnsembleProblem(NamedTuple):
 
 
 def solved(task: EnsembleProblem) -> Solution:
-    """The solution of a problem, by `integrate`; the function that workers call.
+    """The solution of a problem, by `integrate` without its warning; the function that workers call.
 
     Examples
     --------
@@ -118,7 +118,8 @@ def solved(task: EnsembleProblem) -> Solution:
     >>> solved(EnsembleProblem(field, (0, 1), np.array([1.0, 0.0]), {}, {"dt": 0.5})).n_steps
     2
     """
-    return integrate(task.made(), task.t_span, task.start, **task.options)
+    with without_order_warning():  # chunks are merged, and the whole ensemble issues one
+        return integrate(task.made(), task.t_span, task.start, **task.options)
 
 
 def all_solved(

@@ -11,11 +11,9 @@ import numpy.typing as npt
 
 from liehom.errors import FormatError
 from liehom.integrators.run.conservation_statistics import ConservationReport
+from liehom.integrators.run.options import LOST, TRAJECTORY_MARK, among, overall_status
 from liehom.integrators.run.solution import Report, Solution
 from liehom.typing import Array, IntegerArray
-
-TRAJECTORY_MARK = ", trajectory "
-"""In a message, this string precedes the index of the trajectory of the part that failed."""
 
 
 def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
@@ -39,7 +37,7 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
     ((3, 2, 5), [4, 4, 4], True)
     """
     statuses = np.concatenate([part.statuses for part in parts])
-    status = -1 if np.any(statuses < 0) else int(np.max(statuses, initial=0))
+    status = overall_status(statuses)
     count = max(part.t.shape[-1] for part in parts)
     events = parts[0].t_events is not None
     return Solution(
@@ -52,13 +50,19 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
         status=status,
         message=_message(parts, statuses, status),
         n_steps=np.concatenate([part.n_steps for part in parts]),
-        report=merged_report([part.report for part in parts]),
+        report=merged_report([part.report for part in parts], _direction(parts)),
         statuses=statuses,
     )
 
 
-def merged_report(reports: Sequence[Report]) -> Report:
+def merged_report(reports: Sequence[Report], direction: float = 1.0) -> Report:
     """The report of several runs by one method: extremes and sums of their reports.
+
+    Parameters
+    ----------
+    reports : sequence of Report
+    direction : float
+        1, or -1 if time decreases.
 
     Examples
     --------
@@ -82,6 +86,9 @@ def merged_report(reports: Sequence[Report]) -> Report:
         orbit_dimension=max(report.orbit_dimension for report in reports),
         failed_steps=sum(report.failed_steps for report in reports),
         equilibria=sum(report.equilibria for report in reports),
+        near_steps=sum(report.near_steps for report in reports),
+        unkept_from=_earliest([report.unkept_from for report in reports], direction),
+        stopped_at=_earliest([report.stopped_at for report in reports], direction),
         conservation=_conserved(conserved) if conserved else None,
     )
 
@@ -199,10 +206,17 @@ def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int) -> 
     message = next(part.message for part in parts if part.status == status)
     if status >= 0:
         return message
-    failed = np.argwhere(statuses < 0)
-    index = tuple(int(i) for i in failed[0])
-    shown = index[0] if len(index) == 1 else index
-    return f"{message.split(TRAJECTORY_MARK)[0]}{TRAJECTORY_MARK}{shown}; {len(failed)} of {statuses.size} failed."
+    return message.split(TRAJECTORY_MARK)[0] + among(statuses == status, " failed" if status == -1 else LOST)
+
+
+def _direction(parts: Sequence[Solution]) -> float:
+    """1, or -1 if time decreases in the trajectories."""
+    return -1.0 if any(np.any(np.diff(part.t) < 0) for part in parts) else 1.0
+
+
+def _earliest(times: Sequence[float | None], direction: float) -> float | None:
+    """The earliest of some times; None stands for no time, in `times` and as the result."""
+    return min((time for time in times if time is not None), key=lambda time: direction * time, default=None)
 
 
 def _least_rank(ranks: Sequence[int]) -> int:

@@ -17,9 +17,11 @@ from liehom.correctors.isotropy.isotropy_corrector import Correction
 from liehom.correctors.step import LocalStep, Step
 from liehom.homogeneous import Action
 from liehom.integrators.run.conservation_statistics import NO_RANK, ConservationStatistics
-from liehom.integrators.run.solution import Report
-from liehom.typing import Array, BooleanArray, IntegerArray
+from liehom.integrators.run.solution import Report, loss_of_order
+from liehom.typing import Array, BooleanArray, IntegerArray, Values
 
+SINCE_0_2: dict[str, float] = {"near": 0, "unkept_from": np.nan}
+"""Statistics that checkpoints of 0.1.0 lack, with their values for a run in which nothing was noticed."""
 PATH_NAMES = ("times", "points", "sizes", "moved")
 
 
@@ -129,6 +131,7 @@ class CorrectionStatistics:
             "rank": np.full(shape, NO_RANK),
             "failed": np.zeros(shape, dtype=int),
             "equilibria": np.zeros(shape, dtype=int),
+            **{name: np.full(shape, value) for name, value in SINCE_0_2.items()},
         }
         self._where: tuple[float, tuple[float, ...]] | None = None
 
@@ -138,10 +141,10 @@ class CorrectionStatistics:
             self._conservation.add(local, h, t, m, active)
             local = local.base
         if isinstance(local, CorrectedStep):
-            self.add(local.correction, t, m, active)
+            self.add(local.correction, h, t, m, active)
 
-    def add(self, found: Correction, t: Array, m: Array, active: BooleanArray) -> None:
-        """Record the correction of one step at (t, m), for the active trajectories."""
+    def add(self, found: Correction, h: Array, t: Array, m: Array, active: BooleanArray) -> None:
+        """Record the correction of one step of size h at (t, m), for the active trajectories."""
         seen = dict(self._seen)  # the arrays are replaced, never written into: older states stay whole
         moving: BooleanArray = active & (found.leading > 0)
         if not bool(moving.all()):
@@ -150,6 +153,12 @@ class CorrectionStatistics:
         if bool(short.any()):
             seen["reached"] = np.where(short, np.minimum(seen["reached"], found.reached), seen["reached"])
             seen["failed"] = seen["failed"] + short
+        near = active & found.near_cone(h)
+        if bool(near.any()):
+            seen["near"] = seen["near"] + near
+            seen["reached"] = np.where(near, self._base, seen["reached"])
+        if bool(short.any()) or bool(near.any()):
+            seen["unkept_from"] = np.where((short | near) & np.isnan(seen["unkept_from"]), t, seen["unkept_from"])
         worse = active & (found.residual > seen["residual"])
         if bool(worse.any()):
             seen["residual"] = np.where(worse, found.residual, seen["residual"])
@@ -163,7 +172,7 @@ class CorrectionStatistics:
             seen["singular"] = np.where(lower, singular, seen["singular"])
         self._seen = seen
 
-    def add_compiled(self, lanes: IntegerArray, extra: Mapping[str, Array]) -> None:
+    def add_compiled(self, lanes: IntegerArray, extra: Mapping[str, Array], direction: float) -> None:
         """Record the totals of compiled steps, for some trajectories of the flattened ensemble.
 
         Parameters
@@ -172,13 +181,21 @@ class CorrectionStatistics:
             Indices of the trajectories.
         extra : dict of arrays of shape (L,)
             The largest residual, the largest number of orders missed ("short"), the numbers of steps that missed the
-            order ("failed") or were at equilibria, and the totals that `ConservationStatistics` records.
+            order ("failed"), were near the cone ("near") or at equilibria, the `earliness` of the first step that did
+            not keep the order ("unkept"), and the totals that `ConservationStatistics` records.
+        direction : float
+            1, or -1 if time decreases.
         """
         seen = {name: np.array(x).reshape(-1) for name, x in self._seen.items()}
         if "short" in extra:
             seen["residual"][lanes] = np.maximum(seen["residual"][lanes], extra["residual"])
             seen["reached"][lanes] = np.minimum(seen["reached"][lanes], self._wanted - extra["short"].astype(int))
             seen["failed"][lanes] += extra["failed"].astype(int)
+            seen["near"][lanes] += extra["near"].astype(int)
+            seen["reached"][lanes] = np.where(extra["near"] > 0, self._base, seen["reached"][lanes])
+            new = (extra["unkept"] > 0) & np.isnan(seen["unkept_from"][lanes])
+            times = direction * time_of(np.where(new, extra["unkept"], 1.0))
+            seen["unkept_from"][lanes] = np.where(new, times, seen["unkept_from"][lanes])
         if "equilibria" in extra:
             seen["equilibria"][lanes] += extra["equilibria"].astype(int)
         self._seen = {name: x.reshape(np.shape(self._seen[name])) for name, x in seen.items()}
@@ -191,16 +208,38 @@ class CorrectionStatistics:
             index = np.unravel_index(int(np.argmin(lowest)), np.shape(lowest))
             self._where = (float(t[index]), tuple(float(x) for x in m[index]))
 
-    def report(self, action: Action, clock: str, orbit_dimension: int | IntegerArray) -> Report:
+    @property
+    def unkept_from(self) -> Array:
+        """Time of the first step that did not keep the order, shape (...,); NaN if there is none."""
+        found: Array = self._seen["unkept_from"]
+        return found
+
+    @property
+    def loss(self) -> str:
+        """Why the order was not kept, a clause; empty if it was kept."""
+        return loss_of_order(int(self._seen["failed"].sum()), int(self._seen["near"].sum()), self._order())
+
+    def _order(self) -> int:
+        return int(np.min(self._seen["reached"], initial=self._wanted))
+
+    def report(
+        self,
+        action: Action,
+        clock: str,
+        orbit_dimension: int | IntegerArray,
+        direction: float = 1.0,
+        stopped_at: float | None = None,
+    ) -> Report:
         """The statistics as a `Report`."""
         seen = self._seen
+        from_times = direction * seen["unkept_from"]
         rank = int(np.min(seen["rank"], initial=NO_RANK))
         return Report(
             step=repr(self._step),
             exponential=action.exponential.name,
             clock=clock,
             base_order=self._base,
-            order=int(np.min(seen["reached"], initial=self._wanted)),
+            order=self._order(),
             wanted_order=self._wanted,
             worst_residual=float(np.max(seen["residual"], initial=0.0)),
             singular_value=float(np.min(seen["singular"], initial=np.inf)),
@@ -211,6 +250,9 @@ class CorrectionStatistics:
             equilibria=int(seen["equilibria"].sum()),
             inner_product=action.inner_product.name,
             conservation=self._conservation.report(),
+            near_steps=int(seen["near"].sum()),
+            unkept_from=None if bool(np.isnan(from_times).all()) else direction * float(np.nanmin(from_times)),
+            stopped_at=stopped_at,
         )
 
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
@@ -221,11 +263,50 @@ class CorrectionStatistics:
 
     def restore(self, arrays: Mapping[str, npt.NDArray[Any]]) -> None:
         """Replace the state by one that `arrays` returned."""
-        self._seen = {name: arrays[name] for name in self._seen}
+        self._seen = {name: arrays.get(name, start) for name, start in self._seen.items()}
         where = [float(x) for x in arrays["where"]]
         self._where = (where[0], tuple(where[1:])) if where else None
         start = "conservation_"
         self._conservation.restore({name[len(start) :]: x for name, x in arrays.items() if name.startswith(start)})
+
+
+def near_cone(local: LocalStep, h: Array) -> BooleanArray:
+    """Whether a step of size h (...,) comes near the cone on which its range condition fails, bool (...,).
+
+    Examples
+    --------
+    >>> near_cone(LocalStep(lambda h: ()), np.array([0.1, 0.2])).tolist()
+    [False, False]
+    """
+    inner = local.base if isinstance(local, ConservingStep) else local
+    return inner.correction.near_cone(h) if isinstance(inner, CorrectedStep) else np.zeros(np.shape(h), dtype=bool)
+
+
+def earliness(time: Values) -> Values:
+    """A decreasing function of time with values between 0 and 1, so that the largest belongs to the earliest time.
+
+    Examples
+    --------
+    >>> earliness(np.array([-2.0, 0.0, 2.0])).tolist()
+    [0.75, 0.5, 0.25]
+    """
+    over = 1 / (2 + np.abs(time))
+    found: Values = np.where(time < 0, 1 - over, over)
+    return found
+
+
+def time_of(value: Array) -> Array:
+    """The time of a given `earliness`.
+
+    Examples
+    --------
+    >>> time_of(np.array([0.75, 0.5, 0.25])).tolist()
+    [-2.0, 0.0, 2.0]
+    """
+    late = value <= 0.5
+    size = 1 / np.where(late, value, 1 - value) - 2
+    found: Array = np.where(late, size, -size)
+    return found
 
 
 @final

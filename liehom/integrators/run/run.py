@@ -43,6 +43,7 @@ from liehom.integrators.run.dense import DenseSolution
 from liehom.integrators.run.events import Events
 from liehom.integrators.run.options import (
     CLOCK,
+    CONE,
     END,
     EVENT,
     IMPLICIT,
@@ -53,11 +54,11 @@ from liehom.integrators.run.options import (
     TOO_SMALL,
     Options,
     Span,
-    ending_message,
+    outcome,
 )
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.proposal import LOGGER, StepProposal
-from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples
+from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples, near_cone
 from liehom.integrators.run.solution import Solution
 from liehom.integrators.run.state import RunState
 from liehom.series.arrays import in_lanes
@@ -173,7 +174,7 @@ class Run:
                 self._execute_with_checkpoints(progress, path)
             progress.update(lambda: 1.0, last=True)
             solution = self._solution()
-        if path is not None and solution.success:
+        if path is not None and solution.status != -1:
             files.remove(path)
         return solution
 
@@ -308,6 +309,7 @@ class Run:
         if not self.options.nominal and has_clock(local):
             h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
             if not runs.all():
+                self._fail_by_psi(now.active & ~runs & near_cone(local, h), CONE)
                 self._fail_by_psi(now.active & ~runs, CLOCK)
                 h, passed = np.where(now.active, h, 0), np.where(now.active, passed, 0)
             after, last = now.t + passed, last & now.active
@@ -432,9 +434,8 @@ class Run:
             if not self.shape:
                 t, y = t[: int(now.samples.done)], y[..., : int(now.samples.done)]
         t_events, y_events = now.event_log.lists() if self.events is not None else (None, None)
-        statuses = np.maximum(now.code, -1)
-        worst = -1 if np.any(statuses < 0) else int(np.max(statuses, initial=0))
-        clock = "nominal" if o.nominal else "corrected"
+        record, direction = now.statistics, float(self.direction)
+        ended = outcome(now.code, now.ended_at, record.unkept_from, direction, self.step.order, record.loss)
         return Solution(
             t=t,
             y=y,
@@ -442,9 +443,9 @@ class Run:
             t_events=t_events,
             y_events=y_events,
             nfev=now.calls,
-            status=worst,
-            message=ending_message(worst, now.code, now.ended_at),
+            status=ended.status,
+            message=ended.message,
             n_steps=now.taken if self.shape else int(now.taken),
-            report=now.statistics.report(self.action, clock, self.psi.orbit_dimension),
-            statuses=statuses if self.shape else int(statuses),
+            report=record.report(self.action, o.clock, self.psi.orbit_dimension, direction, ended.stopped_at),
+            statuses=ended.statuses if self.shape else ended.status,
         )

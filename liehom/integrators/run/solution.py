@@ -3,16 +3,39 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, fields
 from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
 
+from liehom.errors import OrderWarning
 from liehom.integrators.run.conservation_statistics import ConservationReport, shown_point
 from liehom.integrators.run.dense import DenseSolution
 from liehom.typing import Array, IntegerArray
+
+
+def loss_of_order(failed: int, near: int, order: int) -> str:
+    """Why an order was not kept, a clause; empty if it was kept.
+
+    Parameters
+    ----------
+    failed, near : int
+        Numbers of steps at which a linear system had no solution, and that came within a step of the cone.
+    order : int
+        The order that was reached.
+
+    Examples
+    --------
+    >>> loss_of_order(0, 1, 1)
+    'the path comes within a step of the cone on which the range condition fails, at 1 step'
+    """
+    steps = f"{failed or near} step{'s' * ((failed or near) != 1)}"
+    if failed:
+        return f"the linear systems of the corrections have no solution at {steps}, where the order stays {order}"
+    return f"the path comes within a step of the cone on which the range condition fails, at {steps}" if near else ""
 
 
 @final
@@ -45,8 +68,15 @@ class Report:
         The inner product in which the norm of corrections is minimal.
     conservation : ConservationReport or None
         How well a `Conserving` step conserved its first integrals.
+    near_steps : int
+        Number of steps that came within a step of the cone on which the range condition fails
+        (`liehom.correctors.isotropy.isotropy_corrector.Correction.near_cone`). At these only the base order is claimed.
+    unkept_from : float or None
+        Time of the first step that did not keep the order asked for; None if all kept it.
+    stopped_at : float or None
+        The earliest time at which a trajectory failed: up to it the path was checked. None if none failed.
     range_condition : bool or None
-        Whether every correction could be solved; None for steps without correction.
+        Whether every correction could be solved and no step came near the cone; None for steps without correction.
 
     Examples
     --------
@@ -76,11 +106,24 @@ class Report:
     equilibria: int
     inner_product: str
     conservation: ConservationReport | None = None
+    near_steps: int = 0
+    unkept_from: float | None = None
+    stopped_at: float | None = None
+
+    def __setstate__(self, state: Sequence[object]) -> None:
+        later = [entry.default for entry in fields(self)[len(state) :]]  # entries that pickles of 0.1.0 lack
+        for entry, value in zip(fields(self), [*state, *later], strict=True):
+            object.__setattr__(self, entry.name, value)
 
     @property
     def range_condition(self) -> bool | None:
-        """Whether every linear system had a solution."""
-        return None if self.wanted_order == self.base_order else self.failed_steps == 0
+        """Whether every linear system had a solution, and no step came near the cone on which some have none."""
+        return None if self.wanted_order == self.base_order else self.failed_steps == 0 and not self.near_steps
+
+    @property
+    def loss(self) -> str:
+        """Why the order asked for was not kept, a clause; empty if it was kept."""
+        return loss_of_order(self.failed_steps, self.near_steps, self.order)
 
     def __str__(self) -> str:
         lines = [f"{self.step} with {self.exponential}, clock {self.clock}"]
@@ -90,16 +133,23 @@ class Report:
                 lines.append(str(self.conservation))
             return "\n".join(lines)
         if self.range_condition:
-            lines.append(f"orbits captured to order {self.order} at every step (base order {self.base_order})")
-            state = f"holds, smallest singular value {self.singular_value:.3g}"
-        else:
+            every = "every step" if self.stopped_at is None else f"every step up to t = {self.stopped_at:.6g}"
+            lines.append(f"orbits captured to order {self.order} at {every} (base order {self.base_order})")
+            state = (
+                "holds" if self.stopped_at is None else f"holds up to t = {self.stopped_at:.6g}, where the run stopped"
+            )
+        elif self.failed_steps:
             lines.append(
                 f"order {self.wanted_order} NOT reached: the order stays {self.order} at {self.failed_steps} steps, "
                 f"largest relative residual {self.worst_residual:.3g}"
             )
-            state = f"FAILS, smallest singular value {self.singular_value:.3g}"
+            state = "FAILS"
+        else:
+            lines.append(f"order {self.wanted_order} NOT kept: {self.loss}, first at t = {self.unkept_from:.6g}")
+            state = "NEARLY FAILS"
         if self.singular_at is not None:
-            lines.append(f"range condition: {state}, rank {self.rank} of {self.orbit_dimension}")
+            singular = f"smallest singular value {self.singular_value:.3g}, rank {self.rank} of {self.orbit_dimension}"
+            lines.append(f"range condition: {state}, {singular}")
             if not self.range_condition:
                 time, point = self.singular_at
                 lines.append(f"    smallest at t = {time:.6g}, m = ({shown_point(point)})")
@@ -131,8 +181,9 @@ class Solution:
     njev, nlu : int
         0; solve_ivp has these entries too.
     status : int
-        0: the end was reached; 1: a terminal event occurred; -1: a step failed. For an ensemble -1 if any
-        trajectory failed, else 1 if an event ended any trajectory.
+        0: the end was reached; 1: a terminal event occurred; -1: a step failed; -2: the end or a terminal event was
+        reached, but a `Corrected` step did not keep its order (`report` says why). For an ensemble -1 if any
+        trajectory failed, else -2 if any did not keep its order, else 1 if an event ended any trajectory.
     message : str
     success : bool
         Whether status >= 0.
@@ -170,7 +221,7 @@ class Solution:
 
     @property
     def success(self) -> bool:
-        """Whether the end was reached or a terminal event occurred."""
+        """Whether the end was reached or a terminal event occurred, with the order of the step kept all the way."""
         return self.status >= 0
 
     def keys(self) -> tuple[str, ...]:
@@ -196,6 +247,33 @@ class Solution:
         shown = [n for n in SUMMARY if n != "statuses" or np.ndim(self.statuses)]
         width = max(map(len, shown)) + 1
         return "\n".join(f"{name:>{width}}: {_summary_entry(self[name], width + 2)}" for name in shown)
+
+
+def warn_of_order(report: Report, stacklevel: int) -> None:
+    """Issue an `OrderWarning` if a corrected step did not keep its order, with the remedies.
+
+    Parameters
+    ----------
+    report : Report
+    stacklevel : int
+        That of `warnings.warn` for the caller.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), [1, 0, 0])
+    >>> warn_of_order(lh.integrate(field, (0, 1), [1.0, 0.0, 0.0]).report, 1)
+    """
+    if report.unkept_from is None:
+        return
+    text = (
+        f"{report.step} did not keep its order {report.wanted_order} from t = {report.unkept_from:.6g} on: "
+        f"{report.loss}. LieTaylor({report.wanted_order}) needs no range condition."
+    )
+    if not report.failed_steps:
+        text += " A smaller dt or adaptive steps help if the path passes the cone without crossing it, and another psi "
+        text += "may move the path away from it."
+    warnings.warn(OrderWarning(text, report.wanted_order, report.unkept_from), stacklevel=stacklevel + 1)
 
 
 _OF_SOLVE_IVP = ("t", "y", "sol", "t_events", "y_events", "nfev", "njev", "nlu", "status", "message", "success")

@@ -256,7 +256,8 @@ def test_coupled_spins_are_not_full() -> None:
     exact = lh.range_condition(joint.representation.pair(point), [1, 2, 0, 3, 1, -1])
     assert (exact.holds, exact.rank) == (False, 3)
     assert not lh.decide_fullness(joint.representation.pair(point)).full
-    run = lh.integrate(joint.field, (0, 1), joint.point(m0), step=lh.Corrected(lh.Euler(), 3), dt=0.05)
+    with pytest.warns(lh.OrderWarning, match="LieTaylor"):
+        run = lh.integrate(joint.field, (0, 1), joint.point(m0), step=lh.Corrected(lh.Euler(), 3), dt=0.05)
     assert (run.report.order, run.report.rank, run.report.orbit_dimension) == (1, 3, 4)
     with pytest.raises(lh.errors.InputError, match="take LieTaylor"):
         pair.integrate((0, 1), m0, step=lh.Corrected(lh.Euler(), 3), dt=0.05)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import warnings
 from typing import Any
 
 import numpy as np
@@ -73,7 +74,10 @@ def test_a_random_representation(seed: int) -> None:
     taylor = lh.integrate(field, (0, 1), start, step=lh.LieTaylor(6), dt=1 / 50)
     assert np.abs(taylor.y[:, -1] - end).max() < 1e-9 * np.abs(end).max()
     points = np.broadcast_to(start, (3, rho.size))
-    made = lh.integrate(field, (0, 1), points, step=lh.Corrected(lh.Euler(), order=3), dt=SIZES, t_eval=[1.0])
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", lh.OrderWarning)
+        made = lh.integrate(field, (0, 1), points, step=lh.Corrected(lh.Euler(), order=3), dt=SIZES, t_eval=[1.0])
+    assert len(caught) == (0 if made.success else 1) and made.success == made.report.range_condition
     errors = np.linalg.norm(made.y[..., 0] - end, axis=-1) / np.linalg.norm(end)
     slope = np.log2(errors[1] / errors[2])
     # what the report says of the range condition is what the slope shows

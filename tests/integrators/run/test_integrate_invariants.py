@@ -6,6 +6,7 @@ On non-compact orbits the fields have a positive definite integral, so that |m| 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -148,7 +149,9 @@ def test_every_exponential_keeps_them(exponential: str) -> None:
 @pytest.mark.parametrize("step", [lh.LieTaylor(4), lh.Corrected(lh.Euler(), 4), lh.CommutatorFree4()], ids=repr)
 def test_every_kind_of_step_keeps_them(step: Any) -> None:
     case = CASES["Sym(3)"]()
-    sol = lh.integrate(case.field, (0, 20), case.start, step=step, dt=0.1, clock="nominal")
+    full = not isinstance(step, lh.Corrected)  # three eigenvalues: the range condition fails
+    with nullcontext() if full else pytest.warns(lh.OrderWarning):
+        sol = lh.integrate(case.field, (0, 20), case.start, step=step, dt=0.1, clock="nominal")
     values = np.array([case.invariants(y) for y in sol.y.T])
     assert np.abs(values - values[0]).max() < 3e-14
 
