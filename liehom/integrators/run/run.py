@@ -63,7 +63,7 @@ from liehom.integrators.run.solution import Solution
 from liehom.integrators.run.state import RunState
 from liehom.series.arrays import in_lanes
 from liehom.series.jet import Jet
-from liehom.typing import Array, BooleanArray, Real, Values
+from liehom.typing import Array, BooleanArray, IntegerArray, Real, Values
 
 FIRST_STEP_FRACTION = 0.01
 """The first step of an embedded pair, in units of |m| / |X|."""
@@ -309,8 +309,7 @@ class Run:
         if not self.options.nominal and has_clock(local):
             h, passed, last, runs = fitted(local, h, left, halve=self.total is None)
             if not runs.all():
-                self._fail_by_psi(now.active & ~runs & near_cone(local, h), CONE)
-                self._fail_by_psi(now.active & ~runs, CLOCK)
+                self._fail_by_psi(now.active & ~runs, np.where(near_cone(local, h), CONE, CLOCK))
                 h, passed = np.where(now.active, h, 0), np.where(now.active, passed, 0)
             after, last = now.t + passed, last & now.active
             return h, np.where(last, self.end, after) if last.any() else after, last
@@ -376,7 +375,7 @@ class Run:
         if np.max(now.taken) >= self.options.max_steps:
             self._fail(now.taken >= self.options.max_steps, TOO_MANY)
 
-    def _stop(self, where: BooleanArray, code: int) -> None:
+    def _stop(self, where: BooleanArray, code: int | IntegerArray) -> None:
         """End trajectories: from now on they stay at their initial points."""
         now = self.state
         now.code = np.where(where, code, now.code)
@@ -384,14 +383,14 @@ class Run:
         now.active = now.active & ~where
         now.t, now.m = np.where(where, self.span[0], now.t), np.where(where[..., None], self.start, now.m)
 
-    def _fail(self, where: BooleanArray, code: int) -> None:
+    def _fail(self, where: BooleanArray, code: int | IntegerArray) -> None:
         where = self.state.active & where
         if where.any():
             if self.logs:
-                LOGGER.debug("%d trajectories fail with code %d at t = %s", where.sum(), code, self.state.t[where])
+                LOGGER.debug("%d trajectories fail with code %s at t = %s", where.sum(), code, self.state.t[where])
             self._stop(where, code)
 
-    def _fail_by_psi(self, where: BooleanArray, code: int) -> None:
+    def _fail_by_psi(self, where: BooleanArray, code: int | IntegerArray) -> None:
         """End trajectories by a code; by `PSI` if psi is not finite at their points."""
         finite = np.isfinite(self.field.psi(self.state.m, self.state.t)).all(axis=-1)
         self._fail(where & ~finite, PSI)
