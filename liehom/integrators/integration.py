@@ -230,10 +230,7 @@ def integrate(
         run = Run(action, Generator(field, orbit_dimension), step, span, start, options)
         if compile is not None:
             run.fast_path = compiled_steps(run, compile)
-        solution = run.execute(progress, path)
-    if WARNS.get():
-        warn_of_order(solution.report, stacklevel=2)
-    return solution
+        return _warned(run.execute(progress, path), stacklevel=3)
 
 
 def _with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: int | IntegerArray) -> Action:
@@ -270,8 +267,12 @@ def _on_jax(
     times = ends if t_eval is None else _times(t_eval, span)
     action = Action(field.representation, exponential)
     solution = integrate_on_jax(action, field, step, span, y0, size, times, nominal=clock == "nominal")
+    return _warned(solution, stacklevel=4)
+
+
+def _warned(solution: Solution, stacklevel: int) -> Solution:
     if WARNS.get():
-        warn_of_order(solution.report, stacklevel=3)
+        warn_of_order(solution.report, stacklevel)
     return solution
 
 
