@@ -1077,6 +1077,9 @@ class LieAlgebra(Immutable):
     def describe(self) -> str:
         """A summary: kind of algebra, real form, ranks, radical, series, Killing form.
 
+        The first line has the canonical name of the real form, too, if the name of the algebra is another one: the
+        first line of ``lh.su(2).describe()`` begins with 'su(2) = so(3)'.
+
         Over float64 only numerical facts are listed: dimensions and the Killing form.
 
         Examples
@@ -1112,7 +1115,7 @@ class LieAlgebra(Immutable):
         names = self.basis_names
         brackets: dict[tuple[int, int], list[str]] = {}
         for i, j, k, v in self._constants:
-            value = self.field.format(v)
+            value = self.field.show(v)
             factor = "" if value == "1" else "-" if value == "-1" else f"({value})*" if " " in value else f"{value}*"
             brackets.setdefault((i, j), []).append(f"{factor}{names[k]}")
         shown = list(brackets.items())[:SHOWN_TERMS]

@@ -92,7 +92,7 @@ class Subalgebra(Immutable):
         if failure is not None:
             a, b = failure
             bracket = self.algebra.bracket(self.basis.row(a), self.basis.row(b))
-            values = ", ".join(shown(self.algebra.field.format(x)) for x in bracket)
+            values = ", ".join(shown(self.algebra.field.show(x)) for x in bracket)
             raise NotASubalgebraError((a, b), f"({values})")
 
     def _not_closed(self) -> tuple[int, int] | None:
@@ -296,7 +296,7 @@ class Subalgebra(Immutable):
         around = self.algebra.name or f"a Lie algebra of dimension {self.algebra.dimension}"
         head = f"subalgebra of dimension {self.dimension} in {around} over {self.algebra.field.name}"
         shown = self.basis.select(rows=range(min(self.dimension, SHOWN_ROWS)))
-        lines = [f"  ({', '.join(row)})" for row in shown.to_strings()]
+        lines = [f"  ({', '.join(map(self.algebra.field.show, row))})" for row in shown]
         if self.dimension > SHOWN_ROWS:
             lines.append(f"  ... and {self.dimension - SHOWN_ROWS} further rows")
         return "\n".join([head, *lines])

@@ -226,7 +226,8 @@ def _antisymmetric(given: Entries, field: Field) -> Iterator[tuple[int, int, int
 
 def _not_antisymmetric(field: Field, indices: tuple[int, int, int], value: Scalar, other: Scalar) -> NoReturn:
     i, j, k = indices
-    raise StructureError(
-        f"the bracket is not antisymmetric: c[{i}, {j}, {k}] = {shown(field.format(value))} but "
-        f"c[{j}, {i}, {k}] = {shown(field.format(other))}, expected {shown(field.format(-value)) if i != j else '0'}"
-    )
+    found = f"the bracket is not antisymmetric: c[{i}, {j}, {k}] = {shown(field.show(value))}"
+    if i == j:
+        raise StructureError(f"{found} is the coefficient of e{k} in [e{i}, e{i}], expected 0: [x, x] = 0 for every x")
+    there = f"c[{j}, {i}, {k}] = {shown(field.show(other))}"
+    raise StructureError(f"{found} but {there}, expected {shown(field.show(-value))}")

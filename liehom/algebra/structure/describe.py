@@ -6,9 +6,9 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.dynkin import join_types
 from liehom.algebra.roots.real_form import RealForm
-from liehom.algebra.roots.real_form_names import join_real_forms
+from liehom.algebra.roots.real_form_names import canonical_real_form, join_real_forms
 from liehom.algebra.structure.identification import simple_parts
-from liehom.errors import UndecidedError
+from liehom.errors import InputError, UndecidedError
 
 
 def describe(algebra: LieAlgebra) -> str:
@@ -24,7 +24,9 @@ def describe(algebra: LieAlgebra) -> str:
     if algebra.dimension == 0:
         return "\n  ".join([*lines, "the zero algebra"])
     if killing[2] == 0:
-        lines += semisimple_lines(algebra)
+        found = semisimple_lines(algebra)
+        lines[0] = lines[0].replace(title, title + _other_name(algebra.name, found[0]), 1)
+        lines += found
     else:
         lines += _with_radical(algebra)
     lines.append(f"Killing form of signature {killing} (positive, negative, zero)")
@@ -47,6 +49,16 @@ def semisimple_lines(algebra: LieAlgebra) -> list[str]:
     name = join_real_forms(form.name for form in forms)
     first = f"{word}, real form {name}, rank {rank}, real rank {real_rank}, maximal compact {compact}"
     return [first, f"complex type {kind}, {_restricted(forms)}"]
+
+
+def _other_name(name: str | None, line: str) -> str:
+    """' = so(3)' for the name su(2), if `line` says that the algebra is this real form; otherwise an empty string."""
+    try:
+        canonical = canonical_real_form(name) if name and len(name) < 40 else ""
+    except InputError:
+        return ""
+    differs = canonical.replace(" ", "").replace(",R)", ")") != (name or "").replace(" ", "").replace(",R)", ")")
+    return f" = {canonical}" if canonical and differs and f"real form {canonical}, rank" in line else ""
 
 
 def _restricted(forms: list[RealForm]) -> str:

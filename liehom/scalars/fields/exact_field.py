@@ -235,7 +235,7 @@ class ExactMatrix(Matrix, Immutable):
         return f"<matrix {self.nrows} x {self.ncols} over {self._field.name}>"
 
     def __str__(self) -> str:
-        return "\n".join("[" + ", ".join(row) + "]" for row in self.to_strings())
+        return "\n".join("[" + ", ".join(map(self._field.show, row)) + "]" for row in self.to_rows())
 
     # -- arithmetic --------------------------------------------------------------------------------------
     @property

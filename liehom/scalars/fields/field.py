@@ -305,6 +305,10 @@ class Field(ABC, Generic[M]):
     def format(self, value: Scalar) -> str:
         """The element as a string in the grammar of values, which ``convert`` reads back."""
 
+    def show(self, value: Scalar) -> str:
+        """The element as it is printed, a string in the grammar of values: the shortest known form."""
+        return self.format(value)
+
     @abstractmethod
     def sign(self, value: Scalar) -> int:
         """Sign of an element: -1, 0 or 1."""

@@ -177,6 +177,9 @@ class FloatField(Field["FloatMatrix"], Immutable):
     def format(self, value: Scalar) -> str:
         return repr(float(value))
 
+    def show(self, value: Scalar) -> str:
+        return repr(float(value) + 0.0)  # 0.0 for -0.0
+
     def sign(self, value: Scalar) -> int:
         return int(value > 0) - int(value < 0)
 

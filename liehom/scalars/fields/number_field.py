@@ -10,7 +10,8 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Sequence
-from typing import Any, final
+from math import gcd
+from typing import Any, TypeAlias, final
 
 import flint
 
@@ -19,7 +20,7 @@ from liehom.errors import FieldError, shown
 from liehom.immutable import Immutable
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
-from liehom.scalars.fields.exact_field import ExactField
+from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 from liehom.scalars.fields.field import Scalar
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.fields.rational import QQ, ExactNumber, prime, rational_from_text, rational_number, refused
@@ -27,6 +28,7 @@ from liehom.typing import ScalarLike
 
 MAX_PRECISION = 1 << 22
 _set = object.__setattr__
+Ends: TypeAlias = tuple[ScalarLike, ScalarLike]
 _SYMBOL = re.compile(r"(?!sqrt$)[A-Za-z_][A-Za-z_0-9]*|sqrt\([0-9]+\)", re.ASCII)
 
 
@@ -42,6 +44,9 @@ class NumberField(ExactField, Immutable):
         Rational coefficients of an irreducible polynomial of degree at least 2, ascending.
     interval : pair
         Rational ends of an interval that contains exactly one of its real roots.
+    radicals : sequence of int, optional
+        Squarefree integers whose square roots generate the field, independent modulo squares: elements are printed in
+        products of these roots. `format` writes powers of a.
 
     Raises
     ------
@@ -58,7 +63,6 @@ class NumberField(ExactField, Immutable):
     """
 
     interval: tuple[flint.fmpq, flint.fmpq]
-
     root_index: int
 
     __slots__ = (
@@ -66,14 +70,18 @@ class NumberField(ExactField, Immutable):
         "_modulus",
         "_powers",
         "_residues",
+        "_roots",
         "interval",
         "leading",
         "minpoly",
+        "radicals",
         "root_index",
         "symbol",
     )
 
-    def __init__(self, symbol: str, minpoly: Sequence[ScalarLike], interval: tuple[ScalarLike, ScalarLike]) -> None:
+    def __init__(
+        self, symbol: str, minpoly: Sequence[ScalarLike], interval: Ends, radicals: Sequence[int] = ()
+    ) -> None:
         within("minpoly_degree", len(minpoly) - 1, "the minimal polynomial has degree {}")
         polynomial = flint.fmpq_poly([QQ.convert(c) for c in minpoly])
         if polynomial.degree() < 2:
@@ -92,6 +100,7 @@ class NumberField(ExactField, Immutable):
         self.minpoly: tuple[int, ...] = tuple(int(c) for c in integral.coeffs())
         self.leading: int = self.minpoly[-1]
         m = self.degree
+        self.radicals: tuple[int, ...] = tuple(radicals) if 2 ** len(radicals) == m > 2 else ()
         monic = [c * self.leading ** (m - 1 - i) for i, c in enumerate(self.minpoly[:-1])]
         self._modulus = flint.fmpz_poly([*monic, 1])
         ends = (QQ.convert(interval[0]), QQ.convert(interval[1]))
@@ -100,6 +109,7 @@ class NumberField(ExactField, Immutable):
         self._powers: dict[int, list[int]] = {}
         self._balls: dict[int, flint.arb] = {}
         self._residues: list[tuple[int, int]] = []
+        self._roots: tuple[list[str], ExactMatrix] | None = None
 
     def _check_symbol(self) -> None:
         """Raise `FieldError` unless `convert` reads the symbol as the generator."""
@@ -196,17 +206,27 @@ class NumberField(ExactField, Immutable):
         raise FieldError(f"{what} is not in {self.name}")
 
     def format(self, value: Scalar) -> str:
-        terms = []
-        for power, c in enumerate(self.coordinates(value)):
-            c = c * self.leading**power
-            if c == 0:
-                continue
-            monomial = "" if power == 0 else self.symbol if power == 1 else f"{self.symbol}**{power}"
-            if monomial and c in (1, -1):
-                terms.append(monomial if c == 1 else f"-{monomial}")
-            else:
-                terms.append(f"{c}*{monomial}" if monomial else str(c))
-        return " + ".join(terms).replace("+ -", "- ") or "0"
+        powers = ["", self.symbol, *(f"{self.symbol}**{power}" for power in range(2, self.degree))]
+        return _sum(powers, [c * self.leading**power for power, c in enumerate(self.coordinates(value))])
+
+    def show(self, value: Scalar) -> str:
+        if not self.radicals or self.convert(value).rational() is not None:
+            return self.format(value)
+        if self._roots is None:
+            self._roots = self._root_basis()
+        return _sum(self._roots[0], (QQ.matrix([self.coordinates(value)]) @ self._roots[1]).row(0))
+
+    def _root_basis(self) -> tuple[list[str], ExactMatrix]:
+        """The names of a basis of square roots of integers, and the matrix from `coordinates` to coordinates in it."""
+        found = {1: self.one}
+        for d in self.radicals:
+            root = self.sqrt(d)
+            for e, other in list(found.items()):
+                common = gcd(d, e)
+                found[d * e // common**2] = root * other / common
+        basis = sorted(found)  # from 1, which is not written
+        rows = QQ.matrix([self.coordinates(found[d]) for d in basis])
+        return ["", *(f"sqrt({d})" for d in basis[1:])], rows.inverse()
 
     def sign(self, value: Scalar) -> int:
         polynomial = self.convert(value).polynomial
@@ -306,7 +326,6 @@ class AlgebraicNumber(ExactNumber, Immutable):
     """
 
     __slots__ = ("field", "polynomial")
-
     field: NumberField
     polynomial: flint.fmpq_poly
 
@@ -417,4 +436,15 @@ class AlgebraicNumber(ExactNumber, Immutable):
         return self.field.to_float(self)
 
     def __repr__(self) -> str:
-        return self.field.format(self)
+        return self.field.show(self)
+
+
+def _sum(monomials: Sequence[str], coefficients: Sequence[Any]) -> str:
+    """A linear combination as a string; the monomial 1 is the empty string."""
+    terms = []
+    for monomial, c in zip(monomials, coefficients, strict=True):
+        if monomial and c in (1, -1):
+            terms.append(monomial if c == 1 else f"-{monomial}")
+        elif c != 0:
+            terms.append(f"{c}*{monomial}" if monomial else str(c))
+    return " + ".join(terms).replace("+ -", "- ") or "0"

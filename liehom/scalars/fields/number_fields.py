@@ -185,10 +185,13 @@ def _field_of_tree(tree: grammar.Node, name: str) -> RationalField | NumberField
     within("minpoly_degree", 2 ** len(roots), "the square roots of a value give a field of degree up to {}")
     # Trees hold only integers, operators and sqrt, so building the expression executes nothing else.
     expression = grammar.evaluate(tree, lambda n: sympy.Integer(int(n)), {}, {"sqrt": sympy.sqrt})
-    return _field_of_sympy(expression, name)
+    arguments = grammar.sqrt_arguments(tree)
+    nested = any(map(grammar.sqrt_arguments, arguments))
+    kernels = [] if nested else [_kernel(grammar.evaluate(argument, flint.fmpq, {}, {})) for argument in arguments]
+    return _field_of_sympy(expression, name, _independent([d for d in kernels if d != 1]))
 
 
-def _field_of_sympy(expression: Any, name: str) -> RationalField | NumberField:
+def _field_of_sympy(expression: Any, name: str, radicals: Sequence[int] = ()) -> RationalField | NumberField:
     import sympy
 
     if expression.free_symbols or expression.is_real is False:
@@ -210,5 +213,5 @@ def _field_of_sympy(expression: Any, name: str) -> RationalField | NumberField:
             low, high = flint.arb(near - margin), flint.arb(near + margin)
             inside = [b for b in balls if b > low and b < high]
         if len(inside) == 1:
-            return NumberField(name, coefficients, (near - margin, near + margin))
+            return NumberField(name, coefficients, (near - margin, near + margin), radicals)
     raise FieldError(f"{expression} could not be distinguished from its conjugates; give a polynomial and an interval")

@@ -47,4 +47,4 @@ def _of_rational_matrix(matrix: flint.fmpq_mat) -> Reduced:
 
 def _of_number_field(field: NumberField) -> Reduced:
     # the cached enclosures are left out: balls cannot be pickled, and are computed again
-    return NumberField, (field.symbol, field.minpoly, field.interval)
+    return NumberField, (field.symbol, field.minpoly, field.interval, field.radicals)
