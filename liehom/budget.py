@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, fields, replace
@@ -209,13 +209,6 @@ def limits(**changes: float | None) -> Iterator[Limits]:
         yield made
     finally:
         _in_force.reset(token)
-
-
-def change_defaults(changes: Mapping[str, int | float]) -> None:
-    """Change the limits of the whole process, as the command line does; seconds count from now."""
-    global _defaults
-    made = replace(_of_process().limits, **changes)  # type: ignore[arg-type]
-    _defaults = _InForce(made, _deadline(made.seconds))
 
 
 def within(limit: str, found: int, what: str) -> None:

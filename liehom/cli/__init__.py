@@ -8,21 +8,31 @@ exceptions to exit codes. Only `guard` is imported before a command runs. docs/c
 
 from __future__ import annotations
 
+import errno
 import sys
 
 
 def main() -> None:
     """Run the command ``liehom``; exits with one of the documented codes."""
-    from liehom.cli.guard import INTERRUPTED, close_output
+    from liehom.cli.guard import INTERRUPTED, close_output, repair_streams
 
+    repair_streams()
+    output = sys.stdout
     try:
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="backslashreplace")
         from liehom.cli.app import app
 
-        app()
+        try:
+            app()
+        finally:
+            if sys.stdout is not output:  # typer replaces it if the reader of a pipe is gone, and exits with 1
+                raise BrokenPipeError(errno.EPIPE, "")
+            output.flush()
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
-    except BrokenPipeError:
-        sys.exit(close_output())
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        sys.exit(close_output(error))

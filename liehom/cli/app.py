@@ -6,9 +6,11 @@ import sys
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
+from typer.core import TyperGroup
 
+from liehom.budget import limits, parsed_limits
 from liehom.cli import describe_command, numerical_commands, reproduce
-from liehom.cli.guard import NO, NUMERICAL, YES
+from liehom.cli.guard import NO, NUMERICAL, YES, guarded
 from liehom.cli.options import JsonOption, run
 
 if TYPE_CHECKING:
@@ -18,8 +20,39 @@ if TYPE_CHECKING:
 
 HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces."
 
+
+class LimitsFirst(TyperGroup):
+    """The group of commands; ``--limit NAME=NUMBER`` may stand before or after the name of the command."""
+
+    def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:
+        return list(super().parse_args(ctx, limits_first(args)))
+
+
+def limits_first(args: list[str]) -> list[str]:
+    """The arguments with all ``--limit`` in front.
+
+    Examples
+    --------
+    >>> limits_first(["fullness", "--limit", "digits=9", "so(3)/so(2)", "--limit=seconds=1"])
+    ['--limit', 'digits=9', '--limit=seconds=1', 'fullness', 'so(3)/so(2)']
+    """
+    first: list[str] = []
+    rest: list[str] = []
+    remaining = iter(args)
+    for arg in remaining:
+        if arg == "--":
+            rest += [arg, *remaining]
+        elif arg == "--limit":
+            value = next(remaining, None)
+            first, rest = ([*first, arg, value], rest) if value is not None else (first, [*rest, arg])
+        else:
+            (first if arg.startswith("--limit=") else rest).append(arg)
+    return [*first, *rest]
+
+
 app: typer.Typer = typer.Typer(
     name="liehom",
+    cls=LimitsFirst,
     help=HELP,
     no_args_is_help=True,
     add_completion=False,
@@ -41,11 +74,21 @@ def _version(wanted: bool) -> None:
 
 @app.callback(help=HELP)
 def _options(
+    context: typer.Context,
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=NUMBER", help="Raise or lower a limit, e.g. digits=100000; may be repeated."),
+    ] = None,
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    pass
+    def enter() -> int:
+        context.with_resource(limits(**parsed_limits(",".join(limit or ()))))
+        return YES
+
+    if (code := guarded(enter)) != YES:
+        raise typer.Exit(code)
 
 
 @app.command()

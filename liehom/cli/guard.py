@@ -5,13 +5,15 @@ Messages go to standard error. A command prints to standard output only after it
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import sys
 from collections.abc import Callable
 
 from liehom.errors import CertificateError, CertificateFormatError, InternalError, LiehomError
 
-YES, NO, BAD_INPUT, NUMERICAL, INTERNAL, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 3, 70, 130, 141
+YES, NO, BAD_INPUT, NUMERICAL, INTERNAL, NOT_WRITTEN, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 3, 70, 74, 130, 141
 
 
 def guarded(action: Callable[[], int]) -> int:
@@ -35,21 +37,53 @@ def guarded(action: Callable[[], int]) -> int:
         return _said(f"error: {error}", BAD_INPUT)
     except KeyboardInterrupt as interrupt:
         return _said(f"interrupted{interrupt}", INTERRUPTED)
-    except BrokenPipeError:
-        return close_output()
+    except OSError as error:
+        if error.filename is None and sys.stdout is not None:
+            return close_output(error)
+        return _said(_bug_report(error), INTERNAL)
     except Exception as error:  # noqa: BLE001  the top of the program: any other exception is a bug
         return _said(_bug_report(error), INTERNAL)
     return code
 
 
-def close_output() -> int:
-    """Exit code after the reader of a pipe has closed it; redirects standard output so that no flush fails again."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return BROKEN_PIPE
+def repair_streams() -> None:
+    """Open what was closed by the caller: files would get its number, and messages go to standard output.
+
+    A write to a closed standard output fails, as it does in other programs; messages to a closed standard error are
+    lost.
+    """
+    for number, access in ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY)):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, access)  # takes the lowest free number
+    if sys.stdout is None:
+        sys.stdout = io.TextIOWrapper(io.FileIO(1, "w", closefd=False), encoding="utf-8")
+    if sys.stderr is None:
+        sys.stderr = io.TextIOWrapper(io.FileIO(2, "w", closefd=False), encoding="utf-8")
+
+
+def close_output(error: OSError) -> int:
+    """Exit code after standard output could not be written; redirects it so that no flush fails again.
+
+    That the reader of a pipe closed it is not worth a message; a full disk is.
+    """
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.__stdout__):
+        try:
+            os.dup2(nowhere, stream.fileno())  # type: ignore[union-attr]
+        except (OSError, ValueError, AttributeError):
+            continue
+    if error.errno == errno.EPIPE:
+        return BROKEN_PIPE
+    return _said(f"error: standard output cannot be written: {error.strerror or error}", NOT_WRITTEN)
 
 
 def _said(message: str, code: int) -> int:
-    print(f"liehom: {message}", file=sys.stderr)
+    try:
+        print(f"liehom: {message}", file=sys.stderr, flush=True)
+    except (OSError, ValueError):  # a full disk: the exit code has to do
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     return code
 
 
