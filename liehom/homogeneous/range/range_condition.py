@@ -31,8 +31,8 @@ class RangeCondition:
     Attributes
     ----------
     holds : bool or None
-        For one psi: whether the condition holds at psi. For generic psi: True if it holds for all psi outside a proper
-        closed cone, False if it holds for no psi, None if that could not be proved.
+        For one psi: whether the condition holds at psi; None if floats do not decide it. For generic psi: True if it
+        holds for all psi outside a proper closed cone, False if it holds for no psi, None if that could not be proved.
     rank : int
         The rank of [rho(h) x, x] at `psi`.
     dimension : int
@@ -95,7 +95,8 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     Returns
     -------
     RangeCondition
-        Exact over an exact field; over floats it has the singular values that decided.
+        Exact over an exact field. Over floats it has the singular values that decided the rank, and it is undecided if
+        one of them is between the error and 100 times the error.
 
     Raises
     ------
@@ -178,14 +179,16 @@ def _at(pair: Pair, row: Matrix, *, generic: bool) -> RangeCondition:
     if d == 0:
         return RangeCondition(True, 0, 0, psi, None, not generic, generic, "h = g: nothing to reach")
     x = row @ pair.subalgebra.quotient().projection
-    equilibrium = _vanishes(x, row)
-    images = [(a @ x.T).T for a in pair.isotropy_matrices()]
-    table = field.stack_rows([x, *images], d)
+    equilibrium = x.is_zero()  # over floats, up to the error of the projection to g/h
+    images = field.stack_rows([(a @ x.T).T for a in pair.isotropy_matrices()], d)
+    table = field.stack_rows([_of_the_size_of(images, x), images], d)
     numerical = None
     if equilibrium:
         rank, kernel = 0, field.unit(d, 0)
     elif isinstance(table, FloatMatrix):
         numerical = table.rank_decision()
+        if not numerical.clear:
+            return _unclear(numerical, d, psi, generic=generic)
         rank = numerical.rank
         kernel = table.null_space()
     else:
@@ -196,11 +199,19 @@ def _at(pair: Pair, row: Matrix, *, generic: bool) -> RangeCondition:
     return RangeCondition(rank == d, rank, d, psi, missing, equilibrium, generic, message, numerical)
 
 
-def _vanishes(x: Matrix, row: Matrix) -> bool:
-    """Whether psi lies in h; over floats, up to the field's tolerance times the largest coefficient of psi."""
-    if isinstance(x, FloatMatrix) and isinstance(row, FloatMatrix):
-        return float(abs(x.array).max()) <= x.field.rtol * float(abs(row.array).max())
-    return bool(x.is_zero())
+def _of_the_size_of(images: Matrix, x: Matrix) -> Matrix:
+    """Over floats a multiple of x as long as all images together: a rank must not depend on the scale of the bracket."""
+    if not isinstance(images, FloatMatrix) or not isinstance(x, FloatMatrix) or images.is_zero() or x.norm == 0:
+        return x
+    return x.scale(images.norm / x.norm)
+
+
+def _unclear(numerical: RankDecision, d: int, psi: list[Scalar], *, generic: bool) -> RangeCondition:
+    message = (
+        f"a singular value of relative size {numerical.kept:.2g} is less than 100 times its error "
+        f"{numerical.error:.2g}; more accurate or exact numbers decide it, see liehom.rationalize"
+    )
+    return RangeCondition(None, numerical.rank, d, psi, None, False, generic, message, numerical)
 
 
 def _best_sample(pair: Pair) -> RangeCondition:
@@ -213,9 +224,12 @@ def _best_sample(pair: Pair) -> RangeCondition:
         found = _at(pair, pair.field.matrix(values) @ lift, generic=True)
         if found.holds:
             return _decided(found, True, "one psi at which it holds proves it")
-        best = found if best is None or found.rank > best.rank else best
+        unclear = found.holds is None
+        best = found if best is None or unclear or (best.holds is False and found.rank > best.rank) else best
     if best is None:
         raise UndecidedError("no sample was taken")
+    if best.holds is None:
+        return best
     return _decided(best, False, f"the numerical rank is at most {best.rank} of {best.dimension} at {SAMPLES} points")
 
 

@@ -30,7 +30,10 @@ def intertwining_maps(rho: Representation, sigma: Representation) -> list[ExactM
     if rho.algebra is not sigma.algebra and rho.algebra != sigma.algebra:
         raise InputError(f"representations of two algebras, {rho.algebra!r} and {sigma.algebra!r}")
     if not rho.field.exact:
-        raise FieldError("intertwiners are computed exactly: build the representations over QQ or a number field")
+        raise UndecidedError(
+            "floats do not decide which maps are intertwiners: build the representations over QQ or a number field, or "
+            "go to exact numbers by lh.rationalize(rho, max_denominator=...)"
+        )
     if not rho.matrices:
         return [
             rho.field.unit(sigma.size, i).T @ rho.field.unit(rho.size, j)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra
-from liehom.errors import FieldError, InputError, ShapeError
+from liehom.errors import FieldError, InputError, ShapeError, UndecidedError
 from liehom.representations.core.representation import Representation
 from liehom.scalars import QQ, Field, Matrix, NumberField, Scalar
 from liehom.typing import Expression, VectorLike
@@ -126,7 +126,10 @@ def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
     import sympy
 
     if not rho.field.exact:
-        raise FieldError("isotropy at symbolic points needs an exact representation")
+        raise UndecidedError(
+            "isotropy at symbolic points needs an exact representation: build it over QQ or a number field, or go to "
+            "exact numbers by lh.rationalize(rho, max_denominator=...)"
+        )
     given = list(point)
     if len(given) != rho.size:
         raise ShapeError(f"the point has {len(given)} coordinates, the representation acts on {rho.size}")

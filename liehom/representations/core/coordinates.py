@@ -75,6 +75,26 @@ def real_point(coordinates: Coordinates, size: int, field: Field, point: VectorL
     return values
 
 
+def has_float(values: Sequence[ScalarLike]) -> bool:
+    """Whether a value is a float, or an expression of sympy with a float: then only a numerical answer is possible.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> has_float([1, "0.5"]), has_float([1, 0.5]), has_float([sympy.Float(0.5) * sympy.sqrt(2)])
+    (False, True, True)
+    """
+    for value in values:
+        expression: Any = value
+        if isinstance(value, (float, np.floating)) or (hasattr(value, "atoms") and _has_float_atom(expression)):
+            return True
+    return False
+
+
+def _has_float_atom(expression: Expression) -> bool:
+    return any(getattr(atom, "is_Float", False) for atom in expression.atoms())
+
+
 def complex_matrix(matrix: Matrix) -> ComplexArray | Expression:
     """The complex matrix (n, n) of a real one (2n, 2n): a sympy matrix, over floats an array of complex128.
 

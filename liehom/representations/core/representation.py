@@ -15,9 +15,15 @@ import numpy.typing as npt
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure.closure import Completion, lie_closure, square_matrices
 from liehom.algebra.closure.complex_matrices import as_real_matrices
-from liehom.errors import FieldError, InputError, RepresentationError, ShapeError
+from liehom.errors import InputError, RepresentationError, ShapeError, UndecidedError
 from liehom.immutable import Immutable
-from liehom.representations.core.coordinates import Coordinates, complex_matrix, real_point, require_coordinates
+from liehom.representations.core.coordinates import (
+    Coordinates,
+    complex_matrix,
+    has_float,
+    real_point,
+    require_coordinates,
+)
 from liehom.representations.core.pair import Pair
 from liehom.representations.invariants.bracket_proof import failing_pair
 from liehom.representations.invariants.induced import (
@@ -33,7 +39,7 @@ from liehom.representations.invariants.induced import (
 from liehom.representations.invariants.intertwiners import InvariantForms, commutant, invariant_forms, invariant_vectors
 from liehom.representations.invariants.irreducibility import is_irreducible
 from liehom.representations.invariants.stabilizer import orbit_dimension, stabilizer
-from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Subspace
+from liehom.scalars import RR, ExactMatrix, Field, FloatField, Matrix, Subspace
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import ComplexArray, Expression, ScalarLike, VectorLike
 
@@ -404,8 +410,13 @@ class Representation(Immutable):
         Parameters
         ----------
         point : array_like of shape (N,)
-            Entries in the representation's field (floats for a float representation). Complex vectors and Hermitian
-            matrices where `real_point` takes them.
+            Entries in the representation's field, or floats. Complex vectors and Hermitian matrices where `real_point`
+            takes them.
+
+        Returns
+        -------
+        Subalgebra
+            Of `algebra`. If an entry is a float, the answer is numerical: a subalgebra of ``algebra.over(RR)``.
 
         Raises
         ------
@@ -415,6 +426,8 @@ class Representation(Immutable):
             If a coordinate has free symbols; see `symbolic_isotropy`.
         FieldError
             If an entry is not in the field.
+        UndecidedError
+            If floats do not decide the dimension: a singular value is between the error and 100 times the error.
 
         Notes
         -----
@@ -425,8 +438,11 @@ class Representation(Immutable):
         >>> import liehom as lh
         >>> lh.defining(lh.so(4)).isotropy([0, 0, 0, 1]).dimension
         3
+        >>> lh.defining(lh.so(3)).isotropy([0.6, 0, 0.8])
+        <subalgebra of dimension 1 in so(3) over float64>
         """
-        return stabilizer(self.algebra, self.matrices, self.size, self.real_point(point))
+        rho, values = self._at(point)
+        return stabilizer(rho.algebra, rho.matrices, rho.size, values)
 
     def symbolic_isotropy(self, point: VectorLike | MatrixLike) -> SymbolicIsotropy:
         """The isotropy subalgebra at a point with free symbols, for generic values of the symbols.
@@ -443,7 +459,9 @@ class Representation(Immutable):
         InputError
             If a coordinate is not a rational function of the symbols (write cos and sin by a rational parameter).
         FieldError
-            If the representation is over floats, or a coefficient of the point is a float.
+            If a coefficient of the point is a float.
+        UndecidedError
+            If the representation is over floats.
 
         Notes
         -----
@@ -466,19 +484,31 @@ class Representation(Immutable):
         return symbolic_isotropy(self, self.real_point(point))
 
     def orbit_dimension(self, point: VectorLike | MatrixLike) -> int:
-        """Dimension of the orbit through a point: dim g minus the dimension of the isotropy subalgebra."""
-        return orbit_dimension(self.algebra, self.matrices, self.size, self.real_point(point))
+        """Dimension of the orbit through a point: dim g minus the dimension of the isotropy subalgebra.
+
+        At a point with floats the dimension is a numerical rank.
+
+        Raises
+        ------
+        UndecidedError
+            See `isotropy`.
+        """
+        rho, values = self._at(point)
+        return orbit_dimension(rho.algebra, rho.matrices, rho.size, values)
 
     def pair(self, point: VectorLike | MatrixLike) -> Pair:
         """The pair (g, g_point): the homogeneous space of the orbit through a point.
 
+        At a point with floats the pair is numerical: a pair over float64.
+
         Examples
         --------
         >>> import liehom as lh
-        >>> lh.defining(lh.so(4)).pair([0, 0, 0, 1])
-        <pair of dimensions 6/3 over QQ>
+        >>> lh.defining(lh.so(4)).pair([0, 0, 0, 1]), lh.defining(lh.so(4)).pair([0.6, 0, 0, 0.8])
+        (<pair of dimensions 6/3 over QQ>, <pair of dimensions 6/3 over float64>)
         """
-        return Pair(self.algebra, self.isotropy(point))
+        isotropy = self.isotropy(point)
+        return Pair(isotropy.algebra, isotropy)
 
     # -- constructions -----------------------------------------------------------------------------------
     def dual(self) -> Representation:
@@ -615,7 +645,7 @@ class Representation(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -633,7 +663,7 @@ class Representation(Immutable):
         ------
         InputError
             If the representation is reducible over the reals; use `decomposition`.
-        FieldError
+        UndecidedError
             Over float64.
 
         Notes
@@ -656,7 +686,7 @@ class Representation(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -682,7 +712,7 @@ class Representation(Immutable):
         InputError
             If J does not commute with the representation, or its square is not a negative number; without J, if the
             representation is reducible or of type R.
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -704,7 +734,7 @@ class Representation(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -721,7 +751,7 @@ class Representation(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Notes
@@ -745,7 +775,7 @@ class Representation(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -765,7 +795,7 @@ class Representation(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Notes
@@ -797,7 +827,7 @@ class Representation(Immutable):
         ------
         NotCompletelyReducibleError
             If the representation is not completely reducible; ``rho.subrepresentation(rho.socle())`` is.
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -826,7 +856,7 @@ class Representation(Immutable):
         ------
         InputError
             If the algebra is not semisimple.
-        FieldError
+        UndecidedError
             Over float64.
 
         Notes
@@ -856,7 +886,7 @@ class Representation(Immutable):
         ------
         InputError
             If the algebra is not semisimple.
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -887,7 +917,9 @@ class Representation(Immutable):
         InputError
             If the representations are of two algebras.
         FieldError
-            If they are over two fields, or over float64.
+            If they are over two fields.
+        UndecidedError
+            Over float64.
 
         Examples
         --------
@@ -910,8 +942,8 @@ class Representation(Immutable):
         InputError, FieldError
             See `intertwiners`.
         UndecidedError
-            For some representations that are not completely reducible, if neither an invertible map nor a proof that
-            there is none was found.
+            Over float64, and for some representations that are not completely reducible, if neither an invertible map
+            nor a proof that there is none was found.
 
         Examples
         --------
@@ -1036,20 +1068,28 @@ class Representation(Immutable):
         made: Matrix = field.matrix(matrix.to_rows(), (self.size, self.size))
         return made
 
+    def _at(self, point: VectorLike | MatrixLike) -> tuple[Representation, list[ScalarLike]]:
+        """The representation, over float64 if the point has a float, and the real coordinates of the point."""
+        values = self.real_point(point)
+        return (self.over(RR) if self.field.exact and has_float(values) else self), values
+
     def _exact(self) -> Representation:
-        """The representation itself; `FieldError` over float64."""
+        """The representation itself; `UndecidedError` over float64."""
         if not self.field.exact:
-            raise FieldError("this is computed exactly: build the representation over QQ or a number field")
+            raise UndecidedError(
+                "floats do not decide this: build the representation over QQ or a number field, or go to exact numbers "
+                "by lh.rationalize(rho, max_denominator=...)"
+            )
         return self
 
     def _generating(self) -> tuple[ExactMatrix, ...]:
-        """A few matrices with the same commutant and invariant subspaces as all rho(x); `FieldError` over float64."""
+        """A few matrices with the same commutant and invariant subspaces as all rho(x); `UndecidedError` over float64."""
         from liehom.representations.core.generating_matrices import generating_matrices
 
         return generating_matrices(self._exact())
 
     def _exact_matrices(self) -> tuple[ExactMatrix, ...]:
-        """The matrices rho(e_i); `FieldError` over float64."""
+        """The matrices rho(e_i); `UndecidedError` over float64."""
         return cast("tuple[ExactMatrix, ...]", self._exact().matrices)
 
     def _is_visibly_semisimple(self) -> bool:

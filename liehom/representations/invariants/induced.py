@@ -56,7 +56,7 @@ class EntryMap:
             for place, entry in enumerate(matrix.array.ravel().tolist()):
                 for at, factor in self._by_source.get(place, ()) if entry else ():
                     array[at] += factor * entry
-            return FloatMatrix(matrix.field, array.reshape(m, m))
+            return FloatMatrix(matrix.field, array.reshape(m, m), matrix.error * self._size())
         if not isinstance(matrix, ExactMatrix):
             raise InputError(f"expected a matrix over a field, got {matrix!r}")
         tables: list[dict[int, int]] = []
@@ -67,6 +67,15 @@ class EntryMap:
                     table[at] = table.get(at, 0) + factor * int(value)
             tables.append(table)
         return matrix_from_entries(matrix.field, tables, m, m, matrix.den)
+
+    def _size(self) -> float:
+        """A bound on the norm of the map: the square root of the largest row sum times the largest column sum."""
+        rows: dict[int, int] = {}
+        for terms in self._by_source.values():
+            for at, factor in terms:
+                rows[at] = rows.get(at, 0) + abs(factor)
+        columns = (sum(abs(factor) for _, factor in terms) for terms in self._by_source.values())
+        return float((max(rows.values(), default=0) * max(columns, default=0)) ** 0.5)
 
 
 def dual_map(n: int) -> EntryMap:

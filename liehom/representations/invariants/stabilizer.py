@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import Matrix
+from liehom.scalars import FloatMatrix, Matrix
 from liehom.typing import VectorLike
 
 
@@ -36,10 +36,20 @@ def moved_point(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, poin
 
 def stabilizer(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> Subalgebra:
     """The subalgebra {x : rho(x) point = 0}."""
-    rows = moved_point(algebra, matrices, size, point).left_null_space()
+    moved = moved_point(algebra, matrices, size, point)
+    _require_clear(moved, "the isotropy at the point")
+    rows = moved.left_null_space()
     return Subalgebra(algebra, rows, check=False)  # closed: rho([x, y]) p = rho(x) rho(y) p - rho(y) rho(x) p = 0
 
 
 def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, point: VectorLike) -> int:
     """Dimension of the orbit of a point: the rank of x -> rho(x) point."""
-    return int(moved_point(algebra, matrices, size, point).rank())
+    moved = moved_point(algebra, matrices, size, point)
+    _require_clear(moved, "the orbit dimension of the point")
+    return int(moved.rank())
+
+
+def _require_clear(moved: Matrix, question: str) -> None:
+    """Over floats, raise `UndecidedError` if a singular value that counts is less than 100 times the error."""
+    if isinstance(moved, FloatMatrix):
+        moved.rank_decision().require_clear(question)
