@@ -200,7 +200,7 @@ def _at(pair: Pair, row: Matrix, *, generic: bool) -> RangeCondition:
 
 
 def _of_the_size_of(images: Matrix, x: Matrix) -> Matrix:
-    """Over floats a multiple of x as long as all images together: a rank must not depend on the scale of the bracket."""
+    """Over floats a multiple of x as long as all images together, so that no rank depends on the scale of brackets."""
     if not isinstance(images, FloatMatrix) or not isinstance(x, FloatMatrix) or images.is_zero() or x.norm == 0:
         return x
     return x.scale(images.norm / x.norm)

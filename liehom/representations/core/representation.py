@@ -1083,7 +1083,7 @@ class Representation(Immutable):
         return self
 
     def _generating(self) -> tuple[ExactMatrix, ...]:
-        """A few matrices with the same commutant and invariant subspaces as all rho(x); `UndecidedError` over float64."""
+        """A few matrices with the commutant and invariant subspaces of all rho(x); `UndecidedError` over float64."""
         from liehom.representations.core.generating_matrices import generating_matrices
 
         return generating_matrices(self._exact())
