@@ -338,7 +338,8 @@ def pair_from_matrices(
     first, second = list_of_matrices(g_matrices), list_of_matrices(h_matrices)
     field = field_of_matrices([*first, *second]) if field is None else field
     if hermitian or any(has_complex_entry(a, field) for a in (*first, *second)):
-        first, second = ([*real_matrices(part, field, hermitian=hermitian)] for part in (first, second))
+        first = [*real_matrices(first, field, hermitian=hermitian)]
+        second = [*real_matrices(second, field, hermitian=hermitian)]
     rho = Representation.from_matrices(square_matrices(first, field))
     rows = rows_of_matrices(rho, square_matrices(second, field), of=" of h")
     try:

@@ -94,7 +94,7 @@ def float_closure(given: list[FloatMatrix], *, independent: bool, close: bool, l
     lengths = np.concatenate([norms, np.full(len(appended), scale)])
     turned = StructureConstants.from_array(field, span.constants(), 0.0).changed(rows, rows.inverse())
     constants = turned.dense().to_numpy().reshape((len(lengths),) * 3)
-    constants *= np.multiply.outer(np.multiply.outer(lengths, lengths), 1 / lengths)
+    constants *= lengths[:, None, None] * (lengths[:, None] / lengths)
     table = StructureConstants.from_array(field, constants, field.rtol * norm_of(constants))
     made = (FloatMatrix(field, scale * q.reshape(size, size)) for q in span.basis[m:])
     return FloatClosure((*basis, *made), tuple(kept), tuple(appended), table)

@@ -14,7 +14,7 @@ import numpy as np
 
 from liehom.algebra.closure.complex_matrices import is_complex_linear, is_hermitian_array, parts_of_real_matrix
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import RR, Field, Matrix
+from liehom.scalars import RR, Field, FloatField, Matrix
 from liehom.scalars.fields.complex_parts import complex_parts, is_complex
 from liehom.scalars.fields.field import MatrixLike, rows_of
 from liehom.scalars.fields.sympy_number import sympy_number
@@ -135,7 +135,7 @@ def _hermitian_coordinates(rows: list[list[Any]], n: int, field: Field) -> list[
     floats = any(isinstance(v, (float, np.floating)) for row in parts for pair in row for v in pair)
     if floats or not field.exact:
         array = np.array([[complex(*map(RR.convert, pair)) for pair in row] for row in parts]).reshape(n, n)
-        is_hermitian = is_hermitian_array(array, RR.rtol if field.exact else field.rtol)
+        is_hermitian = is_hermitian_array(array, field.rtol if isinstance(field, FloatField) else RR.rtol)
     else:
         x, y = ([[_exact(pair[part], field) for pair in row] for row in parts] for part in range(2))
         is_hermitian = all(x[i][j] == x[j][i] and y[i][j] == -y[j][i] for i in range(n) for j in range(i, n))

@@ -184,8 +184,8 @@ class Representation(Immutable):
         >>> rho.algebra.dimension, rho.algebra.real_form(), rho.complex_size
         (3, 'so(3)', 2)
         """
-        basis, was_complex = as_real_matrices(matrices, field, hermitian=hermitian)
-        basis = square_matrices(basis, field)
+        given, was_complex = as_real_matrices(matrices, field, hermitian=hermitian)
+        basis = square_matrices(given, field)
         made = lie_closure(basis, independent=independent, completion=completion)
         # The constants are those of the commutators themselves.
         return cls(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, Literal, final
 
 import numpy as np
 
@@ -147,12 +147,21 @@ def _evaluated(text: str, field: Field) -> _Complex:
 
 
 @final
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Complex:
     """A complex number with its parts in a real field, with the arithmetic that the grammar needs."""
 
     real: Any
     imaginary: Any
+
+    def __eq__(self, other: object) -> bool:
+        return bool(self.real == other and self.imaginary == 0)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def bit_length(self) -> int:
+        parts = (self.real, self.imaginary)
+        return max(int(v.bit_length()) for x in parts for v in ((x.p, x.q) if hasattr(x, "p") else (x,)))
 
     def __neg__(self) -> _Complex:
         return _Complex(-self.real, -self.imaginary)
@@ -176,12 +185,8 @@ class _Complex:
         product = self * _Complex(other.real, -other.imaginary)
         return _Complex(product.real / square, product.imaginary / square)
 
-    def __pow__(self, exponent: int) -> _Complex:
-        one = _Complex(self.real * 0 + 1, self.imaginary * 0)
-        if exponent < 0:
-            return (one / self) ** -exponent
-        power, base = one, self
-        while exponent:
-            power = power * base if exponent % 2 else power
-            base, exponent = base * base, exponent // 2
-        return power
+    def __rtruediv__(self, one: int) -> _Complex:
+        return _Complex(one + 0 * self.real, 0 * self.real) / self
+
+    def __pow__(self, exponent: Literal[0]) -> _Complex:
+        return _Complex(0 * self.real + 1, 0 * self.real)

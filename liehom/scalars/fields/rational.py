@@ -71,6 +71,11 @@ def refused(value: Any, field: Field) -> FieldError:
             f"{float(value)!r} is a float, and {field.name} is exact: write a fraction such as '{shown}', "
             "or work numerically, over float64: .over(liehom.RR)"
         )
+    if isinstance(value, (complex, np.complexfloating)) or getattr(value, "is_real", None) is False:
+        return FieldError(
+            f"{value!r} is a complex number, and {field.name} is real: complex matrices go to from_matrices of "
+            "Representation or LieAlgebra"
+        )
     return FieldError(f"{value!r} of type {type(value).__name__} is not an element of {field.name}")
 
 

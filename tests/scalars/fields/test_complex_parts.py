@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import cmath
+import contextlib
 import re
+import time
 from typing import Any
 
 import flint
@@ -14,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.errors import FieldError, InputError, ParseError
+from liehom.errors import FieldError, InputError, LiehomError, ParseError
 from liehom.scalars import QQ, RR, NumberField
 from liehom.scalars.fields.complex_parts import complex_parts, field_determining_values, is_complex
 from tests.sampling import examples
@@ -92,6 +94,21 @@ def test_a_generator_called_i_is_real() -> None:
     assert complex_parts("i", cubic) == ("i", 0)
     named = NumberField("b", [-2, 0, 0, 1], (1, 2))
     assert complex_parts("b*i + b**3", named) == (named.convert(2), named.generator)
+
+
+@pytest.mark.parametrize("text", ["(3+2i)**4096", "((3+2i)**300)**300", "(1/3+i/7)**-4000"])
+def test_huge_powers_are_computed_or_refused_at_once(text: str) -> None:
+    start = time.perf_counter()
+    with contextlib.suppress(LiehomError):
+        complex_parts(text, QQ)
+    assert time.perf_counter() - start < 2
+
+
+@pytest.mark.parametrize("value", [1j, np.complex128(1), sympy.I])
+def test_a_real_field_says_where_complex_numbers_go(value: Any) -> None:
+    for field in (QQ, SQRT2):
+        with pytest.raises(FieldError, match="complex matrices go to from_matrices"):
+            field.convert(value)
 
 
 def test_symbols_must_be_declared_real() -> None:
