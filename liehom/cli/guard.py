@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Callable
 
-from liehom.errors import CertificateError, CertificateFormatError, InternalError, LiehomError
+from liehom.errors import CertificateError, CertificateFormatError, InternalError, LiehomError, UndecidedError
 
 YES, NO, BAD_INPUT, NUMERICAL, INTERNAL, NOT_WRITTEN, INTERRUPTED, BROKEN_PIPE = 0, 1, 2, 3, 70, 74, 130, 141
 
@@ -33,6 +33,8 @@ def guarded(action: Callable[[], int]) -> int:
         return _said(f"the certificate fails: {error}", NO)
     except InternalError as error:
         return _said(f"internal error: {error}", INTERNAL)
+    except UndecidedError as error:
+        return _said(f"undecided: {error}", NUMERICAL)
     except LiehomError as error:
         return _said(f"error: {error}", BAD_INPUT)
     except KeyboardInterrupt as interrupt:

@@ -366,3 +366,47 @@ def test_fullness_of_a_file_takes_less_than_a_second_and_a_half(name: str) -> No
 
 def test_help_takes_less_than_half_a_second() -> None:
     assert seconds("--help") < 0.5
+
+
+# -- floats ----------------------------------------------------------------------------------------------
+def float_pair(path: Path, turn: float) -> str:
+    """h acts on the plane by [[0, -turn], [1, 0]]."""
+    constants = [[0, 1, 2, 1.0], [0, 2, 1, -turn]]
+    data = {"dimension": 3, "arithmetic": "float64", "structure_constants": constants, "subalgebra": [[1, 0, 0]]}
+    path.write_text(json.dumps(data))
+    return str(path)
+
+
+@pytest.mark.parametrize(("turn", "full", "says"), [
+    (1.0, True, "full (numerical"), (1e-8, None, "undecided (numerical"), (0.0, False, "not full (numerical"),
+])  # fmt: skip
+def test_fullness_of_floats_has_three_answers(tmp_path: Path, turn: float, full: bool | None, says: str) -> None:
+    file = float_pair(tmp_path / "pair.json", turn)
+    shown = liehom("fullness", file)
+    assert (shown.exit_code, shown.stderr) == (3, "")
+    assert shown.stdout.startswith(says)
+    assert all(label in shown.stdout for label in ("least singular value", "tolerance", "gap"))
+    data = json_of(liehom("fullness", file, "--json"))
+    assert (data["full"], data["proved"], data["certificate"]) == (full, False, None)
+    assert {"smallest_singular_value", "tolerance", "gap"} <= data.keys()
+
+
+def test_range_of_floats_can_be_undecided(tmp_path: Path) -> None:
+    file = float_pair(tmp_path / "pair.json", -1.0)  # the condition fails at psi with psi_1 = psi_2
+    for near, holds in (("0", False), ("1e-7", None), ("0.1", True)):
+        words = ("range", file, "--psi", f"[0, 1, {1 + float(near)!r}]")
+        result = liehom(*words)
+        assert (result.exit_code, result.stderr) == (3, "")
+        assert "(numerical)" in result.stdout
+        assert json_of(liehom(*words, "--json"))["holds"] is holds
+
+
+def test_isotropy_that_floats_do_not_decide_is_said_on_standard_error(tmp_path: Path) -> None:
+    turns = [[[0, -1, 0, 0], [1, 0, 0, 0], [0] * 4, [0] * 4], [[0] * 4, [0] * 4, [0, 0, 0, -1], [0, 0, 1, 0]]]
+    file = tmp_path / "representation.json"
+    file.write_text(json.dumps({"matrices": turns}))
+    for near, code in (("0.5", 3), ("1e-8", 3)):
+        result = liehom("isotropy", str(file), "--point", f"[1.0, 0, {near}, 0]")
+        assert result.exit_code == code
+        assert ("(numerical)" in result.stdout) == (near == "0.5")
+        assert ("undecided: the isotropy at the point" in result.stderr) == (near == "1e-8")
