@@ -108,6 +108,7 @@ ATTRIBUTES: dict[str, dict[str, str]] = {
 """Attributes with another name, 'old module:old name' -> {old: new}."""
 
 GROWN: dict[str, tuple[str, ...]] = {
+    "liehom.representations.symbolic:SymbolicIsotropy": ("exact_dimension", "sharp"),
     "liehom.homogeneous.orbit_types:OrbitType": ("invariants", "groups", "proofs"),
     "liehom.representations.representation:Representation": ("coordinates", "dropped"),
     "liehom.algebra.structure_constants:StructureConstants": ("error",),

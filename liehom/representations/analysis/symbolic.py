@@ -1,19 +1,21 @@
 """Isotropy at points with free symbols: the generic isotropy, and a condition under which it is valid.
 
-The coordinates are rational functions of the symbols.  Linear algebra over their field of fractions uses sympy's
-DomainMatrix.
+The coordinates are rational functions of the symbols.  Over QQ the isotropy is the null space of a matrix of
+polynomials (`PolynomialMatrix`).  Over a number field sympy's DomainMatrix computes over the field of fractions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, InputError, ShapeError, UndecidedError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import QQ, Field, Matrix, NumberField, Scalar
+from liehom.scalars import QQ, ExactMatrix, Field, Matrix, NumberField, Scalar, as_exact
+from liehom.scalars.functions.polynomial_matrix import Poly, PolynomialMatrix
 from liehom.typing import Expression, VectorLike
 
 
@@ -35,10 +37,17 @@ class SymbolicIsotropy:
         Rows (dimension, dim g) of coefficients, polynomials in the symbols without common divisor. Every row lies in
         the isotropy at all values of the symbols at which the point is defined.
     nonvanishing : sympy expression
-        A polynomial. At values where it is not zero and the point is defined, the isotropy has exactly `dimension` and
-        `basis` is a basis. It is one maximal minor, so not all of its zeros need be exceptional.
+        A polynomial. At real values where it is not zero and the point is defined, the isotropy has exactly `dimension`
+        and `basis` is a basis. It is `exact_dimension` times factors on whose zeros the rows of `basis` are dependent:
+        often no basis is valid at all points.
     matrix : sympy.Matrix
         The matrix (N, dim g) with columns rho(e_i) point.
+    exact_dimension : sympy expression
+        A polynomial. At real values where it is not zero and the point is defined, the isotropy has exactly
+        `dimension`.
+    sharp : bool
+        Whether the isotropy is larger at all real zeros of `exact_dimension` at which the point is defined. If False,
+        it is one maximal minor, and the isotropy may be larger on a part of its zeros only.
     """
 
     algebra: LieAlgebra
@@ -49,9 +58,17 @@ class SymbolicIsotropy:
     basis: Expression
     nonvanishing: Expression
     matrix: Expression
+    exact_dimension: Expression
+    sharp: bool
+
+    def __setstate__(self, state: Sequence[Any]) -> None:
+        # the condition of 0.1.0 was one maximal minor
+        for name, value in zip(self.__dataclass_fields__, [*state, state[6], False], strict=False):
+            object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
-        return f"<isotropy of dimension {self.dimension} at {self.point}, where {self.nonvanishing} != 0>"
+        where = "exactly where" if self.sharp else "at least where"
+        return f"<isotropy of dimension {self.dimension} at {self.point}, {where} {self.exact_dimension} != 0>"
 
     def rank_conditions(self, limit: int = 2000) -> list[Expression]:
         """List of the minors of size `orbit_dimension`; the isotropy is larger exactly at their common zeros.
@@ -71,6 +88,17 @@ class SymbolicIsotropy:
         InputError
             If there are more than `limit` minors.
         """
+        import sympy
+
+        over = _polynomial_matrix(self.matrix, self.symbols)
+        if over is None:
+            return self._conditions_over_number_field(limit)
+        minors = over.minors(limit)
+        if isinstance(minors, int):
+            raise InputError(f"there are {minors} minors of size {self.orbit_dimension}, more than {limit}")
+        return [sympy.Mul(*(_expression(f, self.symbols) for f in factors)) for factors in minors]
+
+    def _conditions_over_number_field(self, limit: int) -> list[Expression]:
         from itertools import combinations, product
         from math import comb
 
@@ -99,27 +127,100 @@ def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotrop
     symbols = tuple(sorted({s for v in values for s in v.free_symbols}, key=str))
     columns = [_times(rho, a, values) for a in rho.matrices]
     matrix = sympy.Matrix(rho.size, len(columns), lambda i, j: sympy.cancel(columns[j][i]))
+    over = _polynomial_matrix(matrix, symbols, _lengths(rho))
+    found = _generic(over, symbols) if over else _generic_over_number_field(matrix, symbols)
+    basis, nonvanishing, exact_dimension, sharp = found
+    n, dimension = len(columns), basis.rows
+    return SymbolicIsotropy(
+        algebra=rho.algebra,
+        point=tuple(values),
+        symbols=symbols,
+        dimension=dimension,
+        orbit_dimension=n - dimension,
+        basis=basis,
+        nonvanishing=nonvanishing,
+        matrix=matrix,
+        exact_dimension=exact_dimension,
+        sharp=sharp,
+    )
+
+
+def _generic(
+    over: PolynomialMatrix, symbols: tuple[Expression, ...]
+) -> tuple[Expression, Expression, Expression, bool]:
+    """Basis, condition for the basis, condition for the dimension, and whether that is sharp."""
+    import sympy
+
+    rows, dependent = over.null_space
+    factors, sharp = over.rank_conditions()
+    basis = sympy.Matrix(len(rows), over.shape[1], lambda i, j: _expression(rows[i][j], symbols))
+    exact_dimension = sympy.Mul(*(_expression(p, symbols) for p in factors))
+    more = [_expression(p, symbols) for p in dependent if p not in factors]
+    return basis, sympy.Mul(exact_dimension, *more), exact_dimension, sharp
+
+
+def _generic_over_number_field(
+    matrix: Expression, symbols: tuple[Expression, ...]
+) -> tuple[Expression, Expression, Expression, bool]:
+    import sympy
+
+    size, n = matrix.shape
     over = _over_fractions(matrix, symbols)
-    n = len(columns)
-    pivots = list(over.rref()[1]) if rho.size and n else []
-    rows = list(over.transpose().rref()[1]) if rho.size and n else []
+    pivots = list(over.rref()[1]) if size and n else []
+    rows = list(over.transpose().rref()[1]) if size and n else []
     if len(pivots) < n:
-        null = over.nullspace().to_Matrix() if rho.size else sympy.eye(n)
+        null = over.nullspace().to_Matrix() if size else sympy.eye(n)
         basis = sympy.Matrix([_cleared(null.row(i), symbols) for i in range(null.rows)])
     else:
         basis = sympy.zeros(0, n)
     minor = over.domain.to_sympy(over.extract(rows, pivots).to_dense().det()) if pivots else sympy.Integer(1)
     numerator = sympy.fraction(sympy.cancel(minor))[0]
-    return SymbolicIsotropy(
-        rho.algebra,
-        tuple(values),
-        symbols,
-        n - len(pivots),
-        len(pivots),
-        basis,
-        _squarefree(numerator, symbols),
-        matrix,
-    )
+    condition = _squarefree(numerator, symbols)
+    return basis, condition, condition, not pivots
+
+
+def _lengths(rho: Representation) -> ExactMatrix | None:
+    """The positive definite form tr rho(x)^T rho(y) of a faithful representation over QQ."""
+    if rho.field != QQ or not rho.algebra.dimension:
+        return None
+    size = rho.size**2
+    flat = as_exact(rho.field.stack_rows([a.reshape(1, size) for a in rho.matrices], size))
+    form = flat @ flat.T
+    return form if form.rank() == form.nrows else None
+
+
+def _polynomial_matrix(
+    matrix: Expression, symbols: tuple[Expression, ...], weights: ExactMatrix | None = None
+) -> PolynomialMatrix | None:
+    """A matrix of rational functions times its common denominator; None if a coefficient is not rational."""
+    import sympy
+
+    entries = [sympy.fraction(v) for v in matrix]
+    if any(not c.is_Rational for pair in entries for v in pair for c in v.atoms(sympy.Number, sympy.AlgebraicNumber)):
+        return None
+    den = sympy.Integer(1)
+    for _, d in entries:
+        den = sympy.lcm(den, d)
+    generators = symbols or (sympy.Dummy(),)
+    terms = []
+    for n, d in entries:
+        made = sympy.Poly(n * sympy.cancel(den / d), *generators)
+        if not (made.domain.is_ZZ or made.domain.is_QQ):
+            return None
+        terms.append({e: Fraction(int(c.p), int(c.q)) for e, c in made.terms() if c})
+    nrows, ncols = matrix.shape
+    table = [terms[i * ncols : (i + 1) * ncols] for i in range(nrows)]
+    return PolynomialMatrix(len(symbols), table, (nrows, ncols), weights)
+
+
+def _expression(polynomial: Poly, symbols: tuple[Expression, ...]) -> Expression:
+    """A polynomial of flint as a sympy expression."""
+    import sympy
+
+    terms = {e: sympy.Rational(int(c.p), int(c.q)) for e, c in polynomial.to_dict().items()}
+    if not symbols or not terms:
+        return sympy.Add(*terms.values())
+    return sympy.Poly.from_dict(terms, *symbols).as_expr()
 
 
 def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:

@@ -7,7 +7,6 @@ minimal polynomial. Minors are computed without division, by expansion along col
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 from typing import final
 
 import flint
@@ -15,6 +14,7 @@ import flint
 from liehom.errors import FieldError, ShapeError
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 from liehom.scalars.fields.rational import QQ
+from liehom.scalars.spaces.minors import expanded_minors
 from liehom.typing import ScalarLike
 
 
@@ -91,22 +91,7 @@ class LinearForms:
     def _expanded(self, rows: list[int], columns: list[int]) -> dict[tuple[int, ...], flint.fmpq_mpoly]:
         """The non-zero minors with these columns, by their rows."""
         one = 0 * self._context.gens()[0] + 1
-        minors: dict[tuple[int, ...], flint.fmpq_mpoly] = {(): one}
-        for size, column in enumerate(columns, start=1):
-            grown: dict[tuple[int, ...], flint.fmpq_mpoly] = {}
-            for chosen in combinations(rows, size):
-                total = 0 * one
-                for place, row in enumerate(chosen):
-                    rest = minors.get(chosen[:place] + chosen[place + 1 :])
-                    entry = self._table[row][column]
-                    if rest is not None and not entry.is_zero():
-                        term = entry * rest
-                        total = total - term if (size - 1 - place) % 2 else total + term
-                total = self._reduced(total)
-                if not total.is_zero():
-                    grown[chosen] = total
-            minors = grown
-        return minors
+        return expanded_minors(self._table, rows, columns, one, None if self._modulus is None else self._reduced)
 
     def _reduced(self, polynomial: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         return polynomial if self._modulus is None else divmod(polynomial, self._modulus)[1]
