@@ -83,8 +83,8 @@ class Representation(Immutable):
 
     Notes
     -----
-    Two representations are equal (``==``), and hash equal, if their algebras and matrices are; names, `given` and
-    `appended` are not compared.
+    Two representations are equal (``==``), and hash equal, if their algebras and matrices are; names, `given`,
+    `appended`, `dropped` and `coordinates` are not compared.
 
     Examples
     --------

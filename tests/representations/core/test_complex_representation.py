@@ -267,6 +267,14 @@ def test_points_of_complex_representations() -> None:
     assert lh.defining("su(3)").over(RR).isotropy(np.array([0.6, 0.8j, 0])).dimension == 3
 
 
+def test_points_with_floats_are_computed_over_floats() -> None:
+    rho = lh.defining("su(3)")
+    for state in ([0.6, 0.8j, 0], np.array([0.6, 0.8j, 0]), [0.6, 0, 0, 0.8, 0, 0]):
+        assert (rho.isotropy(state).algebra.field, rho.isotropy(state).dimension) == (RR, 3)
+    density = np.array([[0.5, 0.25j, 0], [-0.25j, 0.5, 0], [0, 0, 0]])
+    assert rho.on_hermitian_matrices().isotropy(density).dimension == 2
+
+
 def unitary(n: int, seed: int) -> Any:
     """A unitary matrix with entries in QQ(i), the Cayley transform of a skew-Hermitian one."""
     rng = np.random.default_rng(seed)
