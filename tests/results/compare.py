@@ -11,6 +11,14 @@ from collections.abc import Iterator
 from typing import Any
 
 
+INTENDED = {
+    f"decisions: [{name} over RR] [{key}] ": "numerical verdicts compare sigma_d with the propagated error of the data"
+    for name in ("so(4)/so(3)", "so(3,1)/so(2,1)")
+    for key in ("verdict", "eta_numerical", "smallest_singular_value", "gap")
+}
+"""Values that differ from those of 0.1.0 on purpose, and why."""
+
+
 def environment(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
     """What results may depend on besides liehom, where it is not the same."""
     one, other = before["header"], after["header"]
@@ -38,7 +46,7 @@ def _differing(one: Any, other: Any, path: str) -> Iterator[str]:
                 yield f"{name}only {'after' if key not in one else 'before'}"
             else:
                 yield from _differing(one[key], other[key], name)
-    elif one != other:
+    elif one != other and path not in INTENDED:
         yield f"{path}\n    before: {one!r}\n    after:  {other!r}"
 
 
@@ -58,7 +66,7 @@ def main(paths: list[str]) -> int:
         print("Recorded in different environments, so that floating-point results may differ in their last bits:")
         print("\n".join(f"    {line}" for line in changed))
     cases = sum(len(part) for name, part in loaded[0].items() if name != "header")
-    print(f"{len(found)} differences in {cases} cases")
+    print(f"{len(found)} differences in {cases} cases, besides up to {len(INTENDED)} values that changed on purpose")
     return 1 if found else 0
 
 
