@@ -10,6 +10,7 @@ roots by complex conjugation.  If the balls are too wide the precision is double
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -27,7 +28,9 @@ from liehom.scalars.roots.joint_spectrum import Balls, JointSpectrum, joint_spec
 from liehom.scalars.spaces.quotient import echelon_quotient
 from liehom.typing import IntegerArray
 
-PRECISIONS = (64, 128, 256, 512, 1024, 2048, 4096)  # in bits
+FIRST_PRECISION = 64  # in bits
+LAST_PRECISION = 4096  # in bits, if the entries are small
+MARGIN = 64  # largest precision in units of the bits of the largest entry
 WEIGHT = 99_999  # bound on the coefficients of the generic element
 HEIGHT = 10**6  # bound on the coefficients of the generic linear form that orders the roots
 
@@ -112,13 +115,17 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
         if spectrum is not None and pairing is not None:
             cartan_matrix, roots = _in_simple_roots(pairing)
             return RootData(algebra, h, RootSystem(cartan_matrix), roots, spectrum)
-    raise InternalError(f"the roots could not be separated with {PRECISIONS[-1]} bits")
+    raise InternalError("the roots could not be separated; please report this algebra")
 
 
-def _precisions(actions: list[ExactMatrix]) -> list[int]:
+def _precisions(actions: list[ExactMatrix]) -> Iterator[int]:
     """The precisions to try, in bits: at least three times the bits of the largest entry, which is mostly enough."""
     bits = max(int(abs(x)).bit_length() for a in actions for part in a.parts for x in part.entries())
-    return [p for p in PRECISIONS if p >= 3 * bits] or [PRECISIONS[-1]]
+    precision = FIRST_PRECISION
+    while precision <= max(LAST_PRECISION, MARGIN * bits):
+        if precision >= 3 * bits:
+            yield precision
+        precision *= 2
 
 
 def _actions(algebra: LieAlgebra, h: Subalgebra) -> list[ExactMatrix]:

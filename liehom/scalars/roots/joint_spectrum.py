@@ -123,7 +123,7 @@ def _eigenvalues(parts: list[flint.acb_mat], weights: Sequence[int]) -> list[tup
     images = [rows * p for p in parts]
     found = []
     for i, value in enumerate(eigenvalues):
-        k = max(range(size), key=lambda j: float(rows[i, j].abs_lower()))
+        k = max(range(size), key=lambda j: rows[i, j].abs_lower())
         if rows[i, k].contains(0):
             raise ValueError("an eigenvector is not separated from 0")
         found.append((value, tuple(image[i, k] / rows[i, k] for image in images)))
@@ -162,10 +162,11 @@ def preserved_blocks(matrices: Sequence[ExactMatrix]) -> list[list[int]]:
 
 def _conjugation(eigenvalues: list[flint.acb]) -> tuple[int, ...] | None:
     """Index of the complex conjugate of each eigenvalue; None if the balls do not determine all of them."""
-    middle = np.array([complex(x.mid()) for x in eigenvalues])
+    largest = max((abs(x).mid() for x in eigenvalues), default=flint.arb(1))  # may exceed what a float can hold
+    middle = np.array([complex((x / largest).mid()) if largest else 0j for x in eigenvalues])
     order = []
-    for x in eigenvalues:
-        near = np.argsort(np.abs(middle - complex(x.mid()).conjugate()), kind="stable")[:2]
+    for x, near_x in zip(eigenvalues, middle, strict=True):
+        near = np.argsort(np.abs(middle - near_x.conjugate()), kind="stable")[:2]
         meeting = [int(j) for j in near if eigenvalues[j].overlaps(x.conjugate())]
         if len(meeting) != 1:
             return None
