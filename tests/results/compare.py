@@ -10,7 +10,6 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-
 INTENDED = {
     f"decisions: [{name} over RR] [{key}] ": "numerical verdicts compare sigma_d with the propagated error of the data"
     for name in ("so(4)/so(3)", "so(3,1)/so(2,1)")

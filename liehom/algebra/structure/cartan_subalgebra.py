@@ -16,7 +16,7 @@ from liehom.algebra.core.subalgebra import Subalgebra, lower_central_series
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.errors import InternalError
 from liehom.scalars import ExactMatrix, as_exact
-from liehom.scalars.spaces.integral_basis import integral_basis
+from liehom.scalars.spaces.integral_basis import SHORT_BITS, integral_basis
 from liehom.scalars.spaces.quotient import echelon_quotient
 
 Entries = tuple[object, ...]  # the integer coordinates of an element
@@ -32,7 +32,9 @@ def cartan_subalgebra(algebra: LieAlgebra) -> Subalgebra:
         if smaller is None:
             break
         rows, pivots = smaller
-    basis = integral_basis(rows)
+    basis = rows.primitive() if rows.nrows else rows
+    if any(int(abs(x)).bit_length() > SHORT_BITS for part in basis.parts for x in part.entries()):
+        basis = integral_basis(rows)
     abelian = _is_abelian(algebra, basis)
     found = Subalgebra(algebra, basis, check=not abelian)  # echelon rows are independent
     if not abelian and lower_central_series(found.as_algebra())[-1].dimension:

@@ -22,7 +22,7 @@ from liehom.algebra.structure.radical import radical
 from liehom.errors import InternalError, SingularError
 from liehom.scalars import ExactField, ExactMatrix, as_exact
 from liehom.scalars.modular.modular import extending_rows, stacked_residues
-from liehom.scalars.spaces.integral_basis import integral_basis
+from liehom.scalars.spaces.integral_basis import short_basis
 from liehom.scalars.spaces.quotient import echelon_quotient
 
 PAIRS = 200  # random pairs of elements that are tried as generators
@@ -78,7 +78,7 @@ def _levi_rows(algebra: LieAlgebra, ideal: Subalgebra) -> ExactMatrix:
         above, below = below, products(algebra, below, below)
         generators = _corrected(algebra, plan, generators, above, below)
     words = plan.words_of(algebra, generators)
-    return integral_basis(field.stack_rows(words, n))
+    return short_basis(field.stack_rows(words, n))
 
 
 @final

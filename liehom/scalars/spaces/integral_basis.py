@@ -13,6 +13,8 @@ import flint
 
 from liehom.scalars.fields.exact_field import ExactMatrix
 
+SHORT_BITS = 64  # entries of an echelon basis that is kept
+
 
 def integral_basis(rows: ExactMatrix) -> ExactMatrix:
     """An LLL-reduced basis of the integer vectors in the span of rows over QQ; over QQ(a) an echelon basis.
@@ -44,6 +46,20 @@ def integral_basis(rows: ExactMatrix) -> ExactMatrix:
         integers = _coordinates(reduced.select(columns=free).parts[0], reduced.den) * integers
         integers = (flint.fmpq_mat(integers) / reduced.den).numer_denom()[0]
     return ExactMatrix(rows.field, (integers.lll(),), 1)
+
+
+def short_basis(rows: ExactMatrix) -> ExactMatrix:
+    """The reduced echelon basis of a row space if its entries have at most 64 bits, else `integral_basis`.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> print(short_basis(QQ.matrix([[2, 4]])), short_basis(QQ.matrix([[2**80, 3**50, 5]])).nrows)
+    [1, 2] 1
+    """
+    reduced = rows.row_space()
+    bits = max((int(abs(x)).bit_length() for part in reduced.parts for x in part.entries()), default=0)
+    return reduced if max(bits, reduced.den.bit_length()) <= SHORT_BITS else integral_basis(reduced)
 
 
 def _coordinates(table: flint.fmpz_mat, den: int) -> flint.fmpz_mat:

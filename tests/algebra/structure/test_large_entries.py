@@ -42,7 +42,9 @@ def test_roots_of_the_levi_factor_of_a_scrambled_parabolic_subalgebra(a: int, b:
     assert levi.as_algebra().root_system().type == kind
 
 
-def test_levi_factor_has_a_basis_of_short_integer_vectors() -> None:
-    levi = scrambled(parabolic(3, 2), 1, seed=0).levi_decomposition().levi
-    basis = as_exact(levi.basis)
-    assert basis.den == 1 and max(abs(int(x)) for x in basis.parts[0].entries()) < 10**6
+@pytest.mark.parametrize(("a", "b"), [(3, 2), (3, 3)])
+def test_levi_factor_and_its_cartan_subalgebra_have_short_bases(a: int, b: int) -> None:
+    levi = scrambled(parabolic(a, b), 1, seed=0).levi_decomposition().levi
+    for space in (levi, levi.as_algebra().cartan_subalgebra()):
+        basis = as_exact(space.basis)
+        assert max(basis.den, *(abs(int(x)) for x in basis.parts[0].entries())) < 2**128
