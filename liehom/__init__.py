@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from liehom import testing as testing
     from liehom.algebra import Homomorphism as Homomorphism
     from liehom.algebra import LieAlgebra as LieAlgebra
+    from liehom.algebra import LieAlgebraFamily as LieAlgebraFamily
     from liehom.algebra import RealForm as RealForm
     from liehom.algebra import RootSystem as RootSystem
     from liehom.algebra import Subalgebra as Subalgebra
@@ -249,8 +250,9 @@ _LAYERS = (
 )
 _NAMES = {
     "liehom.algebra": (
-        "Homomorphism LieAlgebra RealForm RootSystem Subalgebra abelian affine affine_of almost_abelian "
-        "bargmann bianchi canonical_real_form cartan_matrix central_extension chevalley conformal dirac_matrices "
+        "Homomorphism LieAlgebra LieAlgebraFamily RealForm RootSystem Subalgebra "
+        "abelian affine affine_of almost_abelian bargmann bianchi "
+        "canonical_real_form cartan_matrix central_extension chevalley conformal dirac_matrices "
         "direct_sum dynkin_diagram euclidean filiform free_nilpotent galilei gell_mann_matrices gl heisenberg "
         "low_dimensional oscillator parabolic_subalgebra pauli_matrices poincare real_forms realification root_system "
         "schroedinger semidirect_sum simple sl so so_form so_star sp sp_form spin_matrices "

@@ -6,7 +6,7 @@ as a matrix has the type `liehom.scalars.fields.field.MatrixLike`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import EllipsisType
 from typing import Any, Protocol, SupportsIndex, TypeAlias
 
@@ -51,6 +51,9 @@ ScalarLike: TypeAlias = int | float | str | Number
 
 VectorLike: TypeAlias = Sequence[ScalarLike] | npt.NDArray[Any]
 """Input that a field reads as a row of elements."""
+
+ElementLike: TypeAlias = VectorLike | Mapping[str, ScalarLike]
+"""Input that a Lie algebra reads as an element: coefficients, the name of a basis element, or {name: coefficient}."""
 
 
 class Values(Protocol):

@@ -5,6 +5,8 @@ from liehom.algebra.closure import lie_closure as lie_closure
 from liehom.algebra.cohomology import Cohomology as Cohomology
 from liehom.algebra.cohomology import Derivations as Derivations
 from liehom.algebra.constructions import ComplexLieAlgebra as ComplexLieAlgebra
+from liehom.algebra.constructions import Generic as Generic
+from liehom.algebra.constructions import LieAlgebraFamily as LieAlgebraFamily
 from liehom.algebra.constructions import abelian as abelian
 from liehom.algebra.constructions import affine as affine
 from liehom.algebra.constructions import affine_of as affine_of

@@ -16,6 +16,8 @@ from liehom.algebra.constructions.classical_algebras import u as u
 from liehom.algebra.constructions.complex_algebra import ComplexLieAlgebra as ComplexLieAlgebra
 from liehom.algebra.constructions.complex_algebra import realification as realification
 from liehom.algebra.constructions.extensions import central_extension as central_extension
+from liehom.algebra.constructions.family import Generic as Generic
+from liehom.algebra.constructions.family import LieAlgebraFamily as LieAlgebraFamily
 from liehom.algebra.constructions.form_algebras import so_form as so_form
 from liehom.algebra.constructions.form_algebras import sp_form as sp_form
 from liehom.algebra.constructions.free_nilpotent import free_nilpotent as free_nilpotent

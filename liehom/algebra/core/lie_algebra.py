@@ -9,13 +9,14 @@ module that implements it, in this wing or in one above, by an import inside the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar, final, overload
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar, cast, final, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra.core.jacobi import prove_jacobi
+from liehom.algebra.core.names import RowsLike, by_index, coefficients, is_named, linear_combination
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
 from liehom.budget import within
@@ -23,7 +24,7 @@ from liehom.errors import InputError, ShapeError
 from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, Field, FloatField, FloatMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike
-from liehom.typing import VectorLike
+from liehom.typing import ElementLike
 
 if TYPE_CHECKING:
     from liehom.algebra.cohomology.cohomology import Cohomology
@@ -50,15 +51,17 @@ class LieAlgebra(Immutable):
     ----------
     constants : array_like, scipy.sparse array, mapping, or StructureConstants
         ``c[i, j, k]`` of shape (n, n, n), or ``{(i, j): {k: value}}`` with missing pairs filled in by
-        antisymmetry, or a sparse array of shape (n * n, n) whose row i * n + j is the bracket [e_i, e_j].
+        antisymmetry, or a sparse array of shape (n * n, n) whose row i * n + j is the bracket [e_i, e_j]. A mapping
+        may have names of basis elements in place of indices, ``{("x", "y"): {"z": 1}}``.
     field : Field, optional
         The field of the constants. By default QQ for integers and fractions, a number field for values such
         as 'sqrt(2)/2', float64 for float arrays.
     dimension : int, optional
-        The dimension n; by default the one that `constants` shows. A mapping does not show basis elements that
-        appear in no bracket.
+        The dimension n; by default the number of names in `basis`, or the one that `constants` shows. A mapping does
+        not show basis elements that appear in no bracket.
     basis : sequence of str, optional
-        Names of the basis elements, by default e0, e1, ...
+        Names of the basis elements in their order, by default e0, e1, ..., or the names in `constants` in order of
+        first appearance.
     name : str, optional
         A name to print, such as 'so(3)'.
     check : bool, optional
@@ -89,6 +92,9 @@ class LieAlgebra(Immutable):
     array([0, 0, 1], dtype=object)
     >>> so3.killing_signature()
     (0, 3, 0)
+    >>> g = lh.LieAlgebra({("x", "y"): {"z": 1}})
+    >>> g.bracket("x", {"y": 2, "z": 5}), g.show([1, -2, 0])
+    (array([0, 0, 2], dtype=object), 'x - 2*y')
     """
 
     __slots__ = ("_constants", "basis_names", "name")
@@ -109,6 +115,11 @@ class LieAlgebra(Immutable):
                 raise InputError(f"the table is over {found}; another field is reached by over()")
             self._constants = constants
         else:
+            if is_named(constants):
+                constants, basis = by_index(cast("Mapping[Any, Any]", constants), basis)
+            if basis is not None and dimension is None and isinstance(constants, Mapping):
+                basis = tuple(basis)
+                dimension = len(basis)
             over = field if field is not None else field_of_constants(constants)
             self._constants = constants_from(constants, over, dimension)
         n = self._constants.dimension
@@ -194,15 +205,32 @@ class LieAlgebra(Immutable):
         return iter(self._constants)
 
     # -- elements and the bracket ------------------------------------------------------------------------
-    def row(self, x: VectorLike) -> Matrix:
-        """A coefficient vector as a row matrix (1, n); `ShapeError` if its length is not n."""
-        matrix: Matrix = self.field.matrix([x])
+    def row(self, x: ElementLike) -> Matrix:
+        """An element as a row matrix (1, n) of coefficients; `ShapeError` if there are not n of them.
+
+        An element is given by its coefficients, by the name of a basis element, or as {name: coefficient}.
+        """
+        given = coefficients(self.basis_names, x) if isinstance(x, (str, Mapping)) else x
+        matrix: Matrix = self.field.matrix([given])
         if matrix.ncols != self.dimension:
             raise ShapeError(f"an element has {matrix.ncols} coefficients, expected {self.dimension}")
         return matrix
 
-    def bracket(self, x: VectorLike, y: VectorLike) -> npt.NDArray[Any]:
-        """The bracket [x, y] of two coefficient vectors, as a numpy array of field elements.
+    def show(self, x: ElementLike) -> str:
+        """An element as a linear combination of the names of basis elements.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> g = lh.heisenberg(1)
+        >>> g.show(g.bracket("x1", "y1")), g.show([1, 0, "-1/2"]), g.show([0, 0, 0])
+        ('z', 'x1 - 1/2*z', '0')
+        """
+        terms = linear_combination(self.field, self.basis_names, self.row(x).row(0))
+        return " + ".join(terms).replace("+ -", "- ") or "0"
+
+    def bracket(self, x: ElementLike, y: ElementLike) -> npt.NDArray[Any]:
+        """The bracket [x, y] of two elements (see `row`), as a numpy array of field elements.
 
         Examples
         --------
@@ -225,9 +253,9 @@ class LieAlgebra(Immutable):
     def ad(self, x: M) -> M: ...
 
     @overload
-    def ad(self, x: VectorLike) -> Matrix: ...
+    def ad(self, x: ElementLike) -> Matrix: ...
 
-    def ad(self, x: VectorLike | Matrix) -> Matrix:
+    def ad(self, x: ElementLike | Matrix) -> Matrix:
         """The matrix (n, n) of y -> [x, y], acting on columns of coefficients.
 
         Examples
@@ -267,8 +295,8 @@ class LieAlgebra(Immutable):
         return form
 
     # -- subalgebras and ideals --------------------------------------------------------------------------
-    def subalgebra(self, rows: MatrixLike) -> Subalgebra:
-        """The subalgebra with these rows of coefficients, shape (k, n), as its basis.
+    def subalgebra(self, rows: RowsLike) -> Subalgebra:
+        """The subalgebra with these rows of coefficients, shape (k, n), or these elements, as its basis.
 
         Raises
         ------
@@ -286,12 +314,14 @@ class LieAlgebra(Immutable):
         Traceback (most recent call last):
         ...
         liehom.errors.NotASubalgebraError: the rows do not span a subalgebra: the bracket of rows 0 and 1 is ...
+        >>> lh.heisenberg(1).subalgebra(["x1", "z"]).rows()
+        [[1, 0, 0], [0, 0, 1]]
         """
         from liehom.algebra.core.subalgebra import Subalgebra
 
         return Subalgebra(self, rows)
 
-    def as_subalgebra(self, subalgebra: Subalgebra | MatrixLike) -> Subalgebra:
+    def as_subalgebra(self, subalgebra: Subalgebra | RowsLike) -> Subalgebra:
         """A `Subalgebra` of this algebra, from its rows or unchanged; `InputError` if it belongs to another algebra.
 
         Examples
@@ -309,7 +339,7 @@ class LieAlgebra(Immutable):
         require_inside(self, subalgebra)
         return subalgebra
 
-    def subalgebra_generated_by(self, rows: Subalgebra | MatrixLike) -> Subalgebra:
+    def subalgebra_generated_by(self, rows: Subalgebra | RowsLike) -> Subalgebra:
         """The smallest subalgebra that contains the rows.
 
         Examples
@@ -322,7 +352,7 @@ class LieAlgebra(Immutable):
 
         return generated(self, rows)
 
-    def ideal_generated_by(self, rows: Subalgebra | MatrixLike) -> Subalgebra:
+    def ideal_generated_by(self, rows: Subalgebra | RowsLike) -> Subalgebra:
         """The smallest ideal that contains the rows.
 
         Examples
@@ -341,7 +371,7 @@ class LieAlgebra(Immutable):
         """The centre {x : [x, g] = 0}."""
         return self.centralizer(self.field.identity(self.dimension))
 
-    def centralizer(self, rows: Subalgebra | MatrixLike) -> Subalgebra:
+    def centralizer(self, rows: Subalgebra | RowsLike) -> Subalgebra:
         """The subalgebra {x : [x, r] = 0 for each row r}.
 
         Examples
@@ -354,7 +384,7 @@ class LieAlgebra(Immutable):
 
         return centralizer(self, rows)
 
-    def normalizer(self, subalgebra: Subalgebra | MatrixLike) -> Subalgebra:
+    def normalizer(self, subalgebra: Subalgebra | RowsLike) -> Subalgebra:
         """The subalgebra {x : [x, h] is in h} of a subalgebra h (a `Subalgebra` or rows).
 
         Examples
@@ -642,7 +672,7 @@ class LieAlgebra(Immutable):
         return centroid(self)
 
     # -- algebras made of this one -----------------------------------------------------------------------
-    def quotient(self, ideal: Subalgebra | MatrixLike, *, name: str | None = None) -> LieAlgebra:
+    def quotient(self, ideal: Subalgebra | RowsLike, *, name: str | None = None) -> LieAlgebra:
         """The quotient g/h by an ideal h.
 
         Parameters
@@ -675,7 +705,7 @@ class LieAlgebra(Immutable):
         """
         return self.as_subalgebra(ideal).quotient_algebra(name)
 
-    def quotient_map(self, ideal: Subalgebra | MatrixLike) -> Homomorphism:
+    def quotient_map(self, ideal: Subalgebra | RowsLike) -> Homomorphism:
         """The projection of g onto its quotient by an ideal, with the arguments and errors of `quotient`.
 
         Examples
@@ -1115,9 +1145,7 @@ class LieAlgebra(Immutable):
         names = self.basis_names
         brackets: dict[tuple[int, int], list[str]] = {}
         for i, j, k, v in self._constants:
-            value = self.field.show(v)
-            factor = "" if value == "1" else "-" if value == "-1" else f"({value})*" if " " in value else f"{value}*"
-            brackets.setdefault((i, j), []).append(f"{factor}{names[k]}")
+            brackets.setdefault((i, j), []).extend(linear_combination(self.field, [names[k]], [v]))
         shown = list(brackets.items())[:SHOWN_TERMS]
         lines = [f"  [{names[i]}, {names[j]}] = {_sum(terms)}" for (i, j), terms in shown]
         if len(brackets) > SHOWN_TERMS:

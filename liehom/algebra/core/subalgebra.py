@@ -7,16 +7,18 @@ below the class implement the methods of `LieAlgebra` that return subalgebras.
 from __future__ import annotations
 
 import random
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar, final
 
 import numpy as np
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.names import RowsLike, coefficients
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
 from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, FloatMatrix, Matrix, Scalar, Subspace
-from liehom.scalars.fields.field import MatrixLike, rows_of
+from liehom.scalars.fields.field import rows_of
 from liehom.scalars.spaces.quotient import Quotient, echelon_quotient, quotient
 from liehom.typing import VectorLike
 
@@ -39,7 +41,8 @@ class Subalgebra(Immutable):
     algebra : LieAlgebra
         The algebra g that contains h.
     rows : sequence of rows, or a matrix
-        Coefficients in the basis of g, shape (k, n), linearly independent. No rows give the zero subalgebra.
+        Coefficients in the basis of g, shape (k, n), linearly independent; a row may be the name of a basis element or
+        {name: coefficient}. No rows give the zero subalgebra.
     check : bool, optional
         Prove closure (default). Pass False only if it is proved already.
 
@@ -70,7 +73,7 @@ class Subalgebra(Immutable):
 
     __slots__ = ("_quotient", "_subspace", "algebra", "basis")
 
-    def __init__(self, algebra: LieAlgebra, rows: MatrixLike, *, check: bool = True) -> None:
+    def __init__(self, algebra: LieAlgebra, rows: RowsLike, *, check: bool = True) -> None:
         self.algebra: LieAlgebra = algebra
         self.basis: Matrix = _matrix(algebra, rows)
         self._subspace: Subspace | None = None
@@ -302,13 +305,16 @@ class Subalgebra(Immutable):
         return "\n".join([head, *lines])
 
 
-def _matrix(algebra: LieAlgebra, rows: MatrixLike) -> Matrix:
+def _matrix(algebra: LieAlgebra, rows: RowsLike) -> Matrix:
     """The rows as a matrix (k, n) over the field of the algebra; `ShapeError` if a row does not have length n."""
     matrix: Matrix
     if hasattr(rows, "nrows"):
         matrix = algebra.field.read(rows)
         return matrix
-    table = rows_of(rows)
+    given: Any = rows
+    if isinstance(rows, Sequence) and not isinstance(rows, str):
+        given = [coefficients(algebra.basis_names, x) if isinstance(x, (str, Mapping)) else x for x in rows]
+    table = rows_of(given)
     for i, row in enumerate(table):
         if len(row) != algebra.dimension:
             raise ShapeError(f"row {i} of the subalgebra has length {len(row)}, expected {algebra.dimension}")
@@ -346,7 +352,7 @@ def complement_rows(space: ExactMatrix, part: ExactMatrix) -> ExactMatrix:
     return space.select(rows=[i - k for i in independent_rows(stacked) if i >= k])
 
 
-def _span(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Matrix:
+def _span(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Matrix:
     """A basis of the span of the rows or of a subalgebra; over floats each given row has its own uncertainty."""
     if isinstance(rows, Subalgebra):
         require_inside(algebra, rows)
@@ -392,7 +398,7 @@ def _samples(rows: M) -> list[M]:
     return [combined.select(rows=[i]) for i in range(SAMPLES)]
 
 
-def generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
+def generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Subalgebra:
     """Implements `LieAlgebra.subalgebra_generated_by`."""
     n = algebra.dimension
     span, before = _span(algebra, rows), -1
@@ -402,7 +408,7 @@ def generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
     return Subalgebra(algebra, span, check=False)  # the loop ends when it is closed
 
 
-def ideal_generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
+def ideal_generated(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Subalgebra:
     """Implements `LieAlgebra.ideal_generated_by`."""
     n = algebra.dimension
     whole = algebra.field.identity(n)
@@ -413,7 +419,7 @@ def ideal_generated(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subal
     return Subalgebra(algebra, span, check=False)  # an ideal is a subalgebra
 
 
-def centralizer(algebra: LieAlgebra, rows: Subalgebra | MatrixLike) -> Subalgebra:
+def centralizer(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Subalgebra:
     """Implements `LieAlgebra.centralizer`."""
     n, field = algebra.dimension, algebra.field
     span = _span(algebra, rows)

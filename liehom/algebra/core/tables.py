@@ -9,6 +9,7 @@ from typing import Any, NoReturn, Protocol, TypeAlias, TypeGuard
 import numpy as np
 import numpy.typing as npt
 
+from liehom.algebra.core.names import NamedConstants
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import FieldError, ParseError, ShapeError, StructureError, shown
 from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, Scalar, common_field, number_field
@@ -34,11 +35,19 @@ ConstantsMapping: TypeAlias = Mapping[tuple[int, int], Mapping[int, ScalarLike]]
 """Structure constants as ``{(i, j): {k: value}}``."""
 
 ConstantsLike: TypeAlias = (
-    StructureConstants | ConstantsMapping | Sequence[Sequence[VectorLike]] | npt.NDArray[Any] | SparseArray
+    StructureConstants
+    | ConstantsMapping
+    | NamedConstants
+    | Sequence[Sequence[VectorLike]]
+    | npt.NDArray[Any]
+    | SparseArray
 )
 """What `LieAlgebra` reads as structure constants."""
 
 Entries = dict[tuple[int, int, int], Scalar]
+PARAMETERS = (
+    "structure constants with parameters are those of liehom.LieAlgebraFamily, whose method at(a=2) gives a Lie algebra"
+)
 
 
 def field_of_values(values: Iterable[ScalarLike]) -> Field:
@@ -56,6 +65,8 @@ def field_of_values(values: Iterable[ScalarLike]) -> Field:
             return RR
         if isinstance(value, AlgebraicNumber):
             return value.field
+        if getattr(value, "free_symbols", None):
+            raise FieldError(f"{value} has free symbols: {PARAMETERS}")
         if hasattr(value, "free_symbols") and not _is_radical(str(value)):
             # A sympy number that the grammar does not write needs a field of its own, so there can be only one.
             others = {str(value): value, **others}

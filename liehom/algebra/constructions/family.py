@@ -1,0 +1,295 @@
+"""LieAlgebraFamily: Lie algebras whose structure constants are rational functions of parameters.
+
+What holds for all values of the parameters is proved as an identity of rational functions. A generic statement comes
+with the polynomial whose zeros it leaves out. Everything else is asked at values of the parameters, by `at`.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn, final
+
+from liehom.algebra.constructions.parametric_constants import Brackets, Parameters, antisymmetric, from_array
+from liehom.algebra.core.lie_algebra import LieAlgebra
+from liehom.algebra.core.names import by_index, is_named
+from liehom.algebra.core.tables import ConstantsLike, field_of_values
+from liehom.errors import InputError, JacobiError, ShapeError, StructureError, UndecidedError
+from liehom.immutable import Immutable
+from liehom.scalars import Field, Scalar
+from liehom.scalars.functions.parametric import factors, generic_rank
+from liehom.typing import Expression, ScalarLike
+
+SAMPLES = (2, 3, 5, 7, 1, -1, 0, -2)
+"""Values of parameters that messages propose."""
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class Generic:
+    """A number that holds at all values of the parameters except at zeros of a polynomial.
+
+    Attributes
+    ----------
+    value : int
+    nonvanishing : sympy expression
+        At parameters where it is not zero, the number is `value`. At some of its zeros it may be the same.
+    """
+
+    value: int
+    nonvanishing: Expression
+
+    def __repr__(self) -> str:
+        return str(self.value) + (f" where {self.nonvanishing} != 0" if self.nonvanishing.free_symbols else "")
+
+
+@final
+class LieAlgebraFamily(Immutable):
+    """Lie algebras of one dimension whose structure constants are rational functions of parameters, over QQ.
+
+    Parameters
+    ----------
+    constants : mapping or array_like of shape (n, n, n)
+        As for `LieAlgebra`, with sympy expressions or strings as values; names of basis elements are allowed.
+    parameters : sequence of str or sympy symbols, optional
+        In the order of printing; needed if values are strings. By default the free symbols, sorted by name.
+    dimension : int, optional
+    basis : sequence of str, optional
+    name : str, optional
+
+    Attributes
+    ----------
+    parameters : tuple of sympy symbols
+    conditions : tuple of sympy expressions
+        The Jacobi identity holds exactly at those values of the parameters at which all these polynomials vanish. If
+        there are none, it holds everywhere.
+    denominator : sympy expression
+        The polynomial whose zeros are left out because a structure constant is not defined there.
+
+    Raises
+    ------
+    StructureError
+        If the table is not antisymmetric, or the Jacobi identity fails for all values of the parameters.
+    FieldError
+        If a value is not a rational function with rational coefficients.
+
+    Examples
+    --------
+    >>> import liehom as lh, sympy
+    >>> a, b = sympy.symbols("a b")
+    >>> family = lh.LieAlgebraFamily({("x", "y"): {"z": a}, ("y", "z"): {"x": b}, ("z", "x"): {"y": 1}})
+    >>> family, family.conditions, family.killing_determinant()
+    (<family of Lie algebras of dimension 3 with parameters a, b>, (), -8*a**2*b**2)
+    >>> family.derived_dimension(), family.at(a=1, b=-1).real_form()
+    (3 where a*b != 0, 'sl(2,R)')
+    """
+
+    __slots__ = ("_brackets", "basis_names", "conditions", "denominator", "dimension", "name", "parameters")
+
+    def __init__(
+        self,
+        constants: ConstantsLike,
+        parameters: Sequence[str | Expression] | None = None,
+        *,
+        dimension: int | None = None,
+        basis: Sequence[str] | None = None,
+        name: str | None = None,
+    ) -> None:
+        import sympy
+
+        given: Any = constants
+        if is_named(given):
+            given, basis = by_index(given, basis)
+        names = tuple(map(str, basis)) if basis is not None else None
+        if not isinstance(given, Mapping):
+            given, dimension = from_array(given)
+        symbols = Parameters(given, parameters)
+        self.parameters: tuple[Expression, ...] = symbols.chosen
+        self._brackets: Brackets = antisymmetric(given, symbols)
+        least = 1 + max((x for (i, j), row in self._brackets.items() for x in (i, j, *row)), default=-1)
+        self.dimension: int = dimension if dimension is not None else len(names) if names is not None else least
+        if self.dimension < least or (names is not None and len(names) != self.dimension):
+            raise ShapeError(f"brackets of dimension {least} and {names} do not fit the dimension {self.dimension}")
+        self.basis_names: tuple[str, ...] = names or tuple(f"e{i}" for i in range(self.dimension))
+        self.name: str | None = name
+        values = [v for row in self._brackets.values() for v in row.values()]
+        bottoms = [f for v in values for f in factors(sympy.fraction(v)[1], self.parameters)]
+        self.denominator: Expression = sympy.Mul(*dict.fromkeys(bottoms))
+        self.conditions: tuple[Expression, ...] = self._jacobi()
+
+    def _jacobi(self) -> tuple[Expression, ...]:
+        """The squarefree numerators of all coefficients of cyclic sums that are not identically zero."""
+        import sympy
+
+        found: dict[Expression, None] = {}
+        for i, j, k in itertools.combinations(range(self.dimension), 3):
+            total: dict[int, Expression] = {}
+            for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
+                for middle, v in self._row(a, b).items():
+                    for m, w in self._row(middle, c).items():
+                        total[m] = total.get(m, 0) + v * w
+            for m, value in total.items():
+                if (value := sympy.cancel(value)) == 0:
+                    continue
+                if not (needed := factors(value, self.parameters)):
+                    labels = (self.basis_names[i], self.basis_names[j], self.basis_names[k])
+                    raise JacobiError((i, j, k), {m: str(value)}, labels)
+                found[sympy.Mul(*needed)] = None
+        return tuple(found)
+
+    def _row(self, i: int, j: int) -> dict[int, Expression]:
+        """The coefficients of [e_i, e_j]."""
+        if i < j:
+            return self._brackets.get((i, j), {})
+        return {k: -v for k, v in self._brackets.get((j, i), {}).items()}
+
+    # -- members of the family ---------------------------------------------------------------------------
+    def at(self, values: Mapping[str, ScalarLike] | None = None, **named: ScalarLike) -> LieAlgebra:
+        """The Lie algebra at values of all parameters, over the field that the values determine.
+
+        Raises
+        ------
+        InputError
+            If a parameter has no value, there is no such parameter, or a structure constant is not defined there.
+        JacobiError
+            If the Jacobi identity does not hold there.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> family = lh.LieAlgebraFamily({("x", "t"): {"x": "1"}, ("y", "t"): {"y": "a"}}, ["a"], name="g")
+        >>> family.at(a="sqrt(2)"), family.at(a=-1).killing_signature()
+        (<Lie algebra g(sqrt(2)) of dimension 3 over QQ(sqrt(2))>, (1, 0, 2))
+        """
+        given = {str(key): value for key, value in {**(values or {}), **named}.items()}
+        known = [str(p) for p in self.parameters]
+        if unknown := sorted(set(given) - set(known)):
+            raise InputError(f"{', '.join(unknown)}: the parameters are {', '.join(known) or 'none'}")
+        if missing := [p for p in known if p not in given]:
+            raise InputError(f"the parameter(s) {', '.join(missing)} have no value: {self._proposal()}")
+        field = field_of_values(given.values())
+        point = [field.convert(given[p]) for p in known]
+        brackets = {
+            pair: {k: self._value(v, field, point) for k, v in row.items()} for pair, row in self._brackets.items()
+        }
+        name = f"{self.name}({','.join(map(field.show, point))})" if self.name else None
+        return LieAlgebra(brackets, field, dimension=self.dimension, basis=self.basis_names, name=name)
+
+    def _value(self, expression: Expression, field: Field, point: Sequence[Scalar]) -> Scalar:
+        import sympy
+
+        parts = []
+        for part in sympy.fraction(expression):
+            total = field.zero
+            for exponents, c in sympy.Poly(part, *self.parameters, domain="QQ").terms() if point else [((), part)]:
+                term = field.convert(c)
+                for value, exponent in zip(point, exponents, strict=True):
+                    term = term * value ** int(exponent)
+                total = total + term
+            parts.append(total)
+        if parts[1] == 0:
+            raise InputError(f"the structure constant {expression} is not defined there: its denominator vanishes")
+        return parts[0] / parts[1]
+
+    def sample(self) -> dict[str, int] | None:
+        """Small values of the parameters at which there is a Lie algebra, or None if none of those tried is one."""
+        known = [str(p) for p in self.parameters]
+        for point in itertools.islice(itertools.product(SAMPLES, repeat=len(known)), 4096):
+            there = dict(zip(self.parameters, point, strict=True))
+            if self.denominator.subs(there) != 0 and all(p.subs(there) == 0 for p in self.conditions):
+                return dict(zip(known, point, strict=True))
+        return None
+
+    def _proposal(self) -> str:
+        sample = self.sample() or dict.fromkeys(map(str, self.parameters), "...")
+        return f"choose values, for example .at({', '.join(f'{p}={v}' for p, v in sample.items())})"
+
+    # -- generic statements ------------------------------------------------------------------------------
+    def killing_form(self) -> Expression:
+        """The Killing form as a sympy matrix (n, n) of rational functions of the parameters."""
+        import sympy
+
+        n = self.dimension
+        adjoint = [sympy.Matrix(n, n, lambda k, j, i=i: self._row(i, j).get(k, 0)) for i in self._proved(n)]
+        return sympy.Matrix(n, n, lambda i, j: sympy.cancel((adjoint[i] * adjoint[j]).trace()))
+
+    def killing_determinant(self) -> Expression:
+        """The determinant of the Killing form, factored: the algebra is semisimple if and only if it is not zero."""
+        import sympy
+
+        return sympy.factor(self.killing_form().det(method="berkowitz"))
+
+    def killing_rank(self) -> Generic:
+        """The generic rank of the Killing form."""
+        return self._generic(self.killing_form().tolist())
+
+    def derived_dimension(self) -> Generic:
+        """The generic dimension of [g, g]."""
+        n = self.dimension
+        return self._generic([[row.get(k, 0) for k in self._proved(n)] for row in self._brackets.values()])
+
+    def center_dimension(self) -> Generic:
+        """The generic dimension of the centre."""
+        n = self.dimension
+        rows = [[self._row(i, j).get(k, 0) for i in range(n)] for j in self._proved(n) for k in range(n)]
+        found = self._generic(rows)
+        return Generic(n - found.value, found.nonvanishing)
+
+    def is_semisimple(self) -> bool:
+        """Whether all algebras of the family are semisimple (True) or none is (False).
+
+        Raises
+        ------
+        UndecidedError
+            If some are semisimple and some are not; the message names the polynomial that decides.
+        """
+        determinant = self.killing_determinant()
+        if determinant != 0 and (deciding := factors(determinant, self.parameters)):
+            product = "*".join(f"({f})" for f in deciding)
+            raise UndecidedError(f"semisimple if and only if {product} != 0; {self._proposal()}.is_semisimple()")
+        return bool(determinant != 0)
+
+    def _generic(self, rows: Sequence[Sequence[Expression]]) -> Generic:
+        import sympy
+
+        rank, minor = generic_rank(rows, self.parameters)
+        return Generic(rank, sympy.Mul(*dict.fromkeys(factors(minor * self.denominator, self.parameters))))
+
+    def _proved(self, n: int) -> range:
+        """range(n), if the Jacobi identity is an identity in the parameters."""
+        if self.conditions:
+            conditions = ", ".join(f"{p} = 0" for p in self.conditions)
+            raise StructureError(f"there is a Lie algebra only where {conditions}; {self._proposal()}")
+        return range(n)
+
+    def __getattr__(self, name: str) -> NoReturn:
+        if name.startswith("_") or not hasattr(LieAlgebra, name):
+            raise AttributeError(f"a LieAlgebraFamily has no attribute {name!r}")
+        raise AttributeError(f"{name!r} depends on the parameters; {self._proposal()}.{name}")
+
+    # -- comparison and printing -------------------------------------------------------------------------
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, LieAlgebraFamily) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> tuple[Any, ...]:
+        entries = {(i, j, k): v for (i, j), row in self._brackets.items() for k, v in row.items()}
+        return self.dimension, self.parameters, frozenset(entries.items())
+
+    def __repr__(self) -> str:
+        title = f"{self.name} " if self.name else ""
+        parameters = ", ".join(map(str, self.parameters))
+        return f"<family {title}of Lie algebras of dimension {self.dimension} with parameters {parameters}>"
+
+    def __str__(self) -> str:
+        import sympy
+
+        names = [sympy.Symbol(name) for name in self.basis_names]
+        lines = [f"family of Lie algebras with parameters {', '.join(map(str, self.parameters))}"]
+        lines += [f"  basis {', '.join(self.basis_names)}"]
+        for (i, j), row in sorted(self._brackets.items()):
+            lines.append(f"  [{names[i]}, {names[j]}] = {sympy.Add(*(v * names[k] for k, v in row.items()))}")
+        return "\n".join([*lines, *(f"  only where {p} = 0" for p in self.conditions)])
