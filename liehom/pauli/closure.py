@@ -9,23 +9,13 @@ from typing import final
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.real_form_names import join_real_forms
+from liehom.budget import current_limits, within
 from liehom.errors import InputError
 from liehom.pauli.identification import WordIdeal, word_ideals
 from liehom.pauli.symplectic import closed_words, real_matrix, word_table
 from liehom.pauli.words import Hamiltonian, PauliSums, read_sums, spell
 from liehom.representations.core.representation import Representation
 from liehom.scalars import Scalar
-
-MOST_WORDS = 20_000
-"""Words in a closure, by default. The table of the algebra has at most a quarter of its square as entries."""
-MOST_ENTRIES = 50_000_000
-"""Entries of all matrices of a representation together."""
-
-
-MOST_WORDS = 20_000
-"""Words in a closure, by default."""
-MOST_ENTRIES = 50_000_000
-"""Entries of all matrices of a representation together."""
 
 
 @final
@@ -149,8 +139,8 @@ class DynamicalLieAlgebra:
 
         Raises
         ------
-        InputError
-            If the matrices have more than 50 million entries together.
+        LimitError
+            If the matrices have more entries together than `liehom.limits` allows.
 
         Examples
         --------
@@ -162,10 +152,7 @@ class DynamicalLieAlgebra:
         [-1, 0]]))
         """
         size = 2 ** (self.qubits + 1)
-        if self.dimension * size * size > MOST_ENTRIES:
-            raise InputError(
-                f"the {self.dimension} matrices have size {size}, more than {MOST_ENTRIES} entries together"
-            )
+        within("entries", self.dimension * size * size, "the matrices of the representation have {} entries")
         field = self.word_algebra.field
         words = [field.matrix(real_matrix(word, self.qubits)) for word in self._integers]
         flat = field.stack_rows([a.reshape(1, size * size) for a in words], size * size)
@@ -211,9 +198,7 @@ class DynamicalLieAlgebra:
         return f"<dynamical Lie algebra{name} of {len(self.sums.terms)} Hamiltonians on {self.qubits} qubits>"
 
 
-def closure(
-    hamiltonians: Iterable[Hamiltonian], *, qubits: int | None = None, most_words: int = MOST_WORDS
-) -> DynamicalLieAlgebra:
+def closure(hamiltonians: Iterable[Hamiltonian], *, qubits: int | None = None) -> DynamicalLieAlgebra:
     """The dynamical Lie algebra of Hamiltonians H_a: the real Lie algebra that the matrices i H_a generate.
 
     Parameters
@@ -225,15 +210,13 @@ def closure(
         the coefficient of a single word does not matter.
     qubits : int, optional
         Number of qubits; by default the smallest number that the words show.
-    most_words : int, optional
-        Largest number of words in the closure.
 
     Raises
     ------
     ParseError, FieldError, InputError
         If a Hamiltonian is not a sum of words with exact real coefficients.
-    InputError
-        If nested commutators reach more than `most_words` words.
+    LimitError
+        If nested commutators reach more words than the dimension that `liehom.limits` allows.
 
     Notes
     -----
@@ -248,7 +231,7 @@ def closure(
     (190, 'so(20)')
     """
     sums = read_sums(hamiltonians, qubits)
-    words = closed_words([word for terms in sums.terms for word in terms], sums.qubits, most_words)
-    if len(words) > most_words:
-        raise InputError(f"nested commutators reach more than {most_words} words; raise most_words")
+    allowed = current_limits().dimension
+    words = closed_words([word for terms in sums.terms for word in terms], sums.qubits, allowed)
+    within("dimension", len(words), "nested commutators reach {} words or more")
     return DynamicalLieAlgebra(sums, words)

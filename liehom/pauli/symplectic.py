@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.budget import in_time, within
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
 
@@ -43,6 +44,7 @@ def closed_words(words: Sequence[int], qubits: int, most: int | None = None) -> 
                 if new not in seen:
                     seen.add(new)
                     found.append(new)
+        in_time()
         if most is not None and len(found) > most:
             return found[: most + 1]
     return found
@@ -61,6 +63,7 @@ def products(words: Sequence[int], qubits: int) -> tuple[IntegerArray, IntegerAr
     x, z = bits(words, qubits)
     left, right = z @ x.T, x @ z.T
     first, second = np.nonzero(np.triu((left + right) & 1, 1))
+    within("entries", len(first), "the bracket table has {} entries")
     position = {word: i for i, word in enumerate(words)}
     third = np.array(
         [position[words[a] ^ words[b]] for a, b in zip(first.tolist(), second.tolist(), strict=True)], dtype=np.int64
