@@ -10,15 +10,18 @@ order of ``itertools.combinations``, with the coordinates of V innermost. The di
 from __future__ import annotations
 
 import itertools
+import math
 from bisect import bisect_left
 from collections.abc import Sequence
 from math import comb, lcm
 from typing import Any, final
 
+import numpy as np
+
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.errors import InputError, RepresentationError, ShapeError
-from liehom.scalars import ExactField, Field, FloatField, Matrix, as_exact
+from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Matrix, as_exact
 from liehom.scalars.fields.field import MatricesLike
 
 MAX_ENTRIES = 30_000_000
@@ -132,7 +135,9 @@ class CochainComplex:
                     for part, values in zip(parts, table.parts, strict=True):
                         value = values[entry]
                         part[(row + u) * shape[1] + column + u] += -value if negative else value
-        return _matrix(self.algebra.field, parts, shape, table.den)
+        # a constant occurs in at most comb(n - 2, degree - 1) m entries, an entry is a sum of at most n constants
+        occurrences = comb(max(n - 2, 0), max(degree - 1, 0)) * m * n
+        return _matrix(self.algebra.field, parts, shape, table.den, table.error * math.sqrt(occurrences))
 
     def _from_action(self, degree: int, shape: tuple[int, int]) -> Matrix:
         """The first sum of d: the matrix of e_t maps S to S + t."""
@@ -147,14 +152,17 @@ class CochainComplex:
                     for index, value in values:
                         u, v = divmod(index, m)
                         part[(start + v) * shape[1] + x * m + u] += -value if a % 2 else value
-        return _matrix(field, parts, shape, den)
+        error = math.hypot(*(a.error for a in self.matrices or () if isinstance(a, FloatMatrix)))
+        return _matrix(field, parts, shape, den, error * math.sqrt(comb(self.algebra.dimension - 1, degree)))
 
 
-def _matrix(field: Field, parts: Sequence[Sequence[Any]], shape: tuple[int, int], den: int) -> Matrix:
-    if isinstance(field, ExactField):
-        return field.from_parts(parts, *shape, den)
-    made: Matrix = field.from_entries(parts[0], *shape)
-    return made
+def _matrix(field: Field, parts: Sequence[Sequence[Any]], shape: tuple[int, int], den: int, error: float) -> Matrix:
+    """The matrix with these numerators; over floats with this error."""
+    if isinstance(field, FloatField):
+        return FloatMatrix(field, np.array(parts[0], dtype=np.float64).reshape(shape), error)
+    if not isinstance(field, ExactField):
+        raise InputError(f"cochains over {field} are not supported")
+    return field.from_parts(parts, *shape, den)
 
 
 def _integral(matrices: Sequence[Matrix], field: Field) -> tuple[int, list[list[list[tuple[int, Any]]]]]:
@@ -185,17 +193,10 @@ def _prove_representation(algebra: LieAlgebra, matrices: tuple[Matrix, ...]) -> 
             left = block.select(rows=[j]).reshape(matrices[0].nrows, matrices[0].nrows)
             products = matrices[i] @ matrices[j], matrices[j] @ matrices[i]
             defect = left - products[0] + products[1]
-            if not (defect.is_zero() if field.exact else _is_rounding(defect, products)):
+            if not defect.is_zero():
                 names = algebra.basis_names
                 raise RepresentationError(
                     (i, j),
                     f"the matrices are not a representation: rho([{names[i]}, {names[j]}]) differs from the commutator "
                     f"of rho({names[i]}) and rho({names[j]})",
                 )
-
-
-def _is_rounding(defect: Matrix, products: tuple[Matrix, Matrix]) -> bool:
-    field = defect.field
-    rtol = field.rtol if isinstance(field, FloatField) else 0.0
-    largest = max(abs(x) for a in products for x in a.entries())
-    return bool(max(abs(x) for x in defect.entries()) <= rtol * max(1.0, largest))

@@ -214,8 +214,9 @@ def cohomology(
     if not field.exact:
         # cochains in the kernel of d that are orthogonal to the coboundaries
         after, before = cochains.differential(degree), cochains.differential(degree - 1)
-        return Cohomology(cochains, degree, field.stack_rows([after.T, before], length).null_space())
-    if degree in (1, 2) and algebra.killing_form().rank() == algebra.dimension:
+        conditions = field.stack_rows([after.T, before], length)
+        return Cohomology(cochains, degree, conditions.null_space("the dimension of the cohomology"))
+    if degree in (1, 2) and algebra.is_semisimple():
         return Cohomology(cochains, degree, field.zeros(0, length))  # Whitehead's lemmas
     return Cohomology(cochains, degree, _Solver(cochains).complement(degree))
 

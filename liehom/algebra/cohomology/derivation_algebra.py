@@ -20,7 +20,7 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import InputError, InternalError
 from liehom.immutable import Immutable
-from liehom.scalars import Matrix
+from liehom.scalars import FloatMatrix, Matrix
 from liehom.scalars.fields.field import MatrixLike
 
 
@@ -129,7 +129,7 @@ def derivations(algebra: LieAlgebra) -> Derivations:
     n, field = algebra.dimension, algebra.field
     if algebra.is_abelian():
         return Derivations(algebra, tuple(field.identity(n * n).split_rows(n, n)), 0)
-    if algebra.killing_form().rank() == n:
+    if algebra.is_semisimple():
         return Derivations(algebra, _inner(algebra, range(n)), n)
     outside = algebra.center().subspace.complement_indices()
     inner = _inner(algebra, outside)
@@ -183,5 +183,7 @@ def _numerical(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, 
     whole -= np.einsum("ajm,bi->ijmab", c, one) + np.einsum("iam,bj->ijmab", c, one)
     conditions = whole[np.triu_indices(n, 1)].reshape(-1, n * n)
     table = np.concatenate([conditions, *(m.to_numpy().reshape(1, n * n) for m in inner)])
-    solutions = field.from_entries(table.ravel().tolist(), len(table), n * n).null_space()
+    # one table of constants with one relative error
+    error = float(np.linalg.norm(table)) * algebra.table.error / algebra.table.norm()
+    solutions = FloatMatrix(field, table, error).null_space("the number of outer derivations")
     return tuple(solutions.split_rows(n, n))

@@ -63,7 +63,7 @@ def word_bases(algebra: LieAlgebra) -> Iterator[WordBasis]:
 
     Raises
     ------
-    FieldError
+    UndecidedError
         Over float64.
 
     Examples

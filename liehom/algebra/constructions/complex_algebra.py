@@ -6,6 +6,7 @@ A complex Lie algebra of dimension n is a real one of dimension 2n with a comple
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -152,7 +153,8 @@ def _realified(
         entries += [(i, j, k, a), (i, n + j, n + k, a), (j, n + i, n + k, -a), (n + i, n + j, k, -a)]
     for i, j, k, b in imaginary:
         entries += [(i, j, n + k, b), (i, n + j, k, -b), (j, n + i, k, b), (n + i, n + j, n + k, -b)]
-    table = StructureConstants(field, 2 * n, entries)
+    # each constant occurs in four brackets
+    table = StructureConstants(field, 2 * n, entries, 2 * math.hypot(real.error, imaginary.error))
     algebra = LieAlgebra(table, basis=[*names, *(f"i*{x}" for x in names)], name=name, check=check)
     one, zero = field.identity(n), field.zeros(n, n)
     top, bottom = field.stack_columns([zero, -one], n), field.stack_columns([one, zero], n)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import CocycleError, ShapeError, StructureError, shown
-from liehom.scalars import Field, FloatField, Matrix, Scalar
+from liehom.scalars import FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.field import MatricesLike, MatrixLike
 
 
@@ -63,7 +64,8 @@ def central_extension(
         pairs = itertools.combinations(range(n), 2)
         entries += [(i, j, n + a, form[i, j]) for i, j in pairs if form[i, j] != field.zero]
     names = _extended_names(algebra, len(forms)) if basis is None else basis
-    table = StructureConstants(field, n + len(forms), entries)
+    error = math.hypot(algebra.table.error, *(2**0.5 * _error(form) for form in forms))
+    table = StructureConstants(field, n + len(forms), entries, error)
     # The Jacobi identity of the extension is that of g and the cocycle condition.
     return LieAlgebra(table, basis=names, name=name, check=False)
 
@@ -92,16 +94,16 @@ def _is_sequence(value: object) -> bool:
 def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
     """Prove that w is antisymmetric and w([x, y], z) + cyclic = 0, on basis elements."""
     n, field = algebra.dimension, algebra.field
-    bound = _rounding(field, form.entries())
     symmetric = form + form.T
+    bound = _error(symmetric)
     for i, j in itertools.combinations_with_replacement(range(n), 2):
         if _exceeds(symmetric[i, j], bound):
             there, back = (shown(field.format(form[x])) for x in ((i, j), (j, i)))
             raise StructureError(f"a cocycle is antisymmetric, but w[{i}, {j}] = {there} and w[{j}, {i}] = {back}")
     one = field.identity(n)
-    blocks = [block.to_rows() for block in algebra.table.contract(one, one, form)]  # [i][j][k] = w([e_i, e_j], e_k)
-    if bound:
-        bound *= n * max((float(abs(x)) for x in algebra.table.values()), default=0.0)
+    contracted = algebra.table.contract(one, one, form)
+    blocks = [block.to_rows() for block in contracted]  # [i][j][k] = w([e_i, e_j], e_k)
+    bound = 3 * max(map(_error, contracted), default=0.0)
     for i, j, k in itertools.combinations(range(n), 3):
         value = blocks[i][j][k] + blocks[j][k][i] + blocks[k][i][j]
         if _exceeds(value, bound):
@@ -109,9 +111,9 @@ def _prove_cocycle(algebra: LieAlgebra, form: Matrix) -> None:
             raise CocycleError((i, j, k), field.format(value), (names[i], names[j], names[k]))
 
 
-def _rounding(field: Field, values: list[Scalar]) -> float:
-    """The bound below which a value counts as zero: 0 over an exact field, rtol max |value| over floats."""
-    return field.rtol * max((abs(float(x)) for x in values), default=0.0) if isinstance(field, FloatField) else 0.0
+def _error(matrix: Matrix) -> float:
+    """The bound up to which an entry counts as zero: 0 over an exact field, the matrix's error over floats."""
+    return matrix.error if isinstance(matrix, FloatMatrix) else 0.0
 
 
 def _exceeds(value: Scalar, bound: float) -> bool:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import InputError, ShapeError
-from liehom.scalars import Scalar
+from liehom.scalars import FloatMatrix, Scalar
 from liehom.scalars.fields.field import MatricesLike
 
 Entry = tuple[int, int, int, Scalar]
@@ -54,7 +55,8 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
     if name is None and all(names):
         name = "+".join(str(x) for x in names)
     # Each summand satisfies the axioms and brackets between them vanish.
-    return LieAlgebra(StructureConstants(field, shift, entries), name=name, check=False)
+    error = math.hypot(*(g.table.error for g in algebras))
+    return LieAlgebra(StructureConstants(field, shift, entries, error), name=name, check=False)
 
 
 def semidirect_sum(
@@ -118,4 +120,6 @@ def semidirect_sum(
         if ideal.field != algebra.field:
             raise InputError(f"the algebra is over {algebra.field.name}, the ideal over {ideal.field.name}")
         entries += [(i + h, j + h, k + h, v) for i, j, k, v in ideal.structure_constants()]
-    return LieAlgebra(StructureConstants(algebra.field, h + d, entries), basis=basis, name=name, check=check)
+    acting = (2**0.5 * matrix.error for matrix in made if isinstance(matrix, FloatMatrix))
+    error = math.hypot(algebra.table.error, 0.0 if ideal is None else ideal.table.error, *acting)
+    return LieAlgebra(StructureConstants(algebra.field, h + d, entries, error), basis=basis, name=name, check=check)

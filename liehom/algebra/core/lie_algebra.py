@@ -539,7 +539,7 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64: rounding decides whether a matrix is nilpotent.
 
         Notes
@@ -564,7 +564,7 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -590,7 +590,7 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Notes
@@ -623,8 +623,10 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
+        UndecidedError
+            Over float64.
         FieldError
-            Over float64, or if a complex place needs a field of too high a degree.
+            If a complex place needs a field of too high a degree.
 
         Examples
         --------
@@ -649,7 +651,7 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64, where rounding decides the dimension of a null space.
 
         Notes
@@ -776,6 +778,8 @@ class LieAlgebra(Immutable):
         """
         if not isinstance(field, Field):
             raise InputError(f"expected a field such as lh.QQ, lh.RR or lh.number_field('sqrt(2)'), got {field!r}")
+        if field == self.field:
+            return LieAlgebra(self._constants, basis=self.basis_names, name=self.name, check=False)
         if isinstance(field, FloatField):
             entries: list[tuple[int, int, int, Scalar]] = [
                 (i, j, k, self.field.to_float(v)) for i, j, k, v in self._constants
@@ -857,7 +861,7 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -898,7 +902,7 @@ class LieAlgebra(Immutable):
         ------
         InputError
             If the algebra is not semisimple, or `cartan` is not a Cartan subalgebra of it.
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -921,7 +925,7 @@ class LieAlgebra(Immutable):
         ------
         InputError
             If the algebra is not semisimple.
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -953,7 +957,7 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
+        UndecidedError
             Over float64.
 
         Examples
@@ -973,10 +977,9 @@ class LieAlgebra(Immutable):
 
         Raises
         ------
-        FieldError
-            Over float64.
         UndecidedError
-            For the few pairs of real forms, of dimension at least 153, with one type and one Killing signature.
+            Over float64, and for the few pairs of real forms, of dimension at least 153, with one type and one
+            Killing signature.
 
         Notes
         -----

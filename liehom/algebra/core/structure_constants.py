@@ -38,6 +38,8 @@ class StructureConstants(Immutable):
     dimension : int
     entries : iterable of (i, j, k, value)
         Each position once, i < j, values non-zero elements of the field.
+    error : float, optional
+        Over floats, the uncertainty of computed entries; by default they are data.
 
     Attributes
     ----------
@@ -56,7 +58,13 @@ class StructureConstants(Immutable):
 
     __slots__ = ("_dense", "_flat", "_sparse", "den", "dimension", "error", "field", "i", "j", "k", "parts")
 
-    def __init__(self, field: Field, dimension: int, entries: Iterable[tuple[int, int, int, Scalar]]) -> None:
+    def __init__(
+        self,
+        field: Field,
+        dimension: int,
+        entries: Iterable[tuple[int, int, int, Scalar]],
+        error: float | None = None,
+    ) -> None:
         ordered = sorted(entries, key=lambda e: e[:3])
         self.field: Field = field
         self.dimension: int = dimension
@@ -67,7 +75,7 @@ class StructureConstants(Immutable):
         self.parts: tuple[Any, ...]
         self.den: int
         self.parts, self.den = _integers(field, [e[3] for e in ordered])
-        self.error = self._error_of_data()
+        self.error = self._error_of_data() if error is None else error
         self._dense: Matrix | None = None
         self._flat: Matrix | None = None
         self._sparse: SparseInteger | None = None

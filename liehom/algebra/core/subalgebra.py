@@ -244,7 +244,7 @@ class Subalgebra(Immutable):
         ------
         InputError
             If the subalgebra is not simple over its field.
-        FieldError
+        UndecidedError
             Over float64.
 
         Notes
@@ -276,8 +276,10 @@ class Subalgebra(Immutable):
         ------
         InputError
             If the subalgebra is not simple over its field.
+        UndecidedError
+            Over float64.
         FieldError
-            Over float64, or if the degree of such a field could exceed 36; `places` needs no field.
+            If the degree of such a field could exceed 36; `places` needs no field.
 
         Examples
         --------

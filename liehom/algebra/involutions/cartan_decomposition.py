@@ -75,7 +75,7 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
     """Implements `LieAlgebra.cartan_decomposition`."""
     field, n = algebra.field, algebra.dimension
     killing = algebra.killing_form()
-    if killing.rank() < n:
+    if not algebra.is_semisimple():
         raise InputError("only a semisimple algebra has a Cartan decomposition; take the Levi factor")
     if n and isinstance(field, FloatField):
         return _decomposed(algebra, field.from_entries(numerical_involution(algebra).T.ravel().tolist(), n, n))

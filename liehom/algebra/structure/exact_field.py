@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.errors import FieldError
+from liehom.errors import UndecidedError
 from liehom.scalars import ExactField
 
 
@@ -18,7 +18,7 @@ def exact_field(algebra: LieAlgebra, result: str) -> ExactField:
 
     Raises
     ------
-    FieldError
+    UndecidedError
         Over float64.
 
     Examples
@@ -28,5 +28,8 @@ def exact_field(algebra: LieAlgebra, result: str) -> ExactField:
     QQ
     """
     if not isinstance(algebra.field, ExactField):
-        raise FieldError(f"{result} are computed over exact fields only: build the algebra over QQ or a number field")
+        raise UndecidedError(
+            f"{result} are computed over exact fields only, because rounding decides them; make the algebra exact by "
+            "lh.rationalize(algebra, max_denominator=...), or build it over QQ or a number field"
+        )
     return algebra.field

@@ -91,7 +91,7 @@ def centroid_field(ideal: Subalgebra) -> CentroidField:
     ------
     InputError
         If the subalgebra is not simple, because its Killing form is degenerate or it is a sum of ideals.
-    FieldError
+    UndecidedError
         Over float64.
 
     Examples

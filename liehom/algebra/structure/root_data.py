@@ -86,7 +86,7 @@ def root_data(algebra: LieAlgebra, cartan: Subalgebra | None = None) -> RootData
 
     Raises
     ------
-    FieldError
+    UndecidedError
         Over float64.
     InputError
         If the algebra is not semisimple.

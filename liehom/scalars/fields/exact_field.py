@@ -17,7 +17,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import FieldError, ShapeError, SingularError
+from liehom.errors import FieldError, ShapeError, SingularError, UndecidedError
 from liehom.immutable import Immutable
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.scalars.fields.integer_matrices import (
@@ -443,7 +443,7 @@ class ExactMatrix(Matrix, Immutable):
 
 
 def as_exact(matrix: Matrix) -> ExactMatrix:
-    """The given matrix, typed as an `ExactMatrix`; `FieldError` if it is over float64."""
+    """The given matrix, typed as an `ExactMatrix`; `UndecidedError` over float64."""
     if not isinstance(matrix, ExactMatrix):
-        raise FieldError(f"this is computed over an exact field only, not over {matrix.field.name}")
+        raise UndecidedError(f"rounding decides this over {matrix.field.name}; make the object exact by lh.rationalize")
     return matrix
