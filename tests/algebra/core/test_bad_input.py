@@ -133,6 +133,7 @@ def test_a_float_where_exactness_was_asked_for(value: Any) -> None:
         lambda: g.change_of_basis([[value, 0, 0], [0, 1, 0], [0, 0, 1]]),
         lambda: g.centralizer([[value, 0, 0]]),
         lambda: lh.Representation(lh.so(2), [[[0, value], [-value, 0]]]),
+        lambda: lh.catalog.representation("so(3)").subrepresentation([[value, 0, 0]]),
         lambda: lh.central_extension(lh.abelian(2), [[0, value], [-value, 0]]),
         lambda: lh.so(2).cohomology(1, [[[0, value], [-value, 0]]]),
         lambda: lh.semidirect_sum(lh.so(2), [[[0, value], [-value, 0]]]),
