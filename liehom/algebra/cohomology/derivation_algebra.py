@@ -20,7 +20,7 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.errors import InputError, InternalError
 from liehom.immutable import Immutable
-from liehom.scalars import FloatMatrix, Matrix
+from liehom.scalars import FloatField, FloatMatrix, Matrix
 from liehom.scalars.fields.field import MatrixLike
 
 
@@ -176,6 +176,8 @@ def _outer(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]
 def _numerical(algebra: LieAlgebra, inner: tuple[Matrix, ...]) -> tuple[Matrix, ...]:
     """Derivations over floats that are orthogonal to the inner ones, by a numerical null space."""
     n, field = algebra.dimension, algebra.field
+    if not isinstance(field, FloatField):
+        raise TypeError(f"derivations over {field} are not supported")
     c = algebra.table.dense().to_numpy().reshape(n, n, n)
     one = np.eye(n)
     # the coefficient of D_ab in coordinate m of the condition for e_i, e_j

@@ -14,6 +14,7 @@ from typing import Any, TypeVar, cast, final
 
 import numpy as np
 
+from liehom.algebra.core.table_numbers import dense_exact, exactly, integers_of
 from liehom.immutable import Immutable
 from liehom.scalars import ExactField, Field, FloatField, FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.exact_field import ExactMatrix
@@ -74,7 +75,7 @@ class StructureConstants(Immutable):
         self.k: IntegerArray = index[:, 2]
         self.parts: tuple[Any, ...]
         self.den: int
-        self.parts, self.den = _integers(field, [e[3] for e in ordered])
+        self.parts, self.den = integers_of(field, [e[3] for e in ordered])
         self.error = self._error_of_data() if error is None else error
         self._dense: Matrix | None = None
         self._flat: Matrix | None = None
@@ -185,7 +186,7 @@ class StructureConstants(Immutable):
         """The entries as field elements, in the table's order."""
         if isinstance(self.field, FloatField):
             return [float(x) for x in self.parts[0]]
-        make, den = _exact(self.field).from_integer_coordinates, self.den
+        make, den = exactly(self.field).from_integer_coordinates, self.den
         return [make(x, den) for x in zip(*self.parts, strict=True)]
 
     def __iter__(self) -> Iterator[tuple[int, int, int, Scalar]]:
@@ -208,7 +209,7 @@ class StructureConstants(Immutable):
 
     def exact_field(self) -> ExactField:
         """The field of a table over an exact field; `TypeError` over floats."""
-        return _exact(self.field)
+        return exactly(self.field)
 
     def by_pair(self) -> dict[tuple[int, int], list[tuple[int, Any]]]:
         """The table as {(i, j): [(k, value), ...]} for both orders of i and j, with numerators as values over QQ."""
@@ -250,8 +251,8 @@ class StructureConstants(Immutable):
             array = np.zeros(n**3)
             array[forward], array[backward] = self.parts[0], -np.array(self.parts[0])
             return FloatMatrix(self.field, array.reshape(nrows, ncols), self.error)
-        return _dense_exact(
-            _exact(self.field), (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den
+        return dense_exact(
+            exactly(self.field), (nrows, ncols), forward.tolist(), backward.tolist(), self.parts, self.den
         )
 
     def flat(self) -> Matrix:
@@ -290,7 +291,7 @@ class StructureConstants(Immutable):
         ):
             out[k * n + j] += weights[i] * values[t]
             out[k * n + i] -= weights[j] * values[t]
-        return _exact(self.field).from_integers(out, n, n, self.den * x.den)
+        return exactly(self.field).from_integers(out, n, n, self.den * x.den)
 
     def contract(self, left: M, right: M, out: M) -> list[M]:
         """For each row a of `left`, the matrix with rows [left_a, right_b] @ out.
@@ -321,7 +322,7 @@ class StructureConstants(Immutable):
                 blocks = [right @ block for block in blocks]
             return blocks if out == one else [block @ out for block in blocks]
         product = self._contract_sparse(left, right, out)
-        dense: list[Any] = product.dense_blocks(_exact(self.field), p, q, r)
+        dense: list[Any] = product.dense_blocks(exactly(self.field), p, q, r)
         return dense
 
     def _contract_floats(self, left: FloatMatrix, right: Any, out: Any) -> FloatMatrix:
@@ -339,7 +340,7 @@ class StructureConstants(Immutable):
 
     def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
         """`contract` for a dense table over QQ: numerators are multiplied, denominators reduced once."""
-        n, field = self.dimension, _exact(self.field)
+        n, field = self.dimension, exactly(self.field)
         one = field.identity(n)
         flat: Any = self.flat()
         integers = flat.parts[0] if left == one else left.parts[0] * flat.parts[0]
@@ -416,43 +417,3 @@ class StructureConstants(Immutable):
         second = SparseInteger.from_matrix(left) @ first.reshape(n, n * r)  # (a, j r + c)
         moved = second.regroup(p, n, r)  # (j, a r + c)
         return SparseInteger.from_matrix(right) @ moved
-
-
-def _integers(field: Field, values: Sequence[Any]) -> tuple[tuple[Any, ...], int]:
-    """Numerators (one sequence per coordinate over QQ) and their common denominator; floats as one array over 1."""
-    if isinstance(field, FloatField):
-        return (np.array(values, dtype=np.float64),), 1
-    exact = _exact(field)
-    if exact.degree == 1:
-        if all(v.q == 1 for v in values):
-            return ([int(v.p) for v in values],), 1
-        den = lcm(*(int(v.q) for v in values))
-        return ([int(v.p) * (den // int(v.q)) for v in values],), den
-    columns = [exact.coordinates(v) for v in values]
-    den = lcm(*(int(c.q) for column in columns for c in column))
-    integral = [[int(c.p) * (den // int(c.q)) for c in column] for column in columns]
-    return tuple(list(part) for part in zip(*integral, strict=True)) or ([],) * exact.degree, den
-
-
-def _exact(field: Field) -> ExactField:
-    if not isinstance(field, ExactField):
-        raise TypeError(f"structure constants over {field} are not supported")
-    return field
-
-
-def _dense_exact(
-    field: ExactField,
-    shape: tuple[int, int],
-    forward: list[int],
-    backward: list[int],
-    parts: tuple[Sequence[int], ...],
-    den: int,
-) -> ExactMatrix:
-    made = []
-    for part in parts:
-        out = [0] * (shape[0] * shape[1])
-        for f, b, v in zip(forward, backward, part, strict=True):
-            out[f] = v
-            out[b] = -v
-        made.append(out)
-    return field.from_parts(made, *shape, den)
