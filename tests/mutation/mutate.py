@@ -40,6 +40,8 @@ OPERATIONS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Mod: ast.FloorDiv, ast.Pow: ast.Mult, ast.LShift: ast.RShift, ast.RShift: ast.LShift, ast.MatMult: ast.Add,
 }  # fmt: skip
 TIMED_OUT = "timed out"
+Place = tuple[tuple[str, int | None], ...]
+"""The way from the root of a syntax tree to a node: names of fields, with indices."""
 
 
 @dataclass(frozen=True)
@@ -50,11 +52,20 @@ class Mutant:
     line: int
     change: str
     number: int
-    source: str
+    place: Place
+    kind: str
 
     @property
     def key(self) -> str:
         return f"{self.module}:{self.line} #{self.number} {self.change}"
+
+    @property
+    def source(self) -> str:
+        """The module with this change."""
+        tree = ast.parse((ROOT / self.module).read_text(encoding="utf-8"))
+        after = dict(changes(_at(tree, self.place)))[self.kind]
+        _put(tree, self.place, ast.Pass() if after is None else after)
+        return ast.unparse(ast.fix_missing_locations(tree))
 
 
 # -- mutants -----------------------------------------------------------------------------------------------
@@ -98,39 +109,25 @@ def _is_text(node: ast.BinOp) -> bool:
 
 def mutants(module: str) -> Iterator[Mutant]:
     """All mutants of a module. Annotations, messages of errors, decorators and imports are left as they are."""
-    text = (ROOT / module).read_text(encoding="utf-8")
-    number = 0
-    for place in _places(ast.parse(text), ()):
-        for change, _ in changes(_at(ast.parse(text), place)):
-            tree = ast.parse(text)
-            before = _at(tree, place)
-            after = dict(changes(before))[change]
+    tree, number = ast.parse((ROOT / module).read_text(encoding="utf-8")), 0
+    for place in _places(tree, ()):
+        before = _at(tree, place)
+        for change, after in changes(before):
             old = ast.unparse(before).splitlines()[0]
-            _put(tree, place, after if after is not None else ast.Pass())
             new = "pass" if after is None else ast.unparse(ast.fix_missing_locations(after)).splitlines()[0]
-            source = ast.unparse(ast.fix_missing_locations(tree))
-            line = getattr(before, "lineno", 0)
-            yield Mutant(module, line, f"{change}: `{old}` -> `{new}`", number, source)
+            yield Mutant(module, getattr(before, "lineno", 0), f"{change}: `{old}` -> `{new}`", number, place, change)
             number += 1
 
 
-Place = tuple[tuple[str, int | None], ...]
-SKIPPED = {
-    "annotation",
-    "returns",
-    "decorator_list",
-    "type_params",
-    "exc",
-    "type_comment",
-    "bases",
-    "keywords_of_class",
-}
+SKIPPED = {"annotation", "returns", "decorator_list", "type_params", "exc", "bases"}
 
 
 def _places(node: ast.AST, path: Place) -> Iterator[Place]:
     if isinstance(node, (ast.Import, ast.ImportFrom, ast.JoinedStr)):
         return
     if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+        return
+    if isinstance(node, ast.keyword) and node.arg == "strict":  # zip's own check of equal lengths
         return
     yield path
     for name, value in ast.iter_fields(node):
@@ -170,25 +167,31 @@ def tests_of(module: str) -> list[str]:
     return [p.relative_to(ROOT).as_posix() for p in found]
 
 
+def tested(copied: Path, tests: list[str], timeout: float) -> subprocess.CompletedProcess[str] | None:
+    """The run of the tests in the copy up to the first that fails, or None if it took too long."""
+    environment = os.environ | {"PYTHONPATH": str(copied), "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
+    try:
+        return subprocess.run(command, cwd=copied, env=environment, timeout=timeout, capture_output=True, text=True)
+    except subprocess.TimeoutExpired:
+        return None
+
+
 def outcome(copied: Path, mutant: Mutant, tests: list[str], timeout: float) -> str:
     """'killed by MODULE', 'timed out' (counted as killed) or 'survived'."""
     target = copied / mutant.module
     original = target.read_text(encoding="utf-8")
-    environment = os.environ | {"PYTHONPATH": str(copied), "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1"}
     try:
         target.write_text(mutant.source, encoding="utf-8")
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
-        run = subprocess.run(command, cwd=copied, env=environment, timeout=timeout, capture_output=True, text=True)
-    except subprocess.TimeoutExpired:
-        return TIMED_OUT
+        made = tested(copied, tests, timeout)
     finally:
         target.write_text(original, encoding="utf-8")
-    if run.returncode == 0:
+    if made is None:
+        return TIMED_OUT
+    if made.returncode == 0:
         return "survived"
-    failed = [
-        line.split()[1].split("::")[0] for line in run.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))
-    ]
-    return f"killed by {Path(failed[0]).name if failed else 'the import'}"
+    lines = [line for line in made.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return f"killed by {Path(lines[0].split()[1].split('::')[0]).name if lines else 'the import'}"
 
 
 def run(modules: list[str], count: int, seed: int, results: Path, timeout: float, only: list[str]) -> None:
@@ -203,11 +206,23 @@ def run(modules: list[str], count: int, seed: int, results: Path, timeout: float
             shutil.copytree(ROOT / name, copied / name, ignore=shutil.ignore_patterns("__pycache__"))
         for name in ("pyproject.toml", "README.md", "CONTRIBUTING.md"):
             shutil.copy(ROOT / name, copied / name)
+        seconds_of: dict[str, float] = {}
         for mutant in [m for m in pool if only == [] or m.key in only][:count]:
             if mutant.key in done:
                 continue
+            tests = tests_of(mutant.module)
             start = time.monotonic()
-            found = outcome(copied, mutant, tests_of(mutant.module), timeout)
+            if tests[0] not in seconds_of:  # do the tests pass without a mutant, and how long do they take
+                right = tested(copied, tests, timeout)
+                seconds_of[tests[0]] = time.monotonic() - start
+                if right is None or right.returncode != 0:
+                    print(f"{mutant.module} is left out, as its tests do not pass without a mutant")
+                    print("\n".join(right.stdout.splitlines()[-5:]) if right else f"in {timeout} s")
+                    seconds_of[tests[0]] = 0.0
+            if not seconds_of[tests[0]]:
+                continue
+            start = time.monotonic()
+            found = outcome(copied, mutant, tests, max(30.0, 5 * seconds_of[tests[0]]))
             seconds = round(time.monotonic() - start, 1)
             with results.open("a", encoding="utf-8") as file:
                 file.write(json.dumps({"mutant": mutant.key, "outcome": found, "seconds": seconds}) + "\n")
@@ -234,7 +249,7 @@ def main() -> None:
     parser.add_argument("modules", nargs="*", help="paths or patterns relative to the repository")
     parser.add_argument("--count", type=int, default=50, help="mutants in the sample")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--timeout", type=float, default=120, help="seconds for the tests of one mutant")
+    parser.add_argument("--timeout", type=float, default=300, help="seconds for the tests without a mutant")
     parser.add_argument("--results", type=Path, default=Path("mutants.jsonl"))
     parser.add_argument("--only", action="append", default=[], help="try this mutant, named as in the results")
     parser.add_argument("--report", action="store_true", help="print a table of the results instead")
