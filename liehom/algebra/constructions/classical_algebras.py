@@ -30,6 +30,11 @@ def gl(n: int, over: str = "R") -> LieAlgebra:
     InputError
         If n is not a positive integer, or `over` is not one of the three letters.
 
+    Notes
+    -----
+    The basis is E_ij, row by row. Over C each E_ij is followed by i E_ij, over H by i E_ij, j E_ij, k E_ij. Indices
+    count from 0, and ``lh.defining(g)`` has the matrices.
+
     Examples
     --------
     >>> import liehom as lh
@@ -46,6 +51,11 @@ def sl(n: int, over: str = "R") -> LieAlgebra:
     ------
     InputError
         If n is not a positive integer, or `over` is not one of the three letters.
+
+    Notes
+    -----
+    The basis is E_ij for i != j, row by row, then E_ii - E_{i+1,i+1}. Over C each of these is followed by its multiple
+    by i. Over H it is q E_ij for i != j and q = 1, i, j, k, then q E_ii for q = i, j, k, then E_ii - E_{i+1,i+1}.
 
     Examples
     --------
@@ -64,6 +74,12 @@ def so(p: int, q: int | str = 0) -> LieAlgebra:
     InputError
         If p or q is negative or p + q is 0.
 
+    Notes
+    -----
+    The basis is L_ij = d_i E_ji - d_j E_ij for i < j in lexicographic order, with d_i = 1 for the first p indices and
+    -1 for the others (for p = 0 all are 1). In so(n), L_ij rotates e_i towards e_j. For n = 3 these are hat(z),
+    -hat(y), hat(x) with hat(w) v = w x v. In so(n, 'C') each E_ji - E_ij is followed by its multiple by i.
+
     Examples
     --------
     >>> import liehom as lh
@@ -81,6 +97,12 @@ def su(p: int, q: int = 0) -> LieAlgebra:
     InputError
         If p or q is negative or p + q is 0.
 
+    Notes
+    -----
+    The basis is d_k E_lk - d_l E_kl, then i (d_k E_lk + d_l E_kl), for each k < l in lexicographic order, and after all
+    these i (E_kk - E_{k+1,k+1}); d_k = 1 for the first p indices and -1 for the others (for p = 0 all are 1). On R^2n
+    an entry a + bi is the block [[a, -b], [b, a]]. In su(2) these are -i sigma_y, i sigma_x, i sigma_z.
+
     Examples
     --------
     >>> import liehom as lh
@@ -97,6 +119,10 @@ def u(p: int, q: int = 0) -> LieAlgebra:
     ------
     InputError
         If p or q is negative or p + q is 0.
+
+    Notes
+    -----
+    The basis is i E_kk for all k, then for k < l the elements of `su`: d_k E_lk - d_l E_kl and i (d_k E_lk + d_l E_kl).
 
     Examples
     --------
@@ -122,6 +148,16 @@ def sp(p: int, q: int | str = 0) -> LieAlgebra:
     InputError
         If p or q is negative, p + q is 0, or the size is odd and q is a letter.
 
+    Notes
+    -----
+    The basis of sp(p, q) is i E_kk for all k, j E_kk for all k, k E_kk for all k (the units i, j, k of H), then for
+    each k < l and x = 1, i, j, k the matrix d_k x E_lk - d_l conj(x) E_kl, with the signs d of `su`. On R^4n an entry
+    x is the block of the left multiplication by x in the basis 1, i, j, k.
+
+    The basis of sp(2n, 'R') is E_ij - E_{n+j,n+i} row by row, then for i <= j in lexicographic order
+    E_{i,n+j} + E_{j,n+i} (E_{i,n+i} for i = j), then the transposes of these. In sp(2n, 'C') each is followed by its
+    multiple by i.
+
     Examples
     --------
     >>> import liehom as lh
@@ -143,6 +179,10 @@ def so_star(n: int) -> LieAlgebra:
     ------
     InputError
         If n is not a positive integer.
+
+    Notes
+    -----
+    The basis is j E_kk for all k, then for each k < l and q = 1, i, j, k the matrix q E_kl + j conj(q) j E_lk.
 
     Examples
     --------

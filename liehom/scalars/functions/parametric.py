@@ -18,7 +18,7 @@ def factors(expression: Expression, parameters: Sequence[Expression]) -> list[Ex
     >>> import sympy
     >>> a, b = sympy.symbols("a b")
     >>> factors((a**3 - a * b**2) / (b + 1), [a, b])
-    [a, a - b, a + b]
+    [a, a + b, a - b]
     """
     import sympy
 
