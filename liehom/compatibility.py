@@ -109,6 +109,7 @@ ATTRIBUTES: dict[str, dict[str, str]] = {
 
 GROWN: dict[str, tuple[str, ...]] = {
     "liehom.representations.symbolic:SymbolicIsotropy": ("exact_dimension", "sharp"),
+    "liehom.fullness.failure:FailureReport": ("searched", "not_searched"),
     "liehom.homogeneous.orbit_types:OrbitType": ("invariants", "groups", "proofs"),
     "liehom.representations.representation:Representation": ("coordinates", "dropped"),
     "liehom.algebra.structure_constants:StructureConstants": ("error",),

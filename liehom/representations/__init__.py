@@ -4,6 +4,7 @@ from liehom.representations.analysis import Component as Component
 from liehom.representations.analysis import Decomposition as Decomposition
 from liehom.representations.analysis import HermitianForms as HermitianForms
 from liehom.representations.analysis import IsotypicComponent as IsotypicComponent
+from liehom.representations.analysis import MaximalSubmodules as MaximalSubmodules
 from liehom.representations.analysis import SymbolicIsotropy as SymbolicIsotropy
 from liehom.representations.constructions import adjoint as adjoint
 from liehom.representations.constructions import coadjoint as coadjoint

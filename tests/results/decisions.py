@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import random
 from collections.abc import Callable
 from functools import partial
@@ -113,10 +114,18 @@ def decided(make: Callable[[], lh.Pair]) -> dict[str, Any]:
             made[key] = Long(list(flat([data[key]])))
     if not verdict.full and pair.field.exact and pair.dimension <= 12:
         report = verdict.where_it_fails()
-        made["failure"] = str(report)
+        made["failure"] = failure_in_words_of_0_1_0(report)
         made["failure holds generically"] = str(report.generic.holds)
         made["failure parts"] = " ".join(part.kind for part in report.parts)
     return made
+
+
+def failure_in_words_of_0_1_0(report: lh.fullness.FailureReport) -> str:
+    """The sentence of a report without what was searched; 0.1.0 said it of the hypersurface only."""
+    bare = dataclasses.replace(report, searched=(), not_searched=())
+    hypersurface = next((part.description for part in report.parts if part.covers), None)
+    text = str(bare)
+    return text.replace(hypersurface, f"{hypersurface}, and nothing else up to codimension 2") if hypersurface else text
 
 
 CASES: dict[str, Callable[[], dict[str, Any]]] = {

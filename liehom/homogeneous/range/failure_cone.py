@@ -55,7 +55,7 @@ class FailureSet:
         For a hypersurface f, for a null cone the matrix P of the form, otherwise rows of coordinates x that span the
         subspace (floats for 'eigenspace').
     covers : bool
-        Whether Z without this set has codimension at least 2.
+        Whether Z without this set has codimension at least 2: all components of codimension 1 are in it.
     """
 
     kind: str
@@ -104,10 +104,10 @@ def failure_cone(
     --------
     >>> import liehom as lh
     >>> [part.description for part in failure_cone(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0]))]
-    ['the zeros of x0^2 + x1^2 - x2^2, and nothing else up to codimension 2']
+    ['the zeros of x0^2 + x1^2 - x2^2']
     """
     found: list[FailureSet] = []
-    if 0 < pair.dimension <= MAX_DIMENSION and pair.field == QQ:
+    if has_hypersurfaces_computed(pair):
         invariant = relative_invariant(pair)
         if invariant is not None and invariant.degree:
             found.append(_hypersurface(invariant))
@@ -118,9 +118,22 @@ def failure_cone(
     return found
 
 
+def has_hypersurfaces_computed(pair: Pair) -> bool:
+    """Whether `failure_cone` lists all components of codimension 1 of the cone on which the range condition fails.
+
+    It does so over QQ if g/h has dimension at most 8, and the condition holds for some psi.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [has_hypersurfaces_computed(lh.pair(name)) for name in ("so(4)/so(3)", "so(11)/so(10)")]
+    [True, False]
+    """
+    return 0 < pair.dimension <= MAX_DIMENSION and pair.field == QQ
+
+
 def _hypersurface(invariant: RelativeInvariant) -> FailureSet:
-    text = f"the zeros of {invariant}, and nothing else up to codimension 2"
-    return FailureSet("hypersurface", text, invariant, covers=True)
+    return FailureSet("hypersurface", f"the zeros of {invariant}", invariant, covers=True)
 
 
 def _matrix(pair: Pair, rows: MatrixLike) -> Matrix:

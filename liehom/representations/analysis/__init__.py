@@ -8,4 +8,5 @@ from liehom.representations.analysis.decomposition import Component as Component
 from liehom.representations.analysis.decomposition import Decomposition as Decomposition
 from liehom.representations.analysis.decomposition import IsotypicComponent as IsotypicComponent
 from liehom.representations.analysis.hermitian_forms import HermitianForms as HermitianForms
+from liehom.representations.analysis.maximal_submodules import MaximalSubmodules as MaximalSubmodules
 from liehom.representations.analysis.symbolic import SymbolicIsotropy as SymbolicIsotropy

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from liehom.representations.analysis.commutant_type import CommutantType
     from liehom.representations.analysis.decomposition import Decomposition
     from liehom.representations.analysis.hermitian_forms import HermitianForms
+    from liehom.representations.analysis.maximal_submodules import MaximalSubmodules
     from liehom.representations.analysis.symbolic import SymbolicIsotropy
 
 
@@ -813,6 +814,25 @@ class Representation(Immutable):
         from liehom.representations.analysis.complete_reducibility import socle
 
         return socle(self._exact())
+
+    def maximal_submodules(self) -> MaximalSubmodules:
+        """The maximal proper invariant subspaces over the reals, finitely many or in families.
+
+        Raises
+        ------
+        FieldError
+            Over float64.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> rho = lh.adjoint(lh.euclidean(3))
+        >>> [space.dimension for space in rho.maximal_submodules().isolated]
+        [3]
+        """
+        from liehom.representations.analysis.maximal_submodules import maximal_submodules
+
+        return maximal_submodules(self._exact())
 
     def decomposition(self) -> Decomposition:
         """The decomposition into irreducible representations over the reals, exact.
