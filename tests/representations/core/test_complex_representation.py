@@ -239,6 +239,29 @@ def test_pairs_from_the_matrices_of_g_and_h() -> None:
     assert outside.value.index == 1
 
 
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_pairs_from_float_matrices_at_every_scale(scale: float) -> None:
+    """CP^2 by rotated and scaled Gell-Mann matrices: dimensions, and the verdict of the exact pair."""
+    rng = np.random.default_rng(0)
+    frame = np.linalg.qr(rng.normal(size=(3, 3)) + 1j * rng.normal(size=(3, 3)))[0]
+    arrays = [
+        scale * frame @ np.array(a.evalf().tolist(), dtype=complex) @ frame.conj().T for a in lh.gell_mann_matrices()
+    ]
+    pair = lh.pair_from_matrices(arrays, [arrays[k] for k in (0, 1, 2, 7)], hermitian=True)
+    assert (pair.dimension, pair.subalgebra.dimension) == (4, 4)
+    assert lh.decide_fullness(pair).full
+    rho = from_matrices(arrays, hermitian=True)
+    np.testing.assert_allclose(
+        rho.element(arrays[3] - 2 * arrays[5], hermitian=True), [0, 0, 0, 1, 0, -2, 0, 0], atol=1e-9
+    )
+    assert rho.subalgebra(arrays[:3], hermitian=True).dimension == 3
+    with pytest.raises(NotInSpanError) as outside:
+        rho.element(scale * np.eye(3), hermitian=True)
+    assert outside.value.residual == pytest.approx(1)
+    assert rho.isotropy(frame[:, 2]).dimension == 3
+    assert rho.on_hermitian_matrices().isotropy(np.outer(frame[:, 2], frame[:, 2].conj())).dimension == 4
+
+
 # -- states and mixed states ---------------------------------------------------------------------------------
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_isotropy_of_pure_states(n: int) -> None:
