@@ -33,4 +33,4 @@ def rotated(constants: Any, rows: Any, turn: Any, scale: float = 1.0) -> tuple[A
 def pair_of(constants: Any, rows: Any, field: lh.FloatField = lh.RR) -> lh.Pair:
     """The pair over floats, with its axioms checked."""
     algebra = lh.LieAlgebra(np.asarray(constants, dtype=float), field=field)
-    return lh.Pair(algebra, np.asarray(rows, dtype=float).reshape(-1, algebra.dimension).tolist())
+    return lh.Pair(algebra, np.asarray(rows, dtype=float).tolist() if len(rows) else [])

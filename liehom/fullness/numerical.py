@@ -7,11 +7,12 @@ no matrix is normalized, so T_i below e contribute below e to sigma_d.
 
 Full is an open condition, and it is answered if it holds for all data within the error. Singular vectors of the T_i as
 vectors, with singular values above e, span L0. `transitive_group` finds an inner product |g x| in which the
-skew-symmetric elements of L0 are transitive on the unit sphere (theorem 2 of docs/theory/fullness.md); there sigma_d is
-a constant v, found at one x, so nothing depends on how well a minimum was searched. An error e of the T_i changes an
-orthonormal basis of g L0 g^-1 by at most e cond(g) / s, where s is the smallest singular value of the g T_i g^-1 that
-counts. Weyl's inequality for singular values gives: full if v > e cond(g) / s. The answer needs 100 times as much,
-since the error is propagated to first order.
+skew-symmetric elements of L0 are transitive on the unit sphere (theorem 2 of docs/theory/fullness.md). For an
+orthonormal basis K_b of these elements the smallest singular value of the matrix with columns K_b x and x is a constant
+v. It is found at one x, so nothing depends on how well a minimum was searched. The K_b are combinations of the g T_i
+g^-1 with coefficients of norm 1 / s, so an error e of the T_i changes them by at most e cond(g) / s. Weyl's inequality
+for singular values gives: full if v > e cond(g) / s. The answer needs 100 times as much, since errors are propagated to
+first order.
 
 Not full is not an open condition: data nearby are full, so no size of an error can exclude it. It is answered for the
 data as given, if an x was found with sigma_d(x) at most 2^12 units of round-off. Data that are computed, in a rotated
@@ -151,8 +152,8 @@ def _traceless_action(pair: Pair, rtol: float) -> tuple[Array, float]:
     d = pair.dimension
     made = pair.isotropy_matrices()
     matrices = np.array([a.to_numpy() for a in made]).reshape(-1, d, d)
-    errors = [a.error for a in made if isinstance(a, FloatMatrix)]
-    size = float(np.linalg.norm(errors)) / rtol if errors else float(np.linalg.norm(matrices))
+    errors = [a.error for a in made if isinstance(a, FloatMatrix)]  # blocks of one matrix, each with its whole error
+    size = max(errors) / rtol if errors else float(np.linalg.norm(matrices))
     traces = np.trace(matrices, axis1=1, axis2=2) / d
     return matrices - traces[:, None, None] * np.eye(d), size
 

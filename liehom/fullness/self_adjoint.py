@@ -7,8 +7,9 @@ as possible there. For an orthonormal basis E_a of the span of g L0 g^-1 the vol
 exp(X), X symmetric, with the gradient M = sum_a [E_a, E_a^T]. The volume is least if and only if the span is
 self-adjoint. Newton's method minimizes it.
 
-If K is transitive on the unit sphere, the smallest singular value of the matrix with columns E_a x and x / sqrt(d) is
-the same at every unit vector x, because K permutes the orthonormal bases of the span: one x shows its minimum.
+Let K_b be an orthonormal basis of K. If K is transitive on the unit sphere, then the smallest singular value of the
+matrix with columns K_b x and x is the same at every unit vector x, because the group of K acts on K by orthogonal maps.
+One x shows its minimum over the sphere.
 """
 
 from __future__ import annotations
@@ -35,9 +36,9 @@ class TransitiveGroup:
     Attributes
     ----------
     value : float
-        Smallest singular value of [E_a x, x / sqrt(d)] at every unit vector x, at most 1.
+        Smallest singular value of [K_b x, x] at every unit vector x, at most 1.
     smallest : float
-        Smallest singular value of the matrices g A g^-1, with A as given, that counts for their span.
+        An error e of the matrices g A g^-1, with A as given, changes the K_b by at most e / smallest.
     condition : float
         Condition number of g.
     point : Array
@@ -99,16 +100,20 @@ def transitive_group(matrices: Array, bound: float) -> TransitiveGroup | None:
     turned = right[: len(basis)].reshape(-1, d, d)
     if _defect(turned) > SELF_ADJOINT:
         return None
-    compact = orthonormal_span((turned - turned.transpose(0, 2, 1)) / 2, 0.5)[1]  # the values are 0 and 1
+    skew = (turned - turned.transpose(0, 2, 1)).reshape(-1, d * d) / 2
+    weights, parts, compact = np.linalg.svd(skew, full_matrices=False)
+    compact = compact[parts > 0.5].reshape(-1, d, d)  # the values are 0 and 1
+    if len(compact) < d - 1:
+        return None
     points = np.random.default_rng(len(basis)).standard_normal((SAMPLES, d))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
-    if len(compact) < d - 1 or _least(compact, points, d - 1).min() <= SELF_ADJOINT:
+    least = np.linalg.svd(np.einsum("aij,nj->nia", compact, points), compute_uv=False)[:, d - 2]
+    if not SELF_ADJOINT < least.min() > least.max() * (1 - 1e-3):
         return None
-    least = _least(np.concatenate([turned, np.eye(d)[None] / d**0.5]), points, d)
-    if least.max() > least.min() * (1 + 1e-3):
-        return None
+    # the basis K_b is the matrix weights^T values^-1 times an isometry times the matrices g A g^-1
+    smallest = 1 / float(np.linalg.norm(weights[:, parts > 0.5].T / values[: len(basis)], 2))
     point = np.linalg.solve(g, points[0])
-    return TransitiveGroup(float(least.min()), float(values[len(basis) - 1]), condition, point / np.linalg.norm(point))
+    return TransitiveGroup(float(least.min()), smallest, condition, point / np.linalg.norm(point))
 
 
 def self_adjoint_position(basis: Array) -> Array:
@@ -187,9 +192,3 @@ def _defect(basis: Array) -> float:
     span = basis.reshape(len(basis), -1)
     transposed = basis.transpose(0, 2, 1).reshape(len(basis), -1)
     return float(np.linalg.norm(transposed - transposed @ span.T @ span))
-
-
-def _least(basis: Array, points: Array, rank: int) -> Array:
-    """The singular value number `rank` of the matrices with columns A_a x, one for each point x."""
-    values = np.linalg.svd(np.einsum("aij,nj->nia", basis, points), compute_uv=False)
-    return np.asarray(values[:, rank - 1])

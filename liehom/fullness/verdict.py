@@ -210,8 +210,8 @@ class NumericallyFull(_Numerical):
     Attributes
     ----------
     smallest : float
-        Smallest singular value sigma_d of the matrix with columns E_a x and x / sqrt(d), the same at every unit vector
-        x. The E_a are an orthonormal basis of the traceless rho(h), in an inner product that the evidence names.
+        Smallest singular value sigma_d of the matrix with columns K_b x and x, the same at every unit vector x. The
+        K_b are an orthonormal basis of the elements of the traceless rho(h) that preserve an inner product of g/h.
     gap : float
         `smallest` divided by `tolerance`, at least 100.
     tolerance : float
