@@ -9,7 +9,8 @@ given modules is drawn with the seed. A copy of the repository is mutated, never
 written one a line, and a run that is continued skips the mutants that it has tried.
 
 The tests of a module are the test modules of the mirrored folder, the nearest first: for liehom/a/b/x.py these are
-tests/a/b/test_x.py, then the other tests in tests/a/b; if there are none, those in tests/a. SURVIVORS.md explains the survivors.
+tests/a/b/test_x.py, then the other tests in tests/a/b; if there are none, those in tests/a. SURVIVORS.md explains
+the survivors.
 """
 
 from __future__ import annotations
