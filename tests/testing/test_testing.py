@@ -18,6 +18,7 @@ from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.errors import ConformanceError
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.scalars import QQ, RR
+from tests.floats import constants_of, pair_of
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -43,6 +44,19 @@ def test_representations_conform(name: str) -> None:
     rho = lh.defining(lh.so(4) if name == "so(4)" else lh.sl(2))
     for found in (rho, rho.dual(), rho.symmetric_power(2), lh.adjoint(rho.algebra), lh.trivial(rho.algebra, 2)):
         testing.check_representation(found)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_floats_conform_or_are_caught_at_every_scale(scale: float) -> None:
+    for name in ("so(4)/so(3)", "sl(3)/P1"):
+        constants, rows = constants_of(lh.pair(name))
+        testing.check_pair(pair_of(scale * constants, rows))
+    matrices = [scale * a.to_numpy() for a in lh.defining(lh.so(3)).matrices]
+    rho = lh.Representation.from_matrices(matrices)
+    testing.check_representation(rho)
+    wrong = lh.Representation(rho.algebra, [1.001 * a for a in matrices], check=False)
+    with pytest.raises(ConformanceError, match="bracket"):
+        testing.check_representation(wrong)
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*.json")))
