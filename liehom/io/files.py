@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Literal, overload
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
@@ -18,7 +18,7 @@ from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
 from liehom.typing import VectorLike
 
-READERS = {
+READERS: dict[str, Callable[[Mapping[str, Any]], LieAlgebra | Subalgebra | Pair | Representation]] = {
     algebra_file.FORMAT: algebra_file.read_algebra,
     pair_file.SUBALGEBRA: pair_file.read_subalgebra,
     pair_file.FORMAT: pair_file.read_pair,

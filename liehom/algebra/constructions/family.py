@@ -202,8 +202,9 @@ class LieAlgebraFamily(Immutable):
         return None
 
     def _proposal(self) -> str:
-        sample = self.sample() or dict.fromkeys(map(str, self.parameters), "...")
-        return f"choose values, for example .at({', '.join(f'{p}={v}' for p, v in sample.items())})"
+        sample = self.sample() or {}
+        values = ", ".join(f"{p}={sample.get(str(p), '...')}" for p in self.parameters)
+        return f"choose values, for example .at({values})"
 
     # -- generic statements ------------------------------------------------------------------------------
     def killing_form(self) -> Expression:

@@ -310,10 +310,10 @@ class Subalgebra(Immutable):
 def _matrix(algebra: LieAlgebra, rows: RowsLike) -> Matrix:
     """The rows as a matrix (k, n) over the field of the algebra; `ShapeError` if a row does not have length n."""
     matrix: Matrix
-    if hasattr(rows, "nrows"):
-        matrix = algebra.field.read(rows)
-        return matrix
     given: Any = rows
+    if hasattr(rows, "nrows"):
+        matrix = algebra.field.read(given)
+        return matrix
     if isinstance(rows, Sequence) and not isinstance(rows, str):
         given = [coefficients(algebra.basis_names, x) if isinstance(x, (str, Mapping)) else x for x in rows]
     table = rows_of(given)

@@ -131,7 +131,7 @@ def _require_dimension(found: int, expected: int | None) -> None:
         raise ShapeError(f"the constants have dimension {found}, not {expected}")
 
 
-def _from_mapping(constants: ConstantsMapping, field: Field, dimension: int | None) -> tuple[int, Entries]:
+def _from_mapping(constants: Mapping[Any, Any], field: Field, dimension: int | None) -> tuple[int, Entries]:
     for pair, row in constants.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
             raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{(i, j): {{k: value}}}}")

@@ -236,6 +236,7 @@ def _seed_vector(over: Field, vectors: list[ExactMatrix], seeds: int, d: int, rn
     """A vector outside the span of fewer than d vectors; random for the first three seeds if a draw succeeds."""
     random_rows = ([[rng.randint(-3, 3) for _ in range(d)]] for _ in range(DRAWS))
     candidates = (over.matrix(rows).T for rows in random_rows) if seeds < 3 else iter([over.unit(d, seeds % d).T])
+    start: ExactMatrix
     for start in candidates:
         if _extends(vectors, start, d):
             return start

@@ -125,7 +125,7 @@ class Matrix(ABC):
     def __iter__(self) -> Iterator[list[Scalar]]:
         return iter(self.to_rows())
 
-    def __array__(self, dtype: npt.DTypeLike = None, copy: bool | None = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         """Array for ``numpy.asarray(matrix)``: exact numbers as objects, or floats for a float or complex dtype."""
         if copy is False:
             raise ValueError(f"an array of {self!r} is always a copy; use numpy.asarray without copy=False")

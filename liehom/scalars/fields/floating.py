@@ -329,13 +329,13 @@ class FloatMatrix(Matrix, Immutable):
     def T(self) -> FloatMatrix:
         return self._made(self.array.T, self.error, self._spectral)
 
-    def __add__(self, other: FloatMatrix) -> FloatMatrix:
+    def __add__(self, other: FloatMatrix | int) -> FloatMatrix:
         if not isinstance(other, FloatMatrix):
             return self.__radd__(other)
         _require_range(max(self._norm + other._norm, SMALLEST * 2))
         return self._made(self.array + other.array, self.error + other.error)
 
-    def __sub__(self, other: FloatMatrix) -> FloatMatrix:
+    def __sub__(self, other: FloatMatrix | int) -> FloatMatrix:
         if not isinstance(other, FloatMatrix):
             return self.__radd__(other)
         return self + -other
