@@ -19,6 +19,7 @@ from liehom.errors import InputError, LimitError
 
 VARIABLE = "LIEHOM_LIMITS"
 """Environment variable with other defaults, such as ``digits=100000,seconds=60``."""
+MAX_PARAMETER_DIGITS = 18
 DIGITS_PER_BIT = 0.30103
 
 
@@ -241,6 +242,20 @@ def in_time() -> None:
         allowed = state.limits.seconds or 0.0
         found = time.monotonic() - state.deadline + allowed
         raise LimitError("seconds", found, allowed, "the computation has taken {} seconds")
+
+
+def small_integer(digits: str) -> int:
+    """A parameter of a family from its decimal digits, perhaps after a sign; no parameter exceeds the dimension.
+
+    Examples
+    --------
+    >>> small_integer("12")
+    12
+    """
+    allowed = current_limits().dimension
+    if len(digits) > MAX_PARAMETER_DIGITS:
+        raise LimitError("dimension", 10 ** (len(digits) - 1), allowed, "a parameter is about {}")
+    return int(digits)
 
 
 def digits_within(bits: int, what: str = "the number has {} digits") -> None:

@@ -26,7 +26,8 @@ from liehom.algebra.matrices.named_matrices import (
     classical_matrices,
     exceptional_matrices,
 )
-from liehom.catalog.names import Expression, Item, Sum, Term, small_integer, terms
+from liehom.budget import small_integer
+from liehom.catalog.names import Expression, Item, Sum, Term, terms
 from liehom.errors import CatalogError
 from liehom.typing import IntegerArray
 

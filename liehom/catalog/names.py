@@ -22,14 +22,13 @@ from fractions import Fraction
 from typing import TypeAlias, final
 
 from liehom.algebra.matrices.named_matrices import CLASSICAL_KINDS
-from liehom.budget import current_limits, within
-from liehom.errors import CatalogError, LimitError, displayed, shown
+from liehom.budget import small_integer, within
+from liehom.errors import CatalogError, displayed, shown
 
 SPELLINGS = {"schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e"}
 """Other spellings of heads."""
 MAX_LIKENESS = 100
 """Characters of the longest name to which similar names are looked for."""
-MAX_PARAMETER_DIGITS = 18
 _TOKEN = re.compile(r"\s*(?:(R\^\d+)|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
 
 
@@ -273,16 +272,3 @@ class _Parser:
             raise self.error("expected an integer", self.position())
         self.at += 1
         return small_integer(token)
-
-
-def small_integer(digits: str) -> int:
-    """The integer with these digits; `LimitError` if it has more than 18, since no dimension is so large.
-
-    Examples
-    --------
-    >>> small_integer("12")
-    12
-    """
-    if len(digits) > MAX_PARAMETER_DIGITS:
-        raise LimitError("dimension", 10 ** (len(digits) - 1), current_limits().dimension, "a parameter is about {}")
-    return int(digits)

@@ -13,7 +13,7 @@ from typing import Any, Literal, final, overload
 
 import numpy as np
 
-from liehom.errors import ShapeError
+from liehom.errors import InputError, ShapeError
 from liehom.representations import Representation
 from liehom.scalars import Field, Matrix, Scalar
 from liehom.series import recurrences
@@ -80,6 +80,8 @@ class FieldMap:
         self._field = field
         self.shape = shape
         rounded = [field.to_float(v) for *_, v in self._entries]
+        if not np.isfinite(rounded).all():
+            raise InputError("a bilinear map has numbers beyond the range of floats; scale them")
         places = [entry[:3] for entry in self._entries]
         # products with coefficient 1 come first: `_by_columns` starts each sum with one that needs no factor
         self._floats = sorted(((*p, v) for p, v in zip(places, rounded, strict=True)), key=lambda entry: entry[3] != 1)

@@ -12,7 +12,7 @@ from typing import Any, final, overload
 
 import numpy as np
 
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous.exponentials.custom_exponential import ExponentialLike, exponential_of
 from liehom.homogeneous.exponentials.exponential import Exponential
 from liehom.homogeneous.frames.branch_free_frames import TightFrame, orthogonal_decomposition
@@ -66,7 +66,7 @@ class Action:
 
     def __init__(self, representation: Representation, exponential: ExponentialLike = "exp") -> None:
         if not isinstance(representation, Representation):
-            raise InputError(f"expected a Representation, got {representation!r}")
+            raise InputError(f"expected a Representation, got {displayed(representation)}")
         self.representation = representation
         self.exponential: Exponential = exponential_of(representation, exponential)
         self.infinitesimal: FieldMap = action_map(representation)
@@ -178,7 +178,7 @@ class Action:
         return IsotropyFrame(self._basis @ kernel, found.image, self._basis @ found.lift, np.asarray(rank))
 
     def __repr__(self) -> str:
-        return f"<action by {self.exponential.name} of {self.representation!r}>"
+        return f"<action by {self.exponential.name} of {displayed(self.representation)}>"
 
 
 @final

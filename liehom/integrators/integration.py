@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import ExponentialLike, Generator, Step
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
@@ -194,10 +194,10 @@ def integrate(
     (3, True, 4)
     """
     if not isinstance(field, GeneratorField):
-        raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
+        raise InputError(f"expected a GeneratorField, got {displayed(field)}: call liehom.GeneratorField(rho, psi)")
     step = LieTaylor(6) if step is None else step
     if not isinstance(step, Step):
-        raise InputError(f"step is {step!r}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
+        raise InputError(f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
     if compile == "jax" and is_jax(y0):
         possible = events is None and not dense_output and checkpoint is None
         return _on_jax(field, t_span, y0, step, dt if possible else None, t_eval, exponential, clock)
@@ -207,7 +207,7 @@ def integrate(
     action = Action(field.representation, exponential)
     _check_generator(field, start, span[0])
     if clock not in CLOCKS:
-        raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
+        raise InputError(f"clock is {displayed(clock)}, expected one of {', '.join(map(repr, CLOCKS))}")
     options = Options(
         dt=None if dt is None else _step_size(dt, start, span),
         rtol=_positive("rtol", rtol, zero=True),
@@ -260,9 +260,9 @@ def _on_jax(
     size = float(dt)  # type: ignore[arg-type]
     span = span_of(t_span, np.dtype(np.float64))
     if clock not in CLOCKS:
-        raise InputError(f"clock is {clock!r}, expected one of {', '.join(map(repr, CLOCKS))}")
+        raise InputError(f"clock is {displayed(clock)}, expected one of {', '.join(map(repr, CLOCKS))}")
     if not (np.isfinite(size) and size > 0):
-        raise InputError(f"dt is {size!r}, expected a positive step size (the direction is that of t_span)")
+        raise InputError(f"dt is {displayed(size)}, expected a positive step size (the direction is that of t_span)")
     ends: Any = np.unique(span)[:: 1 if span[1] >= span[0] else -1]
     times = ends if t_eval is None else _times(t_eval, span)
     action = Action(field.representation, exponential)
@@ -294,12 +294,12 @@ def _step_size(dt: npt.ArrayLike, start: Array, span: Span) -> Array:
     try:
         sizes = np.asarray(dt).astype(start.dtype, casting="same_kind")
     except (TypeError, ValueError):
-        raise InputError(f"dt is {dt!r}, expected a positive step size") from None
+        raise InputError(f"dt is {displayed(dt)}, expected a positive step size") from None
     if not bool(np.all(np.isfinite(sizes) & (sizes > 0))):
-        raise InputError(f"dt is {dt!r}, expected a positive step size (the direction is that of t_span)")
+        raise InputError(f"dt is {displayed(dt)}, expected a positive step size (the direction is that of t_span)")
     least = 8 * np.finfo(start.dtype).eps * max(abs(span[0]), abs(span[1]))
     if span[0] != span[1] and bool(np.any(sizes < least)):
-        raise InputError(f"dt is {dt!r}, below the round-off of times in t_span, {least:.2g}")
+        raise InputError(f"dt is {displayed(dt)}, below the round-off of times in t_span, {least:.2g}")
     try:
         return np.broadcast_to(sizes, start.shape[:-1]).copy()
     except ValueError:
@@ -312,7 +312,7 @@ def _positive(name: str, value: float, *, zero: bool = False) -> float:
     except (TypeError, ValueError, OverflowError):
         number = np.nan
     if not (number > 0 or (zero and number == 0)):
-        raise InputError(f"{name} is {value!r}, expected a positive number")
+        raise InputError(f"{name} is {displayed(value)}, expected a positive number")
     return number
 
 
@@ -321,7 +321,7 @@ def _times(t_eval: npt.ArrayLike, span: Span) -> Array:
     try:
         times: Any = np.asarray(t_eval, dtype=span[0].dtype)
     except (TypeError, ValueError):
-        raise InputError(f"t_eval is {t_eval!r}, expected a list of times") from None
+        raise InputError(f"t_eval is {displayed(t_eval)}, expected a list of times") from None
     if times.ndim != 1:
         raise ShapeError(f"t_eval has shape {times.shape}, expected a list of times")
     low, high = min(span), max(span)

@@ -20,7 +20,14 @@ from liehom.algebra.closure.complex_matrices import (
 )
 from liehom.algebra.constructions.simple import simple
 from liehom.algebra.matrices.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
-from liehom.errors import DependentRowsError, InputError, NotASubalgebraError, RepresentationError, ShapeError
+from liehom.errors import (
+    DependentRowsError,
+    InputError,
+    NotASubalgebraError,
+    RepresentationError,
+    ShapeError,
+    displayed,
+)
 from liehom.representations.core.coordinates import Coordinates
 from liehom.representations.core.elements import rows_of_matrices
 from liehom.representations.core.pair import Pair
@@ -74,6 +81,8 @@ def defining(algebra: LieAlgebra | str) -> Representation:
     >>> rho.size, rho.algebra is g, lh.defining("su(2)").size
     (4, True, 4)
     """
+    if not isinstance(algebra, str):
+        _require_algebra(algebra)
     name = algebra if isinstance(algebra, str) else algebra.name
     if (least := _LEAST_MODULES.get((name or "").replace(" ", ""))) is not None:
         return _of_algebra(least(), algebra)
@@ -93,7 +102,7 @@ def defining(algebra: LieAlgebra | str) -> Representation:
         over = [algebra.field.from_entries([float(x) for x in a.ravel().tolist()], size, size) for a in matrices]
     if len(over) != algebra.dimension:
         raise RepresentationError(
-            (0, 0), f"{algebra!r} does not have the dimension {len(over)} of the standard matrices of {name}"
+            (0, 0), f"{displayed(algebra)} does not have the dimension {len(over)} of the standard matrices of {name}"
         )
     return Representation(algebra, over, size=size, name="defining", coordinates=coordinates)
 
@@ -109,7 +118,7 @@ def _of_algebra(rho: Representation, algebra: LieAlgebra | str) -> Representatio
         return rho
     made = rho if algebra.field == rho.field else rho.over(algebra.field)
     if made.algebra != algebra:
-        raise RepresentationError((0, 0), f"{algebra!r} does not have the basis that liehom.simple gives it")
+        raise RepresentationError((0, 0), f"{displayed(algebra)} does not have the basis that liehom.simple gives it")
     # the constants are those of the algebra that the matrices represent
     return Representation(algebra, made.matrices, size=made.size, name=made.name, check=False)
 
@@ -154,7 +163,7 @@ def standard_matrices(name: str | None) -> IntegerArray:
     if text[:2] in ("g2", "f4", "e6"):
         return exceptional_matrices(text)
     known = "so(4), so(3,1), su(2), sl(3), sl(2,C), gl(2), sp(2), sp(4,R), so*(6), spin(7), g2, f4, e6(-26)"
-    raise InputError(f"no defining representation is known for {name!r}; names are such as {known}")
+    raise InputError(f"no defining representation is known for {displayed(name)}; names are such as {known}")
 
 
 def adjoint(algebra: LieAlgebra) -> Representation:
@@ -178,7 +187,9 @@ def adjoint(algebra: LieAlgebra) -> Representation:
 
 def _require_algebra(algebra: LieAlgebra) -> None:
     if not isinstance(algebra, LieAlgebra):
-        raise InputError(f"expected a LieAlgebra, such as lh.so(3) or lh.catalog.algebra('so(3)'); got {algebra!r}")
+        raise InputError(
+            f"expected a LieAlgebra, such as lh.so(3) or lh.catalog.algebra('so(3)'); got {displayed(algebra)}"
+        )
 
 
 def _adjoint_matrices(algebra: LieAlgebra) -> list[Matrix]:
@@ -222,7 +233,7 @@ def trivial(algebra: LieAlgebra, n: int = 1) -> Representation:
     3
     """
     if isinstance(n, bool) or not isinstance(n, int) or n < 0:
-        raise InputError(f"the dimension of a trivial representation is an integer at least 0, got {n!r}")
+        raise InputError(f"the dimension of a trivial representation is an integer at least 0, got {displayed(n)}")
     _require_algebra(algebra)
     zero = algebra.field.zeros(n, n)
     # All commutators and all images vanish.

@@ -22,7 +22,7 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.subalgebra import independent_rows
 from liehom.algebra.core.tables import field_of_values
-from liehom.errors import DependentRowsError, FieldError, InputError, NotClosedError, ShapeError
+from liehom.errors import DependentRowsError, FieldError, InputError, NotClosedError, ShapeError, displayed
 from liehom.scalars import QQ, ExactField, ExactMatrix, Field, FloatField, Matrix
 from liehom.scalars.fields.field import MatrixLike, rows_of
 
@@ -65,7 +65,7 @@ def square_matrices(matrices: Iterable[MatrixLike], field: Field | None = None) 
         If a `Matrix` is over another field than `field`, or than the first matrix.
     """
     if not hasattr(matrices, "__iter__") or isinstance(matrices, str):
-        raise InputError(f"a list of square matrices was expected, got {matrices!r}")
+        raise InputError(f"a list of square matrices was expected, got {displayed(matrices)}")
     given: list[Any] = list(matrices)
     if given and all(hasattr(a, "nrows") for a in given):
         over = field if field is not None else given[0].field
@@ -158,7 +158,7 @@ def lie_closure(
     if not basis:
         raise InputError("no matrices were given; the size of the space would be unknown")
     if completion not in ("auto", "commutators", "reduced"):
-        raise InputError(f"completion is 'auto', 'commutators' or 'reduced', got {completion!r}")
+        raise InputError(f"completion is 'auto', 'commutators' or 'reduced', got {displayed(completion)}")
     over = basis[0].field
     if isinstance(over, FloatField):
         if completion == "reduced":

@@ -8,6 +8,7 @@ from math import lcm
 from typing import Any
 
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.budget import in_time
 from liehom.scalars import ExactMatrix, Matrix, as_exact
 
 Entries = dict[tuple[int, int], int]
@@ -56,6 +57,7 @@ def sparse_commutator_table(
 
 def entries_of(matrix: ExactMatrix, factor: int = 1) -> Entries:
     """The non-zero numerators of a matrix over QQ times a factor, as {(row, column): value}."""
+    in_time()
     n = matrix.ncols
     entries = matrix.parts[0].entries()
     return {divmod(x, n): int(v) * factor for x, v in compress(enumerate(entries), entries)}

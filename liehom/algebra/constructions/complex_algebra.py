@@ -18,7 +18,7 @@ import numpy.typing as npt
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import constants_from, field_of_values
-from liehom.errors import InputError, ShapeError, StructureError
+from liehom.errors import InputError, ShapeError, StructureError, displayed
 from liehom.scalars import Field, Matrix, Scalar
 
 
@@ -129,7 +129,9 @@ def realification(
     imaginary: dict[Any, Any] = {}
     for pair, row in constants.items():
         if not isinstance(row, Mapping):
-            raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{(i, j): {{k: value}}}}")
+            raise StructureError(
+                f"{displayed(pair)}: {displayed(row)} is not a bracket; write {{(i, j): {{k: value}}}}"
+            )
         parts = {k: _parts(value) for k, value in row.items()}
         real[pair] = {k: re for k, (re, _) in parts.items()}
         imaginary[pair] = {k: im for k, (_, im) in parts.items()}
@@ -201,7 +203,8 @@ def _require_constants(value: object) -> None:
     """`InputError` if the value is a Lie algebra instead of a table."""
     if isinstance(value, LieAlgebra):
         raise InputError(
-            f"realification takes complex structure constants, got {value!r}; its complexification as a real Lie "
+            f"realification takes complex structure constants, got {displayed(value)}; its "
+            "complexification as a real Lie "
             "algebra is g.complexification().algebra"
         )
 
@@ -210,7 +213,9 @@ def _as_mapping(constants: object) -> tuple[dict[tuple[int, int], dict[int, obje
     """The mapping of a nested list or array of shape (n, n, n) or (n, n, n, 2), and n."""
     rows: object = getattr(constants, "tolist", lambda: constants)()
     if not isinstance(rows, (list, tuple)):
-        raise StructureError(f"{constants!r} are not structure constants; write {{(i, j): {{k: value}}}} or an array")
+        raise StructureError(
+            f"{displayed(constants)} are not structure constants; write {{(i, j): {{k: value}}}} or an array"
+        )
     n = len(rows)
     table: dict[tuple[int, int], dict[int, object]] = {}
     for i, block in enumerate(rows):
@@ -229,7 +234,7 @@ def _parts(value: object) -> tuple[Any, Any]:
     """Real and imaginary part of a complex number in any accepted form."""
     if isinstance(value, (list, tuple)):
         if len(value) != 2:
-            raise StructureError(f"a complex number is a pair (real part, imaginary part), got {value!r}")
+            raise StructureError(f"a complex number is a pair (real part, imaginary part), got {displayed(value)}")
         return value[0], value[1]
     if isinstance(value, (complex, np.complexfloating)):
         return float(value.real), float(value.imag)

@@ -9,7 +9,7 @@ from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.errors import CocycleError, ShapeError, StructureError, shown
+from liehom.errors import CocycleError, ShapeError, StructureError, displayed, shown
 from liehom.scalars import FloatMatrix, Matrix, Scalar
 from liehom.scalars.fields.field import MatricesLike, MatrixLike
 
@@ -76,7 +76,7 @@ def _listed(cocycle: MatrixLike | MatricesLike) -> list[MatrixLike]:
         return [cocycle]
     rows: Any = getattr(cocycle, "tolist", lambda: cocycle)()
     if not isinstance(rows, Sequence) or isinstance(rows, str):
-        raise ShapeError(f"a cocycle is an antisymmetric matrix or a list of them, got {cocycle!r}")
+        raise ShapeError(f"a cocycle is an antisymmetric matrix or a list of them, got {displayed(cocycle)}")
     if all(hasattr(x, "nrows") or hasattr(x, "tolist") for x in rows):
         tables = [x if hasattr(x, "nrows") else x.tolist() for x in rows]
     else:

@@ -14,7 +14,7 @@ import itertools
 from liehom.algebra.closure.closure import lie_closure, square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.scalars import Matrix, Scalar
 from liehom.scalars.fields.field import MatrixLike
 
@@ -175,7 +175,7 @@ def _form(form: MatrixLike, sign: int) -> Matrix:
     else:
         rows = getattr(form, "tolist", lambda: form)()
         if not hasattr(rows, "__iter__") or isinstance(rows, str):
-            raise ShapeError(f"a form is given by a square matrix, got {form!r}")
+            raise ShapeError(f"a form is given by a square matrix, got {displayed(form)}")
         matrix = square_matrices([list(rows)])[0]
     if matrix.nrows != matrix.ncols or matrix.nrows == 0:
         raise ShapeError(f"a form is given by a square matrix of size at least 1, got shape {matrix.shape}")

@@ -12,7 +12,7 @@ from typing import Any
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.tables import field_of_values
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.scalars import Scalar
 from liehom.typing import ScalarLike
 
@@ -84,10 +84,12 @@ def low_dimensional(n: int, k: int, *parameters: ScalarLike) -> LieAlgebra:
       [e2, e4] = e2
       [e3, e4] = e2 + e3
     """
+    if not (isinstance(n, int) and isinstance(k, int)):
+        raise InputError(f"a class is A(n, k) with two integers, got {displayed(n)} and {displayed(k)}")
     if (n, k) not in _TABLE:
         known = sorted(j for i, j in _TABLE if i == n)
         found = f"the classes of dimension {n} are A{n},1 to A{n},{known[-1]}" if known else "dimensions go up to 4"
-        raise InputError(f"there is no Lie algebra A{n},{k} here: {found}")
+        raise InputError(f"there is no Lie algebra A{displayed(n)},{displayed(k)} here: {found}")
     kind = _TABLE[n, k]
     if len(parameters) != kind.parameters:
         wanted = f", {kind.condition}" if kind.condition else ""

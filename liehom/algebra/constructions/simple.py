@@ -21,7 +21,7 @@ from liehom.algebra.roots.compact_form import real_form_of
 from liehom.algebra.roots.dynkin import parse_type
 from liehom.algebra.roots.real_form import RealForm, complex_form, real_forms
 from liehom.algebra.roots.real_form_names import canonical_real_form, parse_name
-from liehom.errors import CatalogError
+from liehom.errors import CatalogError, displayed
 from liehom.typing import IntegerArray
 
 Builder = Callable[[], LieAlgebra]
@@ -61,6 +61,11 @@ def simple(type_name: str, real_form: str | None = None) -> LieAlgebra:
     >>> lh.simple("f4(-20)") == lh.simple("F4", "f4(-20)")
     True
     """
+    if not isinstance(type_name, str) or not isinstance(real_form, str | None):
+        raise CatalogError(
+            "a type and a real form are strings such as 'E7' and 'e7(-25)', got "
+            f"{displayed(type_name)} and {displayed(real_form)}"
+        )
     if real_form is None and ("(" in type_name or type_name.strip()[:1].islower()):
         form = RealForm.of_name(type_name)
         type_name, real_form = form.type, form.name

@@ -15,7 +15,7 @@ from liehom.algebra.core.tables import ConstantsMapping, field_of_values
 from liehom.algebra.matrices.general_linear import triangular
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.algebra.matrices.named_matrices import linear_lie_algebra
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.scalars import QQ, Matrix, Scalar
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import ScalarLike
@@ -265,10 +265,10 @@ def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
     """
     wanted = str(kind).strip().upper()
     if wanted not in _BIANCHI:
-        raise InputError(f"there is no Bianchi type {kind!r}; the types are {', '.join(_BIANCHI)}")
+        raise InputError(f"there is no Bianchi type {displayed(kind)}; the types are {', '.join(_BIANCHI)}")
     (n1, n2, n3), fixed = _BIANCHI[wanted]
     if fixed is not None and a is not None:
-        raise InputError(f"type {wanted} of Bianchi has no parameter, got {a!r}; only VI and VII have one")
+        raise InputError(f"type {wanted} of Bianchi has no parameter, got {displayed(a)}; only VI and VII have one")
     given = fixed if fixed is not None else 0 if a is None else a
     field = field_of_values([given])
     value = field.convert(given)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from liehom.algebra.closure.closure import square_matrices
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.scalars import FloatMatrix, Scalar
 from liehom.scalars.fields.field import MatricesLike
 
@@ -41,7 +41,7 @@ def direct_sum(*algebras: LieAlgebra, name: str | None = None) -> LieAlgebra:
     strange = [g for g in algebras if not isinstance(g, LieAlgebra)]
     if strange:
         hint = "; if this is a list of summands, unpack the list: direct_sum(*algebras)" if len(algebras) == 1 else ""
-        raise InputError(f"a summand must be a LieAlgebra, got {strange[0]!r}{hint}")
+        raise InputError(f"a summand must be a LieAlgebra, got {displayed(strange[0])}{hint}")
     field = algebras[0].field
     if any(g.field != field for g in algebras):
         fields = ", ".join(g.field.name for g in algebras)

@@ -20,7 +20,7 @@ from liehom.algebra.core.names import RowsLike, by_index, coefficients, is_named
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
 from liehom.budget import within
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, Field, FloatField, FloatMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike
@@ -109,6 +109,8 @@ class LieAlgebra(Immutable):
         name: str | None = None,
         check: bool = True,
     ) -> None:
+        if field is not None:
+            _check_field(field)
         if isinstance(constants, StructureConstants):
             if field not in (None, constants.field) or dimension not in (None, constants.dimension):
                 found = f"{constants.field.name}, of dimension {constants.dimension}"
@@ -776,8 +778,7 @@ class LieAlgebra(Immutable):
         >>> lh.so(3).over(lh.number_field("sqrt(2)"))
         <Lie algebra so(3) of dimension 3 over QQ(sqrt(2))>
         """
-        if not isinstance(field, Field):
-            raise InputError(f"expected a field such as lh.QQ, lh.RR or lh.number_field('sqrt(2)'), got {field!r}")
+        _check_field(field)
         if field == self.field:
             return LieAlgebra(self._constants, basis=self.basis_names, name=self.name, check=False)
         if isinstance(field, FloatField):
@@ -1161,6 +1162,11 @@ def _sum(terms: list[str]) -> str:
     """The first terms of a sum with their signs."""
     shown = terms[0] + "".join(f" - {t[1:]}" if t.startswith("-") else f" + {t}" for t in terms[1:SHOWN_TERMS])
     return shown + (f" + ... ({len(terms)} terms)" if len(terms) > SHOWN_TERMS else "")
+
+
+def _check_field(field: object) -> None:
+    if not isinstance(field, Field):
+        raise InputError(f"expected a field such as lh.QQ, lh.RR or lh.number_field('sqrt(2)'), got {displayed(field)}")
 
 
 def _checked_names(basis: Sequence[str], n: int) -> tuple[str, ...]:

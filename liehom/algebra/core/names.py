@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, TypeAlias
 
-from liehom.errors import InputError, ShapeError, StructureError
+from liehom.errors import InputError, ShapeError, StructureError, displayed
 from liehom.scalars import Field, Scalar
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import ElementLike, ScalarLike
@@ -35,7 +35,8 @@ def is_named(constants: object) -> bool:
     if any(named) and not all(named):
         name, index = found[named.index(True)], found[named.index(False)]
         raise StructureError(
-            f"brackets have names or indices for basis elements, not both; got the name {name!r} and {index!r}"
+            "brackets have names or indices for basis elements, not both; got the name "
+            f"{displayed(name)} and {displayed(index)}"
         )
     return any(named)
 
@@ -46,7 +47,9 @@ def _labels(constants: Mapping[Any, Any]) -> Iterable[Any]:
         if isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping):
             yield from (*pair, *row)
         elif isinstance(pair, str):
-            raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{('x', 'y'): {{'z': value}}}}")
+            raise StructureError(
+                f"{displayed(pair)}: {displayed(row)} is not a bracket; write {{('x', 'y'): {{'z': value}}}}"
+            )
 
 
 def by_index(
@@ -68,7 +71,9 @@ def by_index(
     made = {}
     for pair, row in constants.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
-            raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{('x', 'y'): {{'z': value}}}}")
+            raise StructureError(
+                f"{displayed(pair)}: {displayed(row)} is not a bracket; write {{('x', 'y'): {{'z': value}}}}"
+            )
         i, j = (index_of(names, x, StructureError) for x in pair)
         made[i, j] = {index_of(names, x, StructureError): value for x, value in row.items()}
     return made, names
@@ -89,7 +94,7 @@ def index_of(names: Sequence[str], name: str, error: type[InputError] = InputErr
     near = get_close_matches(str(name), names, n=3, cutoff=0.4)
     shown = ", ".join(names[:SHOWN_NAMES]) + (", ..." if len(names) > SHOWN_NAMES else "")
     hint = f"the nearest {'is' if len(near) == 1 else 'are'} {', '.join(near)}" if near else f"the names are {shown}"
-    raise error(f"no basis element is named {name!r}; {hint}")
+    raise error(f"no basis element is named {displayed(name)}; {hint}")
 
 
 def coefficients(names: Sequence[str], x: str | Mapping[str, ScalarLike]) -> list[ScalarLike]:
@@ -104,7 +109,9 @@ def coefficients(names: Sequence[str], x: str | Mapping[str, ScalarLike]) -> lis
     made: list[ScalarLike] = [0] * len(names)
     for name, value in given.items():
         if not isinstance(name, str):
-            raise ShapeError(f"an element is given by names of basis elements or by a sequence, got the key {name!r}")
+            raise ShapeError(
+                f"an element is given by names of basis elements or by a sequence, got the key {displayed(name)}"
+            )
         made[index_of(names, name)] = value
     return made
 

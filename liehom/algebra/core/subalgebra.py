@@ -15,7 +15,15 @@ import numpy as np
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.names import RowsLike, coefficients
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.errors import DependentRowsError, InputError, NotAnIdealError, NotASubalgebraError, ShapeError, shown
+from liehom.errors import (
+    DependentRowsError,
+    InputError,
+    NotAnIdealError,
+    NotASubalgebraError,
+    ShapeError,
+    displayed,
+    shown,
+)
 from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, FloatMatrix, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import rows_of
@@ -369,7 +377,10 @@ def _span(algebra: LieAlgebra, rows: Subalgebra | RowsLike) -> Matrix:
 def require_inside(algebra: LieAlgebra, subalgebra: Subalgebra) -> None:
     """Raise `InputError` if a subalgebra belongs to another algebra."""
     if subalgebra.algebra is not algebra and subalgebra.algebra != algebra:
-        raise InputError(f"{subalgebra!r} is not a subalgebra of {algebra!r}: it belongs to {subalgebra.algebra!r}")
+        raise InputError(
+            f"{displayed(subalgebra)} is not a subalgebra of {displayed(algebra)}: it belongs to "
+            f"{displayed(subalgebra.algebra)}"
+        )
 
 
 def products(algebra: LieAlgebra, left: M, right: M) -> M:

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from liehom.algebra.core.names import NamedConstants
 from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.errors import FieldError, ParseError, ShapeError, StructureError, shown
+from liehom.budget import within
+from liehom.errors import FieldError, ParseError, ShapeError, StructureError, displayed, shown
 from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, Scalar, common_field, number_field
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.floating import norm_of
@@ -134,14 +135,17 @@ def _require_dimension(found: int, expected: int | None) -> None:
 def _from_mapping(constants: Mapping[Any, Any], field: Field, dimension: int | None) -> tuple[int, Entries]:
     for pair, row in constants.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(row, Mapping)):
-            raise StructureError(f"{pair!r}: {row!r} is not a bracket; write {{(i, j): {{k: value}}}}")
+            raise StructureError(
+                f"{displayed(pair)}: {displayed(row)} is not a bracket; write {{(i, j): {{k: value}}}}"
+            )
         if not all(isinstance(x, (int, np.integer, Integral)) for x in (*pair, *row)):  # the first two: quickly
-            raise StructureError(f"the indices of {pair!r}: {dict(row)!r} are not all integers")
+            raise StructureError(f"the indices of {displayed(pair)}: {displayed(dict(row))} are not all integers")
     largest = max((int(x) for (i, j), row in constants.items() for x in (i, j, *row)), default=-1)
     n: Any = largest + 1 if dimension is None else dimension
     if not isinstance(n, Integral) or n < 0:
-        raise ShapeError(f"the dimension is {n!r}, expected an integer that is not negative")
+        raise ShapeError(f"the dimension is {displayed(n)}, expected an integer that is not negative")
     n = int(n)
+    within("dimension", n, "the algebra has dimension {}")
     given: Entries = {}
     for (i, j), row in constants.items():
         for k, value in row.items():
@@ -207,9 +211,12 @@ def _array(constants: ConstantsLike) -> npt.NDArray[Any]:
         array = np.asarray(constants)
     except ValueError:
         raise ShapeError("structure constants have shape (n, n, n); these lists are not of equal lengths") from None
+    except RecursionError:
+        raise ShapeError("structure constants have shape (n, n, n); these lists are nested too deeply") from None
     if array.ndim == 0:
         raise StructureError(
-            f"{constants!r} is not a table of structure constants; write {{(i, j): {{k: value}}}} or an array of shape "
+            f"{displayed(constants)} is not a table of structure constants; write "
+            f"{{(i, j): {{k: value}}}} or an array of shape "
             "(n, n, n)"
         )
     return array

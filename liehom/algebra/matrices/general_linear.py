@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from liehom.algebra.matrices.composition_algebra import cayley_dickson, left_multiplications, right_multiplications
 from liehom.algebra.matrices.matrix_basis import as_matrices, join, require_basis, require_size, stack, unit
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.typing import IntegerArray
 
 
@@ -293,7 +293,7 @@ def with_complex_scalars(family: IntegerArray, scalars: int, *, parameter: int =
     (7, 4, 4)
     """
     if scalars not in (0, 1):
-        raise InputError(f"over C there are 0 or 1 (for u(1)) commuting scalars; got {scalars!r}")
+        raise InputError(f"over C there are 0 or 1 (for u(1)) commuting scalars; got {displayed(scalars)}")
     structure = complex_structure(family.shape[1] // 2, parameter=parameter)
     return join(family, structure[None]) if scalars else family
 
@@ -314,7 +314,9 @@ def with_quaternion_scalars(
     (5, 4, 4)
     """
     if scalars not in (0, 1, 3):
-        raise InputError(f"over H there are 0, 1 (for u(1)) or 3 (for sp(1)) commuting scalars; got {scalars!r}")
+        raise InputError(
+            f"over H there are 0, 1 (for u(1)) or 3 (for sp(1)) commuting scalars; got {displayed(scalars)}"
+        )
     return join(family, quaternion_scalars(family.shape[1] // 4, parameters=parameters)[:scalars])
 
 
@@ -332,7 +334,7 @@ def quaternion_table(parameters: tuple[int, int]) -> IntegerArray:
     [3, 0, 0, 0]
     """
     if len(parameters) != 2:
-        raise InputError(f"a quaternion algebra has two parameters, i^2 and j^2; got {list(parameters)!r}")
+        raise InputError(f"a quaternion algebra has two parameters, i^2 and j^2; got {displayed(list(parameters))}")
     return cayley_dickson(parameters)
 
 

@@ -291,4 +291,4 @@ def require_nonzero(name: str, values: Sequence[int]) -> None:
     """
     for value in values:
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or value == 0:
-            raise InputError(f"the entries of {name} must be non-zero integers; got {list(values)!r}")
+            raise InputError(f"the entries of {name} must be non-zero integers; got {displayed(list(values))}")

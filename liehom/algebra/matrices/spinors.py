@@ -21,7 +21,7 @@ import numpy as np
 
 from liehom.algebra.matrices.composition_algebra import OCTONIONS, cayley_dickson, left_multiplications
 from liehom.algebra.matrices.matrix_basis import require_basis, require_room, require_size, stack
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.typing import IntegerArray
 
 _SX: IntegerArray = np.array([[0, 1], [1, 0]], dtype=np.int64)
@@ -98,7 +98,7 @@ def spin(p: int, q: int = 0, *, chirality: int = 1) -> IntegerArray:
     require_size("q", q, 0)
     require_size("p + q", p + q, 2)
     if chirality not in (1, -1):
-        raise InputError(f"chirality must be 1 or -1; got {chirality!r}")
+        raise InputError(f"chirality must be 1 or -1; got {displayed(chirality)}")
     generators = chirality * (clifford(p, q - 1) if q else clifford(0, p - 1))
     require_basis(len(generators) * (len(generators) + 1) // 2, generators.shape[1])
     products = [a @ b for a, b in combinations(generators, 2)]

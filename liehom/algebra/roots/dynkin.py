@@ -12,7 +12,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from liehom.errors import CatalogError, InputError, InternalError
+from liehom.budget import small_integer, within
+from liehom.errors import CatalogError, InputError, InternalError, displayed
 
 if TYPE_CHECKING:
     import networkx
@@ -36,6 +37,8 @@ def parse_type(name: str) -> tuple[tuple[str, int], ...]:
     >>> parse_type("A2 + G2")
     (('A', 2), ('G', 2))
     """
+    if not isinstance(name, str):
+        raise CatalogError(f"a type is a string such as 'E8' or 'A2 + G2', got {displayed(name)}")
     if name.strip() == "0":
         return ()
     return tuple(_parse_simple(part.strip()) for part in name.split("+"))
@@ -69,6 +72,7 @@ def cartan_matrix(name: str) -> CartanMatrix:
     """
     parts = parse_type(name)
     size = sum(rank for _, rank in parts)
+    within("entries", size**2, "the Cartan matrix has {} entries")
     matrix = [[0] * size for _ in range(size)]
     start = 0
     for letter, rank in parts:
@@ -217,11 +221,11 @@ def _candidates(rank: int) -> list[str]:
 def _parse_simple(name: str) -> tuple[str, int]:
     match = re.fullmatch(r"([A-G])([1-9]\d*)", name)
     if match is not None:
-        letter, rank = match[1], int(match[2])
+        letter, rank = match[1], small_integer(match[2])
         if _LOWEST_RANK[letter] <= rank <= _HIGHEST_RANK.get(letter, rank):
             return letter, rank
     known = "A1, A2, ...; B1, ...; C1, ...; D3, ...; E6, E7, E8, F4, G2"
-    raise CatalogError(f"{name!r} is not the type of a simple Lie algebra; known: {known}")
+    raise CatalogError(f"{displayed(name)} is not the type of a simple Lie algebra; known: {known}")
 
 
 def _simple_matrix(letter: str, rank: int) -> list[list[int]]:
@@ -248,4 +252,4 @@ def _simple_edges(letter: str, rank: int) -> list[tuple[int, int]]:
         return [*((i, i + 1) for i in range(rank - 2)), *([(rank - 3, rank - 1)] if rank > 2 else [])]
     if letter == "E":
         return [(0, 2), (1, 3), *((i, i + 1) for i in range(2, rank - 1))]
-    raise InternalError(f"there is no diagram with the letter {letter!r}")
+    raise InternalError(f"there is no diagram with the letter {displayed(letter)}")

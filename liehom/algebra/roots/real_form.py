@@ -21,7 +21,7 @@ from liehom.algebra.roots.real_form_names import (
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.roots.satake import SatakeDiagram
 from liehom.algebra.roots.vogan import VoganDiagram
-from liehom.errors import CatalogError
+from liehom.errors import CatalogError, displayed
 
 if TYPE_CHECKING:
     import networkx
@@ -77,7 +77,7 @@ class RealForm:
         """
         ideals = canonical_real_form(name).split(" + ")
         if len(ideals) > 1:
-            raise CatalogError(f"{name!r} is not simple, it is {' + '.join(ideals)}; name one of its ideals")
+            raise CatalogError(f"{displayed(name)} is not simple, it is {' + '.join(ideals)}; name one of its ideals")
         return _of_canonical(ideals[0])
 
     # -- properties --------------------------------------------------------------------------------------
@@ -247,7 +247,9 @@ def _simple_type(type_name: str) -> str:
     """The canonical name of a simple type: B2 for C2, A3 for D3."""
     parts = parse_type(type_name)
     if len(parts) != 1 or parts[0] == ("D", 2):
-        raise CatalogError(f"{type_name!r} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, E8, F4, G2")
+        raise CatalogError(
+            f"{displayed(type_name)} is not the type of a simple Lie algebra, such as A1, B2, C3, D4, E8, F4, G2"
+        )
     return {("B", 1): "A1", ("C", 1): "A1", ("C", 2): "B2", ("D", 3): "A3"}.get(parts[0], type_name.strip())
 
 

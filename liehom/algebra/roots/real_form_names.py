@@ -19,7 +19,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from liehom.errors import CatalogError
+from liehom.budget import small_integer
+from liehom.errors import CatalogError, displayed
 
 Parsed = tuple[str, tuple[int, ...], str]
 
@@ -60,6 +61,8 @@ def canonical_real_form(name: str) -> str:
     >>> lh.canonical_real_form("so(5,1) + g2(-14)")
     'g2 + sl(2,H)'
     """
+    if not isinstance(name, str):
+        raise CatalogError(f"the name of a real form is a string such as 'so(4,1)', got {displayed(name)}")
     return join_real_forms(part for term in name.split("+") for part in canonical_ideals(term))
 
 
@@ -132,6 +135,8 @@ def parse_name(name: str) -> Parsed:
     >>> parse_name("so(4, 1)"), parse_name("sp(6,R)"), parse_name("e6(-26)"), parse_name("g2")
     (('so', (4, 1), ''), ('sp', (6,), 'R'), ('e6', (-26,), ''), ('g2', (-14,), ''))
     """
+    if not isinstance(name, str):
+        raise CatalogError(f"the name of a real form is a string such as 'so(4,1)', got {displayed(name)}")
     text = name.replace(" ", "")
     if re.match(r"[EFG][2-8]\(", text):  # E6 with a character is accepted; E6 alone is a type, e6 the compact form
         text = text[0].lower() + text[1:]
@@ -139,20 +144,20 @@ def parse_name(name: str) -> Parsed:
         kind, character = exceptional[1], exceptional[2] or str(EXCEPTIONAL_CHARACTERS[exceptional[1]][-1])
         if character == "C":
             return kind, (), "C"
-        if int(character) in EXCEPTIONAL_CHARACTERS[kind]:
+        if len(character) < 9 and int(character) in EXCEPTIONAL_CHARACTERS[kind]:
             return kind, (int(character),), ""
     elif starred := re.fullmatch(r"(so|su)\*\((\d+)\)", text, re.ASCII):
-        size = int(starred[2])
+        size = small_integer(starred[2])
         if size % 2 == 0:
             return ("so*", (size,), "") if starred[1] == "so" else ("sl", (size // 2,), "H")
     elif classical := re.fullmatch(r"(sl|su|so|sp|spin)\((\d+)(?:,(\d+|[RCH]))?\)", text, re.ASCII):
-        kind, first, second = classical[1].replace("spin", "so"), int(classical[2]), classical[3] or ""
+        kind, first, second = classical[1].replace("spin", "so"), small_integer(classical[2]), classical[3] or ""
         if second.isdigit():
             if kind != "sl":
-                return kind, (first, int(second)), ""
+                return kind, (first, small_integer(second)), ""
         elif second in _LETTERS[kind] and not (kind == "sp" and second and first % 2):
             return kind, (first,), second
-    raise CatalogError(f"{name!r} is not the name of a semisimple real Lie algebra; known: {_KNOWN}")
+    raise CatalogError(f"{displayed(name)} is not the name of a semisimple real Lie algebra; known: {_KNOWN}")
 
 
 def name_of(kind: str, numbers: tuple[int, ...], letter: str) -> str:

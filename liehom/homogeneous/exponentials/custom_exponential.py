@@ -7,7 +7,7 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from liehom.errors import InputError, SeriesError, ShapeError
+from liehom.errors import InputError, SeriesError, ShapeError, displayed
 from liehom.homogeneous.exponentials.cayley import Cayley
 from liehom.homogeneous.exponentials.exponential import Exponential, MatrixExponential, SeriesExponential
 from liehom.homogeneous.exponentials.rodrigues import Rodrigues, cubic_form
@@ -60,7 +60,7 @@ class CustomExponential(Exponential):
 
     def __init__(self, representation: Representation, function: ExponentialFunction, name: str = "custom") -> None:
         if not callable(function):
-            raise InputError(f"an exponential is a function (x, m) -> Exp(x) m, got {function!r}")
+            raise InputError(f"an exponential is a function (x, m) -> Exp(x) m, got {displayed(function)}")
         self._function = function
         self._name = name
         check_exponential(representation, self)
@@ -98,7 +98,7 @@ def check_exponential(representation: Representation, exponential: Exponential) 
     x, m = rng.normal(size=(count, dimension)), rng.normal(size=(count, size))
     a = action_map(representation)
     x = x / max(1.0, float(np.linalg.norm(a.left(x), axis=(-2, -1)).max(initial=0.0)))
-    what = f"the exponential {exponential.name!r}"
+    what = f"the exponential {displayed(exponential.name)}"
     series = _expanded(what, exponential, x, m)
     wanted = [m, a(x, m), a(x, a(x, m)) / 2]
     for k in range(3):
@@ -128,7 +128,8 @@ def _expanded(what: str, exponential: Exponential, x: Values, m: Values) -> Jet:
         ) from error
     if not isinstance(series, Jet) or series.shape != m.shape:
         raise ShapeError(
-            f"{what} returned {series!r} for a series x with values of shape {x.shape} and m of shape {m.shape}, "
+            f"{what} returned {displayed(series)} for a series x with values of shape {x.shape} "
+            f"and m of shape {m.shape}, "
             f"expected a series with values of shape {m.shape}: write x[..., i] and m[..., i]"
         )
     return series
@@ -180,6 +181,7 @@ def exponential_of(representation: Representation, which: ExponentialLike = "exp
     elif callable(which):
         return CustomExponential(representation, which, getattr(which, "__name__", "custom"))
     raise InputError(
-        f"unknown exponential {which!r}; known: 'exp', {', '.join(map(repr, _BY_NAME))}, an Exponential, or a function "
+        f"unknown exponential {displayed(which)}; known: 'exp', "
+        f"{', '.join(map(repr, _BY_NAME))}, an Exponential, or a function "
         "(x, m) -> Exp(x) m"
     )

@@ -18,7 +18,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous.fields.evaluation import Evaluation, Value
 from liehom.homogeneous.fields.expression import FUNCTIONS as FUNCTIONS
 from liehom.homogeneous.fields.expression import ComponentLike, compiled
@@ -84,7 +84,8 @@ class Components:
             self._function, self.time_dependent = self._constant(source), False
         elif isinstance(source, str | bytes | dict | set | frozenset) or not np.iterable(source):
             raise InputError(
-                f"{what} is {source!r}: expected a function of m (and t), or a list of {self._wanted()} components"
+                f"{what} is {displayed(source)}: expected a function of m (and t), or a list of "
+                f"{self._wanted()} components"
             )
         else:
             self._function, self.time_dependent = self._from_list(list(source))
@@ -195,7 +196,9 @@ class Components:
         if kind == "c":
             raise InputError(f"{self.what} is complex: {made} at m of shape {m.shape}, expected real numbers")
         found = made.item() if made.ndim == 0 else made
-        raise InputError(f"{self.what} returned {found!r} at m of shape {m.shape}, expected an array of real numbers")
+        raise InputError(
+            f"{self.what} returned {displayed(found)} at m of shape {m.shape}, expected an array of real numbers"
+        )
 
     def _wanted(self) -> str:
         return " or ".join(map(str, sorted(set(self.counts))))
@@ -204,7 +207,7 @@ class Components:
         if not array.shape or array.shape[-1] not in self.counts:
             raise ShapeError(f"{self.what} is an array of shape {array.shape}, expected (..., {self._wanted()})")
         if not is_jax(array) and (array.dtype.kind not in "iuf" or not bool(np.all(np.isfinite(array)))):
-            raise InputError(f"{self.what} is {array!r}: expected finite real numbers")
+            raise InputError(f"{self.what} is {displayed(array)}: expected finite real numbers")
         return lambda m, t: array
 
     def _from_list(self, parts: Sequence[ComponentLike]) -> tuple[Evaluated, bool]:

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from liehom.errors import InputError, ParseError
+from liehom.errors import InputError, ParseError, displayed
 from liehom.homogeneous.fields.evaluation import Chain, Compiled, Constant, Function, Power
 from liehom.scalars.fields.grammar import Call, Name, Node, Number, Operation, parse
 from liehom.scalars.fields.number_field import AlgebraicNumber
@@ -82,7 +82,7 @@ def _of_number(part: Any, what: str) -> Compiled:
             return (lambda s: s.rational(ratio)) if ratio.denominator == 1 else (lambda s: s.irrational(near, digits))
         except (TypeError, ValueError, OverflowError):
             pass
-    raise InputError(f"{what} is {part!r}: expected a finite real number, a string or a sympy expression")
+    raise InputError(f"{what} is {displayed(part)}: expected a finite real number, a string or a sympy expression")
 
 
 # -- strings -----------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from typing import final, overload
 
 import numpy as np
 
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous.fields.components import Components, GeneratorLike
 from liehom.homogeneous.fields.least_norm import RANK_RTOL, TANGENCY_RTOL, LeastNorm
 from liehom.homogeneous.maps import action_map
@@ -69,7 +69,7 @@ class GeneratorField(Immutable):
         self, representation: Representation, psi: GeneratorLike | LeastNorm, *, time_dependent: bool | None = None
     ) -> None:
         if not isinstance(representation, Representation):
-            raise InputError(f"expected a Representation, got {representation!r}")
+            raise InputError(f"expected a Representation, got {displayed(representation)}")
         self.representation = representation
         self.source = psi
         self._action = action_map(representation)
@@ -125,7 +125,7 @@ class GeneratorField(Immutable):
         array([0. , 0.6, 0. ])
         """
         if not isinstance(representation, Representation):
-            raise InputError(f"expected a Representation, got {representation!r}")
+            raise InputError(f"expected a Representation, got {displayed(representation)}")
         return cls(representation, LeastNorm(representation, field, orbit_dimension, rtol, time_dependent))
 
     def psi(self, m: ValuesLike, t: Real = 0.0) -> Values:
@@ -192,7 +192,7 @@ class GeneratorField(Immutable):
 
     def __repr__(self) -> str:
         kind = "time-dependent " if self.time_dependent else ""
-        return f"<{kind}generator field of {self.representation!r}>"
+        return f"<{kind}generator field of {displayed(self.representation)}>"
 
 
 def check_point(representation: Representation, m: ValuesLike) -> IntegerArray:

@@ -95,6 +95,8 @@ def inner_product(representation: Representation) -> InnerProduct:
     if _is_positive(trace):
         return _made(algebra, trace, "-tr(rho(x) rho(y))")
     killing = np.asarray(algebra.killing_form().to_numpy()).reshape(n, n)
+    if not (np.isfinite(flat).all() and np.isfinite(killing).all()):
+        raise InputError("the matrices have numbers beyond the range of floats; scale them before integrating")
     if _is_positive(-killing):
         return _made(algebra, -killing, "minus the Killing form")
     centre = _coefficients_on_the_centre(algebra) if _is_semidefinite(-killing) else None

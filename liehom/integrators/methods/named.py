@@ -11,7 +11,7 @@ from difflib import get_close_matches
 import numpy as np
 
 from liehom.correctors import Corrected, Step
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.integrators.methods.products import CommutatorFree4, CrouchGrossman3
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import BackwardEuler, Euler, Heun, LieTaylor
@@ -48,9 +48,11 @@ def step_named(base: str, order: int | None = None) -> Step:
     BackwardEuler()
     """
     if not isinstance(base, str):
-        raise InputError(f"a base is a name such as 'euler' or 'rk4', got {base!r}; known: {', '.join(step_names())}")
+        raise InputError(
+            f"a base is a name such as 'euler' or 'rk4', got {displayed(base)}; known: {', '.join(step_names())}"
+        )
     if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
-        raise InputError(f"the order is an integer at least 1, got {order!r}")
+        raise InputError(f"the order is an integer at least 1, got {displayed(order)}")
     key = _key(base)
     if key == "lietaylor":
         return LieTaylor(DEFAULT_ORDER if order is None else int(order))
@@ -97,6 +99,6 @@ def _plain(key: str, base: str) -> Step:
 def _unknown(base: str) -> InputError:
     names = step_names()
     near = get_close_matches(base.lower(), names, n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
+    hint = f"did you mean {displayed(near[0])}? " if near else ""
     shown = repr(base) if len(base) <= 60 else repr(base[:57] + "...")
     return InputError(f"no step is called {shown}; {hint}known: {', '.join(names)}")

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.typing import Array, BooleanArray
 
 ITERATIONS = 200
@@ -52,11 +52,11 @@ class Events:
 
     def __init__(self, functions: EventFunction | Sequence[EventFunction]) -> None:
         if not callable(functions) and not isinstance(functions, list | tuple):
-            raise InputError(f"events is {functions!r}, expected a function g(t, y) or a list of functions")
+            raise InputError(f"events is {displayed(functions)}, expected a function g(t, y) or a list of functions")
         listed = [functions] if callable(functions) else list(functions)
         for i, g in enumerate(listed):
             if not callable(g):
-                raise InputError(f"events[{i}] is {g!r}, expected a function g(t, y)")
+                raise InputError(f"events[{i}] is {displayed(g)}, expected a function g(t, y)")
         self.functions: Sequence[EventFunction] = listed
         self.directions: list[float] = [_direction(getattr(g, "direction", 0), i) for i, g in enumerate(listed)]
         self.terminal: list[float] = [_limit(getattr(g, "terminal", False), i) for i, g in enumerate(listed)]
@@ -73,7 +73,7 @@ class Events:
             value = np.asarray(given)
             value = value if value.dtype.kind == "f" else value.astype(np.float64, casting="same_kind")
         except (TypeError, ValueError):
-            raise InputError(f"events[{i}] returned {given!r}, expected real numbers") from None
+            raise InputError(f"events[{i}] returned {displayed(given)}, expected real numbers") from None
         if value.shape != y.shape[:-1]:
             raise InputError(
                 f"events[{i}] has shape {value.shape} at y of shape {y.shape}, expected {y.shape[:-1]} "
@@ -186,7 +186,7 @@ def _direction(direction: object, i: int) -> float:
     except (TypeError, ValueError):
         number = np.nan
     if np.isnan(number):
-        raise InputError(f"events[{i}].direction is {direction!r}, expected a number")
+        raise InputError(f"events[{i}].direction is {displayed(direction)}, expected a number")
     return number
 
 
@@ -196,4 +196,6 @@ def _limit(terminal: object, i: int) -> float:
         return 1.0 if terminal else np.inf
     if isinstance(terminal, int | np.integer | float) and terminal >= 0 and terminal == np.floor(terminal):
         return float(terminal) if terminal > 0 else np.inf
-    raise InputError(f"events[{i}].terminal is {terminal!r}, expected a bool or a positive number of occurrences")
+    raise InputError(
+        f"events[{i}].terminal is {displayed(terminal)}, expected a bool or a positive number of occurrences"
+    )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.integrators.run.options import Span
 from liehom.typing import Array
 
@@ -30,7 +30,7 @@ def points_of(y0: npt.ArrayLike) -> Array:
         array = np.asarray(y0)
         if array.dtype.kind == "O":
             array = array.astype(np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"the start is not a point of floats: {error}") from None
     if array.dtype.kind not in "iuf":
         raise InputError(f"the start has the type {array.dtype}, expected real numbers")
@@ -54,8 +54,8 @@ def span_of(t_span: Iterable[float] | Span, dtype: np.dtype[Any]) -> Span:
         if isinstance(t_span, str | bytes):
             raise TypeError
         first, last = (dtype.type(t) for t in t_span)
-    except (TypeError, ValueError):
-        raise InputError(f"t_span is {t_span!r}, expected two numbers (start, end)") from None
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"t_span is {displayed(t_span)}, expected two numbers (start, end)") from None
     if not (np.isfinite(first) and np.isfinite(last)):
-        raise InputError(f"t_span is {t_span!r}: start and end must be finite")
+        raise InputError(f"t_span is {displayed(t_span)}: start and end must be finite")
     return first, last

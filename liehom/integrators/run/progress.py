@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any, final
 
 from liehom.budget import in_time
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 
 INTERVAL = 0.1
 """Seconds between two reports."""
@@ -39,7 +39,7 @@ class Progress:
 
     def __init__(self, show: bool | Callable[[float], object]) -> None:
         if not callable(show) and show not in (True, False, None):
-            raise InputError(f"progress is {show!r}, expected True, False or a function of the fraction done")
+            raise InputError(f"progress is {displayed(show)}, expected True, False or a function of the fraction done")
         self._callback = show if callable(show) else None
         self._bar: Any = None
         self._task: Any = None

@@ -10,7 +10,7 @@ import re
 from difflib import get_close_matches
 from functools import cache
 
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.integrators.tableaux.collocation import collocation, gauss
 from liehom.integrators.tableaux.tableau import Tableau
 from liehom.integrators.tableaux.tableaux_data import COLLOCATION, EXPLICIT, IMPLICIT, ButcherData
@@ -65,14 +65,16 @@ def tableau(name: str | Tableau) -> Tableau:
     if isinstance(name, Tableau):
         return name
     if not isinstance(name, str):
-        raise InputError(f"expected the name of a tableau, or a Tableau, got {name!r}")
+        raise InputError(f"expected the name of a tableau, or a Tableau, got {displayed(name)}")
     known = {_key(x): x for x in tableau_names()} | {_key(x): y for x, y in _ALIASES.items()}
     key = _key(name)
     if key in known:
         return _made(known[key])
     near = get_close_matches(key, known, n=1)
-    hint = f"did you mean {known[near[0]]!r}? " if near else ""
-    raise InputError(f"no tableau is called {name!r}; {hint}known: {', '.join(tableau_names())}; or make a Tableau")
+    hint = f"did you mean {displayed(known[near[0]])}? " if near else ""
+    raise InputError(
+        f"no tableau is called {displayed(name)}; {hint}known: {', '.join(tableau_names())}; or make a Tableau"
+    )
 
 
 def tableau_names() -> tuple[str, ...]:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure.closure import Completion, lie_closure, square_matrices
 from liehom.algebra.closure.complex_matrices import as_real_matrices
-from liehom.errors import InputError, RepresentationError, ShapeError, UndecidedError
+from liehom.errors import InputError, RepresentationError, ShapeError, UndecidedError, displayed
 from liehom.immutable import Immutable
 from liehom.representations.core.coordinates import (
     Coordinates,
@@ -301,7 +301,7 @@ class Representation(Immutable):
     def _complex_size(self) -> int:
         n = self.complex_size
         if n is None:
-            raise InputError(f"{self!r} is not on C^n: build it from complex matrices, or with hermitian=True")
+            raise InputError(f"{displayed(self)} is not on C^n: build it from complex matrices, or with hermitian=True")
         return n
 
     def real_point(self, point: VectorLike | MatrixLike) -> list[ScalarLike]:
@@ -636,9 +636,10 @@ class Representation(Immutable):
         >>> rho.isotropy(["sqrt(2)", 1, 0]).rows()
         [[0, -1/2*sqrt(2), 1]]
         """
+        algebra = self.algebra.over(field)
         made = [self._read_in(field, a) for a in self.matrices]
         # the same identities
-        return self._proved(self.algebra.over(field), made, self.size, self.name, self.coordinates)
+        return self._proved(algebra, made, self.size, self.name, self.coordinates)
 
     # -- commuting matrices, invariant forms and vectors -----------------------------------------------------
     def commutant(self) -> list[ExactMatrix]:
@@ -1141,9 +1142,13 @@ class Representation(Immutable):
 
     def _require_same_algebra(self, other: Representation) -> None:
         if not isinstance(other, Representation):
-            raise InputError(f"expected a Representation of the same algebra, such as lh.adjoint(g); got {other!r}")
+            raise InputError(
+                f"expected a Representation of the same algebra, such as lh.adjoint(g); got {displayed(other)}"
+            )
         if other.algebra is not self.algebra and other.algebra != self.algebra:
-            raise InputError(f"representations of two algebras, {self.algebra!r} and {other.algebra!r}")
+            raise InputError(
+                f"representations of two algebras, {displayed(self.algebra)} and {displayed(other.algebra)}"
+            )
 
     def _prove(self) -> None:
         failure = failing_pair(self.algebra, self.matrices)
@@ -1162,10 +1167,10 @@ class Representation(Immutable):
         return hash((self.algebra, self.size, self.matrices))
 
     def __repr__(self) -> str:
-        title = f"{self.name!r} " if self.name else ""
+        title = f"{displayed(self.name)} " if self.name else ""
         space = f"{self.field.name}^{self.size}"
         if self.coordinates != "real":
             n = self.complex_size or isqrt(self.size)
             space += f" = C^{n}" if self.coordinates == "complex" else f", the Hermitian {n} x {n} matrices"
         left_out = f"; dependent matrices left out: {', '.join(map(str, self.dropped))}" if self.dropped else ""
-        return f"<representation {title}of {self.algebra!r} on {space}{left_out}>"
+        return f"<representation {title}of {displayed(self.algebra)} on {space}{left_out}>"

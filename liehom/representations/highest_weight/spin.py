@@ -17,7 +17,7 @@ import numpy as np
 from liehom.algebra import matrices as families
 from liehom.algebra import so
 from liehom.algebra.matrices.matrix_basis import require_room, require_size
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.representations.core.representation import Representation
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
@@ -128,7 +128,7 @@ def spin_representation(p: int, q: int = 0, *, chirality: int = 1) -> Representa
     """
     _require_signature(p, q)
     if chirality not in (1, -1):
-        raise InputError(f"chirality must be 1 or -1; got {chirality!r}")
+        raise InputError(f"chirality must be 1 or -1; got {displayed(chirality)}")
     if p + q > MAX_VECTOR_DIMENSION:
         raise InputError(f"the spinors of so({p}, {q}) have at least 2^{(p + q) // 2 - 1} dimensions: too many")
     # The products e_i e_j are in an array with all pairs i, j.

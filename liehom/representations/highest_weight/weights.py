@@ -13,7 +13,7 @@ from typing import Any, final
 import numpy as np
 
 from liehom.algebra.roots.root_system import RootSystem, root_system
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 
 Weight = tuple[int, ...]
 Root = tuple[int, ...]
@@ -118,7 +118,9 @@ def root_system_of(system: RootSystem | str) -> RootSystem:
     """
     roots = root_system(system) if isinstance(system, str) else system
     if not isinstance(roots, RootSystem):
-        raise InputError(f"a root system or the name of a type such as 'B3' or 'A2 + G2' is needed, got {system!r}")
+        raise InputError(
+            f"a root system or the name of a type such as 'B3' or 'A2 + G2' is needed, got {displayed(system)}"
+        )
     return roots
 
 

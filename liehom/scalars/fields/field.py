@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import FieldError, ShapeError
+from liehom.errors import FieldError, ShapeError, displayed
 from liehom.typing import ScalarLike, VectorLike
 
 
@@ -61,11 +61,11 @@ def rows_of(rows: MatrixLike) -> list[list[Any]]:
     for convert in ("toarray", "to_Matrix", "tolist"):  # scipy's sparse arrays, sympy's DomainMatrix, then all arrays
         given = getattr(given, convert)() if hasattr(given, convert) else given
     if isinstance(given, str) or not hasattr(given, "__iter__"):
-        raise ShapeError(f"a matrix is given by its rows, got {given!r}")
+        raise ShapeError(f"a matrix is given by its rows, got {displayed(given)}")
     table = []
     for i, row in enumerate(given):
         if isinstance(row, str) or not (hasattr(row, "__iter__") or hasattr(row, "__len__")):  # sympy's have a length
-            raise ShapeError(f"row {i} is {row!r}, expected a sequence of numbers")
+            raise ShapeError(f"row {i} is {displayed(row)}, expected a sequence of numbers")
         table.append(list(row))
     return table
 
@@ -128,14 +128,16 @@ class Matrix(ABC):
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         """Array for ``numpy.asarray(matrix)``: exact numbers as objects, or floats for a float or complex dtype."""
         if copy is False:
-            raise ValueError(f"an array of {self!r} is always a copy; use numpy.asarray without copy=False")
+            raise ValueError(f"an array of {displayed(self)} is always a copy; use numpy.asarray without copy=False")
         wanted = np.dtype(dtype if dtype is not None else object if self.field.exact else np.float64)
         if wanted.kind in "fc" or not self.field.exact:
             return self.to_numpy().astype(wanted)
         made: npt.NDArray[Any] = np.empty(self.shape, dtype=object)
         made.reshape(-1)[:] = self.entries()
         if wanted.kind in "iu" and any(x != int(x) for x in made.flat):
-            raise FieldError(f"{self!r} has entries that are not integers; use numpy.asarray(matrix, dtype=float)")
+            raise FieldError(
+                f"{displayed(self)} has entries that are not integers; use numpy.asarray(matrix, dtype=float)"
+            )
         return made.astype(wanted)
 
     def to_strings(self) -> list[list[str]]:
@@ -180,7 +182,9 @@ class Matrix(ABC):
 
     def __mul__(self, factor: ScalarLike) -> Self:
         if isinstance(factor, (Matrix, np.ndarray, Sequence)):
-            raise TypeError(f"* multiplies a matrix by a number, @ by a matrix over the same field; got {factor!r}")
+            raise TypeError(
+                f"* multiplies a matrix by a number, @ by a matrix over the same field; got {displayed(factor)}"
+            )
         return self.scale(factor)
 
     __rmul__ = __mul__

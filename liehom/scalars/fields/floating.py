@@ -17,7 +17,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import FieldError, ShapeError, SingularError, UndecidedError
+from liehom.errors import FieldError, ShapeError, SingularError, UndecidedError, displayed
 from liehom.immutable import Immutable
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.typing import Array, ScalarLike
@@ -164,14 +164,14 @@ class FloatField(Field["FloatMatrix"], Immutable):
 
             return float(exact_value(value))
         if isinstance(value, (bool, np.bool_)):
-            raise FieldError(f"{value!r} is not a number")
+            raise FieldError(f"{displayed(value)} is not a number")
         try:
             given: Any = value
             number = int(given.p) / int(given.q) if hasattr(given, "p") else float(given)
         except (TypeError, ValueError, OverflowError) as error:
-            raise FieldError(f"{value!r} is not a float64 number: {error}") from None
+            raise FieldError(f"{displayed(value)} is not a float64 number: {error}") from None
         if not math.isfinite(number):
-            raise FieldError(f"{value!r} is not finite")
+            raise FieldError(f"{displayed(value)} is not finite")
         return number
 
     def format(self, value: Scalar) -> str:

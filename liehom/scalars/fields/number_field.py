@@ -15,13 +15,13 @@ from typing import Any, TypeAlias, final
 
 import flint
 
-from liehom.budget import within
-from liehom.errors import FieldError, shown
+from liehom.errors import FieldError
 from liehom.immutable import Immutable
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import isolate_real_root, root_ball, working_precision
 from liehom.scalars.fields.exact_field import ExactField, ExactMatrix
 from liehom.scalars.fields.field import Scalar
+from liehom.scalars.fields.minimal_polynomial import irreducible_polynomial, rational_ends
 from liehom.scalars.fields.polynomial import Polynomial
 from liehom.scalars.fields.rational import QQ, ExactNumber, prime, rational_from_text, rational_number, refused
 from liehom.typing import ScalarLike
@@ -82,20 +82,7 @@ class NumberField(ExactField, Immutable):
     def __init__(
         self, symbol: str, minpoly: Sequence[ScalarLike], interval: Ends, radicals: Sequence[int] = ()
     ) -> None:
-        within("minpoly_degree", len(minpoly) - 1, "the minimal polynomial has degree {}")
-        polynomial = flint.fmpq_poly([QQ.convert(c) for c in minpoly])
-        if polynomial.degree() < 2:
-            raise FieldError("the minimal polynomial of a number field must have degree at least 2")
-        integral = polynomial.numer()
-        bits = int(integral.height_bits()) * polynomial.degree()
-        within("coefficient_bits", bits, "the minimal polynomial has coefficients of {} bits together")
-        integral = (
-            integral // integral.content() if integral[integral.degree()] > 0 else -(integral // integral.content())
-        )
-        factors = integral.factor()[1]
-        if len(factors) != 1 or factors[0][1] != 1:
-            found = shown(", ".join(str(f) for f, _ in factors))
-            raise FieldError(f"the minimal polynomial {shown(str(integral))} is reducible: factors {found}; use one")
+        integral = irreducible_polynomial(minpoly)
         self.symbol: str = symbol
         self.minpoly: tuple[int, ...] = tuple(int(c) for c in integral.coeffs())
         self.leading: int = self.minpoly[-1]
@@ -103,7 +90,7 @@ class NumberField(ExactField, Immutable):
         self.radicals: tuple[int, ...] = tuple(radicals) if 2 ** len(radicals) == m > 2 else ()
         monic = [c * self.leading ** (m - 1 - i) for i, c in enumerate(self.minpoly[:-1])]
         self._modulus = flint.fmpz_poly([*monic, 1])
-        ends = (QQ.convert(interval[0]), QQ.convert(interval[1]))
+        ends = rational_ends(interval)
         self.interval, self.root_index = isolate_real_root(integral, ends)
         self._check_symbol()
         self._powers: dict[int, list[int]] = {}

@@ -12,7 +12,7 @@ from typing import Any
 import flint
 
 from liehom.budget import current_limits, within
-from liehom.errors import FieldError, shown
+from liehom.errors import FieldError, displayed, shown
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import real_root_balls, working_precision
 from liehom.scalars.fields.field import Scalar
@@ -71,7 +71,9 @@ def number_field(
         return NumberField(name, generator, interval)
     if hasattr(generator, "free_symbols"):
         return _field_of_sympy(generator, name)
-    raise FieldError(f"{generator!r} does not describe a number field; write 'sqrt(2)' or coefficients and an interval")
+    raise FieldError(
+        f"{displayed(generator)} does not describe a number field; write 'sqrt(2)' or coefficients and an interval"
+    )
 
 
 def common_field(texts: Iterable[str]) -> RationalField | NumberField:

@@ -14,7 +14,7 @@ from typing import Any, final
 import flint
 import numpy as np
 
-from liehom.errors import FieldError
+from liehom.errors import FieldError, displayed
 from liehom.scalars.fields import grammar
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.exact_field import ExactField
@@ -73,10 +73,11 @@ def refused(value: Any, field: Field) -> FieldError:
         )
     if isinstance(value, (complex, np.complexfloating)) or getattr(value, "is_real", None) is False:
         return FieldError(
-            f"{value!r} is a complex number, and {field.name} is real: complex matrices go to from_matrices of "
+            f"{displayed(value)} is a complex number, and {field.name} is real: complex matrices "
+            "go to from_matrices of "
             "Representation or LieAlgebra"
         )
-    return FieldError(f"{value!r} of type {type(value).__name__} is not an element of {field.name}")
+    return FieldError(f"{displayed(value)} of type {type(value).__name__} is not an element of {field.name}")
 
 
 @final

@@ -31,7 +31,7 @@ from liehom.algebra.constructions import (
     upper_triangular,
 )
 from liehom.algebra.core.jacobi import prove_jacobi
-from liehom.errors import CatalogError, DependentRowsError, InputError, NotClosedError, ShapeError
+from liehom.errors import CatalogError, DependentRowsError, InputError, LimitError, NotClosedError, ShapeError
 from tests.sampling import examples
 
 Build = Callable[[], lh.LieAlgebra]
@@ -384,10 +384,16 @@ def test_catalogue_constructs_the_algebra_of_each_name(name: str) -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        *("iso(3)", "iso(3,x)", "galilei(0)", "galilei(2,1)", "galilei(100)", "conformal(1,2,3)", "filiform(2)"),
-        *("free_nilpotent(2,40)", "free_nilpotent(2)", "bianchi(X)", "bianchi(3)", "bianchi(I;1)", "aff(1;2)"),
+        *("iso(3)", "iso(3,x)", "galilei(0)", "galilei(2,1)", "conformal(1,2,3)", "filiform(2)"),
+        *("free_nilpotent(2)", "bianchi(X)", "bianchi(3)", "bianchi(I;1)", "aff(1;2)"),
     ],
 )
 def test_catalogue_name_with_invalid_parameters_raises_catalog_error(name: str) -> None:
     with pytest.raises(CatalogError):
+        lh.catalog.algebra(name)
+
+
+@pytest.mark.parametrize("name", ["galilei(100)", "free_nilpotent(2,40)"])
+def test_catalogue_name_with_large_parameters_raises_limit_error(name: str) -> None:
+    with pytest.raises(LimitError, match="dimension"):
         lh.catalog.algebra(name)

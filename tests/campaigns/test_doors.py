@@ -1,0 +1,85 @@
+"""A sample of the campaign against the doors, and that the campaign can see what it looks for."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+import liehom as lh
+from liehom.errors import InputError, InternalError, LimitError
+from tests.campaigns import doors
+from tests.campaigns.door_inputs import DOORS
+from tests.campaigns.doors import Campaign, drawn, outcome
+from tests.sampling import examples
+
+
+def test_a_sample_has_no_offender(tmp_path: Path) -> None:
+    campaign = Campaign(seed=1)
+    campaign.run(examples(600), tmp_path / "doors.json")
+    assert campaign.offenders == []
+    assert campaign.figures.total() == campaign.done == examples(600)
+
+
+def test_every_door_is_drawn_and_inputs_are_repeated() -> None:
+    seen = {drawn(3, number)[0] for number in range(len(DOORS))}
+    assert seen == DOORS.keys()
+    for number in range(3 * len(DOORS)):
+        assert drawn(3, number)[2] == drawn(3, number)[2]
+
+
+def raising(error: BaseException) -> doors.Call:
+    def call() -> object:
+        raise error
+
+    return call
+
+
+@pytest.mark.parametrize(
+    ("error", "found"),
+    [
+        (InputError("x"), "refused"),
+        (LimitError("digits", 2, 1, "{}"), "limit"),
+        (TypeError("x"), "type"),
+        (InputError(""), "offenders"),
+        (InternalError("x"), "offenders"),
+        *((error("x"), "offenders") for error in (ValueError, KeyError, OverflowError, RecursionError, MemoryError)),
+        *((error("x"), "offenders") for error in (AttributeError, IndexError, AssertionError, SystemExit)),
+    ],
+)
+def test_exceptions_have_outcomes(error: BaseException, found: str) -> None:
+    assert outcome(raising(error))[0] == found
+
+
+def test_what_takes_too_long_is_an_offender(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doors, "STATED", 0.1)
+    monkeypatch.setattr(doors, "drawn", lambda seed, number: ("values", lambda: time.sleep(20), "sleep"))
+    start = time.monotonic()
+    assert doors.tried(0, 0)[1] == "offenders"
+    assert time.monotonic() - start < 5
+
+
+def test_a_process_that_dies_or_does_not_answer_is_an_offender(monkeypatch: pytest.MonkeyPatch) -> None:
+    import os
+    import signal
+
+    def dying(number: int) -> doors.Call:
+        return (lambda: os.kill(os.getpid(), signal.SIGKILL)) if number == 1 else lambda: 7
+
+    monkeypatch.setattr(doors, "drawn", lambda seed, number: ("values", dying(number), "dies"))
+    campaign = Campaign()
+    campaign.run(3)
+    assert [x["fault"] for x in campaign.offenders] == ["the process died"]
+    assert campaign.figures == {"values | read": 2, "values | offenders": 1}
+
+
+def test_a_campaign_goes_on_where_it_was() -> None:
+    first = Campaign(seed=2)
+    first.run(20)
+    second = Campaign.from_json(first.to_json())
+    second.run(30)
+    at_once = Campaign(seed=2)
+    at_once.run(30)
+    assert second.figures == at_once.figures
+    assert lh.current_limits() == lh.Limits()
