@@ -9,6 +9,7 @@ import random
 from collections.abc import Iterator, Sequence
 from typing import cast, final
 
+from liehom.errors import UndecidedError
 from liehom.representations import Pair
 from liehom.scalars import ExactField, ExactMatrix, Scalar
 from liehom.scalars.modular.modular import independent_columns, independent_rows, pivot_columns
@@ -39,7 +40,10 @@ class TracelessIsotropyAction:
 
     def __init__(self, pair: Pair) -> None:
         if not isinstance(pair.field, ExactField):
-            raise TypeError("the exact decision needs an exact field")
+            raise UndecidedError(
+                f"this is decided over exact fields only, and the pair is over {pair.field.name}: make it exact by "
+                "lh.rationalize(pair, max_denominator=...)"
+            )
         self.pair: Pair = pair
         self.field: ExactField = pair.field
         self.size: int = pair.dimension

@@ -176,3 +176,9 @@ def test_random_pairs_have_no_wrong_answer_and_few_undecided_ones() -> None:
     counts = compared(range(12 * (5 if sampling.whole else 1)))
     assert wrong(counts) == 0
     assert sum(n for (_, _, found), n in counts.items() if found is None) <= sum(counts.values()) // 8
+
+
+@pytest.mark.parametrize("question", [lh.failure_report, lh.failure_cone])
+def test_where_it_fails_is_not_answered_over_floats(question: Any) -> None:
+    with pytest.raises(UndecidedError, match="rationalize"):
+        question(pair_of(*constants_of(lh.pair("so(3,1)/so(2,1)"))))

@@ -12,7 +12,7 @@ from typing import Protocol, final
 
 import numpy as np
 
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, UndecidedError
 from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, RelativeInvariant, relative_invariant
 from liehom.representations import Pair
 from liehom.scalars import QQ, Matrix, Scalar
@@ -93,6 +93,8 @@ def failure_cone(
     ------
     InputError
         If a form is zero or not invariant, or a subspace is zero, not proper or not invariant.
+    UndecidedError
+        Over float64.
 
     Notes
     -----
@@ -106,6 +108,11 @@ def failure_cone(
     >>> [part.description for part in failure_cone(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0]))]
     ['the zeros of x0^2 + x1^2 - x2^2']
     """
+    if not pair.field.exact:
+        raise UndecidedError(
+            "the cone on which the range condition fails is computed over exact fields only: go to exact numbers by "
+            "lh.rationalize(pair, max_denominator=...)"
+        )
     found: list[FailureSet] = []
     if has_hypersurfaces_computed(pair):
         invariant = relative_invariant(pair)
