@@ -79,7 +79,7 @@ def float_closure(given: list[FloatMatrix], *, independent: bool, close: bool, l
         return FloatClosure((), (), (), StructureConstants(field, 0, []))
     basis = [given[i] for i in kept]
     norms = np.array([a.norm for a in basis])
-    if norms.max() > LARGEST_RATIO * norms.min():
+    if norms.max() / LARGEST_RATIO > norms.min():
         raise UndecidedError(
             f"the norms of the matrices lie between {norms.min():.2g} and {norms.max():.2g}, so that one tolerance "
             f"does not fit the structure constants; divide the matrices by their norms (a ratio of "
@@ -94,7 +94,8 @@ def float_closure(given: list[FloatMatrix], *, independent: bool, close: bool, l
     lengths = np.concatenate([norms, np.full(len(appended), scale)])
     turned = StructureConstants.from_array(field, span.constants(), 0.0).changed(rows, rows.inverse())
     constants = turned.dense().to_numpy().reshape((len(lengths),) * 3)
-    constants *= lengths[:, None, None] * (lengths[:, None] / lengths)
+    with np.errstate(over="ignore", invalid="ignore"):  # norm_of refuses what is not finite
+        constants *= lengths[:, None, None] * (lengths[:, None] / lengths)
     table = StructureConstants.from_array(field, constants, field.rtol * norm_of(constants))
     made = (FloatMatrix(field, scale * q.reshape(size, size)) for q in span.basis[m:])
     return FloatClosure((*basis, *made), tuple(kept), tuple(appended), table)

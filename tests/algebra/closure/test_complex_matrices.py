@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -20,7 +22,7 @@ from liehom.algebra.closure.complex_matrices import (
     real_matrices,
 )
 from liehom.algebra.matrices import complex_structure
-from liehom.errors import DependentRowsError, FieldError, InputError, ParseError, ShapeError
+from liehom.errors import DependentRowsError, FieldError, InputError, LiehomError, ParseError, ShapeError
 from liehom.scalars import QQ, RR
 from tests.sampling import examples
 
@@ -127,6 +129,27 @@ def test_what_is_not_a_complex_matrix_raises(matrices: Any, kind: type[Exception
     for read in (lh.LieAlgebra.from_matrices, lh.Representation.from_matrices, lie_closure):
         with pytest.raises(kind, match=message):
             read(matrices)
+
+
+JUNK: list[Any] = [
+    0, 1, -2, Fraction(1, 3), 0.5, 1j, "i", "-I/2", "2i", "1/2i", "sqrt(2)", "i*sqrt(3)", "x", "", " ", "ii", "i**4096",
+    "i" * 500, "(" * 200 + "i", float("nan"), complex("inf"), 1e308, 1e308j, 10**400, None, True, [], {}, b"i",
+    "1/0*i", "i/0", sympy.I, sympy.I * sympy.sqrt(2), X, sympy.zoo, sympy.oo * sympy.I, sympy.pi * sympy.I,
+    sympy.Float(1) * sympy.I, Decimal("0.5"), np.complex64(1j), np.str_("i"), np.float32(0.5), object(), range(2),
+]  # fmt: skip
+
+
+@settings(deadline=None, max_examples=examples(150))
+@given(
+    st.lists(st.lists(st.lists(st.sampled_from(JUNK), min_size=1, max_size=2), min_size=1, max_size=2), max_size=2),
+    st.booleans(),
+)
+def test_junk_is_read_or_raises_an_error_of_liehom(matrices: Any, hermitian: bool) -> None:
+    with contextlib.suppress(LiehomError):
+        rho = lh.Representation.from_matrices(matrices, hermitian=hermitian)
+        assert rho.given + len(rho.dropped) == len(matrices)
+        for a in rho.complex_matrices() if rho.complex_size else ():
+            rho.element(a)
 
 
 def test_huge_and_tiny_complex_floats() -> None:
