@@ -192,6 +192,7 @@ if TYPE_CHECKING:
     from liehom.representations import HermitianForms as HermitianForms
     from liehom.representations import HighestWeightModule as HighestWeightModule
     from liehom.representations import Pair as Pair
+    from liehom.representations import Rationalization as Rationalization
     from liehom.representations import RealModule as RealModule
     from liehom.representations import Representation as Representation
     from liehom.representations import adjoint as adjoint
@@ -205,6 +206,7 @@ if TYPE_CHECKING:
     from liehom.representations import hermitian_conjugation as hermitian_conjugation
     from liehom.representations import highest_weight_module as highest_weight_module
     from liehom.representations import pair_from_matrices as pair_from_matrices
+    from liehom.representations import rationalize as rationalize
     from liehom.representations import real_module as real_module
     from liehom.representations import real_module_type as real_module_type
     from liehom.representations import spin_representation as spin_representation
@@ -288,8 +290,9 @@ _NAMES = {
     "liehom.representations": (
         "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
         "dual_weight frobenius_schur_indicator hermitian_conjugation HermitianForms highest_weight_module "
-        "HighestWeightModule Pair pair_from_matrices real_module real_module_type RealModule Representation "
-        "spin_representation spinor_type sym_conjugation tensor_product_decomposition trivial weyl_dimension weyl_orbit"
+        "HighestWeightModule Pair pair_from_matrices Rationalization rationalize real_module real_module_type "
+        "RealModule Representation spin_representation spinor_type sym_conjugation tensor_product_decomposition "
+        "trivial weyl_dimension weyl_orbit"
     ),
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",

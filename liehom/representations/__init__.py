@@ -36,3 +36,5 @@ from liehom.representations.highest_weight import tensor_product_decomposition a
 from liehom.representations.highest_weight import weyl_dimension as weyl_dimension
 from liehom.representations.highest_weight import weyl_orbit as weyl_orbit
 from liehom.representations.invariants import InvariantForms as InvariantForms
+from liehom.representations.rationalization import Rationalization as Rationalization
+from liehom.representations.rationalization import rationalize as rationalize

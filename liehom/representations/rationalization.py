@@ -1,0 +1,210 @@
+"""Exact objects near those over floats: entries become fractions with bounded denominators, and axioms are proved.
+
+Each entry is replaced by the fraction nearest to it with a denominator up to a bound (by its continued fraction). For a
+pair these are the structure constants and the reduced echelon form of the subalgebra, which does not depend on its
+basis. The object is then constructed over QQ, which proves the axioms for the fractions that were found. They fail if
+the numbers are not close to fractions with small denominators: because the constants are irrational, or because the
+basis is arbitrary. No other basis is searched for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Generic, TypeVar, final, overload
+
+import numpy as np
+
+from liehom.algebra import LieAlgebra
+from liehom.errors import InputError
+from liehom.representations.core import Pair, Representation
+from liehom.scalars import QQ, ExactMatrix, FloatMatrix, Matrix
+from liehom.scalars.fields.floating import norm_of
+from liehom.typing import Array
+
+T = TypeVar("T", LieAlgebra, Pair, Representation)
+
+NEAR = 1e-3  # largest change, relative to the largest entry, of an object that counts as near
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Rationalization(Generic[T]):
+    """An exact object near one over floats; unpacks as ``exact, largest_change``.
+
+    Attributes
+    ----------
+    exact : LieAlgebra, Pair or Representation
+        The object over QQ, with its axioms proved.
+    largest_change : float
+        The largest difference of an entry and its fraction, relative to the largest entry of its table: of the
+        structure constants, of the matrices, of the echelon form of a subalgebra.
+    """
+
+    exact: T
+    largest_change: float
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.exact, self.largest_change))
+
+
+@overload
+def rationalize(floating: LieAlgebra, *, max_denominator: int = ...) -> Rationalization[LieAlgebra]: ...
+@overload
+def rationalize(floating: Pair, *, max_denominator: int = ...) -> Rationalization[Pair]: ...
+@overload
+def rationalize(floating: Representation, *, max_denominator: int = ...) -> Rationalization[Representation]: ...
+
+
+def rationalize(
+    floating: LieAlgebra | Pair | Representation, *, max_denominator: int = 1000
+) -> Rationalization[LieAlgebra] | Rationalization[Pair] | Rationalization[Representation]:
+    """An exact object near one over floats, with its axioms proved, and the largest change of an entry.
+
+    Parameters
+    ----------
+    floating : LieAlgebra, Pair or Representation
+        Over float64. An object over an exact field is returned as it is.
+    max_denominator : int, optional
+        Bound on the denominators of the fractions (default 1000).
+
+    Returns
+    -------
+    Rationalization
+        Unpacks as ``exact, largest_change``. The subalgebra of a pair is in echelon form. A representation that was
+        completed by commutators is completed again, from fractions near the given matrices.
+
+    Raises
+    ------
+    InputError
+        If an axiom fails for the fractions, or they are not near the floats: names what failed and what to try.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> g = lh.LieAlgebra({(0, 1): {2: 0.1}, (1, 2): {0: 1 / 3}, (0, 2): {1: -0.3}})
+    >>> exact, change = lh.rationalize(g)
+    >>> [str(value) for *_, value in exact.structure_constants()], change < 1e-15, exact.real_form()
+    (['1/10', '-3/10', '1/3'], True, 'so(3)')
+    """
+    if not isinstance(floating, (LieAlgebra, Pair, Representation)):
+        raise InputError(f"expected a LieAlgebra, a Pair or a Representation, got {floating!r}")
+    if isinstance(max_denominator, bool) or not isinstance(max_denominator, (int, np.integer)) or max_denominator < 1:
+        raise InputError(f"max_denominator is a positive integer, got {max_denominator!r}")
+    if floating.field.exact:
+        return Rationalization(floating, 0.0)
+    rounding = _Rounding(int(max_denominator))
+    try:
+        if isinstance(floating, LieAlgebra):
+            return Rationalization(_algebra(floating, rounding), rounding.largest_change)
+        if isinstance(floating, Pair):
+            return Rationalization(_pair(floating, rounding), rounding.largest_change)
+        return Rationalization(_representation(floating, rounding), rounding.largest_change)
+    except InputError as error:
+        raise InputError(
+            f"no exact object was found with denominators up to {max_denominator} (largest relative change of an entry "
+            f"{rounding.largest_change:.1e}): {error}. Try another max_denominator, or a basis in which the numbers "
+            "are fractions; no other basis is searched for"
+        ) from error
+
+
+class _Rounding:
+    """Rounds entries to fractions and keeps the largest change, relative to the largest entry of a table."""
+
+    def __init__(self, bound: int) -> None:
+        self.bound = bound
+        self.largest_change = 0.0
+
+    def entries(self, array: Array, what: str) -> list[Fraction]:
+        """The fractions nearest to the entries; `InputError` if they are not near."""
+        flat = [float(x) for x in array.ravel()]
+        made = [Fraction(x).limit_denominator(self.bound) for x in flat]
+        size = max(map(abs, flat), default=0.0)
+        change = max((abs(float(Fraction(x) - y)) for x, y in zip(flat, made, strict=True)), default=0.0)
+        if size:
+            self.largest_change = max(self.largest_change, change / size)
+        if change > NEAR * size:
+            raise InputError(f"the fractions differ from {what} by {change:.1e}, and the largest entry is {size:.1e}")
+        return made
+
+    def matrix(self, matrix: Matrix, what: str) -> ExactMatrix:
+        """The matrix of the fractions nearest to the entries."""
+        entries, n = self.entries(matrix.to_numpy(), what), matrix.ncols
+        return QQ.matrix([entries[i * n : (i + 1) * n] for i in range(matrix.nrows)], matrix.shape)
+
+
+def _algebra(floating: LieAlgebra, rounding: _Rounding) -> LieAlgebra:
+    table = floating.table
+    values = rounding.entries(np.asarray(table.parts[0], dtype=np.float64), "the structure constants")
+    constants: dict[tuple[int, int], dict[int, Fraction]] = {}
+    for i, j, k, value in zip(table.i.tolist(), table.j.tolist(), table.k.tolist(), values, strict=True):
+        constants.setdefault((i, j), {})[k] = value
+    names = floating.basis_names
+    return LieAlgebra(constants, QQ, dimension=floating.dimension, basis=names, name=floating.name)
+
+
+def _pair(floating: Pair, rounding: _Rounding) -> Pair:
+    algebra = _algebra(floating.algebra, rounding)
+    rows = echelon_form(floating.subalgebra.subspace.basis)
+    return Pair(algebra, algebra.subalgebra(rounding.matrix(rows, "the rows of the subalgebra")), name=floating.name)
+
+
+def _representation(floating: Representation, rounding: _Rounding) -> Representation:
+    given = [rounding.matrix(a, "the matrices") for a in floating.matrices[: floating.given]]
+    if floating.appended:
+        made = Representation.from_matrices(given, name=floating.name)
+        if made.algebra.dimension != floating.algebra.dimension:
+            raise InputError(
+                f"the fractions generate an algebra of dimension {made.algebra.dimension}, the floats one of dimension "
+                f"{floating.algebra.dimension}"
+            )
+        return Representation(
+            made.algebra,
+            made.matrices,
+            name=floating.name,
+            given=made.given,
+            appended=made.appended,
+            dropped=floating.dropped,
+            coordinates=floating.coordinates,
+        )
+    algebra = _algebra(floating.algebra, rounding)
+    return Representation(
+        algebra,
+        given,
+        size=floating.size,
+        name=floating.name,
+        dropped=floating.dropped,
+        coordinates=floating.coordinates,
+    )
+
+
+def echelon_form(basis: Matrix) -> Matrix:
+    """The reduced echelon form of independent rows over floats, with pivots that are clearly not zero.
+
+    Raises
+    ------
+    UndecidedError
+        If a pivot is neither clearly zero nor clearly not.
+
+    Examples
+    --------
+    >>> from liehom.scalars import RR
+    >>> echelon_form(RR.matrix([[1.0, 2.0, 1.0], [0.0, 0.0, -2.0]])).array.round(12)
+    array([[1., 2., 0.],
+           [0., 0., 1.]])
+    """
+    rows: Any = basis.row_space("the span of the rows")
+    pivots: list[int] = []
+    for j in range(basis.ncols):
+        if len(pivots) == basis.nrows:
+            break
+        decision = rows.select(columns=[*pivots, j]).rank_decision()
+        if decision.rank > len(pivots):
+            decision.require_clear("the echelon form of the rows")
+            pivots.append(j)
+    reduced: FloatMatrix = rows.select(columns=pivots).inverse() @ rows if pivots else rows
+    array = reduced.to_numpy()
+    array[np.abs(array) <= max(reduced.error, 1e-12 * norm_of(array))] = 0.0
+    return FloatMatrix(reduced.field, array, reduced.error)
