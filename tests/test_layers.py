@@ -50,7 +50,7 @@ BELOW: dict[str, tuple[str, ...]] = {
 WINGS: dict[str, tuple[str, ...]] = {
     "scalars": ("fields", "spaces", "modular", "functions", "lattices", "roots"),
     "algebra": ("core", "closure", "roots", "matrices", "structure", "constructions", "cohomology", "involutions"),
-    "representations": ("invariants", "core", "highest_weight", "constructions", "analysis"),
+    "representations": ("invariants", "core", "rationalization", "highest_weight", "constructions", "analysis"),
     "homogeneous": ("maps", "frames", "exponentials", "range", "space", "fields", "orbits"),
     "fullness": (
         "traceless_isotropy_action",

@@ -93,15 +93,16 @@ def rationalize(
         raise InputError(f"expected a LieAlgebra, a Pair or a Representation, got {floating!r}")
     if isinstance(max_denominator, bool) or not isinstance(max_denominator, (int, np.integer)) or max_denominator < 1:
         raise InputError(f"max_denominator is a positive integer, got {max_denominator!r}")
-    if floating.field.exact:
-        return Rationalization(floating, 0.0)
     rounding = _Rounding(int(max_denominator))
     try:
         if isinstance(floating, LieAlgebra):
-            return Rationalization(_algebra(floating, rounding), rounding.largest_change)
+            algebra = floating if floating.field.exact else _algebra(floating, rounding)
+            return Rationalization(algebra, rounding.largest_change)
         if isinstance(floating, Pair):
-            return Rationalization(_pair(floating, rounding), rounding.largest_change)
-        return Rationalization(_representation(floating, rounding), rounding.largest_change)
+            pair = floating if floating.field.exact else _pair(floating, rounding)
+            return Rationalization(pair, rounding.largest_change)
+        rho = floating if floating.field.exact else _representation(floating, rounding)
+        return Rationalization(rho, rounding.largest_change)
     except InputError as error:
         raise InputError(
             f"no exact object was found with denominators up to {max_denominator} (largest relative change of an entry "

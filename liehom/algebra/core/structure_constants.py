@@ -325,7 +325,7 @@ class StructureConstants(Immutable):
         dense: list[Any] = product.dense_blocks(exactly(self.field), p, q, r)
         return dense
 
-    def _contract_floats(self, left: FloatMatrix, right: Any, out: Any) -> FloatMatrix:
+    def _contract_floats(self, left: Matrix, right: Matrix, out: Matrix) -> FloatMatrix:
         """All rows [left_a, right_b] @ out, shape (p * q, r), with one error for the whole."""
         n, p, q = self.dimension, left.nrows, right.nrows
         one = self.field.identity(n)
@@ -336,7 +336,7 @@ class StructureConstants(Immutable):
             made = right @ made.regroup(p, n, n)
             made = made.regroup(q, p, n)
         rows: FloatMatrix = made.reshape(p * q, n)
-        return rows if out == one else rows @ out
+        return rows if out == one else rows @ cast(FloatMatrix, out)
 
     def _contract_rational(self, left: Any, right: Any, out: Any) -> list[Any]:
         """`contract` for a dense table over QQ: numerators are multiplied, denominators reduced once."""
