@@ -6,6 +6,7 @@ elements, a key of a file), the exception carries it as an attribute.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 
@@ -136,10 +137,16 @@ class StructureError(InputError):
 class JacobiError(StructureError):
     """The Jacobi identity fails: `indices` is the triple (i, j, k), `value` the coefficients of the cyclic sum."""
 
-    def __init__(self, indices: tuple[int, int, int], value: dict[int, str], names: tuple[str, str, str]) -> None:
+    def __init__(
+        self,
+        indices: tuple[int, int, int],
+        value: dict[int, str],
+        names: tuple[str, str, str],
+        basis: Sequence[str] = (),
+    ) -> None:
         self.indices = indices
         self.value = value
-        terms = " + ".join(f"({shown(v)})*e{k}" for k, v in sorted(value.items()))
+        terms = " + ".join(f"({shown(v)})*{basis[k] if basis else f'e{k}'}" for k, v in sorted(value.items()))
         super().__init__(
             f"the Jacobi identity fails for (i, j, k) = {indices}, that is for {', '.join(names)}: "
             f"[[i,j],k] + [[j,k],i] + [[k,i],j] = {terms}, expected 0"

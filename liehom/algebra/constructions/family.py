@@ -134,7 +134,7 @@ class LieAlgebraFamily(Immutable):
                     continue
                 if not (needed := factors(value, self.parameters)):
                     labels = (self.basis_names[i], self.basis_names[j], self.basis_names[k])
-                    raise JacobiError((i, j, k), {m: str(value)}, labels)
+                    raise JacobiError((i, j, k), {m: str(value)}, labels, self.basis_names)
                 found[sympy.Mul(*needed)] = None
         return tuple(found)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
+from math import comb
 from typing import Any, SupportsInt
 
 import numpy as np
@@ -13,6 +14,8 @@ from liehom.scalars import QQ
 from liehom.scalars.fields import grammar
 from liehom.typing import Expression, ScalarLike
 
+MAX_TERMS = 10_000
+"""Terms that a polynomial of the degree and the number of parameters of a structure constant may have."""
 Brackets = dict[tuple[int, int], dict[int, Expression]]
 
 
@@ -51,7 +54,25 @@ class Parameters:
         exact = exact and all(power.exp.is_Integer for power in made.atoms(sympy.Pow))
         if not exact or (made.free_symbols and not made.is_rational_function(*made.free_symbols)):
             raise FieldError(f"{where} is {made}, expected a rational function with rational coefficients")
+        terms = comb(_degree(made) + len(self.chosen), len(self.chosen))
+        if terms > MAX_TERMS:
+            raise InputError(
+                f"{where} is of degree {_degree(made)}: up to {terms} terms, at most {MAX_TERMS} are handled"
+            )
         return sympy.cancel(made)
+
+
+def _degree(expression: Expression) -> int:
+    """An upper bound for the degree of numerator and denominator of a rational function."""
+    import sympy
+
+    if expression.is_Symbol:
+        return 1
+    if expression.is_Pow:
+        return abs(int(expression.exp)) * _degree(expression.base)
+    degrees = [_degree(x) for x in expression.args]
+    fractions = any(power.exp.is_negative for power in expression.atoms(sympy.Pow))
+    return max(degrees) if expression.is_Add and not fractions else sum(degrees)
 
 
 def _integer(value: SupportsInt) -> Expression:

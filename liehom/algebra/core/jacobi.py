@@ -86,7 +86,7 @@ def _sparse_is_faster(terms: int, n: int) -> bool:
 def _fail(table: StructureConstants, triple: Triple, value: Coefficients, names: tuple[str, ...]) -> NoReturn:
     i, j, k = triple
     shown = {m: table.field.show(v) for m, v in value.items()}
-    raise JacobiError(triple, shown, (names[i], names[j], names[k]))
+    raise JacobiError(triple, shown, (names[i], names[j], names[k]), names)
 
 
 def _brackets(table: StructureConstants) -> Brackets:

@@ -133,12 +133,14 @@ class Matrix(ABC):
         if wanted.kind in "fc" or not self.field.exact:
             return self.to_numpy().astype(wanted)
         made: npt.NDArray[Any] = np.empty(self.shape, dtype=object)
-        made.reshape(-1)[:] = self.entries()
-        if wanted.kind in "iu" and any(x != int(x) for x in made.flat):
+        try:
+            made.reshape(-1)[:] = [int(self.field.format(x)) if wanted.kind in "iu" else x for x in self.entries()]
+            return made.astype(wanted)
+        except (ValueError, OverflowError):
+            kind = f"integers that {wanted} holds" if wanted.kind in "iu" else f"of the type {wanted}"
             raise FieldError(
-                f"{displayed(self)} has entries that are not integers; use numpy.asarray(matrix, dtype=float)"
-            )
-        return made.astype(wanted)
+                f"{displayed(self)} has entries that are not {kind}; numpy.asarray(A) has them exactly"
+            ) from None
 
     def to_strings(self) -> list[list[str]]:
         """List of rows of strings in the grammar of values, as in JSON files."""

@@ -98,6 +98,9 @@ def test_denominators_are_left_out() -> None:
         ({("x", 1): {1: a}}, None, StructureError, "not both"),
         ({(0, 1): 3}, None, StructureError, "is not a bracket"),
         ([[a]], None, ShapeError, "shape"),
+        ({(0, 1): {1: "(a + b + c + 1)**4096"}}, ["a", "b", "c"], InputError, "degree 4096"),
+        ({(0, 1): {1: ((a + b) ** 64 + c) ** 64}}, None, InputError, "degree 4096"),
+        ({(0, 1): {1: sum(1 / (a + k * b + c) for k in range(60))}}, None, InputError, "degree 60"),
         ({(0, 1): {1: a + sympy.Symbol("a", positive=True)}}, None, InputError, "two symbols of one name"),
     ],
 )

@@ -86,3 +86,10 @@ def test_elements_are_shown_by_name() -> None:
     assert g.over(lh.number_field("sqrt(2)")).show([0, "1 + sqrt(2)", "-sqrt(2)"]) == "(1 + sqrt(2))*e - sqrt(2)*f"
     assert g.show({"f": 1}) == g.show("f") == "f"
     assert g.over(lh.RR).show([0.5, 0.0, -1.0]) == "0.5*h - 1.0*f"
+
+
+def test_a_failing_jacobi_identity_is_shown_by_names() -> None:
+    with pytest.raises(lh.JacobiError, match=r"that is for x, y, z: .* = \(1\)\*y, expected 0"):
+        lh.LieAlgebra({("x", "y"): {"x": 1}, ("x", "z"): {"y": 1}})
+    with pytest.raises(lh.JacobiError, match=r"\(1\)\*e1, expected 0"):
+        lh.LieAlgebra({(0, 1): {0: 1}, (0, 2): {1: 1}})

@@ -38,8 +38,10 @@ def test_asarray_holds_exact_numbers() -> None:
 
 def test_asarray_with_integers_refuses_fractions() -> None:
     assert np.asarray(2 * A, dtype=int).tolist() == [[2, 1], [0, 6]]
-    with pytest.raises(FieldError, match="not integers"):
-        np.asarray(A, dtype=int)
+    assert np.asarray(ROOT2.matrix([["sqrt(2)**2", 1]]), dtype=np.int8).tolist() == [[2, 1]]
+    for wrong in (A, ROOT2.matrix([["sqrt(2)"]]), lh.QQ.matrix([[10**30]]), lh.QQ.matrix([[300]])):
+        with pytest.raises(FieldError, match="not integers that int8 holds"):
+            np.asarray(wrong, dtype=np.int8)
     with pytest.raises(ValueError, match="copy"):
         np.asarray(A, copy=False)
 
