@@ -11,7 +11,7 @@ import pytest
 import sympy
 
 import liehom as lh
-from liehom.errors import InputError
+from liehom.errors import InputError, LiehomError
 from liehom.scalars import QQ, RR
 
 I = sympy.I
@@ -157,6 +157,26 @@ def test_quadratic_hamiltonians_of_n_bosonic_modes_generate_u_n(modes: int, part
     real = lh.LieAlgebra.from_matrices([hopping(i, j) for i in range(modes) for j in range(modes)])
     assert (real.dimension, real.center().dimension) == (modes**2, 1)
     assert real.derived_subalgebra().as_algebra().real_form() == lh.sl(modes).real_form()
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+def test_numpy_matrices_with_integer_parts_are_named_once_they_are_rationalized(n: int) -> None:
+    arrays = [np.array(a.tolist(), dtype=complex) for a in lh.gell_mann_matrices(n, normalized=False)]
+    for given in (arrays, arrays[:2] + arrays, [arrays[0] + 2 * arrays[-1], sum(arrays)]):
+        floats = lh.Representation.from_matrices(given, hermitian=True)
+        with pytest.raises(LiehomError, match="rationalize"):
+            floats.algebra.real_form()
+        exact, change = lh.rationalize(floats)
+        assert (exact.field, exact.complex_size, exact.dropped) == (QQ, n, floats.dropped) and change < 1e-12
+        assert exact.algebra.real_form() == lh.su(n).real_form()
+
+
+@pytest.mark.parametrize("basis", BASES)
+def test_numpy_dirac_matrices_are_named_once_they_are_rationalized(basis: Any) -> None:
+    gamma = [np.array(g.tolist(), dtype=complex) for g in lh.dirac_matrices(basis)]
+    floats = lh.Representation.from_matrices([(a @ b - b @ a) / 4 for a, b in itertools.combinations(gamma, 2)])
+    exact = lh.rationalize(floats).exact
+    assert (floats.complex_size, exact.algebra.real_form()) == (4, lh.so(3, 1).real_form())
 
 
 def test_numpy_matrices_generate_float_algebras_of_the_same_dimension() -> None:
