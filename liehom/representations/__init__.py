@@ -1,5 +1,7 @@
 """Representations by matrices, pairs (g, h), and the isotropy of a point."""
 
+from liehom.representations.analysis import Charge as Charge
+from liehom.representations.analysis import ChargedWeight as ChargedWeight
 from liehom.representations.analysis import Component as Component
 from liehom.representations.analysis import Decomposition as Decomposition
 from liehom.representations.analysis import HermitianForms as HermitianForms

@@ -865,19 +865,25 @@ class Representation(Immutable):
         return decomposition(self._exact())
 
     # -- weights -----------------------------------------------------------------------------------------
-    def weights(self) -> dict[tuple[int, ...], int]:
-        """The weights of a representation of a semisimple algebra, in any basis, with their multiplicities.
+    def weights(self) -> dict[Any, int]:
+        """The weights of a representation of a reductive algebra, in any basis, with their multiplicities.
 
         Returns
         -------
         dict
-            {weight: multiplicity} in fundamental coordinates, in Bourbaki's numbering of ``algebra.semisimple_type()``.
+            {weight: multiplicity}. For a semisimple algebra a weight is a tuple of int, in fundamental coordinates in
+            Bourbaki's numbering of ``algebra.semisimple_type()``. If the algebra has a centre, it is a `ChargedWeight`:
+            the weight of the derived algebra in this form, and the charges, exact complex numbers, one for each row of
+            ``algebra.center()``. These are the weights of the complexification, so that charges that are not real occur
+            in conjugate pairs.
 
         Raises
         ------
         InputError
-            If the algebra is not semisimple.
-        UndecidedError
+            If the algebra is not reductive.
+        NotCompletelyReducibleError
+            If an element of the centre does not act semisimply.
+        FieldError
             Over float64.
 
         Notes
@@ -890,24 +896,32 @@ class Representation(Immutable):
         >>> import liehom as lh
         >>> lh.defining(lh.so(3)).weights()
         {(2,): 1, (0,): 1, (-2,): 1}
+        >>> for (weight, charges), multiplicity in lh.defining(lh.u(2)).weights().items():
+        ...     print(weight, charges, multiplicity)
+        (1,) (i,) 1
+        (-1,) (i,) 1
+        (1,) (-i,) 1
+        (-1,) (-i,) 1
         """
         from liehom.representations.analysis.weight_multiplicities import weight_multiplicities
 
         return weight_multiplicities(self._exact())
 
-    def highest_weights(self) -> dict[tuple[int, ...], int]:
+    def highest_weights(self) -> dict[Any, int]:
         """The highest weights of the irreducible parts of the complexification, with their multiplicities.
 
         Returns
         -------
         dict
-            {highest weight: multiplicity}, in the numbering of `weights`.
+            {highest weight: multiplicity}, in the form and numbering of `weights`.
 
         Raises
         ------
         InputError
-            If the algebra is not semisimple.
-        UndecidedError
+            If the algebra is not reductive.
+        NotCompletelyReducibleError
+            If an element of the centre does not act semisimply.
+        FieldError
             Over float64.
 
         Examples
@@ -919,12 +933,13 @@ class Representation(Immutable):
         >>> su3 = lh.defining(lh.su(3))
         >>> su3.highest_weights(), lh.adjoint(su3.algebra).highest_weights()
         ({(1, 0): 1, (0, 1): 1}, {(1, 1): 1})
+        >>> lh.defining(lh.gl(3)).highest_weights()
+        {ChargedWeight(weight=(1, 0), charges=(1,)): 1}
         """
         from liehom.representations.analysis.weight_multiplicities import highest_weights
 
         return highest_weights(self._exact())
 
-    # -- maps to other representations -------------------------------------------------------------------
     def intertwiners(self, other: Representation) -> list[ExactMatrix]:
         """A basis of the maps T, shape (M, N), with T rho(x) = sigma(x) T for all x.
 

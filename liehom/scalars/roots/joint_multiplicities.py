@@ -27,7 +27,7 @@ from liehom.scalars.roots.roots import complex_root_balls
 
 @final
 @dataclass(frozen=True, slots=True)
-class _Block:
+class Block:
     """A coordinate block that all matrices preserve.
 
     `parts` are the squarefree factors of the characteristic polynomial of x with multiplicities, `polynomials` the p_j
@@ -51,7 +51,7 @@ class JointMultiplicities:
     [(1, 1), (-1, 1)]
     """
 
-    blocks: tuple[_Block, ...]
+    blocks: tuple[Block, ...]
 
     def values(self, precision: int) -> list[tuple[tuple[flint.acb, ...], int]]:
         """Pairs (joint eigenvalue as balls, multiplicity); a joint eigenvalue may occur in several blocks."""
@@ -65,7 +65,9 @@ class JointMultiplicities:
         return found
 
 
-def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> JointMultiplicities | None:
+def joint_multiplicities(
+    matrices: Sequence[ExactMatrix], weights: Sequence[int], *, blocks: bool = True
+) -> JointMultiplicities | None:
     """`JointMultiplicities` of commuting semisimple matrices; None if the combination does not separate eigenvalues.
 
     Parameters
@@ -74,6 +76,8 @@ def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]
         (N, N), commuting and semisimple, at least one.
     weights : sequence of int
         x is the sum of weights[j] M_j; it must separate the joint eigenvalues in each block that all M_j preserve.
+    blocks : bool, optional
+        Whether coordinate blocks that all matrices preserve are taken one by one (default).
 
     Examples
     --------
@@ -83,7 +87,7 @@ def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]
     ([1, 1], None)
     """
     found = []
-    for places in preserved_blocks(matrices):
+    for places in preserved_blocks(matrices) if blocks else [list(range(matrices[0].nrows))]:
         block = _block([a.select(rows=places, columns=places) for a in matrices], weights)
         if block is None:
             return None
@@ -91,7 +95,7 @@ def joint_multiplicities(matrices: Sequence[ExactMatrix], weights: Sequence[int]
     return JointMultiplicities(tuple(found))
 
 
-def _block(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> _Block | None:
+def _block(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> Block | None:
     field, size = matrices[0].field, matrices[0].nrows
     x = field.zeros(size, size)
     for a, w in zip(matrices, weights, strict=True):
@@ -107,7 +111,7 @@ def _block(matrices: Sequence[ExactMatrix], weights: Sequence[int]) -> _Block | 
     for start, space in zip(starts[1:], spaces[1:], strict=True):
         if field.stack_rows([start @ a.T for a in matrices], size) != solution @ space:
             return None
-    return _Block(tuple(parts), tuple(Polynomial(field, row) for row in solution.to_rows()))
+    return Block(tuple(parts), tuple(Polynomial(field, row) for row in solution.to_rows()))
 
 
 def _generating_vectors(x: ExactMatrix, count: int, degree: int) -> tuple[list[ExactMatrix], list[ExactMatrix]]:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import flint
 
 from liehom.scalars.fields.exact_field import ExactMatrix
-from liehom.scalars.fields.number_field import NumberField
+from liehom.scalars.fields.field import Scalar
+from liehom.scalars.fields.number_field import AlgebraicNumber, NumberField
+from liehom.scalars.fields.rational import QQ
 
 Ball = flint.arb
 BallMatrix = flint.arb_mat
@@ -28,6 +30,22 @@ def ball_matrix(matrix: ExactMatrix, precision: int) -> flint.arb_mat:
             total += flint.arb_mat(part) * power
             power = power * generator
     return total * (flint.arb(1) / matrix.den)
+
+
+def complex_ball(real: Scalar, imaginary: Scalar, precision: int) -> flint.acb:
+    """Ball (``flint.acb``) around a complex number whose parts are rational or in real number fields.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> complex_ball(QQ.one, QQ.convert("1/2"), 64)
+    1.00000000000000 + 0.500000000000000j
+    """
+    parts = [
+        x.field.ball(x, precision) if isinstance(x, AlgebraicNumber) else flint.arb(QQ.convert(x))
+        for x in (real, imaginary)
+    ]
+    return flint.acb(*parts)
 
 
 def frobenius_bound(matrix: flint.arb_mat) -> flint.arb:
