@@ -168,9 +168,9 @@ def _failure_dense(table: StructureConstants, structure: Matrix) -> tuple[int, i
     one = table.field.identity(table.dimension)
     pairs = zip(table.contract(structure.T, one, one), table.contract(one, one, structure.T), strict=True)
     for i, (left, right) in enumerate(pairs):
-        defect = left - right
-        if not defect.is_zero():
-            return i, next(j for j in range(defect.nrows) if not defect.select(rows=[j]).is_zero())
+        j = (left - right).first_nonzero_row()
+        if j is not None:
+            return i, j
     return None
 
 

@@ -88,9 +88,8 @@ class Homomorphism(Immutable):
         left = self.source.table.contract(one, one, images)
         right = self.target.table.contract(images, images, self.target.field.identity(self.target.dimension))
         for i, (a, b) in enumerate(zip(left, right, strict=True)):
-            defect = a - b
-            if not defect.is_zero():
-                j = next(j for j in range(n) if not defect.select(rows=[j]).is_zero())
+            j = (a - b).first_nonzero_row()
+            if j is not None:
                 names = self.source.basis_names
                 raise HomomorphismError(
                     (i, j),

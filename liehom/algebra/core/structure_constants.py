@@ -378,13 +378,13 @@ class StructureConstants(Immutable):
         if min(left.nrows, right.nrows, out.ncols, self.dimension) == 0:
             return None
         if isinstance(left, FloatMatrix):
-            rows = self._contract_floats(left, right, out)
-            largest = int(np.linalg.norm(rows.array, axis=1).argmax())
-            return None if rows.is_zero() else (largest // right.nrows, largest % right.nrows)
+            largest = self._contract_floats(left, right, out).first_nonzero_row()
+            return None if largest is None else divmod(largest, right.nrows)
         if self.is_dense() or self.field.degree > 1:
             for a, block in enumerate(self.contract(left, right, out)):
-                if not block.is_zero():
-                    return a, next(b for b in range(block.nrows) if not block.select(rows=[b]).is_zero())
+                b = block.first_nonzero_row()
+                if b is not None:
+                    return a, b
             return None
         product = self._contract_sparse(left, right, out)
         found = product.first_entry()

@@ -116,9 +116,8 @@ class Subalgebra(Immutable):
         rows = self.quotient().subspace  # orthonormal: how long the given rows are, and their angles, do not matter
         if table.first_nonzero(rows, rows, projection) is None:
             return None
-        outside: list[Any] = table.contract(self.basis, self.basis, projection)
-        a, b = divmod(int(np.concatenate([block.norms() for block in outside]).argmax()), self.dimension)
-        return a, b
+        outside = [block.to_numpy() for block in table.contract(self.basis, self.basis, projection)]
+        return divmod(int(np.linalg.norm(outside, axis=2).argmax()), self.dimension)
 
     # -- properties --------------------------------------------------------------------------------------
     @property

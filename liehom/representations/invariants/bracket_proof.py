@@ -10,11 +10,9 @@ from __future__ import annotations
 import random
 from typing import Any
 
-import numpy as np
-
 from liehom.algebra import LieAlgebra
 from liehom.algebra.closure.sparse_commutators import first_difference
-from liehom.scalars import FloatMatrix, Matrix, as_exact
+from liehom.scalars import Matrix, as_exact
 from liehom.scalars.modular.modular import invariant_hull_rank
 
 RANDOM_ELEMENTS = 4
@@ -95,14 +93,7 @@ def _proved_by_generators(algebra: LieAlgebra, stack: _Stack) -> bool:
 def _first_failure(algebra: LieAlgebra, matrices: tuple[Matrix, ...], stack: _Stack) -> tuple[int, int] | None:
     for i in range(len(matrices)):
         defects = stack.defects(algebra.field.unit(len(matrices), i))[0]
-        if not defects.is_zero():
-            bad = _first_row(defects)
+        bad = defects.first_nonzero_row()
+        if bad is not None:
             return (i, bad) if i < bad else (bad, i)
     return None
-
-
-def _first_row(defects: Matrix) -> int:
-    """The first row that is not zero; over floats the longest row, since the error is one of all rows."""
-    if isinstance(defects, FloatMatrix):
-        return int(np.linalg.norm(defects.array, axis=1).argmax())
-    return next(j for j in range(defects.nrows) if not defects.select(rows=[j]).is_zero())

@@ -202,6 +202,17 @@ class Matrix(ABC):
     def is_zero(self) -> bool:
         """Whether every entry is zero; over float64, whether no entry exceeds the tolerance of the field."""
 
+    def first_nonzero_row(self) -> int | None:
+        """Index of the first row that is not zero, None for a zero matrix.
+
+        Over floats, where the error is one of all rows, the index of the longest row.
+        """
+        if self.is_zero():
+            return None
+        if self.field.exact:
+            return next(i for i in range(self.nrows) if not self.select(rows=[i]).is_zero())
+        return int(np.linalg.norm(self.to_numpy(), axis=1).argmax())
+
     @abstractmethod
     def trace(self) -> Scalar:
         """Sum of the diagonal entries."""

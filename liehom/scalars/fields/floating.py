@@ -357,11 +357,6 @@ class FloatMatrix(Matrix, Immutable):
         _require_range(self._norm * abs(number) if self._norm and number else 1.0)
         return self._made(self.array * number, self.error * abs(number), self._spectral * abs(number))
 
-    def norms(self) -> Array:
-        """Norms of the rows, shape (nrows,)."""
-        norms: Array = np.linalg.norm(self.array, axis=1)
-        return norms
-
     def unit_rows(self) -> FloatMatrix:
         """The matrix as data in which each row that is not 0 has length 1: rows with an uncertainty of their own."""
         size = np.abs(self.array).max(axis=1, initial=0.0)

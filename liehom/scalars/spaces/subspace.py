@@ -8,11 +8,15 @@ from __future__ import annotations
 
 from typing import Any, final
 
+import numpy as np
+
 from liehom.errors import ShapeError
 from liehom.immutable import Immutable
 from liehom.scalars.fields.exact_field import as_exact
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.typing import VectorLike
+
+NEARLY_LONGEST = 0.999  # fraction of the longest vector from which the first index is taken
 
 
 @final
@@ -61,6 +65,8 @@ class Subspace(Immutable):
         row = self.field.matrix([vector])
         if row.ncols != self.ambient:
             raise ShapeError(f"a vector of length {row.ncols} in a space of dimension {self.ambient}")
+        if not self.field.exact:
+            return (row @ self.basis.null_space().T).is_zero()  # however short the vector is
         return int(self.field.stack_rows([self.basis, row], self.ambient).rank()) == self.dimension
 
     def includes(self, other: Subspace) -> bool:
@@ -89,14 +95,16 @@ class Subspace(Immutable):
         if self.field.exact:
             pivots = set(as_exact(self.basis).echelon()[1])
             return [j for j in range(self.ambient) if j not in pivots]
+        # coordinates of the basis vectors on the orthogonal complement; the longest remaining part is next
+        parts = self.basis.null_space().to_numpy()
         chosen: list[int] = []
-        current = self.basis
-        for j in range(self.ambient):
-            grown = self.field.stack_rows([current, self.field.unit(self.ambient, j)], self.ambient)
-            if grown.rank() > current.nrows:
-                chosen.append(j)
-                current = grown
-        return chosen
+        for _ in range(len(parts)):
+            lengths = np.linalg.norm(parts, axis=0)
+            j = int(np.flatnonzero(lengths >= NEARLY_LONGEST * lengths.max())[0])
+            unit = parts[:, j] / lengths[j]
+            parts = parts - np.outer(unit, unit @ parts)
+            chosen.append(j)
+        return sorted(chosen)
 
     def complement(self) -> Subspace:
         """The complement that is spanned by standard basis vectors (`complement_indices`)."""

@@ -61,6 +61,7 @@ REFUSED: dict[str, Callable[[lh.Representation], Any]] = {
     "intertwiners": lambda rho: rho.intertwiners(rho),
     "equivalence": lambda rho: rho.equivalence(rho),
     "is_equivalent": lambda rho: rho.is_equivalent(rho),
+    "maximal_submodules": lambda rho: rho.maximal_submodules(),
     "submodule": lambda rho: SPLIT.over(rho.field).submodule([[1, 0, 0, 1]]),
     "subrepresentation": lambda rho: SPLIT.over(rho.field).subrepresentation([[1, 0, 0, 1]]),
     "quotient": lambda rho: SPLIT.over(rho.field).quotient([[1, 0, 0, 1]]),
