@@ -13,6 +13,7 @@ import random
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
+from liehom.budget import in_time
 from liehom.errors import InputError, InternalError
 from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
@@ -100,6 +101,7 @@ def _verdict(pair: Pair, seed: int, progress: Progress | None) -> Verdict:
 
 
 def _begin(step: str, progress: Progress | None) -> None:
+    in_time()
     LOG.debug("step: %s", step)
     if progress is not None:
         progress(step)

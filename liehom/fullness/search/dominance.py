@@ -15,6 +15,7 @@ from typing import final
 
 import numpy as np
 
+from liehom.budget import in_time
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.search.exact_dominance import ExactDominance
 from liehom.fullness.search.frame import Frame
@@ -58,6 +59,7 @@ def find_dominant(action: TracelessIsotropyAction, frame: Frame, tries: int, see
 
 def _found(search: _Search, tries: int, seed: int) -> Dominant | None:
     for coefficients in search.candidates(tries, seed):
+        in_time()
         if not np.isfinite(coefficients).all() or search.margin(coefficients) is None:
             continue
         for rounded in _roundings(coefficients):

@@ -12,6 +12,7 @@ import itertools
 from collections.abc import Callable, Iterator
 from math import comb
 
+from liehom.budget import in_time
 from liehom.fullness.search.dominance import Dominant, top_vector
 from liehom.fullness.search.exact_dominance import BITS, TRIES, ExactDominance
 from liehom.fullness.search.frame import Frame
@@ -46,6 +47,7 @@ def enumerate_dominant(
         height += 1
         total = number_of_vectors(size, height)
         for number, vector in enumerate(integer_vectors(size, height)):
+            in_time()
             if number % REPORTED == 0:
                 report(f"enumeration of L0, height {height}, element {number + 1} of {total}")
             coefficients = (action.field.from_integers(vector, 1, size) @ members).row(0)

@@ -12,6 +12,7 @@ from typing import Any
 
 import flint
 
+from liehom.budget import in_time
 from liehom.errors import FieldError
 from liehom.scalars.fields.balls import working_precision
 from liehom.scalars.fields.number_field import MAX_PRECISION, NumberField
@@ -173,6 +174,7 @@ def real_part_cut(f: Polynomial) -> flint.fmpq | None:
         Squarefree, of degree at least 1.
     """
     for attempt in itertools.count(1):
+        in_time()
         parts = [r.real for r in complex_root_balls(f, 32 << attempt)]
         cuts = [cut + shift for cut in cuts_between(parts) for shift in (0, flint.fmpq(1, 97), flint.fmpq(-1, 89))]
         for low, high in gaps_between(map(bounds, parts)):

@@ -12,6 +12,7 @@ import pytest
 
 import liehom as lh
 from liehom.catalog import CLAIMS
+from liehom.errors import LimitError
 from liehom.fullness import decide
 from liehom.fullness.search import dominance
 from liehom.fullness.search.dominance import find_dominant
@@ -110,6 +111,12 @@ def test_a_search_without_end_is_interrupted_and_reports() -> None:
         enumerate_dominant(action, plain_frame(action), report)
     assert lines[0] == "enumeration of L0, height 1, element 1 of 6"
     assert [line.split(",")[1] for line in lines] == [f" height {h}" for h in range(1, 7)]
+
+
+def test_a_search_without_end_ends_with_the_time_that_is_given() -> None:
+    action = TracelessIsotropyAction(lh.pair("affine(sl(2))"))
+    with pytest.raises(LimitError, match="seconds"), lh.limits(seconds=0.2):
+        enumerate_dominant(action, None, lambda _: None)
 
 
 @pytest.mark.parametrize("scale", [Fraction(1, 10**400), Fraction(10**400)], ids=["tiny", "huge"])
