@@ -6,9 +6,9 @@ Python's import system asks last. For an old name it gives an `OldModule`, whose
 the new place, so that old pickles load. It is asked for no name that exists, and so costs nothing.
 
 Something is looked for by its name: in modules of the same name in the wings of the folder, in the folder, in its
-wings. Changes of four kinds need an entry below: classes with another name (`CLASSES`), attributes with another name
-(`ATTRIBUTES`), attributes that old pickles lack and the class fills in (`GROWN`), and classes whose objects hold
-something else than in 0.1.0 (`CHANGED`), which are refused.
+wings. Changes of four kinds need an entry below. Classes with another name are in `CLASSES`, attributes with another
+name in `ATTRIBUTES`, and attributes that old pickles lack and the class fills in are in `GROWN`. Classes whose objects
+hold something else than in 0.1.0 are in `CHANGED` and refused.
 """
 
 from __future__ import annotations

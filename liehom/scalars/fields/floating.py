@@ -348,13 +348,15 @@ class FloatMatrix(Matrix, Immutable):
             return NotImplemented
         if self.ncols != other.nrows:
             raise ShapeError(f"matrices of shapes {self.shape} and {other.shape} do not multiply")
-        _require_range(self._norm * other._norm if self._norm and other._norm else 1.0)
         error = self._spectral * other.error + other._spectral * self.error
+        if self._norm and other._norm:
+            _require_range(max(self._norm * other._norm, error))  # digits below the error may be lost
         return self._made(self.array @ other.array, error, self._spectral * other._spectral)
 
     def scale(self, factor: ScalarLike) -> FloatMatrix:
         number = self._field.convert(factor)
-        _require_range(self._norm * abs(number) if self._norm and number else 1.0)
+        if self._norm and number:
+            _require_range(max(self._norm, self.error) * abs(number))
         return self._made(self.array * number, self.error * abs(number), self._spectral * abs(number))
 
     def unit_rows(self) -> FloatMatrix:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -92,6 +93,16 @@ def test_the_estimate_for_large_tables_finds_one_wrong_pair_of_constants() -> No
     a, b, d = caught.value.indices
     sums = c[a, b] @ c[:, d] + c[b, d] @ c[:, a] + c[d, a] @ c[:, b]
     assert np.abs(sums).max() > 1e-7
+
+
+def test_a_dense_table_is_read_and_checked_as_fast_over_floats_as_over_integers() -> None:
+    c = dense(lh.so(15))
+    times = []
+    for array in (c, c.astype(int)):
+        start = time.process_time()
+        lh.LieAlgebra(array)
+        times.append(time.process_time() - start)
+    assert times[0] <= 3 * times[1] + 1, times  # 15 s and 0.3 s before
 
 
 @pytest.mark.parametrize("size", [1e200, 1e-200, 1e300, 1e-300])

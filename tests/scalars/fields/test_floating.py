@@ -115,6 +115,11 @@ def test_products_outside_the_range_of_float64_are_refused(size: float) -> None:
         RR.matrix([[1.7e308]]) + RR.matrix([[1.7e308]])
 
 
+def test_noise_may_leave_the_range() -> None:
+    noise = RR.matrix([[1.0, 1e-300]]).select(columns=[1])
+    assert (noise @ RR.matrix([[1e-3]])).is_zero() and noise.scale(1e-3).is_zero()
+
+
 def test_arrays_are_read_at_once_and_copied() -> None:
     array = np.eye(2)
     a = RR.matrix(array)
