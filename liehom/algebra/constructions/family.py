@@ -34,11 +34,14 @@ class Generic:
     ----------
     value : int
     nonvanishing : sympy expression
-        At parameters where it is not zero, the number is `value`. At some of its zeros it may be the same.
+        At parameters where it is not zero, the number is `value`.
+    sharp : bool
+        Whether the number is another one at all real zeros of `nonvanishing` at which the algebra is defined.
     """
 
     value: int
     nonvanishing: Expression
+    sharp: bool
 
     def __repr__(self) -> str:
         return str(self.value) + (f" where {self.nonvanishing} != 0" if self.nonvanishing.free_symbols else "")
@@ -235,7 +238,7 @@ class LieAlgebraFamily(Immutable):
         n = self.dimension
         rows = [[self._row(i, j).get(k, 0) for i in range(n)] for j in self._proved(n) for k in range(n)]
         found = self._generic(rows)
-        return Generic(n - found.value, found.nonvanishing)
+        return Generic(n - found.value, found.nonvanishing, found.sharp)
 
     def is_semisimple(self) -> bool:
         """Whether all algebras of the family are semisimple (True) or none is (False).
@@ -254,8 +257,9 @@ class LieAlgebraFamily(Immutable):
     def _generic(self, rows: Sequence[Sequence[Expression]]) -> Generic:
         import sympy
 
-        rank, minor = generic_rank(rows, self.parameters)
-        return Generic(rank, sympy.Mul(*dict.fromkeys(factors(minor * self.denominator, self.parameters))))
+        rank, conditions, sharp = generic_rank(rows, self.parameters)
+        conditions += factors(self.denominator, self.parameters)
+        return Generic(rank, sympy.Mul(*dict.fromkeys(conditions)), sharp)
 
     def _proved(self, n: int) -> range:
         """range(n), if the Jacobi identity is an identity in the parameters."""

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, final
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import FieldError, InputError, ShapeError, UndecidedError
 from liehom.representations.core.representation import Representation
-from liehom.scalars import QQ, ExactMatrix, Field, Matrix, NumberField, Scalar, as_exact
-from liehom.scalars.functions.polynomial_matrix import Poly, PolynomialMatrix
+from liehom.scalars import QQ, ExactMatrix, Matrix, as_exact
+from liehom.scalars.fields.sympy_number import sympy_number
+from liehom.scalars.functions.parametric import expression_of, polynomial_matrix
+from liehom.scalars.functions.polynomial_matrix import PolynomialMatrix
 from liehom.typing import Expression, VectorLike
 
 
@@ -90,13 +91,13 @@ class SymbolicIsotropy:
         """
         import sympy
 
-        over = _polynomial_matrix(self.matrix, self.symbols)
+        over = polynomial_matrix(self.matrix, self.symbols)
         if over is None:
             return self._conditions_over_number_field(limit)
         minors = over.minors(limit)
         if isinstance(minors, int):
             raise InputError(f"there are {minors} minors of size {self.orbit_dimension}, more than {limit}")
-        return [sympy.Mul(*(_expression(f, self.symbols) for f in factors)) for factors in minors]
+        return [sympy.Mul(*(expression_of(f, self.symbols) for f in factors)) for factors in minors]
 
     def _conditions_over_number_field(self, limit: int) -> list[Expression]:
         from itertools import combinations, product
@@ -127,7 +128,7 @@ def symbolic_isotropy(rho: Representation, point: VectorLike) -> SymbolicIsotrop
     symbols = tuple(sorted({s for v in values for s in v.free_symbols}, key=str))
     columns = [_times(rho, a, values) for a in rho.matrices]
     matrix = sympy.Matrix(rho.size, len(columns), lambda i, j: sympy.cancel(columns[j][i]))
-    over = _polynomial_matrix(matrix, symbols, _lengths(rho))
+    over = polynomial_matrix(matrix, symbols, _lengths(rho))
     found = _generic(over, symbols) if over else _generic_over_number_field(matrix, symbols)
     basis, nonvanishing, exact_dimension, sharp = found
     n, dimension = len(columns), basis.rows
@@ -153,9 +154,9 @@ def _generic(
 
     rows, dependent = over.null_space
     factors, sharp = over.rank_conditions()
-    basis = sympy.Matrix(len(rows), over.shape[1], lambda i, j: _expression(rows[i][j], symbols))
-    exact_dimension = sympy.Mul(*(_expression(p, symbols) for p in factors))
-    more = [_expression(p, symbols) for p in dependent if p not in factors]
+    basis = sympy.Matrix(len(rows), over.shape[1], lambda i, j: expression_of(rows[i][j], symbols))
+    exact_dimension = sympy.Mul(*(expression_of(p, symbols) for p in factors))
+    more = [expression_of(p, symbols) for p in dependent if p not in factors]
     return basis, sympy.Mul(exact_dimension, *more), exact_dimension, sharp
 
 
@@ -189,40 +190,6 @@ def _lengths(rho: Representation) -> ExactMatrix | None:
     return form if form.rank() == form.nrows else None
 
 
-def _polynomial_matrix(
-    matrix: Expression, symbols: tuple[Expression, ...], weights: ExactMatrix | None = None
-) -> PolynomialMatrix | None:
-    """A matrix of rational functions times its common denominator; None if a coefficient is not rational."""
-    import sympy
-
-    entries = [sympy.fraction(v) for v in matrix]
-    if any(not c.is_Rational for pair in entries for v in pair for c in v.atoms(sympy.Number, sympy.AlgebraicNumber)):
-        return None
-    den = sympy.Integer(1)
-    for _, d in entries:
-        den = sympy.lcm(den, d)
-    generators = symbols or (sympy.Dummy(),)
-    terms = []
-    for n, d in entries:
-        made = sympy.Poly(n * sympy.cancel(den / d), *generators)
-        if not (made.domain.is_ZZ or made.domain.is_QQ):
-            return None
-        terms.append({e: Fraction(int(c.p), int(c.q)) for e, c in made.terms() if c})
-    nrows, ncols = matrix.shape
-    table = [terms[i * ncols : (i + 1) * ncols] for i in range(nrows)]
-    return PolynomialMatrix(len(symbols), table, (nrows, ncols), weights)
-
-
-def _expression(polynomial: Poly, symbols: tuple[Expression, ...]) -> Expression:
-    """A polynomial of flint as a sympy expression."""
-    import sympy
-
-    terms = {e: sympy.Rational(int(c.p), int(c.q)) for e, c in polynomial.to_dict().items()}
-    if not symbols or not terms:
-        return sympy.Add(*terms.values())
-    return sympy.Poly.from_dict(terms, *symbols).as_expr()
-
-
 def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
     import sympy
 
@@ -239,7 +206,7 @@ def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
         if hasattr(value, "free_symbols"):
             made = value
         else:
-            made = _number(rho.field.convert(value), rho.field)
+            made = sympy_number(rho.field, rho.field.convert(value))
         if made.has(sympy.Float):
             raise FieldError(f"coordinate {i} of the point has a float: {made}; write a fraction")
         symbols = made.free_symbols
@@ -253,30 +220,14 @@ def _coordinates(rho: Representation, point: VectorLike) -> list[Expression]:
     return values
 
 
-def _number(value: Scalar, field: Field) -> Expression:
-    """A field element as a sympy number."""
-    import sympy
-
-    if not isinstance(field, NumberField):
-        rational = QQ.convert(value)
-        return sympy.Rational(int(rational.p), int(rational.q))
-    if field.symbol.startswith("sqrt("):
-        root = sympy.sqrt(int(field.symbol[5:-1]))
-    else:
-        x = sympy.Dummy("x")
-        root = sympy.CRootOf(sympy.Poly(list(field.minpoly)[::-1], x), field.root_index)
-    integral = field.leading * root
-    terms = [sympy.Rational(int(c.p), int(c.q)) * integral**k for k, c in enumerate(field.coordinates(value))]
-    return sympy.Add(*terms)
-
-
 def _times(rho: Representation, matrix: Matrix, values: list[Expression]) -> list[Expression]:
     import sympy
 
     zero = rho.field.zero
     rows = matrix.to_rows()
     return [
-        sympy.Add(*(_number(c, rho.field) * v for c, v in zip(row, values, strict=True) if c != zero)) for row in rows
+        sympy.Add(*(sympy_number(rho.field, c) * v for c, v in zip(row, values, strict=True) if c != zero))
+        for row in rows
     ]
 
 

@@ -18,7 +18,7 @@ from tests.sampling import examples
 a, b, c = sympy.symbols("a b c")
 DIAGONAL: Any = {("x", "y"): {"z": c}, ("y", "z"): {"x": a}, ("z", "x"): {"y": b}}
 BIANCHI = lh.LieAlgebraFamily(DIAGONAL, name="diagonal")
-values = st.fractions(-3, 3, max_denominator=4)
+values = st.sampled_from([0, 0, 1, -1]) | st.fractions(-3, 3, max_denominator=4)
 
 
 def test_the_jacobi_identity_is_an_identity_of_polynomials() -> None:
@@ -44,8 +44,13 @@ def test_generic_statements_hold_where_their_polynomials_do_not_vanish(point: tu
         (BIANCHI.center_dimension(), g.center().dimension),
         (BIANCHI.killing_rank(), g.killing_form().rank()),
     ):
-        if found.nonvanishing.subs(at) != 0:
-            assert found.value == dimension
+        assert found.sharp
+        assert (found.nonvanishing.subs(at) != 0) == (found.value == dimension)
+
+
+def test_the_centre_is_larger_exactly_where_two_parameters_vanish() -> None:
+    family = lh.LieAlgebraFamily({("x", "y"): {"z": a}, ("y", "z"): {"x": b}, ("z", "x"): {"y": 1}})
+    assert repr(family.center_dimension()) == "0 where a**2 + b**2 != 0"
 
 
 def test_conditions_are_those_of_the_jacobi_identity() -> None:
