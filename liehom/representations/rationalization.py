@@ -40,6 +40,13 @@ class Rationalization(Generic[T]):
     largest_change : float
         The largest difference of an entry and its fraction, relative to the largest entry of its table: of the
         structure constants, of the matrices, of the echelon form of a subalgebra.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> found = lh.rationalize(lh.so(3).over(lh.RR))
+    >>> found.exact, found.largest_change
+    (<Lie algebra so(3) of dimension 3 over QQ>, 0.0)
     """
 
     exact: T

@@ -66,7 +66,7 @@ class Subspace(Immutable):
         if row.ncols != self.ambient:
             raise ShapeError(f"a vector of length {row.ncols} in a space of dimension {self.ambient}")
         if not self.field.exact:
-            return (row @ self.basis.null_space().T).is_zero()  # however short the vector is
+            return bool((row @ self.basis.null_space().T).is_zero())  # however short the vector is
         return int(self.field.stack_rows([self.basis, row], self.ambient).rank()) == self.dimension
 
     def includes(self, other: Subspace) -> bool:
