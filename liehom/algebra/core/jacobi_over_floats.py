@@ -42,7 +42,7 @@ def failure_over_floats(table: StructureConstants) -> Failure | None:
     norm = table.norm()
     if norm == 0:
         return None
-    unit = 2.0 ** math.frexp(norm)[1]
+    unit = 2.0 ** min(math.frexp(norm)[1], 1023)
     scaled = _Scaled(table, unit)
     bound = PRODUCTS * (norm / unit) * (table.error / unit)
     n = table.dimension

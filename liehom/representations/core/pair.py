@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.immutable import Immutable
 from liehom.scalars import Field, Matrix
 from liehom.scalars.fields.field import MatrixLike
@@ -51,7 +51,9 @@ class Pair(Immutable):
 
     def __init__(self, algebra: LieAlgebra, subalgebra: Subalgebra | MatrixLike, *, name: str | None = None) -> None:
         if not isinstance(algebra, LieAlgebra):
-            raise InputError(f"expected a LieAlgebra and a subalgebra of it, got {algebra!r}; names go to liehom.pair")
+            raise InputError(
+                f"expected a LieAlgebra and a subalgebra of it, got {displayed(algebra)}; names go to liehom.pair"
+            )
         self.algebra: LieAlgebra = algebra
         self.subalgebra: Subalgebra = (
             subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)

@@ -12,8 +12,10 @@ from collections.abc import Sequence
 
 import flint
 
-from liehom.budget import in_time
+from liehom.budget import in_time, within
 
+LONG_BITS = 2000
+SAMPLED_ENTRIES = 400
 # up to this number of entries their gcd is taken one by one
 MAX_DIRECT_ENTRIES = 64
 
@@ -144,6 +146,7 @@ def interleaved(multiples: Sequence[Sequence[flint.fmpz_mat]]) -> flint.fmpz_mat
     [2, 1]
     """
     m, (nrows, ncols) = len(multiples), (multiples[0][0].nrows(), multiples[0][0].ncols())
+    require_small_answer(multiples[0][0], m)
     if m == 1:
         return multiples[0][0]
     out: list[int | flint.fmpz] = [0] * (nrows * m * ncols * m)
@@ -153,6 +156,25 @@ def interleaved(multiples: Sequence[Sequence[flint.fmpz_mat]]) -> flint.fmpz_mat
                 row, column = divmod(index, ncols)
                 out[(row * m + i) * ncols * m + column * m + s] = x
     return flint.fmpz_mat(nrows * m, ncols * m, out)
+
+
+def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:
+    """Raise `LimitError` if the echelon form of a matrix of long numbers may need too much memory, by Hadamard's bound.
+
+    A few hundred entries tell how long the numbers are. Below `LONG_BITS` bits the bound says little and nothing is
+    refused.
+
+    Examples
+    --------
+    >>> require_small_answer(flint.fmpz_mat(2, 3, [5, 0, 1, 2, 3, 4]), 1)
+    """
+    nrows, ncols = matrix.nrows(), matrix.ncols()
+    places = range(0, nrows * ncols, 1 + nrows * ncols // SAMPLED_ENTRIES)
+    bits = max((int(matrix[divmod(x, ncols)].bit_length()) for x in places), default=0)
+    if bits > LONG_BITS:
+        rank = degree * min(nrows, ncols)
+        what = f"the echelon form of a matrix ({nrows}, {ncols}) of numbers of {bits} bits may need {{}} bytes"
+        within("memory", rank * degree * ncols * rank * bits // 8, what)
 
 
 def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint.fmpz_mat]:
