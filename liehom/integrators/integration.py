@@ -166,7 +166,7 @@ def integrate(
     * `max_steps` is reached.
 
     A `Corrected` step claims its order only if every linear system of its corrections has a solution, and if no step
-    comes within its own length of the cone on which the range condition fails (docs/theory/correctors.md). Both are
+    comes within two steps of the cone on which the range condition fails (docs/theory/correctors.md). Both are
     checked at every step. A trajectory that reaches its end without its order has status -2, so that `success` is
     False, and an `OrderWarning` names the first time.
 

@@ -82,7 +82,7 @@ class Correction:
         return self._of_parts("rank", 0)
 
     def near_cone(self, h: Values) -> BooleanArray:
-        """Whether the cone on which the range condition fails is within a step of size h, bool (...,); cf. Notes.
+        """Whether the cone on which the range condition fails is within two steps of size h, bool (...,); cf. Notes.
 
         Parameters
         ----------

@@ -31,11 +31,11 @@ REACHED_RTOL = 1e-7
 """p counts as 0 if |p| is at most this."""
 REFINEMENTS = 3
 """Iterations by which extended precision is reached."""
-FRACTIONS = (-1.0, -0.5, 0.5, 1.0)
-"""Fractions of a step at which the determinant of `RangeSolver.is_near_cone` is evaluated."""
+STEPS = (-2.0, -1.0, 1.0, 2.0)
+"""Numbers of steps, backwards and forwards, after which the determinant of `RangeSolver.is_near_cone` is evaluated."""
 NEAR_CONE = 1 / 8
-"""The cone counts as near if the determinant falls below this fraction of its value at the point. A zero of odd order
-between half a step and a step away makes the determinant negative at an end, a double zero leaves at most 1/9."""
+"""The cone counts as near if the determinant falls below this fraction of its value at the point. A simple zero between
+one and two steps away makes the determinant negative after two steps, and a double zero leaves at most 1/9."""
 REGULAR = 1e-12
 """A Gram determinant below this fraction of the product of its diagonal is that of a matrix without full rank."""
 
@@ -125,17 +125,17 @@ class RangeSolver:
         return found
 
     def is_near_cone(self, change: Values) -> BooleanArray:
-        """Whether the velocity leaves the full rank of the range condition, bool (...,), within a given change of it.
+        """Whether two steps, each with a given change of the velocity, may reach the cone, bool (...,).
 
         Let A(v) = [e rho(g_m) v, v], which depends linearly on v; the cone is where its rank is less than d. The
-        velocity w becomes w + s v for s in [-1, 1], where v is `change` without its component along w. The test is
-        whether det A(w + s v) A(w)^T falls below 1/8 of its value at s = 0, at one of s = -1, -1/2, 1/2, 1. The ratio
-        does not depend on the bases, nor on the lengths of w and of the generators.
+        velocity w becomes w + s v for s in [-2, 2], where v is `change` without its component along w. The test is
+        whether det A(w + s v) A(w)^T falls below 1/8 of its value at s = 0, at one of s = -2, -1, 1, 2. The ratio does
+        not depend on the bases of g_m and of the tangent space, nor on the lengths of w and of the generators.
 
         Parameters
         ----------
         change : array of shape (..., N)
-            A tangent vector, in the scale of w_l.
+            The change in one step, a tangent vector in the scale of w_l.
 
         Examples
         --------
@@ -163,8 +163,8 @@ class RangeSolver:
         if int(rank.min()) < d:  # zero columns fill the bases of tangent spaces of smaller dimension
             gram = gram + np.eye(d) * (np.arange(d) >= rank[..., None])[..., None, :]
         whole = _determinant(gram)
-        least = _determinant(gram + FRACTIONS[0] * tilt)
-        for s in FRACTIONS[1:]:
+        least = _determinant(gram + STEPS[0] * tilt)
+        for s in STEPS[1:]:
             least = xp.minimum(least, _determinant(gram + s * tilt))
         diagonal = gram[..., 0, 0]
         for i in range(1, d):

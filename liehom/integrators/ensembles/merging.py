@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from liehom.errors import FormatError
 from liehom.integrators.run.conservation_statistics import ConservationReport
-from liehom.integrators.run.options import LOST, TRAJECTORY_MARK, among, overall_status
+from liehom.integrators.run.options import LOST, TRAJECTORY_MARK, also_lost, among, overall_status
 from liehom.integrators.run.solution import Report, Solution
 from liehom.typing import Array, IntegerArray
 
@@ -38,6 +38,7 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
     """
     statuses = np.concatenate([part.statuses for part in parts])
     status = overall_status(statuses)
+    report = merged_report([part.report for part in parts], _direction(parts))
     count = max(part.t.shape[-1] for part in parts)
     events = parts[0].t_events is not None
     return Solution(
@@ -48,9 +49,9 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
         y_events=_joined([part.y_events for part in parts]) if events else None,
         nfev=sum(part.nfev for part in parts),
         status=status,
-        message=_message(parts, statuses, status),
+        message=_message(parts, statuses, status, report),
         n_steps=np.concatenate([part.n_steps for part in parts]),
-        report=merged_report([part.report for part in parts], _direction(parts)),
+        report=report,
         statuses=statuses,
     )
 
@@ -201,12 +202,13 @@ def _joined(parts: Sequence[list[npt.NDArray[Any]] | None]) -> list[npt.NDArray[
     return [np.concatenate(found) for found in zip(*[part or [] for part in parts], strict=True)]
 
 
-def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int) -> str:
+def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int, report: Report) -> str:
     """The message of the first part with the status; after a failure, with the index in the whole ensemble."""
     message = next(part.message for part in parts if part.status == status)
     if status >= 0:
         return message
-    return message.split(TRAJECTORY_MARK)[0] + among(statuses == status, " failed" if status == -1 else LOST)
+    more = "" if status != -1 or report.unkept_from is None else also_lost(report.wanted_order, report.loss)
+    return message.split(TRAJECTORY_MARK)[0] + among(statuses == status, " failed" if status == -1 else LOST) + more
 
 
 def _direction(parts: Sequence[Solution]) -> float:

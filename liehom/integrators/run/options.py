@@ -29,8 +29,8 @@ MESSAGES = {
     IMPLICIT: "The equations of an implicit step could not be solved; take a smaller step size.",
     LINEAR: "The linear algebra of a step failed.",
     TOO_MANY: "The end was not reached in max_steps steps.",
-    CONE: "The clock of the corrected step does not run at this step size, because the path comes within a step of the "
-    "cone on which the range condition fails; take LieTaylor, which needs no range condition, or a smaller dt.",
+    CONE: "The clock of the corrected step does not run at this step size, because the path comes within two steps of "
+    "the cone on which the range condition fails; take LieTaylor, which needs no range condition, or a smaller dt.",
 }
 ORDER_NOT_KEPT = -2
 """Status of a trajectory that came to its end, but did not keep the order of its corrected step."""
@@ -190,7 +190,21 @@ def outcome(
         stopped = bool((codes == EVENT).any())
         end = "A termination event occurred" if stopped else "The solver reached the end of the integration interval"
         message, tail = f"{end}, but order {order} was not kept: {reason}. At t = {float(times[first]):.6g}", LOST
-    return Outcome(status, statuses, message + among(here, tail), stopped_at)
+    message += among(here, tail)
+    if status == -1 and bool(lost.any()):
+        message += also_lost(order, reason)
+    return Outcome(status, statuses, message, stopped_at)
+
+
+def also_lost(order: int, reason: str) -> str:
+    """Sentence that is added to the message of a run that failed and had not kept its order before.
+
+    Examples
+    --------
+    >>> also_lost(4, "the range condition fails")
+    ' Before, order 4 was not kept: the range condition fails.'
+    """
+    return f" Before, order {order} was not kept: {reason}."
 
 
 def among(some: BooleanArray, tail: str) -> str:

@@ -23,19 +23,18 @@ def loss_of_order(failed: int, near: int, order: int) -> str:
     Parameters
     ----------
     failed, near : int
-        Numbers of steps at which a linear system had no solution, and that came within a step of the cone.
+        Numbers of steps at which a linear system had no solution, and from which the cone was within two steps.
     order : int
         The order that was reached.
 
     Examples
     --------
     >>> loss_of_order(0, 1, 1)
-    'the path comes within a step of the cone on which the range condition fails, at 1 step'
+    'the path comes within two steps of the cone on which the range condition fails'
     """
-    steps = f"{failed or near} step{'s' * ((failed or near) != 1)}"
     if failed:
-        return f"the linear systems of the corrections have no solution at {steps}, where the order stays {order}"
-    return f"the path comes within a step of the cone on which the range condition fails, at {steps}" if near else ""
+        return f"the linear systems of the corrections have no solution, and the order stays {order}"
+    return "the path comes within two steps of the cone on which the range condition fails" if near else ""
 
 
 @final
@@ -69,7 +68,7 @@ class Report:
     conservation : ConservationReport or None
         How well a `Conserving` step conserved its first integrals.
     near_steps : int
-        Number of steps that came within a step of the cone on which the range condition fails
+        Number of steps that came within two steps of the cone on which the range condition fails
         (`liehom.correctors.isotropy.isotropy_corrector.Correction.near_cone`). At these only the base order is claimed.
     unkept_from : float or None
         Time of the first step that did not keep the order asked for; None if all kept it.
@@ -149,6 +148,8 @@ class Report:
             state = "NEARLY FAILS"
         if self.singular_at is not None:
             singular = f"smallest singular value {self.singular_value:.3g}, rank {self.rank} of {self.orbit_dimension}"
+            if self.stopped_at is not None and not self.range_condition:
+                singular += f", checked up to t = {self.stopped_at:.6g}, where the run stopped"
             lines.append(f"range condition: {state}, {singular}")
             if not self.range_condition:
                 time, point = self.singular_at

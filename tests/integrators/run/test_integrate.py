@@ -189,7 +189,7 @@ def test_parameters_of_trajectories_stay_with_them() -> None:
 def test_orbits_of_different_dimensions_in_one_ensemble() -> None:
     field = lh.GeneratorField(lh.sym_conjugation(3), lambda m: m[..., :3] + 0.2)
     m = np.array([[1.0, 0, 0, 1, 0, 2], [1.0, 0.2, 0, 2, 0, 3]])
-    with pytest.warns(lh.OrderWarning, match="no solution at 51 steps"):
+    with pytest.warns(lh.OrderWarning, match="no solution"):
         sol = lh.integrate(field, (0, 1), m, step=lh.Corrected(lh.Euler(), 3), dt=0.02)
     assert sol.status == -2 and sol.statuses.tolist() == [0, -2] and "trajectory 1; 1 of 2 did not" in sol.message
     assert sol.report.orbit_dimension == 3 and sol.report.range_condition is False
