@@ -133,7 +133,7 @@ def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], whole: b
         new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
         return new, jnp.any(_known(loop.again, known))
 
-    more = (start, jnp.asarray(True))
+    more = (start, jnp.any(start[0]) if loop.guarded else jnp.asarray(True))
     if whole:  # loops of a fixed length are differentiated
         return list(
             lax.fori_loop(

@@ -223,11 +223,13 @@ class Body:
 
     def _iterated(self, x: Expr) -> str:
         """Write a loop as basic blocks; it ends when no lane wants another iteration."""
-        w, loop, before = self.writer, x.value, self.writer.label
+        w, loop = self.writer, x.value
         name = f"loop{x.index}"
-        w.lines += [f"  br label %{name}", f"{name}:"]
-        w.label, place = name, len(w.lines)  # the first lines need the names of the last
         starts = [self.name(a) for a in x.args[: len(loop.variables)]]
+        entry = f"br i1 {w.any(starts[0])}, label %{name}, label %{name}.done" if loop.guarded else f"br label %{name}"
+        before = w.label
+        w.lines += [f"  {entry}", f"{name}:"]
+        w.label, place = name, len(w.lines)  # the first lines need the names of the last
         for i, v in enumerate(loop.variables):
             self._names[v.index] = f"%{name}.{i}"
         self.write(loop.inside)
@@ -242,6 +244,10 @@ class Body:
         again = w.emit(f"and i1 {fewer}, {w.any(self.name(loop.again))}")
         w.lines += [f"  br i1 {again}, label %{name}, label %{name}.done", f"{name}.done:"]
         w.label = f"{name}.done"
+        if loop.guarded:
+            kinds = [w.mask if v.boolean else w.vector for v in loop.variables]
+            pairs = zip(kinds, starts, new, strict=True)
+            new = [w.emit(f"phi {kind} [{a}, %{before}], [{b}, %{end}]") for kind, a, b in pairs]
         self._loops[x.index] = new
         return ""
 

@@ -30,6 +30,8 @@ class Loop:
         The operations of one iteration, in the order of the tape.
     limit : int
         The most iterations.
+    guarded : bool
+        Whether there is no iteration at all if the first variable, a boolean, is false in all lanes.
     """
 
     variables: tuple[Expr, ...]
@@ -37,16 +39,22 @@ class Loop:
     again: Expr
     inside: tuple[Expr, ...]
     limit: int
+    guarded: bool = False
 
     def __repr__(self) -> str:
         # equal loops must print equally: the repr is part of the compile-cache key
         rows = [(x.op, *[a.index for a in x.args], x.value) for x in self.inside]
         ends = [x.index for x in (*self.variables, *self.new, self.again)]
-        return f"Loop({ends}, {rows}, {self.limit})"
+        return f"Loop({ends}, {rows}, {self.limit}{', guarded' if self.guarded else ''})"
 
 
 def scalar_while_loop(
-    tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int
+    tape: Tape,
+    start: Sequence[Expr],
+    body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]],
+    limit: int,
+    *,
+    guarded: bool = False,
 ) -> list[Expr]:
     """Tracers of the variables after a loop.
 
@@ -59,7 +67,9 @@ def scalar_while_loop(
     body : callable
         The numbers to (their new values, whether to iterate again).
     limit : int
-        The most iterations; there is at least one.
+        The most iterations; there is at least one unless the loop is guarded.
+    guarded : bool
+        Whether there is no iteration at all if the first number, a boolean, is false in all lanes.
 
     Examples
     --------
@@ -91,14 +101,19 @@ def scalar_while_loop(
     for x in [*new, again, *[a for y in inside for a in y.args]]:
         if x.index not in changing and not x.constant:
             fixed[x.index] = x
-    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit)
+    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit, guarded)
     found = tape.block("loop", [*start, *fixed.values()], len(start), loop)
     tape.calls = calls + found[count] if len(found) > count else calls
     return found[:count]
 
 
 def while_loop(
-    function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int
+    function: Callable[..., tuple[Sequence[Any], Any]],
+    start: Sequence[Any],
+    tape: Tape,
+    limit: int,
+    *,
+    guarded: bool = False,
 ) -> list[Traced]:
     """Traced arrays after a loop: the array version of `scalar_while_loop`.
 
@@ -109,6 +124,8 @@ def while_loop(
     start : sequence of arrays
     tape : Tape
     limit : int
+    guarded : bool
+        Whether there is no iteration at all if the first array, one boolean, is false in all lanes.
 
     Examples
     --------
@@ -130,4 +147,4 @@ def while_loop(
         flat = [e for x in new for e in Traced(tape, x).entries.flat]
         return flat, Traced(tape, again).entry
 
-    return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit))
+    return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit, guarded=guarded))

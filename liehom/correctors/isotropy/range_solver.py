@@ -13,6 +13,8 @@ Then zeta = M^+ (r + l c u).
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
 from types import ModuleType
 from typing import final
 
@@ -22,6 +24,7 @@ from liehom.errors import InternalError
 from liehom.homogeneous import Action, IsotropyFrame
 from liehom.homogeneous.frames.branch_free_frames import orthogonal_decomposition
 from liehom.series.arrays import across_lanes, namespace
+from liehom.tracing import while_loop
 from liehom.tracing.array import Traced
 from liehom.typing import BooleanArray, IntegerArray, Values
 
@@ -88,6 +91,7 @@ class RangeSolver:
         xp = self._xp = namespace(velocity)
         self._frame, self._leading, self._weight = frame, leading, weight
         self._size, unit = _normalized(xp, velocity)
+        self._direction = unit
         self._down = xp.swapaxes(frame.tangent, -1, -2)
         if frame.basis is None:
             raise InternalError("a RangeSolver needs a frame with a basis of g_m")
@@ -148,28 +152,66 @@ class RangeSolver:
         >>> [bool(solver.is_near_cone(np.array([0, 0, x]))) for x in (0.25, 0.75)]
         [False, True]
         """
+        reach = (2 / _allowed(self._moves.shape[-2])) ** 2 * (1 + (self._factor * operator_bound(self._action)) ** 2)
+        square, size = inner(change, change), self._size[..., 0] ** 2
+        if type(change) is Traced:
+            return self._tested_on_tape(change, square * (reach * self._inverse_square()) > size)
+        along = inner(change, self._direction)
+        moved = np.maximum(square - along * along, 0.0) / size
+        suspicious = ~(moved * reach < self.singular_value**2)
+        found: BooleanArray = np.zeros(np.shape(suspicious), dtype=bool)
+        if not bool(suspicious.any()):
+            return found
+        some = np.flatnonzero(suspicious)
+        d, shape = self._moves.shape[-2], suspicious.shape
+        rank = np.broadcast_to(self._frame.orbit_dimension, shape).reshape(-1)[some]
+        rows = [_lanes(x, shape, some) for x in (change / self._size, self._down, self._moves, self._unit, self._basis)]
+        filled = np.eye(d) * (np.arange(d) >= rank[:, None])[:, None, :]
+        near = self._ratio_is_small(*rows, filled=filled if int(rank.min()) < d else None)
+        found.reshape(-1)[some] = near
+        return found
+
+    def _inverse_square(self) -> Values:
+        """Upper bound of |[e rho(g_m) u, u]^+|^2, shape (...,)."""
         xp = self._xp
-        v = _apply(self._down, change / self._size)
-        v = v - xp.sum(v * self._unit, axis=-1, keepdims=True) * self._unit
-        turned = xp.swapaxes(self._basis, -1, -2)
-        along = _apply(self._frame.tangent, v)
-        moved = self._factor * (
-            self._down @ xp.swapaxes(self._action.infinitesimal(turned, along[..., None, :]), -1, -2)
-        )
-        gram = self._moves @ xp.swapaxes(self._moves, -1, -2) + self._unit[..., :, None] * self._unit[..., None, :]
-        tilt = moved @ xp.swapaxes(self._moves, -1, -2) + v[..., :, None] * self._unit[..., None, :]
-        d = gram.shape[-1]
-        rank = np.asarray(self._frame.orbit_dimension)
-        if int(rank.min()) < d:  # zero columns fill the bases of tangent spaces of smaller dimension
-            gram = gram + np.eye(d) * (np.arange(d) >= rank[..., None])[..., None, :]
+        of_moves = xp.sum(self._inverse * self._inverse, axis=(-2, -1))
+        over = xp.sum(self._rest * self._rest, axis=-1)  # 1 / |p|^2, or 0
+        reaching = xp.sum(self._reaching * self._reaching, axis=-1)
+        found: Values = 2 * of_moves + (1 + 2 * reaching) * over
+        return found
+
+    def _tested_on_tape(self, change: Traced, suspicious: Values) -> Values:
+        """The test in compiled code, which is skipped unless a lane is suspicious."""
+
+        def test(wanted: Values, v: Values, moves: Values, unit: Values) -> tuple[list[Values], Values]:
+            near = wanted & self._ratio_is_small(v, self._down, moves, unit, self._basis)
+            return [near, v, moves, unit], change.tape.false
+
+        start = [suspicious, change / self._size, self._moves, self._unit]
+        return while_loop(test, start, change.tape, 1, guarded=True)[0]
+
+    def _ratio_is_small(
+        self, change: Values, down: Values, moves: Values, unit: Values, basis: Values, filled: Values | None = None
+    ) -> Values:
+        """Whether the ratio of determinants of `is_near_cone` falls below its bound."""
+        xp = self._xp
+        v = _apply(down, change)
+        v = v - xp.sum(v * unit, axis=-1, keepdims=True) * unit
+        along = _apply(xp.swapaxes(down, -1, -2), v)
+        turned = self._action.infinitesimal(xp.swapaxes(basis, -1, -2), along[..., None, :])
+        moved = self._factor * (down @ xp.swapaxes(turned, -1, -2))
+        gram = moves @ xp.swapaxes(moves, -1, -2) + unit[..., :, None] * unit[..., None, :]
+        tilt = moved @ xp.swapaxes(moves, -1, -2) + v[..., :, None] * unit[..., None, :]
+        if filled is not None:  # zero columns fill the bases of tangent spaces of smaller dimension
+            gram = gram + filled
         whole = _determinant(gram)
         least = _determinant(gram + STEPS[0] * tilt)
         for s in STEPS[1:]:
             least = xp.minimum(least, _determinant(gram + s * tilt))
         diagonal = gram[..., 0, 0]
-        for i in range(1, d):
+        for i in range(1, gram.shape[-1]):
             diagonal = diagonal * gram[..., i, i]
-        found: BooleanArray = (least < NEAR_CONE * whole) & (whole > REGULAR * diagonal)
+        found: Values = (least < NEAR_CONE * whole) & (whole > REGULAR * diagonal)
         return found
 
     def _singular_values(self) -> Values:
@@ -296,6 +338,34 @@ def inner(a: Values, b: Values) -> Values:
     [3.0, 3.0]
     """
     found: Values = np.sum(a * b, axis=-1) if type(a) is Traced else np.einsum("...i,...i->...", a, b)
+    return found
+
+
+def _allowed(d: int) -> float:
+    """The largest q for which |K| <= q implies det(1 + K) >= 1/8, K a matrix of size d."""
+    return 1 - NEAR_CONE ** (1 / d)
+
+
+@lru_cache(maxsize=64)
+def operator_bound(action: Action) -> float:
+    """Upper bound of |rho(x)| for |x| = 1 in the inner product of the action.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> round(operator_bound(lh.Action(lh.defining(lh.so(3)))), 12)
+    1.0
+    """
+    n, size = action.dimension, action.representation.size
+    tensor = action.infinitesimal.right(np.eye(size)) @ action.inner_product.orthonormal_basis()
+    rows = np.moveaxis(tensor, -1, 0).reshape(n, size * size)
+    return float(np.linalg.norm(rows, 2)) if rows.size else 0.0
+
+
+def _lanes(x: Values, shape: tuple[int, ...], some: IntegerArray) -> Values:
+    """The entries of some trajectories of the flattened ensemble, in float64."""
+    trailing = x.shape[len(shape) :]
+    found: Values = _single(x.reshape(math.prod(shape), *trailing)[some])
     return found
 
 

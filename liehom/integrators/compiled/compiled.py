@@ -76,6 +76,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
             run.step,
             points[lanes],
             int(d),
+            ends=(float(run.span[0]), float(run.span[1])),
             nominal=run.options.nominal,
             limits=_size_limits(run) if run.options.dt is None else None,
             kept_order=kept_order,
@@ -188,7 +189,9 @@ class FastPath:
 def _operations(graph: StepGraph) -> int:
     """Approximate number of scalar operations of a step."""
     rows = needed(graph.outputs)
-    return len(rows) + ASSUMED_ITERATIONS * sum(len(x.value.inside) for x in rows if x.op == "loop")
+    return len(rows) + ASSUMED_ITERATIONS * sum(
+        len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded
+    )
 
 
 class _Lanes:
@@ -272,7 +275,7 @@ class _Lanes:
             run.state.h = self.h.reshape(shape)
         run.state.taken = run.state.taken + new.reshape(shape)
         for lanes, extra in self.totals:
-            run.state.statistics.add_compiled(lanes, extra, float(run.direction))
+            run.state.statistics.add_compiled(lanes, extra, (float(run.span[0]), float(run.span[1])))
         if run.keeps:
             self._record(new, most)
 
@@ -308,7 +311,8 @@ def _width(graph: StepGraph, lanes: int) -> int:
     if lanes < 4 * WIDE_LANES:
         return 1 if lanes < NARROW_LANES // 2 else NARROW_LANES
     ops = needed(graph.outputs)
-    return WIDE_LANES if len(ops) < LONG_OPERATIONS * (1 + sum(x.op in ("expv", "loop") for x in ops)) else NARROW_LANES
+    breaks = sum(x.op == "expv" or (x.op == "loop" and not x.value.guarded) for x in ops)
+    return WIDE_LANES if len(ops) < LONG_OPERATIONS * (1 + breaks) else NARROW_LANES
 
 
 def _cores() -> int:

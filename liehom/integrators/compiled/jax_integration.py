@@ -86,7 +86,8 @@ def integrate_on_jax(
             "trajectories on orbits of several dimensions: integrate them one by one, or from numpy arrays"
         )
     dimension = int(dimensions.max())
-    graph = traced_step(action, field, step, points, dimension, nominal=nominal)
+    ends = float(span[0]), float(span[1])
+    graph = traced_step(action, field, step, points, dimension, ends=ends, nominal=nominal)
     found, taken, seen = _through(graph, jnp.moveaxis(start, -1, 0), span, dt, times)
     y: Any = jnp.moveaxis(jnp.moveaxis(found, 0, -1), 0, -2)
     t: Any = jnp.asarray(times)
@@ -95,7 +96,7 @@ def integrate_on_jax(
     report = _report(action, step, dimension, nominal=nominal)
     status, message = 0, "Integrated by JAX; where a time was not reached, y is nan."
     if known is not None and not is_traced(statuses) and bool(lost.any()):
-        report = _with_loss(report, np.asarray(seen), 1.0 if span[1] >= span[0] else -1.0)
+        report = _with_loss(report, np.asarray(seen), ends)
         status, message = ORDER_NOT_KEPT, f"{message} The order {step.order} was not kept: {report.loss}."
     return Solution(
         t=t,
@@ -131,15 +132,14 @@ def _report(action: Action, step: Step, dimension: int, *, nominal: bool) -> Rep
     )
 
 
-def _with_loss(report: Report, seen: Array, direction: float) -> Report:
+def _with_loss(report: Report, seen: Array, ends: tuple[float, float]) -> Report:
     """The report with the totals of `LOSSES` of all trajectories, shape (3, ...)."""
-    earliest = time_of(np.max(seen[0]))
     return replace(
         report,
         order=report.base_order,
         failed_steps=int(seen[1].sum()),
         near_steps=int(seen[2].sum()),
-        unkept_from=direction * float(earliest),
+        unkept_from=float(time_of(np.max(seen[0]), ends)),
     )
 
 

@@ -19,7 +19,7 @@ from liehom.integrators.compiled.traced_size import SizeLimits, judgement, tried
 from liehom.integrators.run.clock import clock_at, has_clock
 from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
 from liehom.integrators.run.control import ERROR_TERMS
-from liehom.integrators.run.records import earliness
+from liehom.integrators.run.records import bounds_of, earliness
 from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
 from liehom.typing import Array, Real, Values
 
@@ -29,7 +29,7 @@ MAX_CLOCK_DEVIATION = 0.8
 
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
-    limits: SizeLimits | None = None, kept_order: int | None = None,
+    ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None, kept_order: int | None = None,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
@@ -43,6 +43,8 @@ def traced_step(
     orbit_dimension : int
     nominal : bool
         Whether time advances by the step size rather than by the time reparametrization τ of the step.
+    ends : (float, float)
+        Initial and final time, which show the order of times in the report.
     limits : SizeLimits, optional
         Tolerances for an adaptive step size; without them the size is an input of the graph.
     kept_order : int, optional
@@ -62,7 +64,7 @@ def traced_step(
     (2, None)
     """
     try:
-        return _traced(action, field, step, points, orbit_dimension, nominal, limits, kept_order)
+        return _traced(action, field, step, points, orbit_dimension, nominal, ends, limits, kept_order)
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -74,7 +76,7 @@ def traced_step(
 
 def _traced(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
-    limits: SizeLimits | None, kept_order: int | None,
+    ends: tuple[float, float], limits: SizeLimits | None, kept_order: int | None,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
     tight = action.tight_frame
@@ -108,7 +110,7 @@ def _traced(
     if given_limits is not None:
         passed = _number(tape, h) if passed is None else passed
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
-    worst, summed = _statistics(tape, local, step, t, size)
+    worst, summed = _statistics(tape, local, step, t, size, ends)
     solved = reduce(tape.both, tape.required) if tape.required else None
     plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
     runs = reduce(tape.both, plain) if plain else None
@@ -168,7 +170,7 @@ def _clock_is_admissible(tape: Tape, clock: Sequence[Any], h: Values) -> Expr | 
 
 
 def _statistics(
-    tape: Tape, local: LocalStep, step: Step, t: Values, size: Values
+    tape: Tape, local: LocalStep, step: Step, t: Values, size: Values, ends: tuple[float, float]
 ) -> tuple[dict[str, Expr], dict[str, Expr]]:
     """Numbers of a step for the report: those of which the largest is stored, and those that are summed up."""
     largest: dict[str, Any] = {}
@@ -189,9 +191,10 @@ def _statistics(
         summed["equilibria"] = np.where(rest, 1.0, 0.0)
         if not all(isinstance(part.solver, TightFrameSolver) for part in found.parts):
             short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
-            near = np.where(found.near_cone(size[..., 0]), 1.0, 0.0)
+            near = found.near_cone(size[..., 0])
             failed = np.where(short > 0, 1.0, 0.0)
-            now = earliness(np.where(size[..., 0] < 0, -t, t))
-            largest |= {"residual": found.residual, "short": short, "unkept": now * np.maximum(failed, near)}
-            summed |= {"failed": failed, "near": near}
+            direction, limit = [Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in bounds_of(ends)]
+            now = np.where((short > 0) | near, earliness(t, (direction, limit)), 0.0)
+            largest |= {"residual": found.residual, "short": short, "unkept": now}
+            summed |= {"failed": failed, "near": np.where(near, 1.0, 0.0)}
     return ({k: _number(tape, x) for k, x in largest.items()}, {k: _number(tape, x) for k, x in summed.items()})

@@ -5,7 +5,7 @@ Each record gives its state as named arrays, for checkpoints.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, final
 
 import numpy as np
@@ -18,7 +18,7 @@ from liehom.correctors.step import LocalStep, Step
 from liehom.homogeneous import Action
 from liehom.integrators.run.conservation_statistics import NO_RANK, ConservationStatistics
 from liehom.integrators.run.solution import Report, loss_of_order
-from liehom.typing import Array, BooleanArray, IntegerArray, Values
+from liehom.typing import Array, BooleanArray, IntegerArray, Real, Values
 
 SINCE_0_2: dict[str, float] = {"near": 0, "unkept_from": np.nan}
 """Statistics that checkpoints of 0.1.0 lack, with their values for a run in which nothing was noticed."""
@@ -172,7 +172,7 @@ class CorrectionStatistics:
             seen["singular"] = np.where(lower, singular, seen["singular"])
         self._seen = seen
 
-    def add_compiled(self, lanes: IntegerArray, extra: Mapping[str, Array], direction: float) -> None:
+    def add_compiled(self, lanes: IntegerArray, extra: Mapping[str, Array], ends: tuple[float, float]) -> None:
         """Record the totals of compiled steps, for some trajectories of the flattened ensemble.
 
         Parameters
@@ -183,8 +183,8 @@ class CorrectionStatistics:
             The largest residual, the largest number of orders missed ("short"), the numbers of steps that missed the
             order ("failed"), were near the cone ("near") or at equilibria, the `earliness` of the first step that did
             not keep the order ("unkept"), and the totals that `ConservationStatistics` records.
-        direction : float
-            1, or -1 if time decreases.
+        ends : (float, float)
+            Initial and final time.
         """
         seen = {name: np.array(x).reshape(-1) for name, x in self._seen.items()}
         if "short" in extra:
@@ -194,7 +194,7 @@ class CorrectionStatistics:
             seen["near"][lanes] += extra["near"].astype(int)
             seen["reached"][lanes] = np.where(extra["near"] > 0, self._base, seen["reached"][lanes])
             new = (extra["unkept"] > 0) & np.isnan(seen["unkept_from"][lanes])
-            times = direction * time_of(np.where(new, extra["unkept"], 1.0))
+            times = time_of(extra["unkept"], ends)
             seen["unkept_from"][lanes] = np.where(new, times, seen["unkept_from"][lanes])
         if "equilibria" in extra:
             seen["equilibria"][lanes] += extra["equilibria"].astype(int)
@@ -282,30 +282,40 @@ def near_cone(local: LocalStep, h: Array) -> BooleanArray:
     return inner.correction.near_cone(h) if isinstance(inner, CorrectedStep) else np.zeros(np.shape(h), dtype=bool)
 
 
-def earliness(time: Values) -> Values:
-    """A decreasing function of time with values between 0 and 1, so that the largest belongs to the earliest time.
+def bounds_of(ends: Sequence[float]) -> tuple[float, float]:
+    """(1, or -1 if time decreases; a number that exceeds the times between the ends by at least 1).
 
     Examples
     --------
-    >>> earliness(np.array([-2.0, 0.0, 2.0])).tolist()
-    [0.75, 0.5, 0.25]
+    >>> bounds_of((2.0, 0.0))
+    (-1.0, 3.0)
     """
-    over = 1 / (2 + np.abs(time))
-    found: Values = np.where(time < 0, 1 - over, over)
+    return (1.0 if ends[1] >= ends[0] else -1.0), abs(float(ends[0])) + abs(float(ends[1])) + 1.0
+
+
+def earliness(time: Values, bounds: tuple[Real, Real]) -> Values:
+    """A decreasing function of the time that passes, positive up to the end; its largest value is the earliest time.
+
+    Examples
+    --------
+    >>> earliness(np.array([0.5, 2.0]), (1.0, 3.0)).tolist(), float(earliness(np.array(0.5), (-1.0, 3.0)))
+    ([2.5, 1.0], 3.5)
+    """
+    direction, limit = bounds
+    found: Values = limit - direction * time
     return found
 
 
-def time_of(value: Array) -> Array:
+def time_of(value: Array, ends: Sequence[float]) -> Array:
     """The time of a given `earliness`.
 
     Examples
     --------
-    >>> time_of(np.array([0.75, 0.5, 0.25])).tolist()
-    [-2.0, 0.0, 2.0]
+    >>> time_of(np.array([2.5, 1.0]), (0.0, 2.0)).tolist(), float(time_of(np.array(3.5), (2.0, 0.0)))
+    ([0.5, 2.0], 0.5)
     """
-    late = value <= 0.5
-    size = 1 / np.where(late, value, 1 - value) - 2
-    found: Array = np.where(late, size, -size)
+    direction, limit = bounds_of(ends)
+    found: Array = direction * (limit - value)
     return found
 
 

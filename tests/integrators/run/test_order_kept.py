@@ -18,7 +18,7 @@ from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.integrators.run.records import earliness, time_of
+from liehom.integrators.run.records import bounds_of, earliness, time_of
 from tests.homogeneous.frames.test_branch_free_frames import points_on_two_spheres, two_spheres
 from tests.sampling import examples
 
@@ -203,12 +203,13 @@ def test_the_warning_is_found_again_in_a_pickle() -> None:
     assert (type(after), str(after), after.order, after.time) == (lh.OrderWarning, "text", 3, 0.5)
 
 
-@given(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9))
-def test_earlier_times_have_larger_numbers(a: float, b: float) -> None:
-    before, after = np.sort([a, b])
-    assert earliness(before) >= earliness(after) and 0 < earliness(after) < 1
-    for time in (before, after):
-        assert abs(time_of(earliness(np.array(time))) - time) <= 1e-15 * (2 + abs(time)) ** 2
+@given(*[st.floats(-1e9, 1e9)] * 2, *[st.floats(0, 1)] * 2)
+def test_earlier_times_have_larger_numbers(start: float, end: float, a: float, b: float) -> None:
+    before, after = (start + x * (end - start) for x in sorted((a, b)))
+    numbers = [earliness(np.array(time), bounds_of((start, end))) for time in (before, after)]
+    assert numbers[0] >= numbers[1] > 0
+    for time, number in zip((before, after), numbers, strict=True):
+        assert abs(time_of(number, (start, end)) - time) <= 1e-15 * (abs(start) + abs(end) + 1)
 
 
 # -- no silent failure ---------------------------------------------------------------------------------------
