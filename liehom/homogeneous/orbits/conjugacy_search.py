@@ -34,6 +34,11 @@ def prove_conjugate(rho: Representation, x: Sequence[Any], y: Sequence[Any]) -> 
         Over an exact field.
     x, y : sequences, shape (N,)
 
+    Returns
+    -------
+    ConjugacyProof or None
+        For the components of the points in g V, if V is the sum of V^g and g V: they have the same isotropy.
+
     Examples
     --------
     >>> import liehom as lh
@@ -43,7 +48,7 @@ def prove_conjugate(rho: Representation, x: Sequence[Any], y: Sequence[Any]) -> 
     >>> prove_conjugate(rho, [3, 4, 5], [1, 0, 0]) is None
     True
     """
-    points = [tuple(rho.field.matrix([list(p)], (1, rho.size)).row(0)) for p in (x, y)]
+    points = [_without_fixed_part(rho, p) for p in (x, y)]
     for scaled in (False, True):
         action = ScaledAction(rho, scaled=scaled)
         if len({action.isotropy(p).nrows for p in points}) == 2:
@@ -54,6 +59,21 @@ def prove_conjugate(rho: Representation, x: Sequence[Any], y: Sequence[Any]) -> 
             if found is not None:
                 return found
     return None
+
+
+def _without_fixed_part(rho: Representation, point: Sequence[Any]) -> tuple[Any, ...]:
+    """The component of a point in g V, which has the same isotropy, if V is the sum of V^g and g V."""
+    row = rho.field.matrix([list(point)], (1, rho.size))
+    fixed = rho.invariant_vectors().basis
+    if fixed.nrows == 0:
+        return tuple(row.row(0))
+    moved = rho.field.stack_rows([a.T for a in rho.matrices], rho.size).row_space()
+    both = rho.field.stack_rows([fixed, moved], rho.size)
+    if both.rank() < both.nrows:
+        return tuple(row.row(0))
+    places = range(fixed.nrows, rho.size)
+    part = (row @ both.inverse()).select(columns=places) @ moved
+    return tuple(part.row(0))
 
 
 class _Search:

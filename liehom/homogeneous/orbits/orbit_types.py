@@ -16,6 +16,8 @@ from liehom.scalars import Scalar
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
+FAILURES = 20  # searches without a result, for each type
+
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
@@ -114,8 +116,11 @@ def orbit_types(rho: Representation, points: Iterable[VectorLike | MatrixLike]) 
     `hermitian_strata` and `adjoint_strata` list all strata of symmetric matrices, Hermitian matrices and adjoint
     representations of compact algebras.
 
+    At most 20 searches for a proof may fail for each type; further points are then groups of their own.
+
     For the proof see `ConjugacyProof`, and the page on representations in the documentation of the theory. It exists
-    for all conjugate points of compact algebras, and for points whose orbit is a cone.
+    for all conjugate points of compact algebras and for nilpotent elements of semisimple ones, but the search in floats
+    may miss it.
 
     Examples
     --------
@@ -158,15 +163,17 @@ def _orbit_type(
     """One type, with its points in groups of proved conjugacy."""
     groups: list[list[int]] = []
     proofs = []
+    failures = 0
     for number in numbers:
         h = isotropies[number]
         group = next((g for g in groups if any(isotropies[k] == h for k in g)), None)
-        for other in groups if group is None and rho.field.exact else ():
+        for other in groups if group is None and rho.field.exact and failures < FAILURES else ():
             proof = prove_conjugate(rho, points[number], points[other[0]])
             if proof is not None:
                 proofs.append(proof)
                 group = other
                 break
+            failures += 1
         if group is None:
             groups.append(group := [])
         group.append(number)

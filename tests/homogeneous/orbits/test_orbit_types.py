@@ -159,6 +159,35 @@ def test_a_form_without_rational_null_vectors_has_null_vectors_over_a_number_fie
     assert [t.points for t in types] == [(0,), (1,), (2, 3)] and all(t.conjugacy == "proved" for t in types)
 
 
+SEPARATED = ["so(2,1)", "so(2,2)", "so(4) on Sym(4)", "sl(3,R)", "so(4), adjoint"]
+
+
+@settings(deadline=None, max_examples=examples(12))
+@given(name=st.sampled_from(SEPARATED), data=st.data())
+def test_nothing_is_proved_that_an_invariant_denies(name: str, data: st.DataObject) -> None:
+    """Invariants and proofs are independent of each other: a contradiction would be an error in one of them."""
+    make, table = TABLES[name]
+    rho = make()
+    (kind, x), (other, y) = (data.draw(st.sampled_from(table)) for _ in range(2))
+    if kind != other:
+        assert prove_conjugate(rho, x, y) is None
+
+
+def test_multiples_of_the_identity_do_not_matter() -> None:
+    """Adding an invariant vector leaves the isotropy as it is: c + e and c' + f of gl(2) are of one type."""
+    rho = lh.adjoint(lh.gl(2))
+    rows = lh.QQ.matrix([a.reshape(1, 4).row(0) for a in lh.defining(lh.gl(2)).matrices])
+    points = [rows.T.solve(lh.QQ.matrix([[v] for v in m])).T.row(0) for m in ([2, 1, 0, 2], [3, 0, 5, 3], [0, 0, 1, 0])]
+    (kind,) = lh.orbit_types(rho, points)
+    assert kind.conjugacy == "proved" and kind.verify()
+
+
+def test_searches_that_fail_are_limited() -> None:
+    points = in_basis(lh.sl(3), [[[1, 0, 0], [k, 1, 0], [k * k, 0, -2]] for k in range(1, 13)])
+    (kind,) = lh.orbit_types(lh.adjoint(lh.sl(3)), points)
+    assert kind.conjugacy == "undecided" and sorted(sum(kind.groups, ())) == list(range(12))
+
+
 def test_undecided_conjugacy_is_said() -> None:
     """s + n and s + 5 n^T are conjugate, but next to them there are semisimple elements with orbits as large."""
     points = in_basis(lh.sl(3), [[[1, 1, 0], [0, 1, 0], [0, 0, -2]], [[1, 0, 0], [5, 1, 0], [0, 0, -2]]])
