@@ -11,7 +11,7 @@ from typing import Any
 
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.closure.complex_matrices import real_matrices
-from liehom.errors import FieldError, FormatError, InputError, ShapeError
+from liehom.errors import FieldError, FormatError, InputError, ParseError, ShapeError
 from liehom.io.algebra_file import read_dimension
 from liehom.io.json_reader import as_list, check_header, check_keys, is_float64, shown
 from liehom.io.number_lists import RawList, field_for, table_of_rows, vector, write_field, write_number
@@ -19,8 +19,8 @@ from liehom.io.problem_file import NUMERICAL, Problem, read_fields, read_options
 from liehom.representations.core.coordinates import KINDS, Coordinates, require_coordinates
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
-from liehom.scalars import RR, Field, Matrix
-from liehom.scalars.fields.complex_parts import UNITS
+from liehom.scalars import RR, Field, Matrix, Scalar
+from liehom.scalars.fields.complex_parts import UNITS, complex_parts
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
@@ -45,8 +45,9 @@ def read_problem(data: Mapping[str, Any]) -> Problem:
     is_complex = any(raw.has_complex() for raw in tables) and not _is_generator_called_i(data)
     point = vector(data["point"], "point", floats=True) if "point" in data else None
     size = 2 * size if is_complex else size
-    if point is not None and len(point.values) != size:
-        what = f"{size // 2} complex coordinates, so a point has {size} real ones" if is_complex else f"{size}"
+    coordinates = _coordinates(data, is_complex)
+    if point is not None and len(point.values) not in (size, size // 2 if coordinates == "complex" else size):
+        what = f"{size // 2} complex or {size} real coordinates" if coordinates == "complex" else f"{size}"
         raise ShapeError(f"point has {len(point.values)} coordinates, the matrices act on {what}")
     in_field = point is not None and (numerical or float not in set(map(type, point.values)))
     field: Field = field_for(data, [*tables, point] if point is not None and in_field else tables, numerical)
@@ -56,12 +57,12 @@ def read_problem(data: Mapping[str, Any]) -> Problem:
         matrices = [_complex_matrix(raw, field, size // 2, a) for a, raw in enumerate(tables)]
     else:
         matrices = [raw.matrix(field, size, size) for raw in tables]
-    exact_point = tuple(point.numbers(field)) if point is not None and in_field else None
+    exact_point = tuple(_real_numbers(point, field, size)) if point is not None and in_field else None
     if exact_point is not None:
         start: tuple[float, ...] | None = tuple(field.to_float(x) for x in exact_point)
     else:
-        start = None if point is None else tuple(map(RR.convert, point.numbers(RR)))
-    representation = _closed(matrices, data, _coordinates(data, is_complex))
+        start = None if point is None else tuple(map(RR.convert, _real_numbers(point, RR, size)))
+    representation = _closed(matrices, data, coordinates)
     return Problem(
         representation,
         exact_point,
@@ -114,6 +115,21 @@ def _complex_matrix(raw: RawList, field: Field, n: int, index: int) -> Matrix:
         return real_matrices([[raw.values[i * n : (i + 1) * n] for i in range(n)]], field, start=index)[0]
     except FieldError as error:
         raise FormatError(str(error)) from None
+
+
+def _real_numbers(point: RawList, field: Field, size: int) -> list[Scalar]:
+    """Real coordinates of a point with `size` real or half as many complex values."""
+    if len(point.values) == size:
+        return point.numbers(field)
+    found: list[Scalar] = []
+    for x, value in enumerate(point.values):
+        try:
+            found += map(field.convert, complex_parts(value, field))
+        except ParseError as error:
+            raise ParseError(f"{point.where(x)}: {error}") from None
+        except FieldError as error:
+            raise FormatError(f"{point.where(x)}: {error}") from None
+    return found
 
 
 def _coordinates(data: Mapping[str, Any], is_complex: bool) -> Coordinates:

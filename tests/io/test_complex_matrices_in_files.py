@@ -19,12 +19,17 @@ def read(**keys: Any) -> Any:
     return lh.from_json({"matrices": PAULI, **keys})
 
 
-def test_complex_strings_are_read_as_a_complex_representation() -> None:
+def test_complex_strings_are_read_as_a_complex_representation(tmp_path: Path) -> None:
     rho = read()
     assert (rho.complex_size, rho.algebra.real_form()) == (2, "so(3)")
     assert rho == lh.Representation.from_matrices(PAULI)
     assert read(dimension=3) == read(coordinates="complex") == rho
     assert read(point=["1", "0", "0", "0"]).dimension == 3
+    assert read(point=["1", "i/2"]) == rho.pair([1, "i/2"])
+    assert read(point=["1", "i*sqrt(2)"]).field.name == "QQ(sqrt(2))"
+    file = tmp_path / "problem.json"
+    lh.dump({"matrices": PAULI, "point": [0.5, "i/2"], "generator": ["1", "0", "m0"]}, file)
+    assert lh.load_problem(file).start == (0.5, 0.0, 0.0, 0.5)
     assert read(matrices=[[["i/sqrt(2)", "0"], ["0", "-1/2*i"]]]).field.name == "QQ(sqrt(2))"
 
 
@@ -79,7 +84,8 @@ def test_points_are_written_by_their_real_coordinates() -> None:
             FormatError,
             r"matrix 0, entry \(0, 0\)",
         ),
-        ({"matrices": PAULI, "point": ["1", "0"]}, ShapeError, "2 complex coordinates, so a point has 4 real ones"),
+        ({"matrices": PAULI, "point": ["1", "0", "0"]}, ShapeError, "2 complex or 4 real coordinates"),
+        ({"matrices": PAULI, "point": ["1", "i*"]}, ParseError, r"point\[1\]"),
         ({"matrices": PAULI, "point": ["i", "0", "0", "0"]}, ParseError, r"point\[0\]"),
         ({"matrices": PAULI, "coordinates": "real"}, FormatError, "expected 'complex'"),
         ({"matrices": [[["1"]]], "coordinates": "polar"}, FormatError, "expected 'real', 'complex', 'hermitian'"),
