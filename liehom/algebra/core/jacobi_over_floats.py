@@ -25,6 +25,7 @@ from liehom.typing import Array
 
 ALL_PAIRS = 20  # dimension up to which all pairs of basis elements are tried
 RANDOM_PAIRS = 16
+DENSE = 20  # a table with more than a twentieth of all entries is held dense
 PRODUCTS = 6.0  # the error of J is at most this many times the norm of the table times its error
 
 Failure = tuple[tuple[int, int, int], dict[int, Scalar]]
@@ -67,17 +68,25 @@ def _pairs(n: int) -> Iterator[tuple[Array, Array]]:
 
 
 class _Scaled:
-    """A table over floats, divided by a power of two, as lists of its entries for both orders of i and j."""
+    """A table over floats, divided by a power of two: dense, or as lists of its entries for both orders of i and j."""
 
     def __init__(self, table: StructureConstants, unit: float) -> None:
         values = np.asarray(table.parts[0], dtype=np.float64) / unit
         self.n = table.dimension
+        self.flat: Array | None = None
+        if len(values) * DENSE >= self.n**3:
+            upper = np.zeros((self.n, self.n, self.n))
+            upper[table.i, table.j, table.k] = values
+            self.flat = (upper - upper.transpose(1, 0, 2)).reshape(self.n, self.n**2)
+            return
         self.first = np.concatenate([table.i, table.j])
         self.place = np.concatenate([table.k * self.n + table.j, table.k * self.n + table.i])
         self.values = np.concatenate([values, -values])
 
     def ad(self, x: Array) -> Array:
         """The matrix of y -> [x, y] on columns."""
+        if self.flat is not None:
+            return np.asarray((x @ self.flat).reshape(self.n, self.n).T, dtype=np.float64)
         weights = x[self.first] * self.values
         made = np.bincount(self.place, weights, self.n * self.n).astype(np.float64)
         return made.reshape(self.n, self.n)
