@@ -133,7 +133,7 @@ def _real_numbers(point: RawList, field: Field, size: int) -> list[Scalar]:
 
 
 def _coordinates(data: Mapping[str, Any], is_complex: bool) -> Coordinates:
-    """What the vectors are: complex if the matrices are, else the value of the key `coordinates`."""
+    """Kind of the coordinates: complex if the matrices are complex, else the value of the key `coordinates`."""
     found = data.get("coordinates", "complex" if is_complex else "real")
     for kind in KINDS:
         if found == kind and (kind == "complex" or not is_complex):
