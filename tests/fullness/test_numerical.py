@@ -47,7 +47,7 @@ def plane_turn(t: float) -> Any:
 def test_catalogue_in_random_orthogonal_bases_has_no_wrong_answer(scale: float) -> None:
     rng = np.random.default_rng(int(np.log10(scale)) + 20)
     counts: Counter[Any] = Counter()
-    for name in NAMES if sampling.whole else NAMES[:: 3 if scale == 1 else 9]:
+    for name in NAMES if sampling.whole else NAMES[:: 4 if scale == 1 else 9]:
         constants, rows = constants_of(lh.pair(name))
         verdict = verdict_of(*rotated(constants, rows, rotation(len(constants), rng), scale))
         counts[verdict.full] += 1
@@ -66,13 +66,29 @@ def test_a_full_pair_whose_basis_has_units_of_very_different_sizes_is_not_called
         assert verdict_of(scaled, rows / units).full is not False
 
 
-def test_noise_of_the_size_of_the_error_makes_not_full_undecided_and_leaves_full() -> None:
+def with_noise(name: str, size: float, rng: np.random.Generator) -> Any:
+    """The verdict of a pair in a random orthogonal basis, with noise of a size relative to the norm of the table."""
+    constants, rows = constants_of(lh.pair(name))
+    n = len(constants)
+    constants, rows = rotated(constants, rows, rotation(n, rng))
+    noise = rng.standard_normal(constants.shape) * (size * np.linalg.norm(constants) / n**1.5)
+    return verdict_of(constants + noise - noise.transpose(1, 0, 2), rows)
+
+
+def test_noise_of_the_size_of_rounding_changes_no_answer() -> None:
     rng = np.random.default_rng(9)
-    for name in ("so(4)/so(3)", "so(3,1)/so(2,1)", "sl(4)/P2", "affine(gl(2))"):
-        constants, rows = rotated(*constants_of(lh.pair(name)), rotation(lh.pair(name).algebra.dimension, rng))
-        for size, expected in ((1e-15, (CLAIMS[name].full,)), (1e-11, (CLAIMS[name].full, None))):
-            noise = rng.standard_normal(constants.shape) * size
-            assert verdict_of(constants + noise - noise.transpose(1, 0, 2), rows).full in expected
+    for name in NAMES if sampling.whole else NAMES[::6]:
+        assert with_noise(name, 2e-13, rng).full is CLAIMS[name].full, name
+
+
+def test_noise_above_rounding_leaves_full_and_makes_not_full_undecided() -> None:
+    rng = np.random.default_rng(9)
+    for name in ("so(4)/so(3)", "affine(gl(2))", "sl(3)/P1"):
+        assert with_noise(name, 1e-10, rng).full is True
+    for name in ("so(2,2)/P", "sp(4,R)/P1", "affine(blocks(gl(1),gl(1)))"):
+        assert with_noise(name, 5e-10, rng).full is None
+    for _ in range(8):  # here rho(h) is noise only, with eigenvectors or without
+        assert with_noise("heisenberg(1)/R", 1e-10, rng).full is not True
 
 
 # -- families that degenerate -------------------------------------------------------------------------------
@@ -173,7 +189,7 @@ def test_least_singular_value_reaches_rounding_at_simple_and_multiple_zeros() ->
 
 
 def test_random_pairs_have_no_wrong_answer_and_few_undecided_ones() -> None:
-    counts = compared(range(12 * (5 if sampling.whole else 1)))
+    counts = compared(range(8 * (8 if sampling.whole else 1)))
     assert wrong(counts) == 0
     assert sum(n for (_, _, found), n in counts.items() if found is None) <= sum(counts.values()) // 8
 
