@@ -45,15 +45,15 @@ class Limits:
     coefficient_bits : int
         Bits of all coefficients together of a minimal polynomial, and of its roots where they are separated.
     dimension : int
-        Dimension of an algebra or a module.
+        Dimension of an algebra, and with it every parameter of a family.
     entries : int
-        Entries of a table, matrix or array.
+        Structure constants in a file, integers in the ranges of a table of GAP, entries of a Cartan matrix.
     memory : int
-        Bytes of a table, matrix or array, estimated before it is allocated.
+        Bytes of the matrices of an algebra or module, estimated before they are allocated.
     file_bytes : int
         Bytes of a file.
     seconds : float, optional
-        Seconds of time by the clock, from the start of the ``with`` block (or of the process). No limit if None.
+        Seconds by the clock from the start of the `with` block, or of the process.
 
     Examples
     --------

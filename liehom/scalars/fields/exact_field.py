@@ -22,6 +22,7 @@ from liehom.immutable import Immutable
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.scalars.fields.integer_matrices import (
     cancelled,
+    characteristic_coefficients,
     echelon_pivots,
     integer_identity,
     interleaved,
@@ -30,6 +31,7 @@ from liehom.scalars.fields.integer_matrices import (
     separated,
     sign_changes,
     stacked_rows,
+    zero_matrix,
 )
 from liehom.typing import ScalarLike
 
@@ -93,8 +95,7 @@ class ExactField(Field["ExactMatrix"]):
     def from_integers(self, entries: Sequence[int | flint.fmpz], nrows: int, ncols: int, den: int = 1) -> ExactMatrix:
         """The matrix of shape (nrows, ncols) with these integers, row after row, over a common denominator."""
         first = flint.fmpz_mat(nrows, ncols, entries if isinstance(entries, list) else list(entries))
-        rest = tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree - 1))
-        return ExactMatrix(self, (first, *rest), den).normalized()
+        return ExactMatrix(self, (first, *self.zeros(nrows, ncols).parts[1:]), den).normalized()
 
     def from_parts(
         self, parts: Sequence[Sequence[int | flint.fmpz]], nrows: int, ncols: int, den: int = 1
@@ -108,7 +109,7 @@ class ExactField(Field["ExactMatrix"]):
         return self.from_coordinates([flint.fmpq(c, den) for c in coordinates])
 
     def zeros(self, nrows: int, ncols: int) -> ExactMatrix:
-        return ExactMatrix(self, tuple(flint.fmpz_mat(nrows, ncols) for _ in range(self.degree)), 1)
+        return ExactMatrix(self, tuple(zero_matrix(nrows, ncols) for _ in range(self.degree)), 1)
 
     def identity(self, n: int) -> ExactMatrix:
         return ExactMatrix(self, (integer_identity(n), *(flint.fmpz_mat(n, n) for _ in range(self.degree - 1))), 1)
@@ -417,7 +418,7 @@ class ExactMatrix(Matrix, Immutable):
         if self._field.degree == 1:
             if n == 0:
                 return [flint.fmpq(1)]
-            integral = self.parts[0].charpoly().coeffs()
+            integral = characteristic_coefficients(self.parts[0])
             return [flint.fmpq(c) / flint.fmpz(self.den) ** (n - i) for i, c in enumerate(integral)]
         # Faddeev-LeVerrier: only ring operations and divisions by 1, ..., n.
         coefficients, power = [self._field.one], self._field.identity(n)

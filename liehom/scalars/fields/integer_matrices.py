@@ -14,10 +14,24 @@ import flint
 
 from liehom.budget import in_time, within
 
+# from this size on characteristic polynomials are computed prime by prime
+LARGE_SIZE = 60
 LONG_BITS = 2000
 SAMPLED_ENTRIES = 400
 # up to this number of entries their gcd is taken one by one
 MAX_DIRECT_ENTRIES = 64
+
+
+def zero_matrix(nrows: int, ncols: int) -> flint.fmpz_mat:
+    """The zero matrix; `LimitError` if it is too large, since flint ends the process where memory ends.
+
+    Examples
+    --------
+    >>> zero_matrix(1, 2)
+    [0, 0]
+    """
+    within("memory", 8 * nrows * ncols, "a matrix needs {} bytes")
+    return flint.fmpz_mat(nrows, ncols)
 
 
 def integer_identity(n: int) -> flint.fmpz_mat:
@@ -29,7 +43,7 @@ def integer_identity(n: int) -> flint.fmpz_mat:
     [1, 0]
     [0, 1]
     """
-    one = flint.fmpz_mat(n, n)
+    one = zero_matrix(n, n)
     for i in range(n):
         one[i, i] = 1
     return one
@@ -156,6 +170,36 @@ def interleaved(multiples: Sequence[Sequence[flint.fmpz_mat]]) -> flint.fmpz_mat
                 row, column = divmod(index, ncols)
                 out[(row * m + i) * ncols * m + column * m + s] = x
     return flint.fmpz_mat(nrows * m, ncols * m, out)
+
+
+def characteristic_coefficients(matrix: flint.fmpz_mat) -> list[flint.fmpz]:
+    """Ascending coefficients of det(t - A); of a large matrix prime by prime, so that it can be interrupted.
+
+    All eigenvalues are at most R in absolute value, the largest sum of the absolute values in a row, so all
+    coefficients are at most (1 + R)^n. They are determined by their residues modulo primes with a larger product.
+
+    Examples
+    --------
+    >>> characteristic_coefficients(flint.fmpz_mat([[1, 2], [3, 4]]))
+    [-2, -5, 1]
+    """
+    n = matrix.nrows()
+    if n < LARGE_SIZE:
+        found: list[flint.fmpz] = matrix.charpoly().coeffs()
+        return found
+    largest = max(sum(abs(int(x)) for x in row) for row in matrix.tolist())
+    bound = 2 * (1 + largest) ** n
+    values, product, p = [0] * (n + 1), 1, (1 << 62) - 1
+    while product <= bound:
+        in_time()
+        p -= 2
+        if not flint.fmpz(p).is_prime():
+            continue
+        residues = flint.nmod_mat(matrix, p).charpoly().coeffs()
+        inverse = pow(product, -1, p)
+        values = [v + product * ((int(r) - v) * inverse % p) for v, r in zip(values, residues, strict=True)]
+        product *= p
+    return [flint.fmpz(v if 2 * v < product else v - product) for v in values]
 
 
 def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:

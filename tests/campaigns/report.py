@@ -1,0 +1,125 @@
+"""The tables of docs/reliability.md, from the figures of the campaigns and the limits of the library.
+
+    python -m tests.campaigns.report
+
+rewrites the text between the markers ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` of the page. A campaign without
+figures has no table.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import liehom as lh
+from tests.campaigns import certificates, doors
+from tests.campaigns.peers import LIBRARIES
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PAGE = ROOT / "docs" / "reliability.md"
+FIGURES = Path(__file__).with_name("figures")
+Json = Any
+
+
+def figures(name: str) -> Json:
+    """Figures of a campaign, or None."""
+    file = FIGURES / f"{name}.json"
+    return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+
+
+def table(header: list[str], rows: list[list[str]], numbers: bool = True) -> str:
+    """A Markdown table; all columns but the first hold numbers."""
+    line = "|---|" + ("---:|" if numbers else "---|") * (len(header) - 1)
+    return "\n".join([f"| {' | '.join(header)} |", line, *(f"| {' | '.join(row)} |" for row in rows)])
+
+
+def limits_table() -> str:
+    """Every limit with its default and what it bounds, from the docstring."""
+    text = re.sub(r"\n {8,}", " ", (lh.Limits.__doc__ or "").partition("----------\n")[2].partition("Examples")[0])
+    meanings = dict(re.findall(r"^ *(\w+) : [^\n]*?(?:int|optional) ([A-Z][^\n]*)$", text, re.MULTILINE))
+    defaults = dataclasses.asdict(lh.Limits())
+    rows = [
+        [f"`{name}`", "none" if value is None else f"{value:,}", meanings[name].rstrip(".")]
+        for name, value in defaults.items()
+    ]
+    return table(["limit", "default", "what it bounds"], rows, numbers=False)
+
+
+def doors_table() -> str:
+    """Outcomes by door."""
+    data = figures("doors")
+    if data is None:
+        return ""
+    columns = list(doors.OUTCOMES)
+    names = ["read", "refused", "`LimitError`", "`TypeError`", "anything else"]
+    rows = [[row["class"], *(f"{row[key]:,}" for key in columns)] for row in data["rows"]]
+    rows.append(["together", *(f"{sum(row[key] for row in data['rows']):,}" for key in columns)])
+    return (
+        f"{data['count']:,} inputs, seed {data['seed']} (`tests/campaigns/doors.py`). Every input has a deadline of "
+        f"{doors.SECONDS:.0f} seconds and {doors.MEMORY >> 30} GiB of memory; the longest took {data['slowest']:.0f} "
+        f"seconds of the processor.\n\n" + table(["door", *names], rows)
+    )
+
+
+def damage_table() -> str:
+    """Outcomes by kind of file and damage."""
+    data = figures("damage")
+    if data is None:
+        return ""
+    columns = ["noticed", "identical", "believed"]
+    rows = [[row["class"], *(f"{row[key]:,}" for key in columns)] for row in data["rows"]]
+    rows.append(["together", *(f"{sum(row[key] for row in data['rows']):,}" for key in columns)])
+    names = ["noticed", "read, identical", "read, different"]
+    return f"{data['count']:,} damages, seed {data['seed']} (`tests/campaigns/damage.py`).\n\n" + table(
+        ["file and damage", *names], rows
+    )
+
+
+def certificates_table() -> str:
+    """Outcomes by strategy."""
+    data = figures("certificates")
+    return "" if data is None else certificates.table(certificates.Campaign.from_json(data))
+
+
+def peers_table() -> str:
+    """What other libraries do with the same input."""
+    data = figures("peers")
+    if data is None:
+        return ""
+    names = [name if name == "liehom" else f"{name} {data['versions'][name]}" for name in LIBRARIES]
+    rows = [[row["input"], *(row.get(name, "") for name in LIBRARIES)] for row in data["rows"]]
+    return table(["input", *names], rows, numbers=False)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "limits": limits_table,
+    "doors": doors_table,
+    "certificates": certificates_table,
+    "damage": damage_table,
+    "peers": peers_table,
+}
+
+
+def rewritten(page: str) -> str:
+    """The page with all tables made anew."""
+    for name, made in TABLES.items():
+        begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
+        before, _, rest = page.partition(begin)
+        _, found, after = rest.partition(end)
+        if not found:
+            raise ValueError(f"{PAGE.name} has no markers {begin.strip()} and {end}")
+        page = f"{before}{begin}\n{made()}\n\n{end}{after}"
+    return page
+
+
+def main() -> None:
+    """Rewrite the page."""
+    PAGE.write_text(rewritten(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
