@@ -22,7 +22,7 @@ from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_c
 from liehom.budget import within
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.immutable import Immutable
-from liehom.scalars import ExactMatrix, Field, FloatField, FloatMatrix, Matrix, Scalar, Subspace
+from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Scalar, Subspace
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import ElementLike
 
@@ -290,11 +290,18 @@ class LieAlgebra(Immutable):
         return self._decided_killing_form().signature()
 
     def _decided_killing_form(self) -> Matrix:
-        """The Killing form; over floats `UndecidedError` if its rank is not clear."""
-        form = self.killing_form()
-        if isinstance(form, FloatMatrix):
+        """A form with the signature of the Killing form; over floats `UndecidedError` if its rank is not clear."""
+        form: Any = self.killing_form()
+        if self.field.exact:
+            return cast(Matrix, form)
+        decision = form.rank_decision()
+        if decision.rank < self.dimension or not decision.clear:
+            from liehom.algebra.core.balancing import balanced
+            from liehom.algebra.core.killing import killing_form
+
+            form = killing_form(balanced(self._constants)[0])
             form.rank_decision().require_clear("the rank of the Killing form")
-        return form
+        return cast(Matrix, form)
 
     # -- subalgebras and ideals --------------------------------------------------------------------------
     def subalgebra(self, rows: RowsLike) -> Subalgebra:

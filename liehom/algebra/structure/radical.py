@@ -9,12 +9,16 @@ characteristic 0.
 from __future__ import annotations
 
 import random
+from typing import Any
 
+import numpy as np
+
+from liehom.algebra.core.balancing import balanced
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra, complement_rows, products
 from liehom.algebra.structure.exact_field import exact_field
 from liehom.errors import InternalError
-from liehom.scalars import ExactMatrix, Polynomial, as_exact
+from liehom.scalars import ExactMatrix, FloatMatrix, Polynomial, as_exact
 
 ATTEMPTS = 20  # random elements of the radical
 
@@ -22,13 +26,31 @@ ATTEMPTS = 20  # random elements of the radical
 def radical(algebra: LieAlgebra) -> Subalgebra:
     """Implements `LieAlgebra.radical`."""
     field, n = algebra.field, algebra.dimension
+    if not field.exact:
+        return _over_floats(algebra)
     killing = algebra.killing_form()
     if n == 0 or (isinstance(killing, ExactMatrix) and int(killing.modulo().rank()) == n):
         return Subalgebra(algebra, field.zeros(0, n), check=False)  # Cartan's criterion: semisimple
     whole = field.identity(n)
     derived = products(algebra, whole, whole)
-    found = (derived @ killing).null_space("the dimension of the radical") if derived.nrows else whole
+    found = (derived @ killing).null_space() if derived.nrows else whole
     return Subalgebra(algebra, found, check=False)  # the radical is an ideal
+
+
+def _over_floats(algebra: LieAlgebra) -> Subalgebra:
+    """The radical over floats, in a basis in which the structure constants have similar sizes."""
+    field, n, question = algebra.field, algebra.dimension, "the dimension of the radical"
+    if algebra.is_semisimple():
+        return Subalgebra(algebra, field.zeros(0, n), check=False)
+    table, lengths = balanced(algebra.table)
+    inner = LieAlgebra(table, check=False)  # a basis of the same algebra
+    whole = field.identity(n)
+    derived = products(inner, whole, whole)
+    if not derived.nrows:
+        return Subalgebra(algebra, whole, check=False)
+    found: Any = (derived @ inner.killing_form()).null_space(question)
+    back = (found @ FloatMatrix(found.field, np.diag(lengths), 0.0)).row_space(question)
+    return Subalgebra(algebra, back, check=False)  # the radical is an ideal
 
 
 def nilradical(algebra: LieAlgebra) -> Subalgebra:

@@ -11,7 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.errors import DependentRowsError, FieldError, JacobiError, NotASubalgebraError, StructureError
+from liehom.errors import (
+    DependentRowsError,
+    FieldError,
+    JacobiError,
+    NotASubalgebraError,
+    StructureError,
+    UndecidedError,
+)
 from liehom.typing import Array
 from tests.sampling import examples
 
@@ -170,6 +177,33 @@ def test_noise_generates_no_ideal(name: str, seed: int, scale: float) -> None:
     assert derived.as_algebra().killing_signature() == exact.derived_subalgebra().as_algebra().killing_signature()
     assert g.ideal_generated_by(g.center()).dimension == exact.center().dimension
     assert g.subalgebra_generated_by(g.center()).dimension == exact.center().dimension
+
+
+@settings(max_examples=examples(60))
+@given(
+    name=st.sampled_from(NAMES),
+    exponents=st.lists(st.sampled_from([-1, -0.5, 0, 0.5, 1]), min_size=6, max_size=6),
+    scale=scales,
+)
+def test_lengths_of_basis_elements_do_not_change_an_answer(name: str, exponents: list[float], scale: float) -> None:
+    """The answer of the exact algebra, or none: the constants are above the error of the table, by up to 1e6."""
+    exact = ALGEBRAS[name]
+    lengths = 10.0 ** np.array(exponents[: exact.dimension])
+    c = scale * dense(exact) * np.multiply.outer(np.multiply.outer(lengths, lengths), 1 / lengths)
+    g = lh.LieAlgebra(c)
+    for question in ("is_semisimple", "killing_signature", "is_solvable"):
+        try:
+            assert getattr(g, question)() == getattr(exact, question)()
+        except UndecidedError:
+            assert lengths.max() >= 10 * lengths.min()
+
+
+def test_moderate_lengths_are_decided() -> None:
+    c = dense(lh.so(3))
+    for length in (1e-3, 1e-2, 1e2, 1e3):
+        lengths = np.array([1.0, 1.0, length])
+        g = lh.LieAlgebra(c * np.multiply.outer(np.multiply.outer(lengths, lengths), 1 / lengths))
+        assert g.is_semisimple() and g.killing_signature() == (0, 3, 0) and not g.is_solvable()
 
 
 def test_the_error_of_a_table_follows_a_change_of_basis() -> None:
