@@ -13,6 +13,8 @@ import numpy as np
 
 LETTERS = 16
 PLACES = 5
+LATER = ("near_steps", "unkept_from", "stopped_at")
+"""Attributes of reports that 0.1.0 did not have."""
 
 
 class Long:
@@ -65,7 +67,8 @@ def flat(value: Any) -> Iterator[Any]:
     """The numbers in a report, by position, so that names do not matter; strings are left out."""
     if dataclasses.is_dataclass(value):
         for field in dataclasses.fields(value):
-            yield from flat(getattr(value, field.name))
+            if field.name not in LATER:
+                yield from flat(getattr(value, field.name))
     elif isinstance(value, dict):
         for item in value.values():
             yield from flat(item)

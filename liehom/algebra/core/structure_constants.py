@@ -25,7 +25,6 @@ from liehom.typing import Array, IntegerArray
 M = TypeVar("M", bound=Matrix)
 
 DENSE_DIMENSION = 64  # up to this dimension one dense product is faster than sparse ones, whatever the table
-NEGLIGIBLE = 1e-3  # fraction of the error up to which all dropped entries of a computed table add up
 LARGEST_DENSE = 160  # up to this dimension tables with more than n^2 entries are contracted densely
 
 
@@ -117,14 +116,12 @@ class StructureConstants(Immutable):
         field : FloatField
         constants : ndarray
         error : float, optional
-            The uncertainty of a computed array; entries that are negligible against it are dropped. By default the
-            array is data.
+            The uncertainty of a computed array; by default the array is data.
         """
         n = len(constants)
         made = cls.__new__(cls)
         made.field, made.dimension, made.den = field, n, 1
-        negligible = 0.0 if error is None else NEGLIGIBLE * error / max(n, 1) ** 1.5
-        upper = np.abs(constants) > negligible
+        upper = constants != 0
         upper &= np.triu(np.ones((n, n), dtype=bool), 1)[:, :, None]
         made.i, made.j, made.k = np.nonzero(upper)
         values: Any = constants[upper]
