@@ -620,7 +620,8 @@ def door_integrate(rng: random.Random) -> tuple[Call, str]:
         options[rng.choice(keys)] = rng.choice([odd(rng), number_of(rng), text_of(rng), lh.Euler(), "exp"])
     span = rng.choice([(0, 1), (0, 1), (1, 0), (0, 0), (0, float("inf")), odd(rng)])
     start = rng.choice([[0.6, 0, 0.8], vector_of(rng, 3), matrix_of(rng, 3, 2)])
-    if options.get("compile") not in ("llvm", "jax"):
+    compiled = options.get("compile")
+    if not (isinstance(compiled, str) and compiled in ("llvm", "jax")):
         psi: Any = rng.choice([["m0", "m1", "2*m2"], [text_of(rng) for _ in range(3)], vector_of(rng, 3), odd(rng)])
     else:
         psi = ["m0", "m1", "2*m2"]
