@@ -1,8 +1,8 @@
 """Budgets: how large an input may be, how long a computation may take, and how a caller changes that.
 
 Every door of the library (values, names, files, constructors) asks `within` before it works on something whose size
-the caller chose, and long loops call `in_time`. What exceeds a limit is a `LimitError`, which names the limit. Limits
-are context variables: `with limits(...)` changes them for the code inside, in this thread or asynchronous task only.
+the caller chose, and long loops call `in_time`. A `LimitError` names the limit that is exceeded. Limits are context
+variables: `with limits(...)` changes them for the code inside, in this thread or asynchronous task only.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Limits:
     file_bytes : int
         Bytes of a file.
     seconds : float, optional
-        Seconds by the clock from the start of the `with` block, or of the process.
+        Seconds of wall clock from the start of the `with` block, or of the process.
 
     Examples
     --------
@@ -259,5 +259,5 @@ def small_integer(digits: str) -> int:
 
 
 def digits_within(bits: int, what: str = "the number has {} digits") -> None:
-    """Raise `LimitError` if a number of so many bits has more decimal digits than are allowed."""
+    """Raise `LimitError` if a number of `bits` bits has more decimal digits than are allowed."""
     within("digits", int(bits * DIGITS_PER_BIT) if bits > 64 else 0, what)

@@ -22,10 +22,10 @@ HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integrat
 
 
 class LimitsFirst(TyperGroup):
-    """The group of commands; ``--limit NAME=NUMBER`` may stand before or after the name of the command."""
+    """The group of commands; ``--limit NAME=NUMBER`` is read before and after the name of the command."""
 
-    def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:
-        return list(super().parse_args(ctx, limits_first(args)))
+    def parse_args(self, ctx: object, args: list[str]) -> list[str]:
+        return list(super().parse_args(ctx, limits_first(args)))  # type: ignore[arg-type]
 
 
 def limits_first(args: list[str]) -> list[str]:

@@ -69,11 +69,13 @@ def read_text(path: str | os.PathLike[str], expected: str) -> str:
     """
     allowed = current_limits().file_bytes
     found = bytearray()
+    if not isinstance(path, str | os.PathLike):  # an integer is the number of an open file
+        raise FormatError(f"expected the path of a file, got {shown(path)}")
     try:
         with open(path, "rb", buffering=0) as file:
             while len(found) <= allowed and (part := file.read(min(CHUNK, allowed + 1 - len(found)))):
                 found += part
-    except (OSError, ValueError, TypeError) as error:
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise FormatError(f"{shown(str(path))} cannot be read: {reason}") from None
     within("file_bytes", len(found), f"the file {shown(str(path))} has {{}} bytes or more")

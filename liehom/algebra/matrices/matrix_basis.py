@@ -241,7 +241,7 @@ def require_size(name: str, value: int, least: int = 1) -> None:
 
 
 def require_basis(count: int, size: int) -> None:
-    """Raise `LimitError` if a Lie algebra of so many matrices (size, size) has too large a dimension or array.
+    """Raise `LimitError` if a Lie algebra of `count` matrices (size, size) has too large a dimension or array.
 
     Examples
     --------
@@ -255,7 +255,7 @@ def require_basis(count: int, size: int) -> None:
 
 
 def require_room(count: int, size: int, hint: str = "") -> None:
-    """Raise `LimitError` if so many dense matrices (size, size) need too much memory; `hint` says what helps.
+    """Raise `LimitError` if `count` dense matrices (size, size) need too much memory; `hint` says what helps.
 
     Examples
     --------

@@ -198,7 +198,7 @@ class Certificate:
         entries = [self.field.zero] * (nrows * ncols)
         for i, j, number in value:
             if i >= nrows or j >= ncols:
-                raise CertificateError("length", f"{name} has an entry ({i}, {j}), but is {nrows} x {ncols}")
+                raise CertificateError("length", f"{name} has an entry {displayed((i, j))}, but is {nrows} x {ncols}")
             entries[i * ncols + j] = number
         return self.field.from_entries(entries, nrows, ncols)
 

@@ -1,4 +1,4 @@
-"""What a caller gives to define a number field, checked: a minimal polynomial and an interval."""
+"""Checks of the two things that define a number field: a minimal polynomial and an interval."""
 
 from __future__ import annotations
 

@@ -147,7 +147,7 @@ def _kernel(value: flint.fmpq) -> int:
 
 
 def _squarefree_rest(factor: flint.fmpz) -> flint.fmpz:
-    """What trial division leaves, a prime or a composite number, without its squares if these are easy to find."""
+    """The rest after trial division, prime or composite, without its squares if these are easy to find."""
     if factor.is_square():
         return flint.fmpz(1)
     if factor.bit_length() > FACTORED_BITS:
