@@ -165,9 +165,11 @@ class RangeSolver:
         some = np.flatnonzero(suspicious)
         d, shape = self._moves.shape[-2], suspicious.shape
         rank = np.broadcast_to(self._frame.orbit_dimension, shape).reshape(-1)[some]
-        rows = [_lanes(x, shape, some) for x in (change / self._size, self._down, self._moves, self._unit, self._basis)]
+        v, down, moves, unit, basis = (
+            _lanes(x, shape, some) for x in (change / self._size, self._down, self._moves, self._unit, self._basis)
+        )
         filled = np.eye(d) * (np.arange(d) >= rank[:, None])[:, None, :]
-        near = self._ratio_is_small(*rows, filled=filled if int(rank.min()) < d else None)
+        near = self._ratio_is_small(v, down, moves, unit, basis, filled if int(rank.min()) < d else None)
         found.reshape(-1)[some] = near
         return found
 
@@ -180,15 +182,19 @@ class RangeSolver:
         found: Values = 2 * of_moves + (1 + 2 * reaching) * over
         return found
 
-    def _tested_on_tape(self, change: Traced, suspicious: Values) -> Values:
+    def _tested_on_tape(self, change: Traced, suspicious: Values) -> BooleanArray:
         """The test in compiled code, which is skipped unless a lane is suspicious."""
+
+        never: Values = Traced(change.tape, change.tape.false)
 
         def test(wanted: Values, v: Values, moves: Values, unit: Values) -> tuple[list[Values], Values]:
             near = wanted & self._ratio_is_small(v, self._down, moves, unit, self._basis)
-            return [near, v, moves, unit], change.tape.false
+            return [near, v, moves, unit], never
 
         start = [suspicious, change / self._size, self._moves, self._unit]
-        return while_loop(test, start, change.tape, 1, guarded=True)[0]
+        near: Values = while_loop(test, start, change.tape, 1, guarded=True)[0]
+        found: BooleanArray = near
+        return found
 
     def _ratio_is_small(
         self, change: Values, down: Values, moves: Values, unit: Values, basis: Values, filled: Values | None = None
@@ -343,7 +349,7 @@ def inner(a: Values, b: Values) -> Values:
 
 def _allowed(d: int) -> float:
     """The largest q for which |K| <= q implies det(1 + K) >= 1/8, K a matrix of size d."""
-    return 1 - NEAR_CONE ** (1 / d)
+    return float(1 - NEAR_CONE ** (1 / d))
 
 
 @lru_cache(maxsize=64)
@@ -357,7 +363,7 @@ def operator_bound(action: Action) -> float:
     1.0
     """
     n, size = action.dimension, action.representation.size
-    tensor = action.infinitesimal.right(np.eye(size)) @ action.inner_product.orthonormal_basis()
+    tensor = np.asarray(action.infinitesimal.right(np.eye(size)) @ action.inner_product.orthonormal_basis())
     rows = np.moveaxis(tensor, -1, 0).reshape(n, size * size)
     return float(np.linalg.norm(rows, 2)) if rows.size else 0.0
 

@@ -208,7 +208,7 @@ def tight_frame(action: ActionLike, points: Array, rank: int, seed: int = 0) -> 
             return None
         if not orthogonal:
             x = rng.normal(size=(len(some), action.dimension))
-            some = action.act(x / max(1.0, float(action.max_norm)), some)
+            some = np.asarray(action.act(x / max(1.0, float(action.max_norm)), some))
             if not bool(is_tight(action.infinitesimal.right(some) @ basis, rank).all()):
                 return None
         found = _isotropy_constant(action, some, rank, rng, mu)

@@ -25,8 +25,8 @@ from liehom.integrators.run.records import time_of
 from liehom.integrators.run.solution import Report, Solution
 from liehom.series.arrays import is_traced
 from liehom.tracing import StepGraph
-from liehom.tracing.jax_code import evaluate_with_jax
-from liehom.typing import Array, Values
+from liehom.tracing.jax_code import JaxArray, evaluate_with_jax
+from liehom.typing import Array
 
 STEPS_PER_NOMINAL_STEP = 1.5
 """Largest number of steps of a step with a τ of its own, in units of the nominal number; beyond it points are NaN."""
@@ -167,9 +167,8 @@ def _through(graph: StepGraph, m: Any, span: Span, dt: float, times: Array) -> t
         new = jnp.stack(made[n : n + len(LOSSES)]) if losses else jnp.zeros((len(LOSSES), *t.shape))
         return point, made[n + len(losses)] if graph.elapsed is not None else jnp.broadcast_to(size, t.shape), new
 
-    def added(seen: Values, new: Values) -> Values:
-        made: Values = jnp.concatenate([jnp.maximum(seen[:1], new[:1]), seen[1:] + new[1:]])
-        return made
+    def added(seen: JaxArray, new: JaxArray) -> JaxArray:
+        return jnp.concatenate([jnp.maximum(seen[:1], new[:1]), seen[1:] + new[1:]])
 
     def size_for(m: Any, t: Any, left: Any) -> Any:
         coefficients = [c for _, c in graph.clock]

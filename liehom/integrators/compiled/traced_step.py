@@ -133,8 +133,8 @@ def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
 
 
 def _everywhere(x: Real) -> Callable[[Array], Array]:
-    """Function of points (L, N) with the constant value x, of shape (L,)."""
-    return lambda points: np.full(len(points), x)
+    """Function of points (..., N) with the constant value x, of shape (...,)."""
+    return lambda points: np.full(points.shape[:-1], x)
 
 
 def _number(tape: Tape, x: object) -> Expr:
