@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 from types import ModuleType
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
@@ -192,7 +192,7 @@ class RangeSolver:
             return [near, v, moves, unit], never
 
         start = [suspicious, change / self._size, self._moves, self._unit]
-        near: Values = while_loop(test, start, change.tape, 1, guarded=True)[0]
+        near: Any = while_loop(test, start, change.tape, 1, guarded=True)[0]
         found: BooleanArray = near
         return found
 
