@@ -29,6 +29,7 @@ from liehom.scalars.fields.floating import CLEAR, ROUNDING, norm_of
 from liehom.typing import Array
 
 PARTNERS = 12  # first basis elements whose commutators with all others wait; at least the generators
+DROPPED = 1e-14  # structure constants up to this size, relative to the largest, are rounding errors
 LARGEST_RATIO = 100.0  # of the norms of given matrices, for structure constants that one tolerance fits
 
 
@@ -96,6 +97,7 @@ def float_closure(given: list[FloatMatrix], *, independent: bool, close: bool, l
     constants = turned.dense().to_numpy().reshape((len(lengths),) * 3)
     with np.errstate(over="ignore", invalid="ignore"):  # norm_of refuses what is not finite
         constants *= lengths[:, None, None] * (lengths[:, None] / lengths)
+    constants[np.abs(constants) <= DROPPED * np.abs(constants).max(initial=0.0)] = 0.0
     table = StructureConstants.from_array(field, constants, field.rtol * norm_of(constants))
     made = (FloatMatrix(field, scale * q.reshape(size, size)) for q in span.basis[m:])
     return FloatClosure((*basis, *made), tuple(kept), tuple(appended), table)
