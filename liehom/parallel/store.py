@@ -85,7 +85,7 @@ class Store(ABC):
         return self._mark is not None
 
     def restored(self, name: str, read: Callable[[dict[str, npt.NDArray[Any]], dict[str, Any]], T]) -> T | None:
-        """What `read` makes of the arrays and facts of a shard, or None, with a `DamageWarning`, if it is damaged.
+        """The result of `read` for a shard, or None, with a `DamageWarning`, if the shard is damaged.
 
         Parameters
         ----------
@@ -271,7 +271,7 @@ def _about(fingerprint: str) -> dict[str, Any]:
 
 
 def _checked(path: str, found: object, fingerprint: str | None) -> str | None:
-    """What enters the checksums of the shards: the fingerprint, or None for a store of version 1."""
+    """The fingerprint, which enters the checksums of the shards, or None for a store of version 1."""
     if not isinstance(found, dict) or found.get("format") != FORMAT or found.get("version") not in (1, VERSION):
         raise FormatError(f"{path!r} is not a store of liehom of this version, or is damaged")
     own = str(found.get("fingerprint"))

@@ -186,7 +186,7 @@ class DynamicalLieAlgebra:
 
     def _row(self, terms: dict[int, Scalar]) -> list[Scalar]:
         position = {word: i for i, word in enumerate(self._integers)}
-        row: list[Scalar] = [0] * len(position)
+        row = [self.word_algebra.field.zero] * len(position)
         for word, coefficient in terms.items():
             if word not in position:
                 raise InputError(f"the word {spell(word, self.qubits)} does not occur in the algebra")

@@ -4,9 +4,9 @@ Let D be a set of words that is closed under commutators and connected by antico
 R the radical of the symplectic form on W, V = W / R of dimension 2m, and K the translations of R that preserve D. The
 words of K are central and square to 1, so their signs split the algebra into |K| copies of the span of D / K:
 
-* su(2^m) if D / K has 4^m - 1 elements: these are all words but the identity on m qubits;
-* so(2^m) or sp(2^(m-1)) if D is the set {q = 1} of a quadratic form q on W that vanishes on R: the words that an
-  involutive anti-automorphism negates, orthogonal if q has Arf invariant 0, else symplectic;
+* su(2^m) if D / K has 4^m - 1 elements. These are all words except the identity on m qubits.
+* so(2^m) or sp(2^(m-1)) if D is the set {q = 1} of a quadratic form q on W that vanishes on R. These are the words that
+  an involutive anti-automorphism negates. The algebra is orthogonal if q has Arf invariant 0, else symplectic.
 * so(k) if D / K consists of anticommuting words c_1, ..., c_(k-1) and their products c_i c_j.
 
 Each criterion is checked as it is stated. If none applies, the ideal has no name here.

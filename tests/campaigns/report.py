@@ -61,7 +61,7 @@ def doors_table() -> str:
     return (
         f"{data['count']:,} inputs, seed {data['seed']} (`tests/campaigns/doors.py`). Every input has a deadline of "
         f"{doors.SECONDS:.0f} seconds and {doors.MEMORY >> 30} GiB of memory; the longest took {data['slowest']:.0f} "
-        f"seconds of the processor.\n\n" + table(["door", *names], rows)
+        f"seconds of CPU time.\n\n" + table(["door", *names], rows)
     )
 
 
@@ -105,7 +105,7 @@ TABLES: dict[str, Callable[[], str]] = {
 
 
 def rewritten(page: str) -> str:
-    """The page with all tables made anew."""
+    """The page with new tables."""
     for name, made in TABLES.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         before, _, rest = page.partition(begin)

@@ -1,6 +1,6 @@
 """LieAlgebraFamily: Lie algebras whose structure constants are rational functions of parameters.
 
-What holds for all values of the parameters is proved as an identity of rational functions. A generic statement comes
+A statement for all values of the parameters is proved as an identity of rational functions. A generic statement comes
 with the polynomial whose zeros it leaves out. Everything else is asked at values of the parameters, by `at`.
 """
 
