@@ -149,3 +149,12 @@ def test_the_number_of_trials_is_bounded(monkeypatch: pytest.MonkeyPatch) -> Non
     limits[0] = 2.0
     found = unsolvable(solvable_below(limits, calls), np.ones(16), np.ones(16, dtype=bool))
     assert found.all() and len(calls) <= 8
+
+
+def test_trials_that_succeed_count_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 64 trajectories one fails: halves are tried down to 8, then the 8 that hold it are named."""
+    monkeypatch.setattr(control, "MAX_TRIALS", 4)
+    limits = np.full(64, 2.0)
+    limits[0] = 0.5
+    found = unsolvable(solvable_below(limits, []), np.ones(64), np.ones(64, dtype=bool))
+    assert np.flatnonzero(found).tolist() == list(range(8))

@@ -179,6 +179,8 @@ def test_independent_rows_are_a_basis_also_modulo_unlucky_primes() -> None:
             picked = side.select(rows=chosen)
             assert picked.nrows == picked.rank() == matrix.rank()
     assert independent_columns(QQ.matrix([[prime, 1], [0, 1]])) == [0, 1]
+    assert independent_columns(QQ.matrix([[prime, 1]])) == [0]  # column 0 is in the basis unless it is 0
+    assert independent_columns(QQ.matrix([[0, 1]])) == [1]
 
 
 def test_rows_are_made_primitive_before_they_are_reduced() -> None:
