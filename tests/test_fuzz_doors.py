@@ -21,6 +21,7 @@ from liehom.cli.app import app
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.scalars import QQ, common_field, number_field
 from liehom.scalars.fields import grammar
+from tests.campaigns.door_inputs import ATTACKS, MONSTERS, SENTINEL, places
 from tests.sampling import examples
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
@@ -33,62 +34,6 @@ CERTIFICATES = {
 }
 
 SIZE = 12  # changed matrices often generate gl(N); those are left alone
-SENTINEL = "executed_by_liehom"
-ATTACKS = [
-    f"__import__('os').system('touch {SENTINEL}')",
-    f'__import__("pathlib").Path("{SENTINEL}").touch()',
-    f"open('{SENTINEL}', 'w')",
-    f"exec(\"open('{SENTINEL}', 'w')\")",
-    f"eval(\"open('{SENTINEL}', 'w')\")",
-    f"(lambda: open('{SENTINEL}', 'w'))()",
-    f"[open('{SENTINEL}', 'w')]",
-    f"sqrt(open('{SENTINEL}', 'w'))",
-    f"Symbol('x').__class__.__init__.__globals__['os'].system('touch {SENTINEL}')",
-    "lambda: 0",
-    "().__class__",
-    "().__class__.__bases__[0].__subclasses__()",
-    "__builtins__",
-    "os.system",
-    "sqrt.__globals__",
-    "{0.__class__}",
-    "%s%n",
-    "1; 2",
-    "1 if 1 else 2",
-    "x := 1",
-    "$(touch executed_by_liehom)",
-    "`touch executed_by_liehom`",
-    "!!python/object/apply:os.system ['touch executed_by_liehom']",
-]
-MONSTERS = [
-    "9**9**9**9",
-    "10**100000000",
-    "2**4096**2",
-    "((((2**4096)**4096)**4096)**4096)",
-    "1/(1 - 1)",
-    "0**-1",
-    "(" * 10_000 + "1" + ")" * 10_000,
-    "-" * 10_000 + "1",
-    "sqrt(" * 10_000 + "2" + ")" * 10_000,
-    "sqrt(" * 60 + "2" + ")" * 60,
-    " + ".join(f"sqrt({p})" for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)),
-    "sqrt(" + "123456789" * 40 + "1)",
-    "2**-4096",
-    "1" + "+1" * 20_000,
-    "1" + "*2" * 20_000,
-    "1" + "/3" * 2_000,
-    "\0",
-    "1\n",
-    "\ud800",
-    "١٢٣",
-    "1_000",
-    "0x10",
-    "1e5",
-    "inf",
-    "nan",
-    "sqrt(4)",
-    "",
-    " ",
-]
 
 
 @contextmanager
@@ -218,14 +163,6 @@ def test_random_json(data: Any) -> None:
 
 
 Path_ = tuple[Any, ...]
-
-
-def places(data: Any, here: Path_ = ()) -> Iterator[Path_]:
-    """The paths to everything inside a JSON value."""
-    items: Any = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    for key, value in items:
-        yield (*here, key)
-        yield from places(value, (*here, key))
 
 
 def parent(data: Any, path: Path_) -> Any:

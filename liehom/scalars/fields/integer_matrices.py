@@ -30,6 +30,7 @@ def zero_matrix(nrows: int, ncols: int) -> flint.fmpz_mat:
     >>> zero_matrix(1, 2)
     [0, 0]
     """
+    in_time()
     within("memory", 8 * nrows * ncols, "a matrix needs {} bytes")
     return flint.fmpz_mat(nrows, ncols)
 
