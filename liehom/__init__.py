@@ -3,6 +3,7 @@
 The layers, in reading order; each imports only those above it in this list:
 
 `errors`           what the library refuses, and why
+`immutable`        classes whose attributes are set once
 `budget`           how large an input may be, how long a computation may take
 `disk`             files that are written whole, checksums
 `parallel`         many tasks on any executor, and their results on disk
@@ -120,6 +121,7 @@ if TYPE_CHECKING:
     from liehom.errors import CatalogError as CatalogError
     from liehom.errors import CertificateError as CertificateError
     from liehom.errors import ConvergenceError as ConvergenceError
+    from liehom.errors import DamageWarning as DamageWarning
     from liehom.errors import FieldError as FieldError
     from liehom.errors import FormatError as FormatError
     from liehom.errors import InputError as InputError
@@ -266,10 +268,9 @@ _NAMES = {
         "Conserving Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
     ),
     "liehom.errors": (
-        "CatalogError CertificateError ConvergenceError FieldError FormatError InputError JacobiError LiehomError "
-        "LimitError NotASubalgebraError NotInSpanError OrderWarning ParseError RepresentationError ShapeError "
-        "SingularError StructureError "
-        "TraceError UndecidedError"
+        "CatalogError CertificateError ConvergenceError DamageWarning FieldError FormatError InputError JacobiError "
+        "LiehomError LimitError NotASubalgebraError NotInSpanError OrderWarning ParseError RepresentationError "
+        "ShapeError SingularError StructureError TraceError UndecidedError"
     ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "

@@ -37,19 +37,15 @@ def blocks(text: str, language: str) -> list[str]:
 
 
 def resolve(dotted: str) -> Any:
-    """The object behind a dotted name: the longest importable prefix, then attributes."""
-    parts = dotted.split(".")
-    for length in range(len(parts), 0, -1):
-        try:
-            found: Any = importlib.import_module(".".join(parts[:length]))
-        except ModuleNotFoundError as error:
-            if error.name is None or not dotted.startswith(error.name):
-                raise
-            continue
-        for name in parts[length:]:
-            found = getattr(found, name)
-        return found
-    raise ModuleNotFoundError(dotted)
+    """The object behind a dotted name: attributes first, since a module of 0.1.0 may have the name of a function."""
+    first, *rest = dotted.split(".")
+    found: Any = importlib.import_module(first)
+    for length, name in enumerate(rest, 2):
+        if not hasattr(found, name):
+            with contextlib.suppress(ModuleNotFoundError):
+                importlib.import_module(".".join(dotted.split(".")[:length]))
+        found = getattr(found, name)
+    return found
 
 
 def dotted_names() -> list[str]:

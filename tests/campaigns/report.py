@@ -55,13 +55,13 @@ def doors_table() -> str:
     if data is None:
         return ""
     columns = list(doors.OUTCOMES)
-    names = ["read", "refused", "`LimitError`", "`TypeError`", "anything else"]
+    names = ["read", "rejected", "`LimitError`", "`TypeError`", "anything else"]
     rows = [[row["class"], *(f"{row[key]:,}" for key in columns)] for row in data["rows"]]
     rows.append(["together", *(f"{sum(row[key] for row in data['rows']):,}" for key in columns)])
     return (
         f"{data['count']:,} inputs, seed {data['seed']} (`tests/campaigns/doors.py`). Every input has a deadline of "
         f"{doors.SECONDS:.0f} seconds and {doors.MEMORY >> 30} GiB of memory; the longest took {data['slowest']:.0f} "
-        f"seconds of CPU time.\n\n" + table(["door", *names], rows)
+        f"seconds of CPU time.\n\n" + table(["entry point", *names], rows)
     )
 
 

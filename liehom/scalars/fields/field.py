@@ -200,7 +200,7 @@ class Matrix(ABC):
 
     @abstractmethod
     def is_zero(self) -> bool:
-        """Whether every entry is zero; over float64, whether no entry exceeds the tolerance of the field."""
+        """Whether every entry is zero; over float64, whether the norm is at most the error of the matrix."""
 
     def first_nonzero_row(self) -> int | None:
         """Index of the first row that is not zero, None for a zero matrix.
