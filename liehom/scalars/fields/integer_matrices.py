@@ -59,7 +59,10 @@ def stacked_rows(blocks: Sequence[flint.fmpz_mat], ncols: int) -> flint.fmpz_mat
     [1, 2]
     [3, 4]
     """
-    entries = [x for b in blocks for x in b.entries()]
+    entries: list[flint.fmpz] = []
+    for b in blocks:
+        in_time()
+        entries += b.entries()
     return flint.fmpz_mat(sum(b.nrows() for b in blocks), ncols, entries)
 
 
