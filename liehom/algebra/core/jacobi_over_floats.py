@@ -19,6 +19,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.errors import FieldError
 from liehom.scalars import Scalar
 from liehom.scalars.fields.floating import norm_of
 from liehom.typing import Array
@@ -43,6 +44,8 @@ def failure_over_floats(table: StructureConstants) -> Failure | None:
     norm = table.norm()
     if norm == 0:
         return None
+    if not math.isfinite(norm):
+        raise FieldError("the norm of the table leaves the range of float64; multiply it by a power of two, or use QQ")
     unit = 2.0 ** min(math.frexp(norm)[1], 1023)
     scaled = _Scaled(table, unit)
     bound = PRODUCTS * (norm / unit) * (table.error / unit)
