@@ -9,8 +9,8 @@ given modules is drawn with the seed. A copy of the repository is mutated, never
 written one a line, and a run that is continued skips the mutants that it has tried.
 
 The tests of a module are the test modules of the mirrored folder, the nearest first: for liehom/a/b/x.py these are
-tests/a/b/test_x.py, then the other tests in tests/a/b; if there are none, those in tests/a. SURVIVORS.md explains
-the survivors.
+tests/a/b/test_x.py, then the other tests in tests/a/b; if there are none, those in tests/a. `--tests` names others,
+where a module is tested in another folder or its folder takes too long. SURVIVORS.md explains the survivors.
 """
 
 from __future__ import annotations
@@ -195,7 +195,9 @@ def outcome(copied: Path, mutant: Mutant, tests: list[str], timeout: float) -> s
     return f"killed by {Path(lines[0].split()[1].split('::')[0]).name if lines else 'the import'}"
 
 
-def run(modules: list[str], count: int, seed: int, results: Path, timeout: float, only: list[str]) -> None:
+def run(
+    modules: list[str], count: int, seed: int, results: Path, timeout: float, only: list[str], named: list[str]
+) -> None:
     """Try a sample of the mutants; append one line of JSON for each."""
     pool = [mutant for module in modules for mutant in mutants(module)]
     random.Random(seed).shuffle(pool)
@@ -211,7 +213,7 @@ def run(modules: list[str], count: int, seed: int, results: Path, timeout: float
         for mutant in [m for m in pool if only == [] or m.key in only][:count]:
             if mutant.key in done:
                 continue
-            tests = tests_of(mutant.module)
+            tests = named or tests_of(mutant.module)
             start = time.monotonic()
             if tests[0] not in seconds_of:  # do the tests pass without a mutant, and how long do they take
                 right = tested(copied, tests, timeout)
@@ -223,7 +225,7 @@ def run(modules: list[str], count: int, seed: int, results: Path, timeout: float
             if not seconds_of[tests[0]]:
                 continue
             start = time.monotonic()
-            found = outcome(copied, mutant, tests, max(30.0, 5 * seconds_of[tests[0]]))
+            found = outcome(copied, mutant, tests, min(timeout, max(30.0, 5 * seconds_of[tests[0]])))
             seconds = round(time.monotonic() - start, 1)
             with results.open("a", encoding="utf-8") as file:
                 file.write(json.dumps({"mutant": mutant.key, "outcome": found, "seconds": seconds}) + "\n")
@@ -250,9 +252,12 @@ def main() -> None:
     parser.add_argument("modules", nargs="*", help="paths or patterns relative to the repository")
     parser.add_argument("--count", type=int, default=50, help="mutants in the sample")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--timeout", type=float, default=300, help="seconds for the tests without a mutant")
+    parser.add_argument(
+        "--timeout", type=float, default=300, help="most seconds for the tests, with a mutant or without"
+    )
     parser.add_argument("--results", type=Path, default=Path("mutants.jsonl"))
     parser.add_argument("--only", action="append", default=[], help="try this mutant, named as in the results")
+    parser.add_argument("--tests", nargs="+", default=[], help="test modules for all mutants, not the mirrored ones")
     parser.add_argument("--report", action="store_true", help="print a table of the results instead")
     chosen = parser.parse_args()
     if chosen.report:
@@ -260,7 +265,7 @@ def main() -> None:
         return
     found = sorted({p.relative_to(ROOT).as_posix() for pattern in chosen.modules for p in ROOT.glob(pattern)})
     modules = [m for m in found if not m.endswith("__init__.py")]
-    run(modules, chosen.count, chosen.seed, chosen.results, chosen.timeout, chosen.only)
+    run(modules, chosen.count, chosen.seed, chosen.results, chosen.timeout, chosen.only, chosen.tests)
 
 
 if __name__ == "__main__":

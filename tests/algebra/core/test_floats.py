@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
+from liehom.algebra.core.balancing import balanced
 from liehom.errors import (
     DependentRowsError,
     FieldError,
@@ -79,6 +80,18 @@ def test_a_table_without_the_jacobi_identity_is_refused_at_every_scale(name: str
     lh.LieAlgebra(scale * wrong, field=lh.FloatField(1e-4))
     with pytest.raises(StructureError, match="antisymmetric"):
         lh.LieAlgebra(scale * (c + 1e-6 * step))
+
+
+@pytest.mark.parametrize(
+    "read", [np.array, lambda c: {(i, j): dict(enumerate(c[i][j])) for i in (0, 1) for j in (0, 1)}]
+)
+def test_a_symmetric_part_is_within_twice_the_uncertainty_of_the_table(read: Any) -> None:
+    def table(defect: float) -> Any:
+        return read([[[0.0, 0.0], [0.0, 1.0]], [[0.0, -1.0 + defect], [0.0, 0.0]]])
+
+    assert lh.LieAlgebra(table(1.9e-9)).dimension == 2
+    with pytest.raises(StructureError, match="antisymmetric"):
+        lh.LieAlgebra(table(2.1e-9))
 
 
 def test_a_small_table_without_the_jacobi_identity_names_the_sum() -> None:
@@ -204,6 +217,12 @@ def test_moderate_lengths_are_decided() -> None:
         lengths = np.array([1.0, 1.0, length])
         g = lh.LieAlgebra(c * np.multiply.outer(np.multiply.outer(lengths, lengths), 1 / lengths))
         assert g.is_semisimple() and g.killing_signature() == (0, 3, 0) and not g.is_solvable()
+
+
+def test_two_basis_elements_of_different_lengths_are_balanced() -> None:
+    table, lengths = balanced(lh.LieAlgebra({(0, 1): {0: 1e2, 1: 1e-2}}).table)
+    assert [abs(v) for *_, v in table] == pytest.approx([1.0, 1.0])
+    assert lengths.tolist() == pytest.approx([1e2, 1e-2])
 
 
 def test_the_error_of_a_table_follows_a_change_of_basis() -> None:
