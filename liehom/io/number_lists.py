@@ -125,8 +125,8 @@ def _not_a_value(value: object, place: str) -> str:
         if not math.isfinite(value):
             return f"{place} is {value!r}, expected a finite number"
         return (
-            f"{place} is the float {value!r}, and this file is exact: write the fraction "
-            f'"{fraction_for(value)}", or add "arithmetic": "float64"'
+            f"{place} is the float {value!r}, and the data are exact: write the fraction "
+            f'"{fraction_for(value)}", or add "arithmetic": "float64" to the file'
         )
     return f"{place} must be an integer or a string such as '3/4', not {kind_of(value)}"
 
