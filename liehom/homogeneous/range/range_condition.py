@@ -96,7 +96,7 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     -------
     RangeCondition
         Exact over an exact field. Over floats it has the singular values that decided the rank, and it is undecided if
-        one of them is between the error and 100 times the error.
+        one of them is within a factor 100 of the error.
 
     Raises
     ------
@@ -208,8 +208,8 @@ def _of_the_size_of(images: Matrix, x: Matrix) -> Matrix:
 
 def _unclear(numerical: RankDecision, d: int, psi: list[Scalar], *, generic: bool) -> RangeCondition:
     message = (
-        f"a singular value of relative size {numerical.kept:.2g} is less than 100 times its error "
-        f"{numerical.error:.2g}; more accurate or exact numbers decide it, see liehom.rationalize"
+        f"a singular value of relative size {numerical.kept:.2g} counts and {numerical.dropped:.2g} does not, too near "
+        f"to the error {numerical.error:.2g}; more accurate or exact numbers decide it, see liehom.rationalize"
     )
     return RangeCondition(None, numerical.rank, d, psi, None, False, generic, message, numerical)
 

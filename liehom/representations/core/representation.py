@@ -428,7 +428,7 @@ class Representation(Immutable):
         FieldError
             If an entry is not in the field.
         UndecidedError
-            If floats do not decide the dimension: a singular value is between the error and 100 times the error.
+            If floats do not decide the dimension: a singular value is within a factor 100 of the error.
 
         Notes
         -----

@@ -50,6 +50,6 @@ def orbit_dimension(algebra: LieAlgebra, matrices: Sequence[Matrix], size: int, 
 
 
 def _require_clear(moved: Matrix, question: str) -> None:
-    """Over floats, raise `UndecidedError` if a singular value that counts is less than 100 times the error."""
+    """Over floats, raise `UndecidedError` if a singular value is within a factor 100 of the error."""
     if isinstance(moved, FloatMatrix):
         moved.rank_decision().require_clear(question)

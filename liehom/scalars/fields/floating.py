@@ -23,7 +23,7 @@ from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_
 from liehom.typing import Array, ScalarLike
 
 ROUNDING = 1e-15  # least error of a computed matrix, relative to its norm
-CLEAR = 100.0  # margin of the kept values above the error with which a rank is beyond doubt
+CLEAR = 100.0  # margin of the singular values on both sides of the error with which a rank is beyond doubt
 SMALLEST, LARGEST = 1e-280, 1e280  # norms of results outside these bounds have lost digits
 
 
@@ -58,8 +58,8 @@ class RankDecision:
 
     @property
     def clear(self) -> bool:
-        """Whether the kept values exceed the error, and so the dropped values, at least a hundredfold."""
-        return self.rank == 0 or self.kept >= CLEAR * self.error
+        """Whether no singular value is between a hundredth of the error and 100 times the error."""
+        return (self.rank == 0 or self.kept >= CLEAR * self.error) and CLEAR * self.dropped <= self.error
 
     def require_clear(self, question: str) -> None:
         """Raise `UndecidedError` unless the rank is clear; `question` is what it decides, for the message."""
