@@ -1056,8 +1056,14 @@ class LieAlgebra(Immutable):
         return is_isomorphic(self, other)
 
     # -- Cartan decomposition ----------------------------------------------------------------------------
-    def cartan_decomposition(self) -> CartanDecomposition:
+    def cartan_decomposition(self, *, extend: bool = False) -> CartanDecomposition:
         """The decomposition g = k + p of a semisimple algebra for a Cartan involution; unpacks as ``k, p``.
+
+        Parameters
+        ----------
+        extend : bool, optional
+            If no involution over the field of the algebra was found, return one over a larger real number field. The
+            field is ``.field`` of the result, and k and p are those of the algebra over that field.
 
         Returns
         -------
@@ -1072,8 +1078,8 @@ class LieAlgebra(Immutable):
             If it is proved that no Cartan involution has entries in the field: for example, of two ideals over the
             reals that are conjugate over the field one is compact and the other is not.
         UndecidedError
-            If no Cartan involution with small rational entries was found. In both cases
-            ``g.over(lh.RR).cartan_decomposition()`` finds one numerically.
+            If no Cartan involution with small rational entries was found, nor over a larger field if `extend` is
+            True. In both cases ``g.over(lh.RR).cartan_decomposition()`` finds one numerically.
 
         Notes
         -----
@@ -1087,10 +1093,19 @@ class LieAlgebra(Immutable):
         >>> k, p = lh.so(4, 1).cartan_decomposition()
         >>> k.dimension, p.dimension, k.as_algebra().real_form()
         (6, 4, 'so(3) + so(3)')
+
+        The brackets [x, y] = sqrt(2) z, [y, z] = x, [z, x] = y over QQ(sqrt(2)), seen over QQ, are so(3) + sl(2,R) over
+        the reals; an involution has entries in the larger field only.
+
+        >>> table = {(0, 2): {4: 1}, (2, 4): {1: 1}, (0, 4): {2: -1}, (0, 3): {5: 1}, (1, 2): {5: 1}, (1, 3): {4: 2}}
+        >>> table |= {(2, 5): {0: 2}, (3, 4): {0: 2}, (3, 5): {1: 2}, (0, 5): {3: -1}, (1, 4): {3: -1}, (1, 5): {2: -2}}
+        >>> found = lh.LieAlgebra(table).cartan_decomposition(extend=True)
+        >>> found.field, found.k.dimension
+        (QQ(sqrt(2)), 4)
         """
         from liehom.algebra.involutions.cartan_decomposition import cartan_decomposition
 
-        return cartan_decomposition(self)
+        return cartan_decomposition(self, extend=extend)
 
     def cartan_involution(self) -> Matrix:
         """The matrix (n, n), on columns, of the Cartan involution of `cartan_decomposition`.
@@ -1103,8 +1118,14 @@ class LieAlgebra(Immutable):
         """
         return self.cartan_decomposition().theta
 
-    def maximal_compact_subalgebra(self) -> Subalgebra:
+    def maximal_compact_subalgebra(self, *, extend: bool = False) -> Subalgebra:
         """The fixed points of a Cartan involution (`cartan_decomposition`).
+
+        Parameters
+        ----------
+        extend : bool, optional
+            If no involution over the field of the algebra was found, use one over a larger real number field: the
+            result is then a subalgebra of the algebra over that field.
 
         Examples
         --------
@@ -1112,7 +1133,7 @@ class LieAlgebra(Immutable):
         >>> lh.so(4, 1).maximal_compact_subalgebra().as_algebra().real_form()
         'so(3) + so(3)'
         """
-        return self.cartan_decomposition().k
+        return self.cartan_decomposition(extend=extend).k
 
     # -- comparison and printing -------------------------------------------------------------------------
     def describe(self) -> str:

@@ -1,4 +1,8 @@
-"""Cartan involutions of algebras in floating point, the most accurate one for several generic elements."""
+"""Cartan involutions of algebras in floating point, the most accurate one for several generic elements.
+
+The integral elements that are short for -K(x, theta y), or near the fixed points of theta, are where exact involutions
+are looked for.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +20,8 @@ from liehom.typing import Array
 
 SEEDS = 4  # generic elements that are tried
 ACCURATE = 1e-11  # largest entry of theta^2 - 1 with which no further generic element is tried
+LARGEST = 200  # short elements at most
+HEIGHTS = (2, 4, 8, 16, 32, 64)  # largest coefficients of elements near k
 NULL = 1e-6  # eigenvalues of a generic ad x below this fraction of the largest count as 0
 
 
@@ -76,6 +82,47 @@ def approximate_involution(algebra: LieAlgebra, rank: int) -> Array | None:
         return _found(float_constants(algebra), algebra.killing_form().to_numpy(), rank)
     except (ConvergenceError, np.linalg.LinAlgError):
         return None
+
+
+def short_elements(algebra: LieAlgebra, theta: Array) -> Array:
+    """Basis elements, their sums and differences, and their brackets if these are integral, (m, n), shortest first.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+        A semisimple algebra.
+    theta : (n, n) float array
+        A Cartan involution, on rows, approximately; lengths are those of -K(x, theta x).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> g = lh.so(3)
+    >>> short_elements(g, approximate_involution(g, 1))[:3]
+    array([[0., 0., 1.],
+           [0., 1., 0.],
+           [1., 0., 0.]])
+    """
+    constants, n = float_constants(algebra), algebra.dimension
+    form = -algebra.killing_form().to_numpy() @ theta.T
+    one = np.eye(n)
+    i, j = np.triu_indices(n, 1)
+    vectors = [one, one[i] + one[j], one[i] - one[j]]
+    if (constants == np.rint(constants)).all():
+        vectors.append(constants.reshape(-1, n))
+    rows = np.concatenate(vectors)
+    rows = rows[(rows != 0).any(axis=1)]
+    leading = np.take_along_axis(rows, np.argmax(rows != 0, axis=1)[:, None], axis=1)
+    rows = np.unique(rows * np.sign(leading), axis=0)
+    lengths = np.einsum("ai,ij,aj->a", rows, form, rows, optimize=True)
+    return np.asarray(rows[np.argsort(np.round(lengths / lengths.max(), 9), kind="stable")[:LARGEST]])
+
+
+def near_compact(theta: Array, seed: int) -> Array:
+    """An integral row near a random fixed point of theta, with coefficients that grow with the seed."""
+    x = np.random.default_rng(seed).standard_normal(len(theta)) @ (np.eye(len(theta)) + theta)
+    height = HEIGHTS[min(seed, len(HEIGHTS) - 1)] if seed else 10**6
+    return np.asarray(np.rint(x * (height / np.abs(x).max())))
 
 
 def _numerical_rank(constants: Array) -> int:

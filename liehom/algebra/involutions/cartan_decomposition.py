@@ -5,13 +5,14 @@ exact checks.  Candidates come from these sources, in order of cost.
 
 1. Floating point (approximate_involution), because a well-chosen basis gives one with small rational entries.
 2. Rotations by pi about an axis, for dimension 3 over the centroid (involution_about_axis).
-3. Lattice reduction (rational_involution) and nilpotent elements (isotropic_involution), for each simple ideal in the
-   basis of a large Lie order (lattice_order).
+3. Lattice reduction (rational_involution), nilpotent elements (isotropic_involution) and elements with a compact
+   centralizer (elliptic_involution), for each simple ideal in the basis of a large Lie order (lattice_order).
 4. Random inner automorphisms of the candidates of lattice reduction.
 
 If the centroid excludes a Cartan involution over the field, `NoRationalInvolutionError` is raised before any search
 (involution_obstruction).  If no candidate passes the checks, `UndecidedError` is raised, because there may be no Cartan
-involution over the field; the decomposition over float64 always exists.
+involution over the field; the decomposition over float64 always exists.  With `extend` the sources 1 to 3 are followed
+by involutions over a larger real number field (extended_involution).
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ from liehom.algebra.involutions.approximate_involution import (
     numerical_involution,
     orthonormal_frame,
 )
+from liehom.algebra.involutions.elliptic_involution import elliptic_elements, elliptic_involution
+from liehom.algebra.involutions.extended_involution import extended_involution
 from liehom.algebra.involutions.involution_about_axis import involution_about_axis, involution_about_axis_over_centroid
 from liehom.algebra.involutions.involution_obstruction import involution_obstruction
 from liehom.algebra.involutions.isotropic_involution import isotropic_involution
@@ -38,7 +41,7 @@ from liehom.algebra.structure.cartan_subalgebra import cartan_subalgebra
 from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition
 from liehom.algebra.structure.real_splitting import CentroidField, centroid_field
 from liehom.errors import InputError, NoRationalInvolutionError, UndecidedError
-from liehom.scalars import FloatField, Matrix, Subspace
+from liehom.scalars import ExactField, Field, FloatField, Matrix, Subspace
 from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import Array
 
@@ -52,6 +55,9 @@ LATTICE_DIMENSION = 60  # dimension up to which orders are computed
 @dataclass(frozen=True, slots=True)
 class CartanDecomposition:
     """The decomposition g = k + p for a Cartan involution, with k maximal compact and p its Killing complement.
+
+    The involution may be over a larger field than g (``cartan_decomposition(extend=True)``); then k and p are those of
+    the algebra ``k.algebra`` over that field.
 
     Attributes
     ----------
@@ -67,11 +73,23 @@ class CartanDecomposition:
     p: Subspace
     theta: Matrix
 
+    @property
+    def field(self) -> Field:
+        """The field of theta.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.so(4, 1).cartan_decomposition().field
+        QQ
+        """
+        return self.k.algebra.field
+
     def __iter__(self) -> Iterator[Any]:
         return iter((self.k, self.p))
 
 
-def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
+def cartan_decomposition(algebra: LieAlgebra, *, extend: bool = False) -> CartanDecomposition:
     """Implements `LieAlgebra.cartan_decomposition`."""
     field, n = algebra.field, algebra.dimension
     killing = algebra.killing_form()
@@ -79,14 +97,26 @@ def cartan_decomposition(algebra: LieAlgebra) -> CartanDecomposition:
         raise InputError("only a semisimple algebra has a Cartan decomposition; take the Levi factor")
     if n and isinstance(field, FloatField):
         return _decomposed(algebra, field.from_entries(numerical_involution(algebra).T.ravel().tolist(), n, n))
-    theta = field.identity(n) if killing.signature()[0] == 0 else _rational(algebra)
-    if theta is None:
-        raise UndecidedError(
-            f"no Cartan involution of {algebra!r} over {field.name} was found, and none was excluded: lattice "
-            f"reduction met none of denominator at most {DENOMINATOR}, and nilpotent elements gave none; "
-            "algebra.over(lh.RR).cartan_decomposition() finds one numerically"
-        )
-    return _decomposed(algebra, theta)
+    if killing.signature()[0] == 0:
+        return _decomposed(algebra, field.identity(n))
+    try:
+        theta = _rational(algebra, long=not extend)
+    except NoRationalInvolutionError:
+        if not extend:
+            raise
+        theta = None
+    if theta is not None:
+        return _decomposed(algebra, theta)
+    if extend and isinstance(field, ExactField):
+        found = extended_involution(algebra, is_cartan_involution)
+        if found is not None:
+            return _decomposed(*found)
+    raise UndecidedError(
+        f"no Cartan involution of {algebra!r} over {field.name} was found, and none was excluded: lattice "
+        f"reduction met none of denominator at most {DENOMINATOR}, and nilpotent and elliptic elements gave none; "
+        + ("" if extend else "cartan_decomposition(extend=True) looks for one over a larger real number field, and ")
+        + "algebra.over(lh.RR).cartan_decomposition() finds one numerically"
+    )
 
 
 def is_cartan_involution(algebra: LieAlgebra, theta: MatrixLike) -> bool:
@@ -119,8 +149,8 @@ def _decomposed(algebra: LieAlgebra, theta: Matrix) -> CartanDecomposition:
     return CartanDecomposition(Subalgebra(algebra, k, check=False), Subspace(field, p, n), theta)
 
 
-def _rational(algebra: LieAlgebra) -> Matrix | None:
-    """A Cartan involution over the field, on columns, or None."""
+def _rational(algebra: LieAlgebra, *, long: bool = True) -> Matrix | None:
+    """A Cartan involution over the field, on columns, or None; `long` adds random automorphisms."""
     n = algebra.dimension
     rank = cartan_subalgebra(algebra).dimension
     theta = approximate_involution(algebra, rank)
@@ -133,7 +163,7 @@ def _rational(algebra: LieAlgebra) -> Matrix | None:
     centroids = [centroid_field(ideal) for ideal in ideals]
     _not_excluded(algebra, centroids)  # before any search; a sum has no Cartan involution if an ideal has none
     if len(ideals) > 1:
-        return _of_ideals(algebra, ideals)
+        return _of_ideals(algebra, ideals, long)
     (centroid,) = centroids
     if n == 3 * centroid.degree and theta is not None and centroid.polynomial.count_real_roots() == centroid.degree:
         found = involution_about_axis_over_centroid(centroid, theta)
@@ -141,13 +171,19 @@ def _rational(algebra: LieAlgebra) -> Matrix | None:
         found = isotropic_involution(algebra, theta)
     if found is not None and is_cartan_involution(algebra, found):
         return found
-    return _in_a_large_order(algebra, rank, theta)
+    return _in_a_large_order(algebra, rank, theta, long)
 
 
 def _constructed(algebra: LieAlgebra, theta: Array) -> Matrix | None:
-    """A Cartan involution over the field from nilpotent elements, on columns, or None; `theta` is numerical."""
+    """A Cartan involution over the field from nilpotent or elliptic elements, on columns, or None."""
     candidate = isotropic_involution(algebra, theta) if algebra.field.degree == 1 else None
-    return candidate if candidate is not None and is_cartan_involution(algebra, candidate) else None
+    if candidate is not None and is_cartan_involution(algebra, candidate):
+        return candidate
+    for element in elliptic_elements(algebra, theta)[-1:]:
+        found = elliptic_involution(algebra, element, 1)
+        if found is not None and is_cartan_involution(algebra, found[1]):
+            return found[1]
+    return None
 
 
 def _not_excluded(algebra: LieAlgebra, centroids: list[CentroidField]) -> None:
@@ -163,7 +199,7 @@ def _not_excluded(algebra: LieAlgebra, centroids: list[CentroidField]) -> None:
             )
 
 
-def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Matrix | None:
+def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra], long: bool) -> Matrix | None:
     """The Cartan involution that combines Cartan involutions of the ideals, or None if one was not found."""
     field, n = algebra.field, algebra.dimension
     basis = field.stack_rows([ideal.basis for ideal in ideals], n)
@@ -172,7 +208,7 @@ def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Matrix | None:
         inner = ideal.as_algebra()
         killing = inner.killing_form()
         one = field.identity(ideal.dimension)
-        theta: Matrix | None = one if killing.signature()[0] == 0 else _rational(inner)
+        theta: Matrix | None = one if killing.signature()[0] == 0 else _rational(inner, long=long)
         if theta is None:
             return None
         blocks.append(ideal.basis.T @ theta)
@@ -180,7 +216,7 @@ def _of_ideals(algebra: LieAlgebra, ideals: list[Subalgebra]) -> Matrix | None:
     return combined
 
 
-def _in_a_large_order(algebra: LieAlgebra, rank: int, theta: Array | None) -> Matrix | None:
+def _in_a_large_order(algebra: LieAlgebra, rank: int, theta: Array | None, long: bool) -> Matrix | None:
     """A Cartan involution, on columns, found in the basis of a large order, or None; `theta` is numerical."""
     field, n = algebra.field, algebra.dimension
     basis, current = field.identity(n), algebra
@@ -196,6 +232,8 @@ def _in_a_large_order(algebra: LieAlgebra, rank: int, theta: Array | None) -> Ma
             found = _constructed(current, theta)
         if found is not None:
             return _in_first_basis(found, basis)
+    if not long:
+        return None
     rounds = max(FEW_ROUNDS, ROUNDS * SMALL**2 // max(n, SMALL) ** 2) if orders else FEW_ROUNDS
     found = None if theta is None else _searched(current, theta, rounds)
     return None if found is None else _in_first_basis(found, basis)

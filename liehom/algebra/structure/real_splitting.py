@@ -23,7 +23,7 @@ from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.structure.commuting_maps import combinations, minimal_polynomial
 from liehom.errors import FieldError, InputError, InternalError
 from liehom.scalars import QQ, ExactMatrix, Polynomial, Scalar, as_exact
-from liehom.scalars.roots.extension import RealFactor, real_factors
+from liehom.scalars.roots.extension import Extension, RealFactor, real_factors
 
 CANDIDATES = 12  # generators of the centroid among which the one with the smallest polynomial is chosen
 FACTORED_BITS = 160  # bits of the numbers that are factored
@@ -233,11 +233,27 @@ def _real_ideal(ideal: Subalgebra, factor: RealFactor, f: Polynomial, krylov: li
     weights = field.matrix(shifts)
     rows = [weights @ up.matrix(block) for block in krylov]
     smaller, given = ideal.algebra, as_exact(ideal.basis)
-    entries = [(i, j, k, up.embed(v)) for i, j, k, v in smaller.table]
-    table = StructureConstants(field, smaller.dimension, entries)
-    larger = LieAlgebra(table, basis=smaller.basis_names, name=smaller.name, check=False)  # same identities
+    larger = over_extension(smaller, up)
     basis = field.stack_rows(rows, rows[0].ncols) @ up.matrix(given)
     return Subalgebra(larger, basis.primitive(), check=False)  # the kernel of a map that commutes with the bracket
+
+
+def over_extension(algebra: LieAlgebra, up: Extension) -> LieAlgebra:
+    """The algebra with its structure constants in a larger field, or itself if the extension is trivial.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.scalars.roots.extension import adjoin_root
+    >>> up, _ = adjoin_root(Polynomial(QQ, [-2, 0, 1]), 1)
+    >>> over_extension(lh.so(3), up).field
+    QQ(sqrt(2))
+    """
+    if up.is_trivial:
+        return algebra
+    entries = [(i, j, k, up.embed(v)) for i, j, k, v in algebra.table]
+    table = StructureConstants(up.field, algebra.dimension, entries)
+    return LieAlgebra(table, basis=algebra.basis_names, name=algebra.name, check=False)  # same identities
 
 
 # -- helpers ---------------------------------------------------------------------------------------------
