@@ -159,7 +159,7 @@ def _kinds(f: Polynomial, kinds: Kinds) -> list[bool]:
 
 
 def _of_squares(f: Polynomial) -> Polynomial:
-    """The polynomial whose roots are the -t^2 for the roots t of a polynomial that is even or odd, without the root 0."""
+    """The polynomial with the roots -t^2 for the roots t, except 0, of an even or odd polynomial."""
     low = next(i for i, c in enumerate(f.coefficients) if c != 0)
     even = f.coefficients[low::2]
     return Polynomial(f.field, [c if i % 2 == 0 else -c for i, c in enumerate(even)])

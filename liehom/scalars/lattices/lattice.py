@@ -154,6 +154,17 @@ def pairwise_coprime(number: int) -> list[int]:
     return sorted(set(roots))
 
 
+def smallest_prime(number: int) -> int:
+    """The smallest prime divisor of an integer greater than 1; numbers of more than 100 bits may take long.
+
+    Examples
+    --------
+    >>> smallest_prime(2071759 * 15816027105855133)
+    2071759
+    """
+    return min(int(p) for p, _ in flint.fmpz(number).factor())
+
+
 def integral_preimage(matrix: ExactMatrix) -> ExactMatrix:
     """Rows of a basis of a lattice that contains {x : x A is integral}, and nearly always equals it.
 
