@@ -21,7 +21,7 @@ from liehom.typing import IntegerArray
 
 FORMAT = "liehom-algebra"
 REQUIRED = ("dimension", "structure_constants")
-OPTIONAL = ("format", "version", "name", "basis", "field", "arithmetic")
+OPTIONAL = ("format", "version", "name", "basis", "field", "arithmetic", "tolerance")
 MAX_NAME = 100
 """Characters of the longest name."""
 

@@ -169,6 +169,8 @@ def field_for(data: Mapping[str, Any], lists: Sequence[RawList], numerical: bool
     ParseError
         If a value is not in the grammar; names its position.
     """
+    if "tolerance" in data:
+        return _float_field(data["tolerance"], numerical)
     if numerical:
         return RR
     if "field" in data:
@@ -230,10 +232,17 @@ def read_field(data: object) -> NumberField:
         raise FormatError(f"field: {error}") from None
 
 
+def _float_field(tolerance: object, numerical: bool) -> FloatField:
+    if not numerical or not isinstance(tolerance, float) or not 0 < tolerance < 1:
+        expected = "a number between 0 and 1" if numerical else 'no such key without "arithmetic": "float64"'
+        raise FormatError(f"tolerance is {shown(tolerance)}, expected {expected}")
+    return FloatField(tolerance)
+
+
 def write_field(field: Field) -> dict[str, Any]:
-    """Keys of a file that state a field: none for QQ, `arithmetic` for float64, else `field`."""
+    """Keys of a file that state a field: none for QQ, `arithmetic` (and `tolerance`) for float64, else `field`."""
     if isinstance(field, FloatField):
-        return {"arithmetic": "float64"}
+        return {"arithmetic": "float64"} if field == RR else {"arithmetic": "float64", "tolerance": float(field.rtol)}
     if not isinstance(field, NumberField):
         return {}
     ends = [str(end) for end in field.interval]

@@ -22,7 +22,7 @@ from liehom.representations.core.pair import Pair
 
 FORMAT, SUBALGEBRA = "liehom-pair", "liehom-subalgebra"
 REQUIRED = ("dimension", "structure_constants", "subalgebra")
-OPTIONAL = ("format", "version", "basis", "field", "arithmetic")
+OPTIONAL = ("format", "version", "basis", "field", "arithmetic", "tolerance")
 
 
 def read_pair(data: Mapping[str, Any]) -> Pair:

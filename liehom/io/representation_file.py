@@ -25,7 +25,7 @@ from liehom.scalars.fields.field import MatrixLike
 from liehom.typing import VectorLike
 
 FORMAT = "liehom-representation"
-OPTIONAL = ("format", "version", "field", "arithmetic", "coordinates", "dimension", "point", *NUMERICAL)
+OPTIONAL = ("format", "version", "field", "arithmetic", "tolerance", "coordinates", "dimension", "point", *NUMERICAL)
 
 
 def read_problem(data: Mapping[str, Any]) -> Problem:

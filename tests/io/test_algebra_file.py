@@ -113,3 +113,26 @@ def test_round_trip_in_every_basis(rows: list[list[int]], scale: int) -> None:
     algebra = lh.sl(2).change_of_basis(matrix)  # diagonally dominant, so invertible
     text = json.dumps(lh.to_json(algebra))
     assert lh.loads(text) == algebra
+
+
+def test_files_keep_the_tolerance_of_floats() -> None:
+    rough = lh.so(3).over(lh.FloatField(1e-6))
+    pair = lh.Pair(rough, [[0.1, 0.2, 0.3]])
+    for made in (rough, pair, pair.subalgebra):
+        data = lh.to_json(made)
+        assert data["tolerance"] == 1e-6
+        assert lh.from_json(data) == made
+    assert lh.from_json(lh.to_json(lh.adjoint(rough))).field == rough.field  # the algebra is generated anew
+    assert "tolerance" not in lh.to_json(lh.so(3).over(lh.RR))
+
+
+@pytest.mark.parametrize("tolerance", [None, 0.0, 1.0, -1e-9, 1, True, "1e-6", []])
+def test_a_tolerance_is_a_float_between_0_and_1(tolerance: object) -> None:
+    data = lh.to_json(lh.so(3).over(lh.RR))
+    with pytest.raises(lh.FormatError, match="tolerance is"):
+        lh.from_json({**data, "tolerance": tolerance})
+
+
+def test_an_exact_file_has_no_tolerance() -> None:
+    with pytest.raises(lh.FormatError, match="tolerance is"):
+        lh.from_json({**lh.to_json(lh.so(3)), "tolerance": 1e-6})
