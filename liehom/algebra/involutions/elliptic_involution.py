@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import TypeAlias, final
 
 import numpy as np
@@ -26,6 +27,7 @@ from liehom.algebra.involutions.approximate_involution import (
     short_elements,
 )
 from liehom.algebra.structure.commuting_maps import evaluate
+from liehom.algebra.structure.exact_field import exact_field
 from liehom.budget import in_time
 from liehom.scalars import ExactMatrix, Polynomial, as_exact
 from liehom.scalars.lattices.lattice import reduced_rows
@@ -33,11 +35,16 @@ from liehom.scalars.roots.extension import Extension, adjoin_root, real_roots, t
 from liehom.scalars.spaces.integral_basis import integral_basis
 from liehom.typing import Array
 
+QUESTION = "Cartan involutions of elliptic elements"
 IMAGINARY = 1e-6  # largest real part of an eigenvalue, relative to the largest eigenvalue, that counts as 0
 DEFINITE = 1e-6  # smallest eigenvalue of K(v, conj v), relative to -K(v, theta conj v), with which it is definite
 BITS = 64  # precision of roots of factors
 TRIED = 40  # short elements, and random ones, that are tried
 INSIDE = 8  # elements of one centralizer that are tried
+FACTORED = 150  # elements whose characteristic polynomial is factored
+DEPTH = 2  # centralizers inside one another
+DEEPER = 2  # short elements of one centralizer whose centralizers are tried
+SHIFT = 5  # of an element of a centralizer, by which no two eigenvalues coincide in most cases
 
 Kinds: TypeAlias = list[tuple[float, bool]]
 """Pairs (mu^2, whether theta is -1 on the eigenspaces of i mu and -i mu)."""
@@ -85,13 +92,13 @@ def elliptic_elements(algebra: LieAlgebra, theta: Array) -> list[EllipticElement
     >>> found.element.to_strings(), found.factors, found.mixed
     ([['1', '-1', '0']], [(-4)*t**0 + (1)*t**1], 1)
     """
-    spectrum = _Spectrum(algebra, theta)
+    field, spectrum = exact_field(algebra, QUESTION), _Spectrum(algebra, theta)
     found: list[EllipticElement] = []
     if spectrum.kinds(near_compact(theta, 0)) is None:
         return found  # no compact Cartan subalgebra
-    for x, kinds in _candidates(algebra, theta, spectrum):
+    for x, kinds in islice(_candidates(algebra, theta, spectrum), FACTORED):
         in_time()
-        f = Polynomial(algebra.field, algebra.ad(x).characteristic_coefficients())
+        f = Polynomial(field, algebra.ad(x).characteristic_coefficients())
         factors = [g for g, _ in _of_squares(f).factor()]
         if any(g.count_real_roots() < g.degree for g in factors):
             continue  # double precision was not enough
@@ -117,7 +124,7 @@ def elliptic_involution(
     >>> up.field, theta.to_strings()
     (QQ, [['0', '-1', '0'], ['-1', '0', '0'], ['0', '0', '-1']])
     """
-    parted = _separated(found, trivial_extension(algebra.field), degree)
+    parted = _separated(found, trivial_extension(exact_field(algebra, QUESTION)), degree)
     if parted is None:
         return None
     up, factors = parted
@@ -167,14 +174,14 @@ def _of_squares(f: Polynomial) -> Polynomial:
 
 def _candidates(algebra: LieAlgebra, theta: Array, spectrum: _Spectrum) -> Iterator[tuple[ExactMatrix, Kinds]]:
     """Short elements with a compact centralizer, elements of the centralizers of others, and elements near k."""
-    field, n = algebra.field, algebra.dimension
+    field, n = exact_field(algebra, QUESTION), algebra.dimension
     for row in short_elements(algebra, theta)[:TRIED]:
         x = field.from_integers([int(v) for v in row], 1, n)
         kinds = spectrum.kinds(row)
         if kinds is not None:
             yield x, kinds
         elif spectrum.is_elliptic(row):
-            yield from _inside(algebra, theta, spectrum, x)
+            yield from _inside(algebra, spectrum, x, DEPTH)
     for seed in range(TRIED):
         row = near_compact(theta, seed)
         kinds = spectrum.kinds(row)
@@ -183,10 +190,11 @@ def _candidates(algebra: LieAlgebra, theta: Array, spectrum: _Spectrum) -> Itera
 
 
 def _inside(
-    algebra: LieAlgebra, theta: Array, spectrum: _Spectrum, x: ExactMatrix
+    algebra: LieAlgebra, spectrum: _Spectrum, x: ExactMatrix, depth: int
 ) -> Iterator[tuple[ExactMatrix, Kinds]]:
-    """Elements of the centralizer of an elliptic element x with a compact centralizer."""
-    field = algebra.field
+    """Elements with a compact centralizer in z(x), x elliptic, and in the centralizers of short elements of z(x)."""
+    in_time()
+    field = exact_field(algebra, QUESTION)
     rows = integral_basis(as_exact(algebra.centralizer(x).basis))
     if field.degree == 1:
         form = rows.to_numpy() @ spectrum.frame
@@ -198,6 +206,17 @@ def _inside(
         kinds = spectrum.kinds(y.to_numpy()[0])
         if kinds is not None:
             yield y, kinds
+    if depth == 0:
+        return
+    lengths = np.linalg.norm(rows.to_numpy() @ spectrum.frame, axis=1)
+    deeper = 0
+    for i in np.argsort(lengths, kind="stable").tolist():
+        y = rows.select(rows=[i])
+        joint = y + x.scale(SHIFT)  # commutes with what commutes with x and y
+        smaller = (rows @ algebra.ad(y).T).rank() > 0
+        if smaller and deeper < DEEPER and spectrum.is_elliptic(joint.to_numpy()[0]):
+            deeper += 1
+            yield from _inside(algebra, spectrum, joint, depth - 1)
 
 
 class _Spectrum:
@@ -244,4 +263,5 @@ class _Spectrum:
 
     def _action(self, x: Array) -> Array:
         """The matrix of ad x on rows, in an orthonormal frame."""
-        return self.inverse @ np.einsum("i,ijk->jk", x, self.constants) @ self.frame
+        action: Array = self.inverse @ np.einsum("i,ijk->jk", x, self.constants) @ self.frame
+        return action

@@ -20,6 +20,7 @@ from liehom.algebra.involutions.approximate_involution import (
 )
 from liehom.algebra.involutions.isotropic_involution import involution_of_triple
 from liehom.algebra.involutions.nilpotent_element import sl2_triple
+from liehom.algebra.structure.exact_field import exact_field
 from liehom.algebra.structure.real_splitting import over_extension
 from liehom.budget import in_time
 from liehom.errors import SingularError
@@ -27,6 +28,7 @@ from liehom.scalars import ExactMatrix, Polynomial, Scalar
 from liehom.scalars.roots.extension import Extension, adjoin_root, trivial_extension
 from liehom.typing import Array
 
+QUESTION = "Cartan involutions of hyperbolic elements"
 REAL = 1e-6  # largest imaginary part of an eigenvalue, relative to the largest eigenvalue, that counts as 0
 FACTORED = 60  # elements whose characteristic polynomial is factored
 EXTENDED = 4  # elements over whose eigenvalues a nilpotent element is tried
@@ -55,7 +57,7 @@ def hyperbolic_involution(algebra: LieAlgebra, theta: Array, degree: int) -> tup
     (QQ, 3)
     """
     for x, factors in _elements(algebra, theta)[:EXTENDED]:
-        split = _eigenvalues(factors, trivial_extension(algebra.field), degree)
+        split = _eigenvalues(factors, trivial_extension(exact_field(algebra, QUESTION)), degree)
         if split is None:
             continue
         up, values = split
@@ -70,7 +72,7 @@ def _elements(algebra: LieAlgebra, theta: Array) -> list[tuple[ExactMatrix, list
 
     Among these the ones with small centralizers come first: their parabolic subalgebras are minimal.
     """
-    field, n = algebra.field, algebra.dimension
+    field, n = exact_field(algebra, QUESTION), algebra.dimension
     constants, frame = float_constants(algebra), orthonormal_frame(algebra, theta)
     inverse = np.linalg.inv(frame)
     rows = [*short_elements(algebra, theta), *(near_compact(-theta, seed) for seed in range(1, RANDOM))]
@@ -106,7 +108,7 @@ def _eigenvalues(factors: list[Polynomial], up: Extension, degree: int) -> tuple
 
 def _of_parabolic(algebra: LieAlgebra, x: ExactMatrix, values: list[Scalar]) -> ExactMatrix | None:
     """The map of the triple of a generic sum of eigenvectors with positive eigenvalues, or None."""
-    field, n = algebra.field, algebra.dimension
+    field, n = exact_field(algebra, QUESTION), algebra.dimension
     action = algebra.ad(x)
     spaces = [(action - field.identity(n).scale(v)).null_space() for v in values if field.sign(v) > 0]
     nilradical = field.stack_rows(spaces, n)

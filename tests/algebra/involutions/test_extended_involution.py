@@ -65,8 +65,9 @@ def parabolic(p: int, q: int) -> lh.LieAlgebra:
         (unitary(7, 1, 1, -1), 4),
         (unitary(7, 3, -5, 11), 4),
         pytest.param(orthogonal(2, 3, 5, 7, 1, -13), 10, marks=pytest.mark.slow),
+        pytest.param(orthogonal(1, 2, -3, 5, -7, 11, 13), 11, marks=pytest.mark.slow),
     ],
-    ids=["so(3,2)", "su(2,1)", "su(2,1) of another form", "so(5,1)"],
+    ids=["so(3,2)", "su(2,1)", "su(2,1) of another form", "so(5,1)", "so(5,2)"],
 )
 def test_forms_that_are_diagonal_have_a_rational_involution(algebra: lh.LieAlgebra, compact: int, seed: int) -> None:
     found = cartan_decomposition(in_dense_basis(algebra, seed))
