@@ -237,6 +237,21 @@ def test_an_error_of_g_reaches_the_user() -> None:
         lh.integrate(CIRCLE, (0, 1), E1, dt=0.1, events=g)
 
 
+def test_g_is_evaluated_on_the_path_only() -> None:
+    """Also for the members of an ensemble that do not cross the level in a step in which others do."""
+    angles = np.array([0.0, -0.2, 3.0])
+    seen = []
+
+    def g(t: Any, y: Any) -> Any:
+        seen.append(np.arctan2(y[..., 1], y[..., 0]) % (2 * np.pi))
+        return y[..., 1] - 0.5
+
+    starts = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    lh.integrate(CIRCLE, (0, 1), starts, dt=0.25, events=g)
+    passed = (np.array(seen) - angles + 1) % (2 * np.pi) - 1
+    assert passed.min() > -1e-14 and passed.max() < 1 + 1e-14 and len(seen) > 5
+
+
 # -- the search ----------------------------------------------------------------------------------------------
 @given(
     st.lists(st.floats(0.001, 0.999), min_size=1, max_size=5),
