@@ -9,6 +9,7 @@ import pytest
 
 import liehom as lh
 from liehom.errors import SeriesError
+from liehom.integrators.run.run import Run
 
 RHO = lh.defining(lh.so(3))
 MANY = np.array([[0.6, 0.0, 0.8], [0.36, 0.48, 0.8], [0.48, 0.64, 0.6], [0.8, 0.6, 0.0]])
@@ -159,3 +160,16 @@ def test_steps_and_failures_are_logged_at_level_debug(caplog: pytest.LogCaptureF
     assert np.array_equal(quiet.y, logged.y)
     assert [record.getMessage().split(",")[0] for record in caplog.records[:1]] == ["step: 1 accepted"]
     assert "1 trajectories fail" in caplog.records[-1].getMessage()
+
+
+def test_linear_algebra_that_fails_blames_psi_only_if_a_derivative_is_not_finite(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def failing(run: Any) -> Any:
+        raise np.linalg.LinAlgError("SVD did not converge")
+
+    monkeypatch.setattr(Run, "_proposed", failing)
+    field = lh.GeneratorField(RHO, ["sqrt(m1)", "1", "m0"])
+    smooth, at_the_root = [0.6, 0.8, 0.0], [1.0, 0.0, 0.0]
+    assert "psi" in lh.integrate(field, (0, 1), at_the_root, step=lh.LieTaylor(2), dt=0.1).message
+    assert "linear algebra" in lh.integrate(field, (0, 1), smooth, step=lh.LieTaylor(2), dt=0.1).message
