@@ -194,6 +194,22 @@ def test_casimirs_are_conserved_to_every_order() -> None:
     assert all(x == 0 for x in found.coefficients)
 
 
+def test_the_time_is_zero_unless_it_is_given() -> None:
+    """Euler's step takes psi at its beginning, which is doubled at t = 1: E_n is multiplied by 2^n."""
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-(1+t)*m0", "-(1+t)*m1/2", "-(1+t)*m2/4"])
+    made = [
+        conserved_order(
+            field, lh.Euler(), exact("3/5", "12/25", "16/25"), "m0**2/2 + m1**2/4 + m2**2/8", t=t
+        ).coefficients
+        for t in (0, 1)
+    ]
+    assert made[0][2] != 0 and all(made[1][n] == 2**n * made[0][n] for n in range(6))
+    assert (
+        conserved_order(field, lh.Euler(), exact("3/5", "12/25", "16/25"), "m0**2/2 + m1**2/4 + m2**2/8").coefficients
+        == made[0]
+    )
+
+
 def test_several_integrals_are_conserved_to_the_least_of_their_orders() -> None:
     both = conserved_order(rigid_body(), lh.Heun(), unit(2, 3), lambda m: np.stack([np.sum(m * m, -1), energy(m)], -1))
     assert both.order == 3 and both.coefficients[4].shape == (2,)
