@@ -134,3 +134,32 @@ def test_the_solution_found_solves_the_system() -> None:
     """A control: c = 2 and zeta are those that the right-hand side was made from, as the solution is unique."""
     found = solutions(system("so(3) on R^3", 0, leading=1, factor="1/2", solvable=True))
     assert all(abs(c - 2) < 1e-9 for _, c in found.values())
+
+
+@pytest.mark.parametrize("name", ["so(3) on R^3", "so(4) on R^4", "sl(2) on R^2", "gl(2) on R^2", "so(2,1) on R^3"])
+def test_the_cone_is_near_where_the_ratio_of_determinants_is_small(name: str) -> None:
+    """The ratio in full for A(w) = |w| [e rho(g_m) u, u], and the bound of |A^+| that compiled code tests first."""
+    representation = REPRESENTATIONS[name]()
+    action, rng = lh.Action(representation), np.random.default_rng(7)
+    seen = []
+    for _ in range(30):
+        m = rng.normal(size=representation.size)
+        w, change = (action.infinitesimal(rng.normal(size=representation.algebra.dimension), m) for _ in range(2))
+        change = change * 10 ** rng.uniform(-1, 1)
+        frame = action.isotropy_frame(m, representation.orbit_dimension(m))
+
+        def full(velocity: Any, frame: Any = frame) -> Any:
+            return np.linalg.norm(velocity) * RangeSolver(action, frame, velocity, 1, 0.5).matrix
+
+        solver, across = RangeSolver(action, frame, w, 1, 0.5), change - (change @ w) / (w @ w) * w
+        ratios = [
+            np.linalg.det(full(w + s * across) @ full(w).T @ np.linalg.inv(full(w) @ full(w).T)) for s in (-2, -1, 1, 2)
+        ]
+        if abs(min(ratios) - 1 / 8) > 1e-6:
+            assert solver.is_near_cone(change) == (min(ratios) < 1 / 8)
+            seen.append(min(ratios) < 1 / 8)
+        shortest = np.linalg.svd(solver.matrix)[1][-1]
+        assert solver._inverse_square() >= (1 - 1e-9) / shortest**2
+
+    compact = name.startswith(("so(3)", "so(4)"))  # no tangent vector of a sphere is in the cone
+    assert len(seen) > 20 and set(seen) == ({False} if compact else {False, True})
