@@ -65,7 +65,7 @@ def public_classes() -> Iterator[type]:
 @pytest.mark.parametrize("kind", sorted(set(public_classes()), key=lambda kind: kind.__name__))
 def test_public_classes_are_frozen(kind: type) -> None:
     frozen = dataclasses.is_dataclass(kind) and kind.__dataclass_params__.frozen  # type: ignore[attr-defined]
-    assert frozen or issubclass(kind, Immutable) or kind.__name__ in {"Scalar"} | ATTRIBUTELESS
+    assert frozen or issubclass(kind, Immutable | tuple) or kind.__name__ in {"Scalar"} | ATTRIBUTELESS
 
 
 @pytest.mark.parametrize("thing", OBJECTS, ids=name_of)

@@ -222,7 +222,8 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
     >>> import liehom as lh, tempfile, os
     >>> file = os.path.join(tempfile.mkdtemp(), "pair.json")
     >>> dump(lh.Pair(lh.LieAlgebra({(0, 1): {1: 2}}), [[1, 0]]), file)
-    >>> print(Path(file).read_text(encoding="utf-8"))
+    >>> with open(file, encoding="utf-8") as written:
+    ...     print(written.read())
     {"format": "liehom-pair",
      "version": 1,
      "dimension": 2,

@@ -14,6 +14,9 @@ from tests.campaigns.door_inputs import DOORS
 from tests.campaigns.doors import Campaign, drawn, outcome
 from tests.sampling import examples
 
+# a worker of the test suite may have loaded JAX, whose threads the children do not use
+pytestmark = pytest.mark.filterwarnings("ignore:os.fork")
+
 
 def test_a_sample_has_no_offender(tmp_path: Path) -> None:
     campaign = Campaign(seed=1)
