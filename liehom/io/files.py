@@ -156,6 +156,12 @@ def _format(data: object) -> str:
     if not isinstance(data, Mapping):
         raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
     stated = data.get("format")
+    if stated == "liehom-certificate" or {"full", "proved"} <= data.keys():
+        kind = "a certificate" if stated is not None else "a verdict"
+        raise FormatError(
+            f"this is {kind}, not an algebra, a pair or a representation; `liehom verify` checks a certificate, "
+            "liehom.Certificate.from_json reads one"
+        )
     if stated is not None and (not isinstance(stated, str) or stated not in READERS):
         *others, last = map(repr, READERS)
         raise FormatError(f"format is {shown(stated)}, expected {', '.join(others)} or {last}")

@@ -99,7 +99,9 @@ class DynamicalLieAlgebra:
 
     @cached_property
     def name(self) -> str | None:
-        """The name of an algebra that words span, such as 'so(20)' or 'so(3) + u(1)'; None if it was not recognized."""
+        """The name of an algebra that words span, such as 'so(20)' or 'so(3) + u(1)'; None for other algebras."""
+        if not self.spanned_by_words:
+            return None
         kinds = [ideal.kind for ideal in self.ideals for _ in range(ideal.copies)]
         if None in kinds:
             return None

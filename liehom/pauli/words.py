@@ -15,6 +15,7 @@ from typing import TypeAlias, final
 from liehom.algebra.core.tables import field_of_values
 from liehom.errors import FieldError, InputError, ParseError, shown
 from liehom.scalars import Field, Scalar
+from liehom.scalars.fields import grammar
 from liehom.typing import ScalarLike
 
 Hamiltonian: TypeAlias = str | Mapping[str, ScalarLike] | Sequence[tuple[str, ScalarLike]]
@@ -208,10 +209,16 @@ def _term(sign: int, text: str, index: int) -> Term:
             f"the term {shown(text)!r} of Hamiltonian {index} has no Pauli word; write letters I, X, Y, Z such as "
             "'ZZI', or factors such as 'Z(0) @ Z(1)'"
         )
-    product = "*".join(f"({c})" for c in coefficients)
     if len(coefficients) == 1 and DECIMAL.fullmatch(coefficients[0]):
-        exact = Fraction(coefficients[0])
-        return factors, length, sign * exact
+        return factors, length, sign * Fraction(coefficients[0])
+    for part in coefficients:
+        try:
+            grammar.parse(part)
+        except ParseError as error:
+            raise ParseError(
+                f"the coefficient {shown(part)!r} of Hamiltonian {index} is not a number: {error}"
+            ) from None
+    product = "*".join(f"({c})" for c in coefficients)
     return factors, length, f"{sign}*{product}" if product else sign
 
 

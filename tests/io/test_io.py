@@ -570,3 +570,11 @@ def test_parsing_is_quick() -> None:
 
 def test_the_rotations_above_are_a_pair() -> None:
     assert io.from_json(rotations(5)).dimension == 4
+
+
+def test_certificates_and_verdicts_are_named_where_a_pair_is_read(tmp_path: Path) -> None:
+    verdict = lh.decide_fullness(lh.pair("so(3)/so(2)"))
+    for thing, kind in ((verdict.certificate, "a certificate"), (verdict, "a verdict")):
+        lh.dump(thing, tmp_path / "file.json")
+        with pytest.raises(lh.errors.FormatError, match=f"this is {kind}.*liehom.Certificate.from_json"):
+            lh.load(tmp_path / "file.json")

@@ -98,7 +98,7 @@ def test_real_words_generate_the_orthogonal_algebra() -> None:
 )
 def test_sums_agree_with_the_closure_of_the_matrices(sums: list[str], dimension: int) -> None:
     made = lh.pauli.closure(sums)
-    assert made.dimension == made.algebra.dimension == dimension
+    assert made.dimension == made.algebra.dimension == dimension and (made.name is None or made.spanned_by_words)
     flat = [np.zeros((2**made.qubits,) * 2, complex) for _ in sums]
     for total, terms in zip(flat, made.sums.terms, strict=True):
         for word, c in terms.items():

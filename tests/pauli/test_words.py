@@ -75,6 +75,7 @@ def test_coefficients_keep_their_field() -> None:
         ([{"XX": None}], FieldError, "not a number"),
         ([{"XX": True}], FieldError, "not a number"),
         (["X(9999999)"], ParseError, "too large"),
+        (["1e400*X"], ParseError, "the coefficient '1e400' of Hamiltonian 0 is not a number"),
     ],
 )
 def test_bad_hamiltonians_name_the_fault(given_: object, error: type[Exception], message: str) -> None:

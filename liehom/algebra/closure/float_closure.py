@@ -28,6 +28,7 @@ from liehom.scalars import FloatMatrix
 from liehom.scalars.fields.floating import CLEAR, ROUNDING, norm_of
 from liehom.typing import Array
 
+ZERO = 2.0**-40  # residual of unit vectors that rounding leaves in place of zero
 PARTNERS = 12  # first basis elements whose commutators with all others wait; at least the generators
 DROPPED = 1e-14  # structure constants up to this size, relative to the largest, are rounding errors
 LARGEST_RATIO = 100.0  # of the norms of given matrices, for structure constants that one tolerance fits
@@ -139,7 +140,7 @@ class _GrowingSpan:
         """Whether a residual is clearly not zero; `UndecidedError` if neither this nor the contrary is clear."""
         if residual >= CLEAR * error:
             return True
-        if residual > error or CLEAR * residual > self.smallest:
+        if residual > max(error / CLEAR, ZERO) or CLEAR * residual > self.smallest:
             raise UndecidedError(
                 f"{question} is not decided by the given numbers: relative to matrices of norm 1 a residual is "
                 f"{residual:.2g} with a tolerance of {error:.2g}, the smallest that counts {self.smallest:.2g}; if the "

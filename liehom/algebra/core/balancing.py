@@ -40,16 +40,15 @@ def balanced(table: StructureConstants) -> tuple[StructureConstants, Array]:
     logs = np.log(values[kept])
     logs -= logs.mean()  # of the shortest solutions the one that does not depend on the scale of the table
     normal, right = np.zeros((n + 1, n + 1)), np.zeros(n + 1)
+    size = n + 1
     for first, sign in zip(columns, signs, strict=True):
-        np.add.at(right, first, -sign * logs)
+        right -= sign * np.bincount(first, logs, size)
         for second, other in zip(columns, signs, strict=True):
-            np.add.at(normal, (first, second), sign * other)
+            normal += sign * other * np.bincount(first * size + second, minlength=size * size).reshape(size, size)
     exponents = np.linalg.lstsq(normal, right, rcond=1e-9)[0][:n]
     exponents -= exponents.mean()
     lengths = np.exp(np.clip(exponents, -np.log(RANGE) / 2, np.log(RANGE) / 2))
-    factors = lengths[table.i] * lengths[table.j] / lengths[table.k]
-    entries = zip(
-        table.i.tolist(), table.j.tolist(), table.k.tolist(), (table.parts[0] * factors).tolist(), strict=True
-    )
+    constants = table.dense().to_numpy().reshape(n, n, n)
+    constants = constants * (lengths[:, None, None] * (lengths[:, None] / lengths))
     error = table.error * float(np.prod(np.sort(lengths)[-2:])) / float(lengths.min())
-    return StructureConstants(field, n, entries, error), lengths
+    return StructureConstants.from_array(field, constants, error), lengths

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.roots.real_form_names import join_real_forms
+from liehom.errors import InputError
 
 
 def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
@@ -37,6 +38,8 @@ def structure_name(algebra: LieAlgebra | Subalgebra) -> str:
     ('su(3) + R', 'so(3) ⋉ R^3', 'nilpotent(3)')
     """
     own = algebra.as_algebra() if isinstance(algebra, Subalgebra) else algebra
+    if not isinstance(own, LieAlgebra):
+        raise InputError(f"expected a LieAlgebra or a Subalgebra, got {own!r}")
     if own.dimension == 0:
         return "0"
     if own.is_abelian():

@@ -342,7 +342,12 @@ class AlgebraicNumber(ExactNumber, Immutable):
         try:
             return self.field.convert(other).polynomial
         except FieldError:
-            return None
+            if not isinstance(other, AlgebraicNumber):
+                return None
+        raise FieldError(
+            f"{self} is in {self.field.name}, {other} in {other.field.name}; convert both to one field, such as "
+            "liehom.scalars.common_field(['sqrt(2)', 'sqrt(3)'])"
+        )
 
     def _made(self, polynomial: flint.fmpq_poly) -> AlgebraicNumber:
         return AlgebraicNumber(self.field, polynomial)
@@ -397,7 +402,10 @@ class AlgebraicNumber(ExactNumber, Immutable):
         return result
 
     def __eq__(self, other: object) -> bool:
-        right = None if isinstance(other, str) else self._operand(other)  # a string hashes otherwise
+        try:
+            right = None if isinstance(other, str) else self._operand(other)  # a string hashes otherwise
+        except FieldError:
+            return False
         return NotImplemented if right is None else bool(self.polynomial == right)
 
     def __abs__(self) -> AlgebraicNumber:
