@@ -148,7 +148,7 @@ def representation_of(matrices: IntegerArray, name: str) -> Representation:
 
 def _power(term: Term) -> int:
     """The n of R^n."""
-    if term.items or term.after:
+    if term.items or term.after or not (term.head == "0" or term.head[2:].isdecimal() or not term.head[2:]):
         raise CatalogError(f"R^n is written with a circumflex, as in R^2; got {term}")
     return 0 if term.head == "0" else int(term.head[2:] or 1)
 

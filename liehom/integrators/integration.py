@@ -198,7 +198,7 @@ def integrate(
     step = LieTaylor(6) if step is None else step
     if not isinstance(step, Step):
         raise InputError(f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)")
-    if compile == "jax" and is_jax(y0):
+    if isinstance(compile, str) and compile == "jax" and is_jax(y0):
         possible = events is None and not dense_output and checkpoint is None
         return _on_jax(field, t_span, y0, step, dt if possible else None, t_eval, exponential, clock)
     start = points_of(y0)
@@ -213,7 +213,7 @@ def integrate(
         rtol=_positive("rtol", rtol, zero=True),
         atol=_positive("atol", atol, zero=True),
         t_eval=None if t_eval is None else _times(t_eval, span),
-        dense_output=bool(dense_output),
+        dense_output=_flag("dense_output", dense_output),
         events=events,
         nominal=clock == "nominal",
         max_step=_positive("max_step", max_step),
@@ -304,6 +304,14 @@ def _step_size(dt: npt.ArrayLike, start: Array, span: Span) -> Array:
         return np.broadcast_to(sizes, start.shape[:-1]).copy()
     except ValueError:
         raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
+
+
+def _flag(name: str, value: object) -> bool:
+    """A truth value; `InputError` for arrays, which have none."""
+    try:
+        return bool(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {displayed(value)}, expected True or False") from None
 
 
 def _positive(name: str, value: float, *, zero: bool = False) -> float:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
+from numbers import Integral
 from typing import Any
 
 from liehom.algebra import LieAlgebra
@@ -20,6 +21,7 @@ from liehom.algebra.closure.complex_matrices import (
 )
 from liehom.algebra.constructions.simple import simple
 from liehom.algebra.matrices.named_matrices import classical_matrices, exceptional_matrices, linear_lie_algebra
+from liehom.budget import within
 from liehom.errors import (
     DependentRowsError,
     InputError,
@@ -264,8 +266,11 @@ def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation
     >>> rho.isotropy(symmetric_to_vector([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]])).dimension
     3
     """
-    rho = defining(f"so({k})" if algebra is None else algebra)
+    if not isinstance(k, Integral):
+        raise InputError(f"k is {displayed(k)}, expected an integer")
+    within("dimension", abs(int(k)), "the size of the symmetric matrices is {}")
     induced = congruence_map(k)
+    rho = defining(f"so({k})" if algebra is None else algebra)
     # A^T = -A: S -> A S + S A^T, and (A S + S A^T) is the restriction of A (x) 1 + 1 (x) A to symmetric tensors.
     if any(not (a + a.T).is_zero() for a in rho.matrices) or rho.size != k:
         raise InputError(f"conjugation on Sym({k}) needs so({k}) by skew-symmetric matrices")

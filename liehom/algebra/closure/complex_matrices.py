@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from liehom.algebra.core.tables import field_of_values
-from liehom.errors import FieldError, InputError, ParseError, ShapeError
+from liehom.errors import FieldError, InputError, ParseError, ShapeError, displayed
 from liehom.scalars import Field, FloatField, Matrix, Scalar
 from liehom.scalars.fields.complex_parts import complex_parts, field_determining_values, is_complex
 from liehom.scalars.fields.field import MatrixLike, rows_of
@@ -81,7 +81,7 @@ def list_of_matrices(matrices: Iterable[MatrixLike]) -> list[MatrixLike]:
     [[[1, 3], [2, 4]], [[1, 3], [2, 4]]]
     """
     if isinstance(matrices, str) or not hasattr(matrices, "__iter__"):
-        raise InputError(f"a list of square matrices was expected, got {matrices!r}")
+        raise InputError(f"a list of square matrices was expected, got {displayed(matrices)}")
     return [a if isinstance(a, Matrix) or _kind(a) in "biuf" else rows_of(a) for a in matrices]
 
 

@@ -84,7 +84,7 @@ def upper_triangular(n: int) -> LieAlgebra:
     >>> g, g.center().dimension, [s.dimension for s in g.derived_series()]
     (<Lie algebra upper(3) of dimension 6 over QQ>, 1, [6, 3, 1, 0])
     """
-    return _triangular(n, 0, f"upper({n})")
+    return _triangular(n, 0, "upper({})")
 
 
 def strictly_upper_triangular(n: int) -> LieAlgebra:
@@ -107,7 +107,7 @@ def strictly_upper_triangular(n: int) -> LieAlgebra:
     >>> g, [s.dimension for s in g.lower_central_series()]
     (<Lie algebra strict(4) of dimension 6 over QQ>, [6, 3, 1, 0])
     """
-    return _triangular(n, 1, f"strict({n})")
+    return _triangular(n, 1, "strict({})")
 
 
 def filiform(n: int) -> LieAlgebra:
@@ -263,7 +263,7 @@ def bianchi(kind: str, a: ScalarLike | None = None) -> LieAlgebra:
       [e1, e2] = 1/2*e2 + e3
       [e1, e3] = -e2 + 1/2*e3
     """
-    wanted = str(kind).strip().upper()
+    wanted = kind.strip().upper() if isinstance(kind, str) else ""
     if wanted not in _BIANCHI:
         raise InputError(f"there is no Bianchi type {displayed(kind)}; the types are {', '.join(_BIANCHI)}")
     (n1, n2, n3), fixed = _BIANCHI[wanted]
@@ -296,4 +296,4 @@ def _triangular(n: int, above: int, name: str) -> LieAlgebra:
     table = linear_lie_algebra(triangular(n, above)).table
     names = [index_name("e", i, j) for i in range(n) for j in range(i + above, n)]
     # Products of triangular matrices are triangular, and commutators satisfy the Jacobi identity.
-    return LieAlgebra(table, basis=names, name=name, check=False)
+    return LieAlgebra(table, basis=names, name=name.format(n), check=False)

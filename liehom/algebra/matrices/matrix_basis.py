@@ -16,7 +16,7 @@ from math import gcd, log10
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.budget import current_limits, within
+from liehom.budget import current_limits, in_time, within
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
@@ -84,6 +84,9 @@ def join(*families: ArrayLike) -> IntegerArray:
     sizes = sorted({basis.shape[1] for basis in bases})
     if len(sizes) != 1:
         raise ShapeError(f"families on the same space are needed; got matrices of sizes {sizes}")
+    count, size = sum(map(len, bases)), sizes[0]
+    within("memory", 8 * count * size * size, f"{count} matrices of size {size} are {{}} bytes")
+    in_time()
     return np.concatenate(bases)
 
 

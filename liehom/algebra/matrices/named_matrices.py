@@ -18,6 +18,7 @@ So 'sp(3)' is the compact quaternionic algebra of dimension 21, and 'sp(4,R)' ha
 from __future__ import annotations
 
 from collections.abc import Callable
+from numbers import Integral
 
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.core.lie_algebra import LieAlgebra
@@ -25,7 +26,7 @@ from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.matrices import albert, form_preserving, general_linear, octonionic, spinors
 from liehom.algebra.matrices.composition_algebra import SPLIT_OCTONIONS
 from liehom.budget import within
-from liehom.errors import CatalogError, InputError
+from liehom.errors import CatalogError, InputError, displayed
 from liehom.scalars import QQ
 from liehom.typing import IntegerArray
 
@@ -57,6 +58,11 @@ def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerA
     >>> classical_matrices("sp", 4, "R").shape, classical_matrices("sp", 1).shape
     ((10, 4, 4), (3, 4, 4))
     """
+    if not (isinstance(first, Integral) and isinstance(second, Integral | str)):
+        raise InputError(f"{kind}(n, m) takes integers, got {displayed(first)} and {displayed(second)}")
+    for size in (first, second):
+        if not isinstance(size, str):
+            within("dimension", abs(int(size)), "a parameter of the family is {}")
     if not isinstance(second, str) and kind in _FORMS:
         return _FORMS[kind](first, second)
     build = _BY_LETTER.get((kind, "R" if second == 0 else str(second)))

@@ -7,6 +7,7 @@ A complex simple algebra, as a real one, has two copies of its Dynkin diagram th
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, final
@@ -21,6 +22,7 @@ from liehom.algebra.roots.real_form_names import (
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.roots.satake import SatakeDiagram
 from liehom.algebra.roots.vogan import VoganDiagram
+from liehom.budget import within
 from liehom.errors import CatalogError, displayed
 
 if TYPE_CHECKING:
@@ -76,6 +78,8 @@ class RealForm:
         ('so(6,2)', 'e7')
         """
         ideals = canonical_real_form(name).split(" + ")
+        size = max((int(n) for n in re.findall(r"\d+", ideals[0])), default=0)
+        within("entries", size**3, "the roots of the algebra have {} coefficients, up to a constant")
         if len(ideals) > 1:
             raise CatalogError(f"{displayed(name)} is not simple, it is {' + '.join(ideals)}; name one of its ideals")
         return _of_canonical(ideals[0])

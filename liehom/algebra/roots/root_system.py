@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra.roots.dynkin import CartanMatrix, cartan_matrix, diagram_components, dynkin_diagram, join_types
+from liehom.budget import within
 from liehom.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
@@ -299,7 +300,9 @@ def root_system(name: str) -> RootSystem:
 
 @lru_cache(maxsize=64)
 def _of_type(name: str) -> RootSystem:
-    return RootSystem(cartan_matrix(name))
+    matrix = cartan_matrix(name)
+    within("entries", len(matrix) ** 3, "the roots have {} coefficients, up to a constant")
+    return RootSystem(matrix)
 
 
 def _negative(root: Root) -> Root:

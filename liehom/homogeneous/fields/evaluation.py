@@ -68,9 +68,12 @@ class Evaluation:
 
     def rational(self, value: Fraction) -> Value:
         """A rational number in the arithmetic of m."""
-        if self.kind == "float":
-            return value.numerator / value.denominator
-        return (self._zero + value.numerator) / value.denominator
+        try:
+            if self.kind == "float":
+                return value.numerator / value.denominator
+            return (self._zero + value.numerator) / value.denominator
+        except OverflowError:
+            raise FieldError("a number of the generator leaves the range of floats") from None
 
     def irrational(self, value: float, digits: str) -> Value:
         """An irrational number such as pi in the arithmetic of m, given by its float and by a string of digits."""

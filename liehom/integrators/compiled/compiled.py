@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.correctors.conserving import Conserving
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.integrators.compiled.jax_kernel import JaxKernel
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
@@ -56,9 +56,11 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
     TraceError
         If the step cannot be compiled.
     """
-    if backend not in BACKENDS:
-        hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if backend == "numba" else ""
-        raise InputError(f"compile is {backend!r}, expected one of {', '.join(map(repr, BACKENDS))}, or None{hint}")
+    if not isinstance(backend, str) or backend not in BACKENDS:
+        old = isinstance(backend, str) and backend == "numba"
+        hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if old else ""
+        known = ", ".join(map(repr, BACKENDS))
+        raise InputError(f"compile is {displayed(backend)}, expected one of {known}, or None{hint}")
     if run.events is not None:
         raise InputError(f"compile={backend!r} does not look for events: integrate without compile=")
     if run.dtype != np.float64:

@@ -54,6 +54,8 @@ def span_of(t_span: Iterable[float] | Span, dtype: np.dtype[Any]) -> Span:
         if isinstance(t_span, str | bytes):
             raise TypeError
         first, last = (dtype.type(t) for t in t_span)
+        if np.ndim(first) or np.ndim(last):
+            raise TypeError
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"t_span is {displayed(t_span)}, expected two numbers (start, end)") from None
     if not (np.isfinite(first) and np.isfinite(last)):

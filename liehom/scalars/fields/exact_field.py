@@ -21,6 +21,7 @@ from liehom.errors import FieldError, ShapeError, SingularError, UndecidedError
 from liehom.immutable import Immutable
 from liehom.scalars.fields.field import Field, Matrix, MatrixLike, Scalar, rows_of
 from liehom.scalars.fields.integer_matrices import (
+    bounded_echelon,
     cancelled,
     characteristic_coefficients,
     echelon_pivots,
@@ -347,9 +348,8 @@ class ExactMatrix(Matrix, Immutable):
             found = self._tall_echelon()
             if found is not None:
                 return found
-        reduced, den, full_rank = self._restricted().rref()
-        rank = full_rank // m
-        parts = separated(reduced, m, rank)
+        reduced, den, full_rank = bounded_echelon(self._restricted())
+        parts = separated(reduced, m, rank := full_rank // m)
         sign = -1 if den < 0 else 1
         matrix = ExactMatrix(self._field, tuple(a * sign for a in parts), int(den) * sign).normalized()
         return matrix, echelon_pivots(matrix.parts, rank)

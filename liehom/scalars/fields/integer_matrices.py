@@ -17,6 +17,7 @@ from liehom.budget import in_time, within
 # from this size on characteristic polynomials are computed prime by prime
 LARGE_SIZE = 60
 LONG_BITS = 2000
+LONG_ENTRIES = 4000  # bits of an entry from which the size of minors is estimated
 SAMPLED_ENTRIES = 400
 # up to this number of entries their gcd is taken one by one
 MAX_DIRECT_ENTRIES = 64
@@ -269,3 +270,26 @@ def _weights(n: int) -> flint.fmpz_mat:
     """Row of n fixed pseudo-random integers."""
     rng = random.Random(n)
     return flint.fmpz_mat(1, n, [rng.randint(1, 1 << 20) for _ in range(n)])
+
+
+def bounded_echelon(matrix: flint.fmpz_mat) -> tuple[flint.fmpz_mat, flint.fmpz, int]:
+    """Reduced echelon form over a denominator, and the rank; `LimitError` if its minors may need too much memory.
+
+    One call of flint computes all minors of a matrix with very long entries, and it cannot be interrupted.
+
+    Examples
+    --------
+    >>> bounded_echelon(flint.fmpz_mat(1, 2, [2, 4]))[1:]
+    (2, 1)
+    >>> bounded_echelon(flint.fmpz_mat(100, 200, [2**50000] * 20000))
+    Traceback (most recent call last):
+    ...
+    liehom.errors.LimitError: the minors of a 100 x 200 matrix may need 25000500000 bytes, the limit is 2147483648; ...
+    """
+    rank, columns = matrix.nrows(), matrix.ncols()
+    bits = max((int(abs(x)).bit_length() for x in matrix.entries()), default=0)
+    if bits > LONG_ENTRIES:
+        estimate = 2 * rank * columns * rank * bits // 8
+        within("memory", estimate, f"the minors of a {rank} x {columns} matrix may need {{}} bytes")
+    reduced, den, found = matrix.rref()
+    return reduced, den, int(found)
