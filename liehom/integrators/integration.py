@@ -307,7 +307,7 @@ def _step_size(dt: npt.ArrayLike, start: Array, span: Span) -> Array:
 
 
 def _flag(name: str, value: object) -> bool:
-    """A truth value; `InputError` for arrays, which have none."""
+    """The value as a boolean; `InputError` for arrays, which have none."""
     try:
         return bool(value)
     except (TypeError, ValueError):

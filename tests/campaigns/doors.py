@@ -70,8 +70,11 @@ def outcome(call: Call) -> tuple[str, str]:
     try:
         with lh.limits(seconds=SECONDS):
             found = call()
-            for written in (repr(found), str(found)):
-                assert isinstance(written, str)
+            if (
+                type(found).__module__ != "builtins"
+            ):  # a mapping of the caller may hold integers that Python cannot print
+                for written in (repr(found), str(found)):
+                    assert isinstance(written, str)
     except InternalError as error:
         return "offenders", f"InternalError: {str(error)[:200]}"
     except LimitError:

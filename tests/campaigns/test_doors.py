@@ -91,3 +91,47 @@ def test_a_campaign_goes_on_where_it_was() -> None:
     at_once.run(30)
     assert second.figures == at_once.figures
     assert lh.current_limits() == lh.Limits()
+
+
+MENDED = [
+    13302,
+    14839,
+    15174,
+    15496,
+    22134,
+    23088,
+    26102,
+    26884,
+    26966,
+    29524,
+    30678,
+    33204,
+    34936,
+    37622,
+    42615,
+    44916,
+    54134,
+    54324,
+    60468,
+    60712,
+    63112,
+    67144,
+    67768,
+    72056,
+    72516,
+    76838,
+    77188,
+    82664,
+    85638,
+    86148,
+    90836,
+    93126,
+    93670,
+    94726,
+]
+"""Inputs of seed 0 that raised an exception of Python or took too long when they were first tried."""
+
+
+@pytest.mark.parametrize("number", MENDED)
+def test_inputs_that_were_offenders_are_read_or_refused(number: int) -> None:
+    assert outcome(drawn(0, number)[1])[0] != "offenders"
