@@ -266,7 +266,8 @@ def sym_conjugation(k: int, algebra: LieAlgebra | None = None) -> Representation
     >>> rho.isotropy(symmetric_to_vector([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]])).dimension
     3
     """
-    if not isinstance(k, Integral):
+    size: object = k
+    if not isinstance(size, Integral):
         raise InputError(f"k is {displayed(k)}, expected an integer")
     within("dimension", abs(int(k)), "the size of the symmetric matrices is {}")
     induced = congruence_map(k)

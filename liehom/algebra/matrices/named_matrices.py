@@ -58,11 +58,13 @@ def classical_matrices(kind: str, first: int, second: Parameter = 0) -> IntegerA
     >>> classical_matrices("sp", 4, "R").shape, classical_matrices("sp", 1).shape
     ((10, 4, 4), (3, 4, 4))
     """
-    if not (isinstance(first, Integral) and isinstance(second, Integral | str)):
-        raise InputError(f"{kind}(n, m) takes integers, got {displayed(first)} and {displayed(second)}")
-    for size in (first, second):
-        if not isinstance(size, str):
-            within("dimension", abs(int(size)), "a parameter of the family is {}")
+    sizes: tuple[object, object] = (first, second)
+    for place, size in enumerate(sizes):
+        if isinstance(size, str) and place:
+            continue
+        if not isinstance(size, Integral):
+            raise InputError(f"{kind}(n, m) takes integers, got {displayed(first)} and {displayed(second)}")
+        within("dimension", abs(int(size)), "a parameter of the family is {}")
     if not isinstance(second, str) and kind in _FORMS:
         return _FORMS[kind](first, second)
     build = _BY_LETTER.get((kind, "R" if second == 0 else str(second)))
