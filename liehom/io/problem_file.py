@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
-from liehom.errors import FormatError, InputError, ParseError
+from liehom.errors import FieldError, FormatError, InputError, ParseError
 from liehom.io.json_reader import as_list, shown
 from liehom.io.number_lists import vector
 from liehom.representations.core.pair import Pair
@@ -201,7 +201,7 @@ def _value(tree: Node, m: Array, t: float, what: str) -> float:
             return float(Components([tree], len(m), (1,), what)(m, np.float64(t))[0])
     except ParseError as error:
         raise ParseError(f"{what}: {error}") from None
-    except OverflowError:
+    except (FieldError, OverflowError):
         raise InputError(f"{what} has a number beyond the range of float64 (1.8e308)") from None
 
 
