@@ -17,3 +17,4 @@ from liehom.tracing.kernel import Sizes as Sizes
 from liehom.tracing.kernel import StepGraph as StepGraph
 from liehom.tracing.kernel import padded as padded
 from liehom.tracing.loop import while_loop as while_loop
+from liehom.tracing.machine import lanes_per_register as lanes_per_register

@@ -1,4 +1,4 @@
-"""Kernel: machine code of a traced step in a loop over steps and lanes, with a cache on disk.
+"""Kernel: machine code of a traced step in a loop over steps and lanes.
 
 Blocks of W lanes (trajectories) are stepped together, all steps of a block before the next block.  A lane is masked out
 as soon as its next step would not be an ordinary one.  That is the last step before its limit, a step to a point that
@@ -8,29 +8,17 @@ step that is not accepted changes only the step size.
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
-import hashlib
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from types import ModuleType
-from typing import Any, TypeAlias, final
+from typing import Any, final
 
 import numpy.typing as npt
 
-from liehom.disk import write_atomically
-from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import TrajectoryConstant, needed
-from liehom.tracing.llvm_text import LIBM, Body, Writer
-
-Engine: TypeAlias = Any
-"""An execution engine of llvmlite, which has no types."""
-
-TargetMachine: TypeAlias = Any
-"""A target machine of llvmlite."""
+from liehom.tracing.llvm_text import Body, Writer
+from liehom.tracing.machine import engine_of
 
 TIME_SLACK = 1e-9
 """A lane stops if less than this fraction of a step is left to its limit."""
@@ -289,7 +277,7 @@ class Kernel:
     def __init__(self, graph: StepGraph, width: int) -> None:
         self.graph, self.width = graph, width
         self.text = llvm_module(graph, width)
-        self._engine, self.cached = _engine(self.text)
+        self._engine, self.cached = engine_of(self.text)
         arguments = [ctypes.c_void_p] * ARRAY_ARGUMENTS + [ctypes.c_int64] * 4 + [ctypes.c_double] * 2
         self._run = ctypes.CFUNCTYPE(None, *arguments)(self._engine.get_function_address("run"))
 
@@ -308,85 +296,6 @@ class Kernel:
         """
         places = [None if a is None else a.ctypes.data for a in arrays]
         self._run(*places, *[None] * (ARRAY_ARGUMENTS - len(places)), lanes, *blocks, steps, *time)
-
-
-_ENGINES: dict[str, Engine] = {}
-
-
-def cache_directory() -> Path | None:
-    """Folder of the cached machine code, LIEHOM_CACHE_DIR or ~/.cache/liehom; None if that variable is empty."""
-    given = os.environ.get("LIEHOM_CACHE_DIR")
-    if given is not None:
-        return Path(given) if given else None
-    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return Path(home) / "liehom"
-
-
-def _engine(text: str) -> tuple[Engine, bool]:
-    """(engine with the code of a module, whether the code was cached)."""
-    try:
-        import llvmlite.binding as llvm
-    except ImportError:
-        raise TraceError('compile="llvm" needs the extra: pip install "liehom[llvm]"') from None
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    machine = llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, jit=True
-    )
-    stamp = f"{llvm.llvm_version_info}{llvm.get_host_cpu_name()}{machine.triple}"
-    key = hashlib.sha256((stamp + text).encode()).hexdigest()
-    if key in _ENGINES:
-        return _ENGINES[key], True
-    _add_symbols(llvm)
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
-    code = _read(key)
-    found = code is not None
-    if code is None:
-        code = _compiled(llvm, machine, text)
-        _write(key, code)
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-    engine.finalize_object()
-    _ENGINES[key] = engine
-    return engine, found
-
-
-def _compiled(llvm: ModuleType, machine: TargetMachine, text: str) -> bytes:
-    module = llvm.parse_assembly(text)
-    module.verify()
-    options = llvm.PipelineTuningOptions(2)
-    options.slp_vectorization = options.loop_vectorization = options.loop_interleaving = options.loop_unrolling = False
-    builder = llvm.create_pass_builder(machine, options)
-    builder.getModulePassManager().run(module, builder)
-    return bytes(machine.emit_object(module))
-
-
-def _add_symbols(llvm: ModuleType) -> None:
-    library = ctypes.CDLL(None)
-    for name in {*LIBM.values(), "memset", "memcpy"}:
-        address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value
-        llvm.add_symbol(name, address)
-
-
-def _read(key: str) -> bytes | None:
-    folder = cache_directory()
-    if folder is None:
-        return None
-    try:
-        whole = (folder / f"{key}.o").read_bytes()
-    except OSError:
-        return None
-    digest, code = whole[:32], whole[32:]
-    return code if hashlib.sha256(code).digest() == digest else None
-
-
-def _write(key: str, code: bytes) -> None:
-    """Cache the code, by renaming a complete file; if that fails, it is compiled again next time."""
-    folder = cache_directory()
-    if folder is None:
-        return
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        write_atomically(folder / f"{key}.o", hashlib.sha256(code).digest() + code)
 
 
 def padded(count: int, width: int) -> int:

@@ -21,14 +21,12 @@ from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.run import Run
-from liehom.tracing import Kernel, StepGraph, needed, padded
+from liehom.tracing import Kernel, StepGraph, lanes_per_register, needed, padded
 from liehom.typing import Array, IntegerArray
 
 BACKENDS = ("llvm", "jax")
-WIDE_LANES, NARROW_LANES = 16, 8
-"""Lanes of a block of short and of long code."""
-LONG_OPERATIONS = 700
-"""Operations between two loops from which on blocks are narrow."""
+SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
+"""Operations between two loops up to which code is short, and from which on it is long."""
 PATH_BYTES_PER_CALL = 64_000_000
 """Bytes of points, times and sizes that a kernel call records at most."""
 OPERATIONS_PER_CALL = 4_000_000_000
@@ -309,12 +307,15 @@ class _Lanes:
 
 
 def _width(graph: StepGraph, lanes: int) -> int:
-    """Number of lanes in a block: wide blocks hide latencies, but in long code they run out of registers."""
-    if lanes < 4 * WIDE_LANES:
-        return 1 if lanes < NARROW_LANES // 2 else NARROW_LANES
+    """Number of lanes in a block: as many registers for a number as hide latencies and do not run out in long code."""
+    one = lanes_per_register()
+    if lanes <= one:
+        return 1 if lanes == 1 else one
     ops = needed(graph.outputs)
     breaks = sum(x.op == "expv" or (x.op == "loop" and not x.value.guarded) for x in ops)
-    return WIDE_LANES if len(ops) < LONG_OPERATIONS * (1 + breaks) else NARROW_LANES
+    registers = 4 if len(ops) < SHORT_OPERATIONS and not breaks else 2
+    widest = one if len(ops) >= LONG_OPERATIONS * (1 + breaks) else registers * one
+    return min(widest, 1 << (lanes - 1).bit_length())
 
 
 def _cores() -> int:

@@ -13,7 +13,7 @@ import pytest
 import liehom as lh
 from liehom.errors import InputError, TraceError
 from liehom.integrators.compiled.traced_step import traced_step
-from liehom.tracing import Kernel
+from liehom.tracing import Kernel, lanes_per_register
 from tests.integrators import spaces
 
 EPS = float(np.finfo(float).eps)
@@ -243,18 +243,30 @@ def test_a_psi_that_looks_at_values_is_refused_with_the_reason(psi: Any) -> None
 
 # -- machine code ------------------------------------------------------------------------------------------
 def test_machine_code_is_kept_and_damage_is_noticed(cache: Path) -> None:
-    from liehom.tracing import kernel
+    from liehom.tracing import machine
 
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: m * [1.0, 0.123456, 0.25])
     graph = traced_step(lh.Action(field.representation), field, lh.Euler(), START[None], 2, nominal=True)
     before = set(cache.iterdir())
     assert not Kernel(graph, 8).cached
     (made,) = set(cache.iterdir()) - before
-    kernel._ENGINES.clear()
+    machine._ENGINES.clear()
     assert Kernel(graph, 8).cached
     made.write_bytes(made.read_bytes()[:-7] + b"garbage")
-    kernel._ENGINES.clear()
+    machine._ENGINES.clear()
     assert not Kernel(graph, 8).cached
+
+
+def test_blocks_are_no_wider_than_the_ensemble_and_narrow_in_long_code() -> None:
+    from liehom.integrators.compiled.compiled import _width
+
+    one = lanes_per_register()
+    short, long = (
+        traced_step(lh.Action(BODY.representation), BODY, step, START[None], 2, nominal=True)
+        for step in (lh.Euler(), lh.LieTaylor(8))
+    )
+    assert [_width(short, n) for n in (1, 2, one, one + 1, 10_000)] == [1, one, one, 2 * one, 4 * one]
+    assert _width(long, 10_000) < _width(short, 10_000)
 
 
 def test_branches_are_selections() -> None:
