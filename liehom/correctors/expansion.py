@@ -15,7 +15,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from liehom.correctors.step import LocalStep, apply_factors, step_variable, with_correction
+from liehom.correctors.step import LocalStep, apply_factors, moved_by_isotropy, step_variable, with_correction
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import across_lanes, as_values, constant_like, in_lanes, is_exact, namespace, zeros
@@ -147,8 +147,12 @@ def step_series(action: Action, local: LocalStep, m: Values, order: int, zeta: J
     >>> step_series(action, local, m, 2).coefficients.tolist()
     [[1.0, 0.0], [0.0, 1.0], [-0.5, 0.0]]
     """
-    factors = local.factors(step_variable(order, as_values(m)))
-    made = apply_factors(action, with_correction(factors, zeta, len(factors) == 1), m)
+    h = step_variable(order, as_values(m))
+    if zeta is None or not local.has_factors:
+        made = moved_by_isotropy(local, h, zeta, one_exponential=False)
+    else:
+        factors = local.factors(h)
+        made = apply_factors(action, with_correction(factors, zeta, len(factors) == 1), m)
     return made if isinstance(made, Jet) else Jet.constant(made, order)
 
 

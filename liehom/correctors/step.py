@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from liehom.errors import ConvergenceError
+from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import Action, Exponential, GeneratorField
 from liehom.series.arrays import is_jax, zeros
 from liehom.series.jet import Jet
@@ -75,7 +75,13 @@ class Generator:
 class Step(ABC):
     """A one-step method on homogeneous spaces.
 
-    A new method needs `order` and `factors(action, psi, m, t, h)`. The arguments of `factors` are
+    A new method needs `order` and one of
+
+    * `factors(action, psi, m, t, h)`, for a product of exponentials (`OneExponential`: `generator`, for one);
+    * `at(action, psi, m, t)`, for a step that projects, is a symplectic map, has its own clock or an estimate of its
+      error: it returns a `LocalStep`.
+
+    The arguments of `factors` are
 
     * `action`: the `Action`, for which ``action.act(x, m)`` is Exp(x) m;
     * `psi`: the generator, a function (m, t) -> (..., dim g);
@@ -101,16 +107,24 @@ class Step(ABC):
         """Whether `factors` is always a single generator."""
         return False
 
-    @abstractmethod
     def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
-        """Tuple of generators x_1, ..., x_s (..., dim g); the step is m -> Exp(x_s) ... Exp(x_1) m."""
+        """Tuple of generators x_1, ..., x_s (..., dim g); the step is m -> Exp(x_s) ... Exp(x_1) m.
+
+        Raises
+        ------
+        InputError
+            If the step is not a product of exponentials.
+        """
+        if type(self).at is Step.at:
+            raise InputError(f"{type(self).__name__} defines no step: write its method `factors`, `generator` or `at`")
+        return self.at(action, psi, m, t).factors(h)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         """The step at (m, t) as a function of h alone; methods that precompute something there override this.
 
         `error_terms` is the number of orders beyond `order` for which `LocalStep.defects` are computed.
         """
-        return LocalStep(lambda h: self.factors(action, psi, m, t, h))
+        return LocalStep(action, m, lambda h: self.factors(action, psi, m, t, h))
 
     def __repr__(self) -> str:
         # without the address, as reports and the fingerprints of checkpoints contain the repr
@@ -139,21 +153,33 @@ class OneExponential(Step, ABC):
         """Whether `factors` is always a single generator: True."""
         return True
 
-    @abstractmethod
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         """The generator xi(m, t, h) of the step, array or Jet of shape (..., dim g)."""
+        return Step.factors(self, action, psi, m, t, h)[0]
 
     def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         return (self.generator(action, psi, m, t, h),)
 
 
 class LocalStep:
-    """A step at one point and time, as a function of h.
+    """A step at one point and time, as a function of its size h.
+
+    A product of exponentials gives `factors`; any other step (a projection, a symplectic map) gives `point`. Both are
+    written for arrays, and also for Jets if the step is to be expanded: to correct it, or to adapt its size without
+    an estimate of its error. A class derived from this one overrides the methods of these names.
 
     Parameters
     ----------
-    factors : callable
-        h -> tuple of generators.
+    action : Action
+    m : array of shape (..., N)
+        The point before the step.
+    factors : callable, optional
+        h (..., 1) -> tuple of generators x_1, ..., x_s; the step is Exp(x_s) ... Exp(x_1) m.
+    point : callable, optional
+        h (..., 1) -> point after the step, shape (..., N).
+    clock : tuple of (int, array of shape (...,))
+        (k, c_k) for k > 1: the time tau(h) = h + c_2 h^2 + c_3 h^3 + ... passes in a step of size h. Empty: the
+        time h. Whether it is empty does not depend on m, t.
 
     Attributes
     ----------
@@ -163,23 +189,89 @@ class LocalStep:
     Examples
     --------
     >>> import numpy as np
-    >>> local = LocalStep(lambda h: (h * np.array([1.0, 0.0]),))
-    >>> local.factors(0.5)[0].tolist(), local.time(0.5)
-    ([0.5, 0.0], 0.5)
+    >>> import liehom as lh
+    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0])
+    >>> local = LocalStep(action, m, lambda h: (h * np.array([2.0]),), clock=((2, -0.5),))
+    >>> local.point(np.array([np.pi / 4])).round(12).tolist(), local.time(0.5)
+    ([0.0, 1.0], 0.375)
+
+    A rotation that is not written as an exponential:
+
+    >>> rotated = LocalStep(action, m, point=lambda h: np.concatenate([np.cos(2 * h), np.sin(2 * h)], axis=-1))
+    >>> rotated.point(np.array([np.pi / 4])).round(12).tolist(), rotated.has_factors
+    ([0.0, 1.0], False)
     """
 
     defects: tuple[tuple[int, Values], ...] | None = None
+    clock: tuple[tuple[int, Values], ...] = ()
 
-    def __init__(self, factors: Callable[[Any], Factors]) -> None:
-        self._factors = factors
+    def __init__(
+        self,
+        action: Action,
+        m: Values,
+        factors: Callable[[Any], Factors] | None = None,
+        *,
+        point: Callable[[Any], Values] | None = None,
+        clock: tuple[tuple[int, Values], ...] = (),
+    ) -> None:
+        self.action, self.m, self.clock = action, m, clock
+        self._factors, self._point = factors, point
+
+    @property
+    def has_factors(self) -> bool:
+        """Whether the step is a product of exponentials, so that `factors` is defined."""
+        return self._factors is not None or type(self).factors is not LocalStep.factors
 
     def factors(self, h: Values) -> Factors:
-        """Tuple of the generators of the step of size h (..., 1)."""
+        """Tuple of the generators of the step of size h (..., 1).
+
+        Raises
+        ------
+        InputError
+            If the step is not a product of exponentials.
+        """
+        if self._factors is None:
+            raise InputError("the step is not a product of exponentials: it has a `point`, and no `factors`")
         return self._factors(h)
 
+    def point(self, h: Values) -> Values:
+        """Point after the step of size h (..., 1), shape (..., N)."""
+        if self._point is not None:
+            return self._point(h)
+        return apply_factors(self.action, self.factors(h), self.m)
+
     def time(self, h: Values) -> Values:
-        """Time that passes in the step of size h (...,): h, unless the step has its own clock tau."""
-        return h
+        """Time tau(h) that passes in the step of size h (...,); h without a clock."""
+        if not self.clock:
+            return h
+        coefficients, total = dict(self.clock), None
+        for k in range(max(coefficients), 1, -1):
+            total = total * h if total is not None else None
+            if k in coefficients:
+                total = coefficients[k] if total is None else total + coefficients[k]
+        found: Values = (total * h + 1) * h
+        return found
+
+
+def moved_by_isotropy(local: LocalStep, h: Values, zeta: Values | None, one_exponential: bool) -> Values:
+    """Point after a step of size h (..., 1) with the isotropy zeta (..., dim g), as `with_correction` adds it.
+
+    For a step that is not a product of exponentials it is Exp(zeta) of the point after the step.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0])
+    >>> local = LocalStep(action, m, point=lambda h: m)
+    >>> moved_by_isotropy(local, np.array([0.1]), np.array([np.pi / 2]), False).round(12).tolist()
+    [0.0, 1.0]
+    """
+    if zeta is None:
+        return local.point(h)
+    if not local.has_factors:
+        return local.action.act(zeta, local.point(h))
+    return apply_factors(local.action, with_correction(local.factors(h), zeta, one_exponential), local.m)
 
 
 def apply_factors(action: Action, factors: Factors, m: Values) -> Values:

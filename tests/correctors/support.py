@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.correctors import Generator, apply_factors
+from liehom.correctors import Generator
 
 HAT = [
     [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
@@ -63,7 +63,7 @@ def one_step(field: lh.GeneratorField, step: Any, m: Any, h: Any, t: Any = 0.0, 
     h = np.zeros(m.shape[:-1], dtype=m.dtype) + h
     t = np.zeros(m.shape[:-1], dtype=m.dtype) + t
     local = step.at(action, psi_of(field, m), m, t[..., None])
-    return apply_factors(action, local.factors(h[..., None]), m), local.time(h)
+    return local.point(h[..., None]), local.time(h)
 
 
 def exact_flow(field: lh.GeneratorField, m: Any, span: Any, t: Any = 0.0, steps: int = 60) -> Any:
@@ -88,7 +88,7 @@ def run(
     time = np.zeros(m.shape[:-1], dtype=m.dtype) + t
     for _ in range(count):
         local = step.at(action, psi, m, time[..., None])
-        m, time = apply_factors(action, local.factors(h[..., None]), m), time + local.time(h)
+        m, time = local.point(h[..., None]), time + local.time(h)
     return m, time
 
 

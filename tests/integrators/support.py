@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import liehom as lh
-from liehom.correctors import Generator, LocalStep, apply_factors
+from liehom.correctors import Generator, LocalStep
 from liehom.homogeneous.fields.field import check_point
 from liehom.scalars import QQ, Field
 
@@ -119,7 +119,7 @@ def run(action: lh.Action, field: lh.GeneratorField, step: lh.Step, m: Any, end:
         last = t + local.time(h) >= end - 1e-9 * size
         if last.any():
             h = np.where(last, _size_until(local, end - t), h)
-        m = apply_factors(action, local.factors(h[..., None]), m)
+        m = local.point(h[..., None])
         t = t + local.time(h)
         if last.all():
             return m

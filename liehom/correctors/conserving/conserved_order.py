@@ -17,7 +17,7 @@ from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralS
 from liehom.correctors.expansion import ROUND_OFF_UNITS, Flow, flow_series
 from liehom.correctors.isotropy.order_by_order import round_off
 from liehom.correctors.points import read_point
-from liehom.correctors.step import ExponentialLike, Generator, LocalStep, Step, apply_factors, step_variable
+from liehom.correctors.step import ExponentialLike, Generator, LocalStep, Step, step_variable
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.series.arrays import is_exact
@@ -119,7 +119,7 @@ def conserved_order(
     flow = flow_series(field, point, bound, t)
     integral.check(flow, bound)
     local = step.at(action, Generator(field, dimension), point, np.asarray(t)[..., None])
-    made = expanded(action, integral, local, point, bound)
+    made = expanded(integral, local, bound)
     order = agreement(made, None if is_exact(point) else round_off_of(action, integral, flow, local, point, bound))
     return ConservedOrder(order if order.ndim else int(order), tuple(integral.squeezed(x) for x in made), bound)
 
@@ -145,18 +145,19 @@ def agreement(coefficients: list[Array], noise: list[Array] | None) -> IntegerAr
     return order
 
 
-def expanded(action: Action, integral: FirstIntegral, local: LocalStep, m: Values, bound: int) -> list[Array]:
+def expanded(integral: FirstIntegral, local: LocalStep, bound: int) -> list[Array]:
     """List of E_0, ..., E_bound, arrays of shape (..., k).
 
     Examples
     --------
     >>> import numpy as np
     >>> import liehom as lh
-    >>> action, local = lh.Action(lh.defining(lh.so(2))), LocalStep(lambda h: (h * np.array([1.0]),))
-    >>> [float(e[0]) for e in expanded(action, FirstIntegral("m0", 2), local, np.array([1.0, 0.0]), 2)]
+    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0])
+    >>> local = LocalStep(action, m, lambda h: (h * np.array([1.0]),))
+    >>> [float(e[0]) for e in expanded(FirstIntegral("m0", 2), local, 2)]
     [0.0, 0.0, -0.5]
     """
-    made: Any = integral(apply_factors(action, local.factors(step_variable(bound, m)), m))
+    made: Any = integral(local.point(step_variable(bound, local.m)))
     if not isinstance(made, Jet):
         return [0 * made] * (bound + 1)
     return [0 * made.coefficient(0), *[made.coefficient(k) for k in range(1, bound + 1)]]
@@ -172,7 +173,8 @@ def round_off_of(
     >>> import numpy as np
     >>> import liehom as lh
     >>> field, m = lh.GeneratorField(lh.defining(lh.so(2)), [1]), np.array([1.0, 0.0])
-    >>> action, local = lh.Action(field.representation), LocalStep(lambda h: (h * np.array([1.0]),))
+    >>> action = lh.Action(field.representation)
+    >>> local = LocalStep(action, m, lambda h: (h * np.array([1.0]),))
     >>> flow = flow_series(field, m, 2)
     >>> bool(round_off_of(action, FirstIntegral("m0", 2), flow, local, m, 2)[2] < 1e-12)
     True
@@ -180,7 +182,7 @@ def round_off_of(
     eps = np.finfo(m.dtype).eps
     scale = conditioning(*integral.gradient(m), m)
     size = np.linalg.norm(np.asarray(m, dtype=float), axis=-1)
-    factors: Any = local.factors(step_variable(bound, m))
+    factors: Any = local.factors(step_variable(bound, m)) if local.has_factors else None
     rate, found = 0.0 * size, [ROUND_OFF_UNITS * eps * scale]
     for k in range(1, bound + 1):
         term = round_off(action, m, flow, factors, k) / (ROUND_OFF_UNITS * eps * size)

@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike
 
 from liehom.correctors.conserving.conservation import Conservation, combination
 from liehom.correctors.conserving.conserved_order import EXTRA_ORDERS, agreement, expanded, round_off_of
-from liehom.correctors.conserving.conserving_step import ClockedConservingStep, ConservingStep
+from liehom.correctors.conserving.conserving_step import ConservingStep
 from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralSource
 from liehom.correctors.expansion import flow_series
-from liehom.correctors.step import Factors, Generator, LocalStep, Step
+from liehom.correctors.step import Generator, Step
 from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action
 from liehom.series.arrays import is_exact, is_jax
@@ -115,9 +115,6 @@ class Conserving(Step):
     def one_exponential(self) -> bool:
         return self.step.one_exponential
 
-    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
-        return self.at(action, psi, m, t).factors(h)
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> ConservingStep:
         if is_jax(m) or is_exact(m):
             raise InputError("a conserving step iterates to round-off, on numpy arrays of floats only")
@@ -129,8 +126,7 @@ class Conserving(Step):
         frame = action.isotropy_frame(m, psi.orbit_dimension)
         factor = 0.5 if self.one_exponential else 1.0
         found = Conservation(action, known.integral, frame, m, psi.field.psi(m, time), factor)
-        has_clock = type(local).time is not LocalStep.time
-        return (ClockedConservingStep if has_clock else ConservingStep)(
+        return ConservingStep(
             local, found, known.target, known.n, one_exponential=self.one_exponential, linear=self.linear
         )
 
@@ -212,7 +208,7 @@ class _Begun:
             if step.conserved_order is None:
                 local = step.step.at(action, inner, point, np.asarray(time)[..., None])
                 flow = flow_series(psi.field, point, bound, time)
-                made = expanded(action, self.integral, local, point, bound)
+                made = expanded(self.integral, local, bound)
                 finite = np.isfinite(np.asarray(made)).all(axis=(0, -1))
                 noise = round_off_of(action, self.integral, flow, local, point, bound)
                 orders.append(np.where(finite, agreement(made, noise), bound).min(initial=bound))

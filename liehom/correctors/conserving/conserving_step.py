@@ -13,8 +13,7 @@ import numpy as np
 from liehom.correctors.conserving.conservation import Conservation
 from liehom.correctors.conserving.level_newton import solve_levels
 from liehom.correctors.expansion import ROUND_OFF_UNITS
-from liehom.correctors.step import Factors, LocalStep, apply_factors, step_variable, with_correction
-from liehom.errors import InputError
+from liehom.correctors.step import Factors, LocalStep, moved_by_isotropy, step_variable, with_correction
 from liehom.series.arrays import zeros
 from liehom.series.jet import Jet
 from liehom.tracing import Traced
@@ -51,6 +50,7 @@ class Conserved:
     left: Values
 
 
+@final
 class ConservingStep(LocalStep):
     """A conserving step at one point, as a function of h, for each of which the correction is computed.
 
@@ -95,6 +95,7 @@ class ConservingStep(LocalStep):
         one_exponential: bool,
         linear: bool,
     ) -> None:
+        super().__init__(base.action, base.m, clock=base.clock)
         self.base, self.found, self.n = base, found, n
         self.defects = base.defects
         self.estimate: Values | None = getattr(base, "estimate", None)
@@ -102,13 +103,19 @@ class ConservingStep(LocalStep):
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
-        self._last: tuple[Values, Factors, Conserved] | None = None
+        self._last: tuple[Values, Values | None, Conserved] | None = None
         self._sigma: Any = None
 
+    @property
+    def has_factors(self) -> bool:
+        """Whether the base is a product of exponentials."""
+        return self.base.has_factors
+
     def factors(self, h: Values) -> Factors:
-        if isinstance(h, Jet):
-            return with_correction(self.base.factors(h), self._series(h), self._one)
-        return self._made(h)[1]
+        return with_correction(self.base.factors(h), self._isotropy(h), self._one)
+
+    def point(self, h: Values) -> Values:
+        return moved_by_isotropy(self.base, h, self._isotropy(h), self._one)
 
     def conserved(self, h: Values) -> Conserved:
         """`Conserved`, the report on F for the step of size h (..., 1)."""
@@ -116,10 +123,11 @@ class ConservingStep(LocalStep):
 
     def isotropy(self, h: Values) -> Values:
         """The isotropy t^(n-1) sigma of the step of size h (..., 1), shape (..., dim g)."""
-        made, base = self._made(h)[1], self.base.factors(h)
-        if len(made) > len(base):
-            return made[-1]
-        return made[0] - base[0]
+        x, m = self._made(h)[1], self.found.m
+        return zeros(m, (*m.shape[:-1], self.found.dimension)) if x is None else x
+
+    def _isotropy(self, h: Values) -> Values | None:
+        return self._series(h) if isinstance(h, Jet) else self._made(h)[1]
 
     def sigma(self) -> Values:
         """Solution of chi_m(sigma) = -E_n in V_m, shape (..., dim g); 0 where E_n is round-off."""
@@ -128,14 +136,14 @@ class ConservingStep(LocalStep):
             if self.n is None:
                 self._sigma = zeros(m, (*m.shape[:-1], self.found.dimension))
             else:
-                z: Any = apply_factors(self.found.action, self.base.factors(step_variable(self.n, m)), m)
+                z: Any = self.base.point(step_variable(self.n, m))
                 along: Any = self.found.integral(z)
                 self._sigma = self._removing(along, z, self.n)
         found: Values = self._sigma
         return found
 
     # -- private -----------------------------------------------------------------------------------------
-    def _made(self, h: Values) -> tuple[Values, Factors, Conserved]:
+    def _made(self, h: Values) -> tuple[Values, Values | None, Conserved]:
         if isinstance(h, Traced):
             if self._last is None or self._last[0] is not h:
                 self._last = (h, *self._corrected(h))
@@ -145,15 +153,13 @@ class ConservingStep(LocalStep):
             last = self._last = (h.copy(), *self._corrected(h))
         return last
 
-    def _corrected(self, h: Values) -> tuple[Factors, Conserved]:
+    def _corrected(self, h: Values) -> tuple[Values | None, Conserved]:
         found, action, m = self.found, self.found.action, self.found.m
-        made = self.base.factors(h)
-        if not self._one and not made:
-            raise InputError("the base step has no exponential")
-        z = apply_factors(action, made, m)
+        xi = self.base.factors(h)[0] if self._one else None
+        z = self.base.point(h) if xi is None else action.act(xi, m)
 
         def residual(x: Values) -> Values:
-            point = action.act(made[0] + x, m) if self._one else action.act(x, z)
+            point = action.act(x, z) if xi is None else action.act(xi + x, m)
             return found.integral(point) - self._target
 
         first = found.integral(z) - self._target
@@ -177,7 +183,7 @@ class ConservingStep(LocalStep):
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
         record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
-        return with_correction(made, x, self._one), record
+        return x, record
 
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""
@@ -200,8 +206,7 @@ class ConservingStep(LocalStep):
         zeta = Jet.growing(zeros(m, (*m.shape[:-1], found.dimension)), total, zero=True)
         for _ in range(total):
             zeta.extend(None)
-        factors = with_correction(self.base.factors(step_variable(total, m)), zeta, self._one)
-        z: Any = apply_factors(found.action, factors, m)
+        z: Any = moved_by_isotropy(self.base, step_variable(total, m), zeta, self._one)
         along: Any = found.integral(z)
         for k in range(max(self.n, 2), total + 1):
             zeta.replace(k - 1, self._removing(along, z, k), along, z)
@@ -217,24 +222,3 @@ class ConservingStep(LocalStep):
 def _length(x: Values) -> Values:
     found: Values = np.linalg.norm(x if type(x) is Traced else np.asarray(x, dtype=float), axis=-1)
     return found
-
-
-@final
-class ClockedConservingStep(ConservingStep):
-    """A conserving step whose base has its own clock (time reparametrization), such as a `Corrected` step.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
-    >>> action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 2)
-    >>> step = lh.correctors.Conserving(lh.Corrected(lh.Euler(), 3), "m0**2 + m1**2/2 + m2**2/4")
-    >>> local = step.at(action, psi, np.array([0.6, 0.48, 0.64]), np.array([0.0]))
-    >>> bool(local.time(0.1) == local.base.time(0.1))
-    True
-    """
-
-    def time(self, h: Values) -> Values:
-        """Time tau(h) that passes in the base step, for h of shape (...,)."""
-        return self.base.time(h)

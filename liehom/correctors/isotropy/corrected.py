@@ -7,9 +7,10 @@ from typing import final
 import numpy as np
 
 from liehom.correctors.isotropy.isotropy_corrector import Correction, correct
-from liehom.correctors.step import Factors, Generator, LocalStep, Step, with_correction
+from liehom.correctors.step import Factors, Generator, LocalStep, Step, moved_by_isotropy, with_correction
 from liehom.errors import InputError
 from liehom.homogeneous import Action
+from liehom.series.arrays import zeros
 from liehom.typing import Values
 
 
@@ -78,9 +79,6 @@ class Corrected(Step):
     def one_exponential(self) -> bool:
         return self.step.one_exponential
 
-    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
-        return self.at(action, psi, m, t).factors(h)
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> CorrectedStep:
         local = self.step.at(action, psi, m, t)
         found = correct(
@@ -127,14 +125,25 @@ class CorrectedStep(LocalStep):
     defects: tuple[tuple[int, Values], ...]
 
     def __init__(self, base: LocalStep, correction: Correction, one_exponential: bool) -> None:
+        super().__init__(base.action, base.m, clock=_clock_of(correction))
         self.base = base
         self.correction = correction
         self.defects = correction.defects
         self._one_exponential = one_exponential
 
+    @property
+    def has_factors(self) -> bool:
+        """Whether the base is a product of exponentials."""
+        return self.base.has_factors
+
     def factors(self, h: Values) -> Factors:
         return with_correction(self.base.factors(h), self.correction.generator(h), self._one_exponential)
 
-    def time(self, h: Values) -> Values:
-        """Time tau(h) that passes in the step, for h of shape (...,)."""
-        return self.correction.time(h)
+    def point(self, h: Values) -> Values:
+        return moved_by_isotropy(self.base, h, self.correction.generator(h), self._one_exponential)
+
+
+def _clock_of(correction: Correction) -> tuple[tuple[int, Values], ...]:
+    """(k, c_k) for all k from 2 on, so that it is empty or not whatever the points of the ensemble are."""
+    zero = zeros(correction.residual, np.shape(correction.residual))
+    return tuple((k, zero if c is None else c) for k, c in enumerate(correction.clock) if k > 1)

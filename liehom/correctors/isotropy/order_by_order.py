@@ -100,8 +100,12 @@ class OrderRecursion:
         self.shape: tuple[int, ...] = tuple(m.shape[:-1])
         self.flow: Flow = flow_series(field, m, total, t)
         self.zeta: Jet = self._no_correction()
-        self._factors = with_correction(local.factors(step_variable(total, m)), self.zeta, one_exponential)
-        step: Any = apply_factors(action, self._factors, m)
+        h = step_variable(total, m)
+        self._factors = with_correction(local.factors(h), self.zeta, one_exponential) if local.has_factors else None
+        if self._factors is None:
+            step: Any = action.act(self.zeta, local.point(h))
+        else:
+            step = apply_factors(action, self._factors, m)
         self.step: Jet = step
         self.clock: Clock = Clock(self.flow, total, self.shape)
         self._orbit_dimension = orbit_dimension
@@ -227,8 +231,10 @@ class OrderRecursion:
         self.residual = xp.maximum(self.residual, relative)
 
 
-def round_off(action: Action, m: Values, flow: Flow, factors: Factors, n: int) -> Values:
+def round_off(action: Action, m: Values, flow: Flow, factors: Factors | None, n: int) -> Values:
     """Bound of the round-off in [t^n] (F_tau - step), shape (...,), from the terms of exp(|xi| + |psi| t) |m|.
+
+    A step without exponentials (`factors` is None) is taken to have terms of the size of those of the flow.
 
     Examples
     --------
@@ -243,8 +249,9 @@ def round_off(action: Action, m: Values, flow: Flow, factors: Factors, n: int) -
     expanded: Any = factors
     rates = [xp.zeros(m.shape[:-1], dtype=m.dtype)]
     for k in range(1, n + 1):
-        step: Any = sum(generator_norm(action, x.coefficient(k)) for x in expanded)
-        rates.append(k * step + generator_norm(action, flow.psi(k - 1)))
+        own = generator_norm(action, flow.psi(k - 1))
+        step: Any = own if factors is None else k * sum(generator_norm(action, x.coefficient(k)) for x in expanded)
+        rates.append(step + own)
     terms = [norm(xp, m)]
     for k in range(1, n + 1):
         terms.append(sum(rates[i] * terms[k - i] for i in range(1, k + 1)) / k)

@@ -23,7 +23,14 @@ from liehom.correctors.isotropy.completion import generator_norm
 from liehom.correctors.isotropy.order_by_order import round_off
 from liehom.correctors.isotropy.range_solver import RangeSolver
 from liehom.correctors.points import read_point
-from liehom.correctors.step import ExponentialLike, Generator, Step, apply_factors, step_variable, with_correction
+from liehom.correctors.step import (
+    ExponentialLike,
+    Generator,
+    Step,
+    moved_by_isotropy,
+    step_variable,
+    with_correction,
+)
 from liehom.correctors.symbolic.exact_range import ExactSolution, solve_exactly
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
@@ -242,8 +249,11 @@ class _Expansion:
         psi = Generator(field, self.orbit_dimension)
         local = step.at(self.action, psi, self.point, np.asarray(t)[..., None])
         h = step_variable(n, self.point)
-        self.factors = with_correction(local.factors(h), self._polynomial(zeta, n), step.one_exponential)
-        made: Any = apply_factors(self.action, self.factors, self.point)
+        correction = self._polynomial(zeta, n)
+        self.factors = (
+            with_correction(local.factors(h), correction, step.one_exponential) if local.has_factors else None
+        )
+        made: Any = moved_by_isotropy(local, h, correction, step.one_exponential)
         self.step: Jet = made
         self.clock = Clock(self.flow, n, tuple(self.point.shape[:-1]))
         tau: Any = local.time(h[..., 0])

@@ -65,11 +65,8 @@ class ExactOrbit(OneExponential):
     def order(self) -> int:
         return 2
 
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return self.at(action, psi, m, t).factors(h)[0]
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> OrbitStep:
-        return OrbitStep(self.body, m)
+        return OrbitStep(self.body, action, m)
 
     def __repr__(self) -> str:
         return f"ExactOrbit({self.body!r})"
@@ -82,13 +79,15 @@ class OrbitStep(LocalStep):
     Parameters
     ----------
     body : RigidBody
+    action : Action
     m : array of shape (..., 3)
 
     Examples
     --------
     >>> import numpy as np
     >>> import liehom as lh
-    >>> local = OrbitStep(lh.instances.RigidBody([1, 2, 3]), np.array([0.6, 0.48, 0.64]))
+    >>> body = lh.instances.RigidBody([1, 2, 3])
+    >>> local = OrbitStep(body, lh.Action(body.representation, "cayley"), np.array([0.6, 0.48, 0.64]))
     >>> s, kept = local.root(np.array([1.0]))
     >>> bool(abs(local.value(s, np.array([1.0]))[0]) < 1e-15), bool(kept[0])
     (True, True)
@@ -97,7 +96,7 @@ class OrbitStep(LocalStep):
     omega: Values
     rho: Values
 
-    def __init__(self, body: FreeBody, m: Values) -> None:
+    def __init__(self, body: FreeBody, action: Action, m: Values) -> None:
         self._size: Any = np.sqrt(dot(m, m))
         self._size = np.where(self._size > 0, self._size, 1)
         at = self._at = Ingredients(body, m / self._size)
@@ -107,15 +106,11 @@ class OrbitStep(LocalStep):
         turned = body.apply(self.omega)
         self.rho = np.where(moves, dot(at.X, turned) / below, 0)
         self._square = np.where(moves, dot(self.omega, turned) / below - at.h, 0)
+        super().__init__(action, m, clock=((2, (self._size * self.rho)[..., 0] / 2),))  # tau = t (1 + t rho / 2)
 
     def factors(self, h: Values) -> Factors:
         t = h * self._size
         return (t * (self.omega + self._root(t) * self._at.n),)
-
-    def time(self, h: Values) -> Values:
-        """τ = t (1 + t rho / 2), for h of shape (...,)."""
-        passed: Values = h * (1 + h * (self._size * self.rho)[..., 0] / 2)
-        return passed
 
     def root(self, h: Values) -> tuple[Any, Any]:
         """s for the step sizes h (..., 1), and whether it is the root that continues sigma_i, both of shape (..., 1).
@@ -233,8 +228,8 @@ class ExactOrbitUpdate:
         return self._advance(point, h, MAX_HALVINGS)
 
     def _advance(self, m: Array, h: Array, halvings: int) -> tuple[Array, Array]:
-        local = OrbitStep(self.body, m)
-        after: Any = self._action.act(local.factors(h)[0], m)
+        local = OrbitStep(self.body, self._action, m)
+        after: Any = local.point(h)
         passed: Any = local.time(h[..., 0])
         kept = local.root(h)[1][..., 0]
         if bool(kept.all()) or not halvings:

@@ -87,9 +87,6 @@ class NominalTimeCorrected(OneExponential):
     def order(self) -> int:
         return max(self._order, self.step.order)
 
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return self.at(action, psi, m, t).factors(h)[0]
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         local = self.step.at(action, psi, m, t)
         velocity = psi(m, t)
@@ -112,6 +109,7 @@ class _Raised(LocalStep):
     """The generator xi + zeta h^(n-1) + x h^n."""
 
     def __init__(self, base: LocalStep, n: int, zeta: Values, x: Values) -> None:
+        super().__init__(base.action, base.m)
         self.base, self.n, self.zeta, self.x = base, n, zeta, x
 
     def factors(self, h: Values) -> Factors:

@@ -95,7 +95,7 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Values) -> 
     Examples
     --------
     >>> limits = SizeLimits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
-    >>> accepted, proposal = judgement(limits, LocalStep(lambda h: ()), np.zeros(3), np.array([-0.25]))
+    >>> accepted, proposal = judgement(limits, LocalStep(None, np.zeros(2)), np.zeros(3), np.array([-0.25]))
     >>> bool(accepted), float(proposal)
     (True, 2.0)
     """

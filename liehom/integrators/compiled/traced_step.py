@@ -11,7 +11,7 @@ import numpy as np
 from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
 from liehom.correctors.isotropy.range_solver import TightFrameSolver
-from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
@@ -98,12 +98,13 @@ def _traced(
         given_limits = SizeLimits._make(Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in limits)
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
     size = h[..., None]
-    made = apply_factors(action, local.factors(size), m)
+    made: Any = local.point(size)
     passed, runs = None, None
     clock: tuple[tuple[int, Expr], ...] = ()
     if has_clock(local) and not nominal:
-        passed, coefficients = _number(tape, local.time(h)), _clock_of(local)
-        runs, clock = _clock_is_admissible(tape, coefficients, h), _clock_coefficients(tape, coefficients)
+        passed = _number(tape, local.time(h))
+        clock = _clock_coefficients(tape, local.clock)
+        runs = _clock_is_admissible(tape, local.clock, h)
         if limits is not None:  # adaptive steps are larger than fixed ones: the rate is sampled, as in a run
             runs = _number(tape, clock_at(local, h)[0])
     sizes = None
@@ -142,31 +143,21 @@ def _number(tape: Tape, x: object) -> Expr:
     return Traced(tape, x).entry
 
 
-def _clock_of(local: LocalStep) -> Sequence[Any]:
-    """Coefficients of the powers of h in τ(h)."""
-    inner = local.base if isinstance(local, ConservingStep) else local
-    if not isinstance(inner, CorrectedStep):
-        raise TraceError("a clock that is not that of a corrected step is not compiled")
-    coefficients: Sequence[Any] = inner.correction.clock
-    return coefficients
-
-
-def _clock_coefficients(tape: Tape, clock: Sequence[Any]) -> tuple[tuple[int, Expr], ...]:
+def _clock_coefficients(tape: Tape, clock: Sequence[tuple[int, Any]]) -> tuple[tuple[int, Expr], ...]:
     """(k, coefficient of h^k in τ(h)) for k > 1."""
-    return tuple((k, _number(tape, c)) for k, c in enumerate(clock) if k > 1 and c is not None)
+    return tuple((k, _number(tape, c)) for k, c in clock)
 
 
-def _clock_is_admissible(tape: Tape, clock: Sequence[Any], h: Values) -> Expr | None:
-    """Whether |τ' - 1| is small over the step, by the sizes of the coefficients; None if τ(h) = h."""
-    size, power, total = abs(h), None, None
-    for k, c in enumerate(clock):
-        if k < 2:
-            continue
-        power = size if power is None else power * size
-        if c is not None:
-            term = k * abs(c) * power
-            total = term if total is None else total + term
-    return None if total is None else _number(tape, total < MAX_CLOCK_DEVIATION)
+def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values) -> Expr:
+    """Whether |τ' - 1| is small over the step, by the sizes of the coefficients."""
+    size: Any = abs(h)
+    total: Any = 0.0
+    for k, c in sorted(clock, key=lambda term: term[0]):
+        power = size
+        for _ in range(k - 2):
+            power = power * size
+        total = total + k * abs(c) * power
+    return _number(tape, total < MAX_CLOCK_DEVIATION)
 
 
 def _statistics(

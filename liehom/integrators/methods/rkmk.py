@@ -181,6 +181,7 @@ class EmbeddedStep(LocalStep):
     estimate_order: int
 
     def __init__(self, stages: _Stages) -> None:
+        super().__init__(stages.action, stages.m)
         tableau = stages.method.tableau
         self.estimate_order = min(tableau.order, tableau.embedded_order or tableau.order) + 1
         self._stages = stages

@@ -37,7 +37,7 @@ class Euler(OneExponential):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         velocity = psi(m, t)  # once for all h
-        return LocalStep(lambda h: (h * velocity,))
+        return LocalStep(action, m, lambda h: (h * velocity,))
 
 
 @final
@@ -117,9 +117,6 @@ class LieTaylor(OneExponential):
     def order(self) -> int:
         return int(self.n)
 
-    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        return self.at(action, psi, m, t).factors(h)[0]
-
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         time = t[..., 0] if np.ndim(t) else t
         flow = flow_series(psi.field, m, self.order + error_terms, time)
@@ -129,7 +126,7 @@ class LieTaylor(OneExponential):
             coefficients = _fitted(action, psi, flow, m, self.order)
         else:
             coefficients = [series.coefficient(k) for k in range(1, self.order + 1)]
-        local = _Polynomial(coefficients)
+        local = _Polynomial(action, m, coefficients)
         if error_terms:
             step = step_series(action, local, m, self.order + error_terms)
             local.defects = tuple(
@@ -143,7 +140,8 @@ class LieTaylor(OneExponential):
 class _Polynomial(LocalStep):
     """xi(h) = xi_1 h + ... + xi_n h^n."""
 
-    def __init__(self, coefficients: Sequence[Values]) -> None:
+    def __init__(self, action: Action, m: Values, coefficients: Sequence[Values]) -> None:
+        super().__init__(action, m)
         self.coefficients = coefficients
 
     def factors(self, h: Values) -> Factors:

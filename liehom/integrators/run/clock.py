@@ -30,10 +30,10 @@ def has_clock(local: LocalStep) -> bool:
 
     Examples
     --------
-    >>> has_clock(LocalStep(lambda h: ()))
+    >>> has_clock(LocalStep(None, np.zeros(2)))
     False
     """
-    return type(local).time is not LocalStep.time
+    return bool(local.clock)
 
 
 def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
@@ -42,7 +42,7 @@ def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
     Examples
     --------
     >>> import numpy as np
-    >>> runs, passed = clock_at(LocalStep(lambda h: ()), np.array(0.1))
+    >>> runs, passed = clock_at(LocalStep(None, np.zeros(2)), np.array(0.1))
     >>> bool(runs), float(passed)
     (True, 0.1)
     """
@@ -70,7 +70,7 @@ def size_for(local: LocalStep, time: Array, guess: Array) -> Array:
     Examples
     --------
     >>> import numpy as np
-    >>> size_for(LocalStep(lambda h: ()), np.array([0.5]), np.array([1.0])).tolist()
+    >>> size_for(LocalStep(None, np.zeros(2)), np.array([0.5]), np.array([1.0])).tolist()
     [0.5]
     """
     if not has_clock(local):
@@ -122,7 +122,7 @@ def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Arr
     Examples
     --------
     >>> import numpy as np
-    >>> [float(x) for x in fitted(LocalStep(lambda h: ()), np.array(0.5), np.array(0.25), halve=False)]
+    >>> [float(x) for x in fitted(LocalStep(None, np.zeros(2)), np.array(0.5), np.array(0.25), halve=False)]
     [0.25, 0.25, 1.0, 1.0]
     """
     runs, passed = clock_at(local, h)

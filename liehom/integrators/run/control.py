@@ -217,11 +217,13 @@ def unsolvable(local: LocalStep, h: Array, where: BooleanArray) -> BooleanArray:
     Examples
     --------
     >>> import numpy as np
-    >>> def factors(h):
+    >>> import liehom as lh
+    >>> def point(h):
     ...     if np.any(h > 1):
     ...         raise ConvergenceError("too large")
-    ...     return (h,)
-    >>> unsolvable(LocalStep(factors), np.array([0.5, 2.0, 0.7]), np.array([True, True, True])).tolist()
+    ...     return np.zeros((3, 2))
+    >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros((3, 2)), point=point)
+    >>> unsolvable(local, np.array([0.5, 2.0, 0.7]), np.array([True, True, True])).tolist()
     [False, True, False]
     """
     found = np.zeros(np.size(h), dtype=bool)
@@ -244,7 +246,7 @@ def unsolvable(local: LocalStep, h: Array, where: BooleanArray) -> BooleanArray:
 
 def _is_solvable(local: LocalStep, h: Array) -> bool:
     try:
-        local.factors(h[..., None])
+        local.point(h[..., None])
     except (ConvergenceError, np.linalg.LinAlgError):
         return False
     return True

@@ -11,7 +11,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import ConvergenceError, ShapeError
 from liehom.homogeneous import Action
 from liehom.integrators.run.clock import size_for
@@ -103,18 +103,18 @@ class DenseSolution:
         elapsed = np.where(size != 0, time - start, 0)
         ends = _rows(self._times, index + 1) == time
         s = elapsed if self._nominal else size_for(local, elapsed, size)
-        made = self._step_to(local, np.where(ends, size, s), size, point)
+        made = self._step_to(local, np.where(ends, size, s), size)
         made = np.where((elapsed == 0)[..., None], point, made)
         return np.where(ends[..., None], _rows(self._points, (index + 1)[..., None]), made)
 
-    def _step_to(self, local: LocalStep, s: Array, size: Array, point: Array) -> Array:
+    def _step_to(self, local: LocalStep, s: Array, size: Array) -> Array:
         made: Any
         try:
-            made = apply_factors(self._action, local.factors(s[..., None]), point)
+            made = local.point(s[..., None])
         except (ConvergenceError, np.linalg.LinAlgError):
             # an implicit step that is continued beyond its ends need not have a solution
             outside = (s * np.sign(size) < 0) | (np.abs(s) > np.abs(size))
-            made = apply_factors(self._action, local.factors(np.where(outside, 0, s)[..., None]), point)
+            made = local.point(np.where(outside, 0, s)[..., None])
             made = np.where(outside[..., None], np.nan, made)
         points: Array = made
         return points

@@ -11,8 +11,7 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.step import LocalStep, apply_factors
-from liehom.homogeneous import Action
+from liehom.correctors.step import LocalStep
 from liehom.integrators.run.clock import size_for
 from liehom.typing import Array, BooleanArray
 
@@ -26,7 +25,6 @@ class StepProposal:
 
     Attributes
     ----------
-    action : Action
     local : LocalStep
     t, m : arrays of shape (...,) and (..., N)
         Times and points before the step.
@@ -43,14 +41,13 @@ class StepProposal:
     --------
     >>> import liehom as lh
     >>> action, m, t, yes = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0]), np.array(0.0), np.array(True)
-    >>> local = LocalStep(lambda h: (h * np.array([1.0]),))
+    >>> local = LocalStep(action, m, lambda h: (h * np.array([1.0]),))
     >>> made = action.act(np.array([0.5]), m)
-    >>> proposal = StepProposal(action, local, t, m, t + 0.5, t + 0.5, made, yes, yes, nominal=False)
+    >>> proposal = StepProposal(local, t, m, t + 0.5, t + 0.5, made, yes, yes, nominal=False)
     >>> proposal.point(np.array(0.25), yes).round(6).tolist() == [round(np.cos(0.25), 6), round(np.sin(0.25), 6)]
     True
     """
 
-    action: Action
     local: LocalStep
     t: Array
     m: Array
@@ -72,7 +69,7 @@ class StepProposal:
         passed = s if self.nominal else self.local.time(s)
         low, high = np.minimum(self.t, self.after), np.maximum(self.t, self.after)
         t = np.where(s == self.h, self.after, np.clip(self.t + passed, low, high))
-        point: Any = apply_factors(self.action, self.local.factors(s[..., None]), self.m)
+        point: Any = self.local.point(s[..., None])
         return t, point
 
     def point(self, time: Array, here: BooleanArray) -> Array:

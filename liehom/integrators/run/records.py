@@ -275,7 +275,7 @@ def near_cone(local: LocalStep, h: Array) -> BooleanArray:
 
     Examples
     --------
-    >>> near_cone(LocalStep(lambda h: ()), np.array([0.1, 0.2])).tolist()
+    >>> near_cone(LocalStep(None, np.zeros(2)), np.array([0.1, 0.2])).tolist()
     [False, False]
     """
     inner = local.base if isinstance(local, ConservingStep) else local

@@ -19,7 +19,7 @@ import numpy as np
 from liehom.correctors.conserving import ConservingStep
 from liehom.correctors.expansion import flow_series
 from liehom.correctors.isotropy.corrected import CorrectedStep
-from liehom.correctors.step import Generator, LocalStep, Step, apply_factors
+from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.disk import digest
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
@@ -254,7 +254,7 @@ class Run:
         size = self._size(local, estimate is not None) if self.options.dt is None else self.options.dt
         h, after, last = self._fitted(local, size)
         self.tried = local, h
-        made = apply_factors(self.action, local.factors(h[..., None]), now.m)
+        made: Any = local.point(h[..., None])
         moves = now.active
         if estimate is not None:
             moves = moves & self._judged(estimate(h[..., None]), h, local.estimate_order)  # type: ignore[attr-defined]
@@ -274,7 +274,7 @@ class Run:
             h, after = np.where(moves, h, 0), np.where(moves, after, now.t)
             made = np.where(moves[..., None], made, now.m)
         made = made.astype(self.dtype, copy=False)
-        return StepProposal(self.action, local, now.t, now.m, h, after, made, moves, last, self.options.nominal)
+        return StepProposal(local, now.t, now.m, h, after, made, moves, last, self.options.nominal)
 
     # -- step sizes --------------------------------------------------------------------------------------
     def _size(self, local: LocalStep, embedded: bool) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.correctors import Generator, apply_factors
+from liehom.correctors import Generator
 from tests.correctors.support import OMEGA, one_step, quadratic, rigid_body, spin, unit
 
 
@@ -29,7 +29,7 @@ def stepper(field: lh.GeneratorField, step: Any, dimension: int, exponential: An
 
     def one(m: Any, t: Any, h: Any) -> Any:
         local = step.at(action, psi, m, t[..., None])
-        return apply_factors(action, local.factors(h[..., None]), m), local.time(h)
+        return local.point(h[..., None]), local.time(h)
 
     return one
 

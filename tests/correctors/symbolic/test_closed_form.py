@@ -43,9 +43,6 @@ class PaperSy4(OneExponential):
 
     order = 4
 
-    def generator(self, action: Any, psi: Any, m: Any, t: Any, h: Any) -> Any:
-        return self.at(action, psi, m, t).factors(h)[0]
-
     def at(self, action: Any, psi: Any, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
         flow = flow_series(psi.field, m, 4, t[..., 0])
         w, w1, w2, w3 = (flow.psi(k) * factor for k, factor in enumerate((1, 1, 2, 6)))
@@ -55,7 +52,7 @@ class PaperSy4(OneExponential):
 
         third = w2 / 6 + (dot(w, w) * w + dot(w2, m) * m) / 12
         fourth = w3 / 24 + dot(w1, w) * w / 8
-        return LocalStep(lambda h: (h * w + h**2 * (w1 / 2) + h**3 * third + h**4 * fourth,))
+        return LocalStep(action, m, lambda h: (h * w + h**2 * (w1 / 2) + h**3 * third + h**4 * fourth,))
 
 
 # name: generator, base step, the order to which the correction raises, the paper's formula

@@ -30,7 +30,7 @@ def order_two(bracket_sign: int, rng: random.Random) -> tuple[Any, Any, Any, Any
     flow = flow_series(FIELD, POINT, 2)
     first, second = isotropy(rng), isotropy(rng)
     x2 = flow.psi(1) + bracket_sign * ACTION.bracket(flow.psi(0), first) + second
-    local = LocalStep(lambda h: (h * (flow.psi(0) + first) + h * h * x2 / 2,))
+    local = LocalStep(ACTION, POINT, lambda h: (h * (flow.psi(0) + first) + h * h * x2 / 2,))
     return flow.point(2), step_series(ACTION, local, POINT, 2).coefficient(2), first, x2
 
 

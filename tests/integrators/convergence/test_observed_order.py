@@ -56,22 +56,18 @@ class Broken(lh.Step):
     def order(self) -> int:
         return self.right.order
 
-    def factors(self, action: Any, psi: Any, m: Any, t: Any, h: Any) -> tuple[Any, ...]:
-        return self.at(action, psi, m, t).factors(h)
-
     def at(self, action: Any, psi: Any, m: Any, t: Any, *, error_terms: int = 0) -> LocalStep:
         return BrokenLocal(self, self.right.at(action, psi, m, t))
 
 
 class BrokenLocal(LocalStep):
     def __init__(self, step: Broken, local: Any) -> None:
+        clock = tuple((k, step.clock * c) for k, c in local.clock)
+        super().__init__(local.action, local.m, clock=clock)
         self.step, self.local = step, local
 
     def factors(self, h: Any) -> tuple[Any, ...]:
         return (self.local.base.factors(h)[0] + self.step.factor * self.local.correction.generator(h),)
-
-    def time(self, h: Any) -> Any:
-        return h + self.step.clock * (self.local.time(h) - h)
 
 
 # -- orders that are right -------------------------------------------------------------------------------

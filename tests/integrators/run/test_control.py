@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import liehom as lh
 from liehom.correctors.step import LocalStep
 from liehom.errors import ConvergenceError
 from liehom.integrators.run import control
@@ -102,14 +103,17 @@ def test_bounds_of_a_size() -> None:
     assert bool(is_large_enough(np.array(1e-5), 1e-3, 1e-6))  # the end is nearer than the smallest size
 
 
+ACTION = lh.Action(lh.defining(lh.so(2)))
+
+
 def solvable_below(limits: Any, calls: list[Any]) -> LocalStep:
-    def factors(h: Any) -> tuple[Any]:
+    def point(h: Any) -> Any:
         calls.append(h)
         if np.any(h[..., 0] > limits):
             raise ConvergenceError("too large")
-        return (h,)
+        return h
 
-    return LocalStep(factors)
+    return LocalStep(ACTION, np.zeros(1), point=point)
 
 
 @pytest.mark.parametrize("shape", [(8,), (2, 4)])
@@ -133,13 +137,13 @@ def test_only_the_trajectories_asked_for_are_tried() -> None:
 
 
 def test_trajectories_that_fail_together_only_are_all_named() -> None:
-    def factors(h: Any) -> tuple[Any]:
+    def point(h: Any) -> Any:
         if np.count_nonzero(h) > 1:
             raise np.linalg.LinAlgError("singular")
-        return (h,)
+        return h
 
     where = np.array([True, True, False])
-    assert unsolvable(LocalStep(factors), np.ones(3), where).tolist() == where.tolist()
+    assert unsolvable(LocalStep(ACTION, np.zeros(1), point=point), np.ones(3), where).tolist() == where.tolist()
 
 
 def test_the_number_of_trials_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
