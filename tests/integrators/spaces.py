@@ -95,6 +95,11 @@ def make(name: str) -> Space:
         case "H^3":
             # a quadratic field on a hyperboloid escapes in finite time if it is not slow
             return Space(lh.defining(lh.so(3, 1)), hyperboloid(rng), 3, speed=0.125)
+        case "V_2(R^4)":
+            # pairs of orthonormal vectors of R^4, one after the other in R^8
+            single = lh.defining(lh.so(4))
+            rho = single.direct_sum(single)
+            return Space(rho, moved(rho, [1, 0, 0, 0, 0, 1, 0, 0], rng), 5)
         case "two coupled spins":
             single = lh.defining(lh.so(3))
             two = [np.kron(np.diag(e), np.array(a.to_numpy())) for e in ([1, 0], [0, 1]) for a in single.matrices]
