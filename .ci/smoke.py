@@ -54,7 +54,7 @@ euler = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / np.array([1.0, 2.
 start = [0.6, 0.0, 0.8]
 step = lh.Corrected(lh.Euler(), order=4)
 eager = lh.integrate(euler, (0, 1), start, step=step, dt=0.05)
-compiled = lh.integrate(euler, (0, 1), start, step=step, dt=0.05, compile="llvm")
+compiled = lh.integrate(euler, (0, 1), start, step=step, dt=0.05, engine="llvm")
 expect("compiled run", bool(np.allclose(eager.y, compiled.y, rtol=0, atol=1e-13)), True)
 adaptive = lh.integrate(euler, (0, 1), start, rtol=1e-8, atol=1e-8, dense_output=True)
 expect("adaptive run", bool(np.allclose(adaptive.y[:, -1], eager.y[:, -1], atol=1e-5)), True)

@@ -171,6 +171,7 @@ if TYPE_CHECKING:
     from liehom.integrators import Euler as Euler
     from liehom.integrators import Heun as Heun
     from liehom.integrators import LieTaylor as LieTaylor
+    from liehom.integrators import Propagator as Propagator
     from liehom.integrators import Solution as Solution
     from liehom.integrators import Tableau as Tableau
     from liehom.integrators import integrate as integrate
@@ -281,7 +282,7 @@ _NAMES = {
         "range_condition relative_invariant structure_name symmetric_strata"
     ),
     "liehom.integrators": (
-        "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor RKMK Solution Tableau "
+        "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK Solution Tableau "
         "integrate integrate_ensemble observed_order tableau"
     ),
     "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",

@@ -66,7 +66,18 @@ WINGS: dict[str, tuple[str, ...]] = {
         "decide",
     ),
     "correctors": ("step", "expansion", "points", "isotropy", "conserving", "symbolic"),
-    "integrators": ("tableaux", "run", "methods", "compiled", "integration", "ensembles", "convergence"),
+    "integrators": (
+        "tableaux",
+        "run",
+        "methods",
+        "engine",
+        "compiled",
+        "arguments",
+        "propagator",
+        "integration",
+        "ensembles",
+        "convergence",
+    ),
     "instances": ("spheres", "rigid_body", "spins", "sym_conjugation", "isospectral"),
 }
 

@@ -138,7 +138,7 @@ def _convergence(folder: Path) -> list[tuple[str, ConvergenceTable]]:
 
 
 def _tour_of_integration(folder: Path) -> None:
-    from liehom.integrators.integration import without_order_warning
+    from liehom.integrators.propagator import without_order_warning
 
     print(
         "\n5. Integration: a rigid body on the sphere by Euler's step, and by the same step corrected to order 4 along"

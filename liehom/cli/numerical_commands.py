@@ -74,9 +74,10 @@ def integrate(
     max_steps: Annotated[
         int | None, typer.Option(metavar="N", help="Maximum number of steps per trajectory (default: 10000000).")
     ] = None,
-    compile: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Compiler of the step: llvm or jax (default: none).")
-    ] = None,
+    engine: Annotated[
+        str,
+        typer.Option("--engine", "--compile", metavar="NAME", help="Engine that makes the steps: numpy, llvm or jax."),
+    ] = "numpy",
     force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it exists.")] = False,
     json: JsonOption = False,
 ) -> None:
@@ -87,7 +88,7 @@ def integrate(
         from liehom.cli.run_integrate import Output, run_integrate
 
         given = ProblemOptions(t_span, dt, base, order, rtol, atol, exponential, clock)
-        return run_integrate(file, given, Output(out, plot, checkpoint, force, json, progress, max_steps, compile))
+        return run_integrate(file, given, Output(out, plot, checkpoint, force, json, progress, max_steps, engine))
 
     run(action)
 

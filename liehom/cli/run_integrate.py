@@ -32,7 +32,7 @@ FORMS_UP_TO = 50
 @final
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Options for the output: files, whether they may be replaced, progress, and the compiler of the step."""
+    """Options for the output: files, whether they may be replaced, progress, and the engine."""
 
     out: str | None = None
     plot: str | None = None
@@ -41,7 +41,7 @@ class Output:
     as_json: bool = False
     progress: bool | None = None
     max_steps: int | None = None
-    compile: str | None = None
+    engine: str = "numpy"
 
     def checked(self, file: str) -> Output:
         """The options with the name of the .npz file; raises an error if a file could not be written later."""
@@ -62,12 +62,12 @@ def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
     """Integrate, write the files, print the table and the report; returns the exit code."""
     import numpy as np
 
-    from liehom.integrators.integration import without_order_warning
+    from liehom.integrators.propagator import without_order_warning
 
     output = wanted.checked(file)
     problem = problem_of(file, given)
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
-    options["compile"] = output.compile
+    options["engine"] = output.engine
     options["dense_output"] = output.plot is not None
     options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
     try:

@@ -1,14 +1,17 @@
 """Methods of integration: coefficients, steps, runs, compiled runs, ensembles and measured orders.
 
 In reading order, `tableaux` has Runge-Kutta coefficients that prove their order, `methods` the steps of Lie group
-methods, `run` the loop over steps, and `compiled` its fast path. `integration` has `integrate`, `ensembles` cuts
-ensembles into chunks for any executor, and `convergence` measures orders. See docs/tutorials/integrating.md.
+methods, `run` the loop over steps, `engine` says what an engine is, and `compiled` has those that compile. `propagator`
+has `Propagator`, `integration` has `integrate`, `ensembles` cuts ensembles into chunks for any executor, and
+`convergence` measures orders. See docs/tutorials/integrating.md.
 """
 
 from liehom.integrators.convergence import ConvergenceTable as ConvergenceTable
 from liehom.integrators.convergence import Reference as Reference
 from liehom.integrators.convergence import observed_order as observed_order
 from liehom.integrators.convergence import orbit_distance as orbit_distance
+from liehom.integrators.engine import Engine as Engine
+from liehom.integrators.engine import Problem as Problem
 from liehom.integrators.ensembles import EnsemblePart as EnsemblePart
 from liehom.integrators.ensembles import ensemble_parts as ensemble_parts
 from liehom.integrators.ensembles import integrate_ensemble as integrate_ensemble
@@ -26,6 +29,7 @@ from liehom.integrators.methods import ProductStep as ProductStep
 from liehom.integrators.methods import Scheme as Scheme
 from liehom.integrators.methods import step_named as step_named
 from liehom.integrators.methods import step_names as step_names
+from liehom.integrators.propagator import Propagator as Propagator
 from liehom.integrators.run import ConservationReport as ConservationReport
 from liehom.integrators.run import DenseSolution as DenseSolution
 from liehom.integrators.run import Report as Report

@@ -140,7 +140,7 @@ class Expr:
             return bool(self.value)
         raise TraceError(
             "the step branches on the value of a number (`if`, `while`, `and`, a comparison used as an index), which "
-            "compiled code does not know: write np.where, or integrate without compile="
+            "compiled code does not know: write np.where, or take engine='numpy'"
         )
 
     def __float__(self) -> float:
@@ -148,7 +148,7 @@ class Expr:
             return float(self.value)
         raise TraceError(
             "the step makes a plain float of a number that compiled code does not know yet (math.sin, float(), an "
-            "entry of a float array): use numpy's functions and np.stack, or integrate without compile="
+            "entry of a float array): use numpy's functions and np.stack, or take engine='numpy'"
         )
 
     if TYPE_CHECKING:

@@ -98,7 +98,7 @@ def _integrated(field: lh.GeneratorField, step: Any) -> Callable[[Any, int], Any
 
     @cache
     def compiled(n: int) -> Any:
-        given: dict[str, Any] = {"step": step, "dt": H, "t_eval": [n * H], "clock": "nominal", "compile": "jax"}
+        given: dict[str, Any] = {"step": step, "dt": H, "t_eval": [n * H], "clock": "nominal", "engine": "jax"}
         return jax.jit(lambda m: lh.integrate(field, (0.0, n * H), m, **given).y)
 
     return lambda m, n: compiled(n)(m)

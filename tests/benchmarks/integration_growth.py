@@ -129,9 +129,9 @@ def _counts(counts: Sequence[int]) -> list[dict[str, Any]]:
     from tests.benchmarks.integration_peers import LADDER, Solver
 
     problem, rows = rigid_body(), []
-    for compile in (None, "llvm"):
-        solver = Solver(LLVM, "E4", integrate("E4", compile), LADDER, fixed=True, lanes=10**9)
+    for engine in ("numpy", "llvm"):
+        solver = Solver(LLVM, "E4", integrate("E4", engine), LADDER, fixed=True, lanes=10**9)
         taken = [cost(problem, solver, n, [], 0.02)["step"] * n for n in counts]
-        name = "numpy" if compile is None else "compiled"
+        name = "numpy" if engine == "numpy" else "compiled"
         rows.append(_row(f"{STEPS['E4'][0]!r} on S², {name}", "N", counts, taken, "µs"))
     return rows

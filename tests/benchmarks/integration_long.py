@@ -56,6 +56,6 @@ def long_runs(*, span: float = 1e4, spins: int = 10_000) -> list[dict[str, Any]]
     many, dt = chain(spins), 0.05
     time = max(2 * dt, span / 1e4 * 10)
     rows += [_one(many, Solver(IN_JIT, n, under_jit(n), (), "jax", True), time, dt, 1) for n in ("T4", "RK4")]
-    rows += [_one(many, Solver(EAGER, n, integrate(n, None), (), fixed=True), time, dt, 1) for n in ("T4", "RK4")]
+    rows += [_one(many, Solver(EAGER, n, integrate(n, "numpy"), (), fixed=True), time, dt, 1) for n in ("T4", "RK4")]
     rows.append(_one(many, LANES_ONE, time, dt / 2, 1))
     return rows

@@ -58,7 +58,9 @@ def reference(problem: Problem, span: float) -> Any:
     except ImportError:
         dt = 0.05 * problem.slow
         y = problem.field, (0.0, span), starts.reshape(-1, *problem.shape)
-        sol = lh.integrate(*y, step=lh.LieTaylor(10), dt=dt, t_eval=times, compile=None if problem.coupled else "llvm")
+        sol = lh.integrate(
+            *y, step=lh.LieTaylor(10), dt=dt, t_eval=times, engine="numpy" if problem.coupled else "llvm"
+        )
         return np.moveaxis(sol.y, -1, 0).reshape(SAMPLES, len(starts), -1)
 
 

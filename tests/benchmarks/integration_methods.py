@@ -1,4 +1,4 @@
-"""liehom on the same problems: without compilation, and with compile="llvm" and compile="jax".
+"""liehom on the same problems: without compilation, and with engine="llvm" and engine="jax".
 
 Points of a compiled run are those of the run on numpy arrays to round-off (which tests hold), so that errors are
 measured once.  Spins that act on each other are not compiled by `integrate`; there a step under ``jax.jit`` stands for
@@ -67,41 +67,41 @@ def step_of(name: str, problem: Problem) -> tuple[Any, str]:
     return STEPS[name]
 
 
-def integrate(name: str, compile: str | None) -> Solve:
+def integrate(name: str, engine: str) -> Solve:
     """`liehom.integrate` with fixed steps."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
         step, exponential = step_of(name, problem)
         sol = lh.integrate(
             problem.field, (0.0, span), _shaped(problem, starts), step=step, dt=setting, exponential=exponential,
-            t_eval=sample_times(span, samples), compile=compile,
+            t_eval=sample_times(span, samples), engine=engine,
         )  # fmt: skip
         return _flat(problem, sol.y, samples)
 
     return solve
 
 
-def adaptive(step: Any, compile: str | None) -> Solve:
+def adaptive(step: Any, engine: str) -> Solve:
     """`liehom.integrate` with adaptive steps."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
         sol = lh.integrate(
             problem.field, (0.0, span), _shaped(problem, starts), step=step, rtol=setting, atol=setting,
-            t_eval=sample_times(span, samples), compile=compile,
+            t_eval=sample_times(span, samples), engine=engine,
         )  # fmt: skip
         return _flat(problem, sol.y, samples)
 
     return solve
 
 
-def exact_orbit(compile: str | None) -> Solve:
+def exact_orbit(engine: str) -> Solve:
     """The rigid body's own step."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
         body = lh.RigidBody([1, 2, 3])
         sol = lh.integrate(
             body.field("o"), (0.0, span), _shaped(problem, starts), step=ExactOrbit(body), dt=setting,
-            exponential="cayley", t_eval=sample_times(span, samples), compile=compile, clock="nominal",
+            exponential="cayley", t_eval=sample_times(span, samples), engine=engine, clock="nominal",
         )  # fmt: skip
         return _flat(problem, sol.y, samples)
 
@@ -149,7 +149,7 @@ def under_jit(name: str) -> Solve:
 
 # -- rows ------------------------------------------------------------------------------------------------
 FEW, MANY = ("E4", "T8", "RK4"), ("E2", "E2 cay", "E4", "E6", "T4", "T6", "T8", "T12", "RK4")
-EAGER, LLVM, JAX = "liehom, numpy", 'liehom, compile="llvm"', 'liehom, compile="jax"'
+EAGER, LLVM, JAX = "liehom, numpy", 'liehom, engine="llvm"', 'liehom, engine="jax"'
 IN_JIT = "liehom, a step under jax.jit"
 ALL, ENDS, LARGE = (1, 10, 10_000), (1, 10_000), (10_000,)
 
@@ -174,7 +174,7 @@ def solvers(problem: Problem) -> list[Solver]:
         made = Solver(LLVM, n, integrate(n, "llvm"), LADDER, "llvmlite", True, counts=ALL if n in FEW else LARGE)
         rows.append(made)
         if n in FEW:
-            rows.append(Solver(EAGER, n, integrate(n, None), LADDER, "numpy", True, made, counts=ENDS))
+            rows.append(Solver(EAGER, n, integrate(n, "numpy"), LADDER, "numpy", True, made, counts=ENDS))
         if (n == "T4" and problem.size <= 10) or (n == "E4" and problem.size == 3):
             rows.append(Solver(JAX, n, integrate(n, "jax"), LADDER, "jax", True, made, counts=ENDS))
     if problem.energy is not None:
@@ -185,7 +185,10 @@ def solvers(problem: Problem) -> list[Solver]:
     rows += _adaptive_solvers(compiled=problem.size <= 10)
     if problem is rigid_body():
         made = Solver(LLVM, "exact orbit", exact_orbit("llvm"), LADDER[:6], "llvmlite", True, counts=ENDS)
-        rows += [made, Solver(EAGER, "exact orbit", exact_orbit(None), LADDER[:6], "numpy", True, made, counts=LARGE)]
+        rows += [
+            made,
+            Solver(EAGER, "exact orbit", exact_orbit("numpy"), LADDER[:6], "numpy", True, made, counts=LARGE),
+        ]
     return rows
 
 
@@ -196,7 +199,7 @@ def _adaptive_solvers(*, compiled: bool) -> list[Solver]:
         ("DOP853", lh.RKMK("dop853"), (1e-3, 1e-6, 1e-9, 1e-12)),
     ):
         made = Solver(LLVM, label, adaptive(step, "llvm"), tolerances, "llvmlite", counts=ENDS, sample=8)
-        eager = Solver(EAGER, label, adaptive(step, None), tolerances, "numpy", False, made if compiled else None,
+        eager = Solver(EAGER, label, adaptive(step, "numpy"), tolerances, "numpy", False, made if compiled else None,
                        counts=(1,), sample=8)  # fmt: skip
         rows += [made, eager] if compiled else [eager]
     return rows
@@ -205,5 +208,5 @@ def _adaptive_solvers(*, compiled: bool) -> list[Solver]:
 def _coupled_solvers() -> list[Solver]:
     made = [Solver(IN_JIT, n, under_jit(n), LADDER, "jax", fixed=True, counts=(1, 10)) for n in ("T4", "RK4", "T8")]
     return made + [
-        Solver(EAGER, x.label, integrate(x.label, None), LADDER, "numpy", True, x, counts=(1, 10)) for x in made
+        Solver(EAGER, x.label, integrate(x.label, "numpy"), LADDER, "numpy", True, x, counts=(1, 10)) for x in made
     ]

@@ -159,8 +159,8 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
         "between settings. If a cost is the same for several errors, a setting coarser than the coarsest tested one "
         "might reach the larger of them.",
         "* Compile time is excluded.",
-        '* The column "call" is the cost of a call besides its steps, per trajectory. With `compile=` it contains the '
-        "trace of the step, and the first and the last step, which run on numpy arrays.",
+        '* The column "call" is the cost of a call besides its steps, per trajectory. With a compiled engine it '
+        "contains the trace of the step, and the first and the last step, which run on numpy arrays.",
         '* The other columns are the cost of the steps. For a program with "in" in the column "call" they contain the '
         "cost of the call too.",
         "* Each cell shows the cheapest method of its row, with its abbreviation:",

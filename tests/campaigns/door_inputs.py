@@ -614,13 +614,13 @@ def door_integrate(rng: random.Random) -> tuple[Call, str]:
         "step",
         "max_steps",
         "progress",
-        "compile",
+        "engine",
     ]
     for _ in range(rng.randrange(1, 3)):
         options[rng.choice(keys)] = rng.choice([odd(rng), number_of(rng), text_of(rng), lh.Euler(), "exp"])
     span = rng.choice([(0, 1), (0, 1), (1, 0), (0, 0), (0, float("inf")), odd(rng)])
     start = rng.choice([[0.6, 0, 0.8], vector_of(rng, 3), matrix_of(rng, 3, 2)])
-    compiled = options.get("compile")
+    compiled = options.get("engine")
     if not (isinstance(compiled, str) and compiled in ("llvm", "jax")):
         psi: Any = rng.choice([["m0", "m1", "2*m2"], [text_of(rng) for _ in range(3)], vector_of(rng, 3), odd(rng)])
     else:

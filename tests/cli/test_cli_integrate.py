@@ -220,12 +220,12 @@ def test_plots_are_drawn(suffix: str, begins: bytes) -> None:
 def test_a_compiled_step_gives_the_same(file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LIEHOM_CACHE_DIR", str(tmp_path / "code"))
     found = []
-    for name, words in (("plain.npz", ()), ("made.npz", ("--compile", "llvm"))):
+    for name, words in (("plain.npz", ()), ("made.npz", ("--engine", "llvm"))):
         result = liehom("integrate", file, "--t-span", "0", "2", "--dt", "0.05", "--out", name, *words)
         assert result.exit_code == (1 if file == SYM3 else 0), result.stderr
         found.append(np.load(name)["y"])
     np.testing.assert_allclose(found[1], found[0], rtol=0, atol=1e-13)
-    refused = liehom("integrate", file, "--dt", "0.05", "--compile", "fortran", "--out", "other.npz")
+    refused = liehom("integrate", file, "--dt", "0.05", "--engine", "fortran", "--out", "other.npz")
     assert refused.exit_code == 2 and "fortran" in refused.stderr and "other.npz" not in written()
 
 

@@ -16,8 +16,8 @@ import liehom as lh
 from liehom.errors import InputError
 from tests.results.values import Long, Numbers, flat
 
-COMPILED = ("llvm", "numba")
-"""Names of the compiler of steps: as it is now, and in 0.1.0."""
+COMPILED = ({"engine": "llvm"}, {"compile": "numba"})
+"""The option for compiled steps: as it is now, and in 0.1.0."""
 WEIGHTS = np.array([1.0, 0.5, 0.25])
 START = np.array([0.6, 0.0, 0.8])
 
@@ -109,21 +109,22 @@ stop.terminal = True  # type: ignore[attr-defined]
 
 # -- runs ------------------------------------------------------------------------------------------------
 @functools.cache
-def compiler() -> str:
-    """The name of the compiler in this version; its machine code goes to a folder of this run."""
+def compiler() -> dict[str, str]:
+    """The option for compiled steps of this version; their machine code goes to a folder of this run."""
     os.environ["LIEHOM_CACHE_DIR"] = tempfile.mkdtemp()
     field, start = PROBLEMS["body"]()
-    for name in COMPILED:
+    for option in COMPILED:
         try:
-            lh.integrate(field, (0, 0.2), start, step=lh.Euler(), dt=0.1, compile=name)
-        except InputError:
+            lh.integrate(field, (0, 0.2), start, step=lh.Euler(), dt=0.1, **option)
+        except (InputError, TypeError):
             continue
-        return name
+        return option
     raise RuntimeError("no compiler of steps has a name that is known here")
 
 
 def completed(options: dict[str, Any]) -> dict[str, Any]:
-    return {**options, "compile": compiler()} if options.get("compile") else options
+    kept = {name: value for name, value in options.items() if name != "compile"}
+    return {**kept, **compiler()} if options.get("compile") else kept
 
 
 def solved(problem: str, step: str, span: tuple[float, float], **options: Any) -> dict[str, Any]:

@@ -299,7 +299,7 @@ def needs_one(matrix: Values) -> None:
     if type(matrix) is Traced:
         raise TraceError(
             "several first integrals at once need a singular value decomposition, which is not compiled: conserve one, "
-            "or integrate without compile="
+            "or take engine='numpy'"
         )
 
 

@@ -23,7 +23,7 @@ from liehom.homogeneous.fields.components import joined
 from liehom.instances.spins.joint_spins import JointSpins
 from liehom.instances.spins.spin_lattice import SpinLattice
 from liehom.integrators import Solution, integrate
-from liehom.integrators.run.options import SingleRunOptions
+from liehom.integrators.arguments import SingleRunOptions
 from liehom.representations import adjoint
 from liehom.typing import Array, Real, Values
 

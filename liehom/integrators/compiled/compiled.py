@@ -15,16 +15,17 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.correctors.conserving import Conserving
-from liehom.errors import InputError, displayed
+from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.run import Run
+from liehom.integrators.run.solution import Solution
 from liehom.tracing import Kernel, StepGraph, lanes_per_register, needed, padded
 from liehom.typing import Array, IntegerArray
 
-BACKENDS = ("llvm", "jax")
 SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
 """Operations between two loops up to which code is short, and from which on it is long."""
 PATH_BYTES_PER_CALL = 64_000_000
@@ -39,6 +40,23 @@ LANE_STEPS_FOR_THREADS = 50_000
 """Steps of a call, summed over lanes, from which on threads share the blocks."""
 
 
+@final
+class LlvmEngine:
+    """The engine "llvm", which makes ordinary steps by code of LLVM and the others in numpy.
+
+    Examples
+    --------
+    >>> LlvmEngine().name
+    'llvm'
+    """
+
+    name = "llvm"
+
+    def solve(self, problem: Problem) -> Solution:
+        """The solution of a problem."""
+        return executed(problem, lambda run: compiled_steps(run, self.name))
+
+
 def compiled_steps(run: Run, backend: str) -> FastPath:
     """The fast path of a run, a function that makes ordinary steps of it and returns whether there are more to be made.
 
@@ -50,19 +68,16 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
     Raises
     ------
     InputError
-        If the backend is unknown, or the run has something that is not compiled.
+        If the run has something that is not compiled.
     TraceError
         If the step cannot be compiled.
     """
-    if not isinstance(backend, str) or backend not in BACKENDS:
-        old = isinstance(backend, str) and backend == "numba"
-        hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if old else ""
-        known = ", ".join(map(repr, BACKENDS))
-        raise InputError(f"compile is {displayed(backend)}, expected one of {known}, or None{hint}")
     if run.events is not None:
-        raise InputError(f"compile={backend!r} does not look for events: integrate without compile=")
+        raise InputError(f"engine={backend!r} does not look for events: take engine='numpy'")
     if run.dtype != np.float64:
-        raise InputError(f"compile={backend!r} computes in float64, the start is of type {run.dtype}")
+        raise InputError(
+            f"engine={backend!r} computes in float64, the start is of type {run.dtype}: take engine='numpy'"
+        )
     dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
     points = run.start.reshape(-1, run.start.shape[-1])
     groups, kept_order = [], None

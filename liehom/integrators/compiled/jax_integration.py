@@ -8,22 +8,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import ceil
-from typing import Any
+from typing import Any, final
 
 import numpy as np
-import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import Step
 from liehom.errors import InputError
-from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.fields.field import check_point
+from liehom.homogeneous import Action
+from liehom.integrators.compiled.compiled import compiled_steps
 from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.clock import SLACK
-from liehom.integrators.run.options import ORDER_NOT_KEPT, Span
+from liehom.integrators.run.options import ORDER_NOT_KEPT, Options, Span
 from liehom.integrators.run.records import time_of
 from liehom.integrators.run.solution import Report, Solution
-from liehom.series.arrays import is_traced
+from liehom.series.arrays import is_jax, is_traced
 from liehom.tracing import StepGraph
 from liehom.tracing.jax_code import JaxArray, evaluate_with_jax
 from liehom.typing import Array
@@ -35,29 +35,38 @@ LOSSES = ("unkept", "failed", "near")
 """Numbers of a corrected step on its order: the largest of the first one is stored, the others are summed up."""
 
 
-def integrate_on_jax(
-    action: Action, field: GeneratorField, step: Step, span: Span, y0: npt.ArrayLike, dt: float, times: Array,
-    *, nominal: bool,
-) -> Solution:  # fmt: skip
-    """The solution at given times, with JAX arrays for t and y.
+@final
+class JaxEngine:
+    """The engine "jax", which makes ordinary steps of numpy arrays, and all steps of JAX arrays, by code of JAX.
+
+    Examples
+    --------
+    >>> JaxEngine().name
+    'jax'
+    """
+
+    name = "jax"
+
+    def solve(self, problem: Problem) -> Solution:
+        """The solution of a problem, with JAX arrays if the start is one."""
+        if is_jax(problem.start):
+            return integrate_on_jax(problem)
+        return executed(problem, lambda run: compiled_steps(run, self.name))
+
+
+def integrate_on_jax(problem: Problem) -> Solution:
+    """The solution at the times `t_eval`, or at the initial and the final time, with JAX arrays for t and y.
 
     Parameters
     ----------
-    action : Action
-    field : GeneratorField
-    step : Step
-    span : (float, float)
-    y0 : JAX array of shape (..., N)
-        If JAX traces it, its points are assumed to be on orbits of the largest dimension.
-    dt : float
-    times : array of shape (k,)
-        In the direction of integration.
-    nominal : bool
+    problem : Problem
+        Whose start is a JAX array of float64. If JAX traces it, its points are assumed to be on orbits of the largest
+        dimension.
 
     Raises
     ------
     InputError
-        If y0 is not of type float64 (see ``jax.config.update("jax_enable_x64", True)``).
+        If the problem has no fixed step size, or has events, dense output or a checkpoint.
     TraceError
         If the step cannot be compiled.
 
@@ -69,25 +78,20 @@ def integrate_on_jax(
     """
     from jax import numpy as jnp
 
-    start: Any = y0
-    if start.dtype != np.float64:
-        raise InputError(
-            f"compile='jax' computes in float64, the start is of type {start.dtype}: "
-            'jax.config.update("jax_enable_x64", True)'
-        )
-    n = field.representation.size
-    if start.ndim == 0 or start.shape[-1] != n:
-        raise InputError(f"a point has {n} coordinates (on its last axis), got shape {start.shape}")
+    action, step, span, nominal = problem.action, problem.step, problem.span, problem.options.nominal
+    dt, times = _fixed_size(problem.options), _output_times(problem)
+    start: Any = problem.start
+    n = start.shape[-1]
     known = None if is_traced(start) else np.asarray(start).reshape(-1, n)
     points = np.random.default_rng(0).normal(size=(16, n)) if known is None else known
-    dimensions = np.unique(check_point(field.representation, points))
-    if known is not None and len(dimensions) > 1:
+    dimensions = np.unique(problem.orbit_dimension)
+    if len(dimensions) > 1:
         raise InputError(
             "trajectories on orbits of several dimensions: integrate them one by one, or from numpy arrays"
         )
     dimension = int(dimensions.max())
     ends = float(span[0]), float(span[1])
-    graph = traced_step(action, field, step, points, dimension, ends=ends, nominal=nominal)
+    graph = traced_step(action, problem.field, step, points, dimension, ends=ends, nominal=nominal)
     found, taken, seen = _through(graph, jnp.moveaxis(start, -1, 0), span, dt, times)
     y: Any = jnp.moveaxis(jnp.moveaxis(found, 0, -1), 0, -2)
     t: Any = jnp.asarray(times)
@@ -111,6 +115,29 @@ def integrate_on_jax(
         report=report,
         statuses=statuses if start.ndim > 1 or is_traced(statuses) else status,
     )
+
+
+def _fixed_size(options: Options) -> float:
+    """The step size of all trajectories."""
+    possible = options.events is None and not options.dense_output and options.checkpoint is None
+    if options.dt is None or not possible:
+        raise InputError(
+            "integrate on JAX arrays takes fixed steps (give dt), and no events, dense output or checkpoints: from "
+            "numpy arrays engine='jax' adapts steps too"
+        )
+    sizes = np.unique(options.dt)
+    if len(sizes) != 1:
+        raise InputError("integrate on JAX arrays takes one step size dt for all trajectories: take jax.vmap, or numpy")
+    return float(sizes[0])
+
+
+def _output_times(problem: Problem) -> Array:
+    """Times of `t_eval`, by default the initial and the final time."""
+    span, times = problem.span, problem.options.t_eval
+    if times is not None:
+        return times
+    ends: Array = np.unique(np.array(span, dtype=np.float64))
+    return ends[:: 1 if span[1] >= span[0] else -1]
 
 
 def _report(action: Action, step: Step, dimension: int, *, nominal: bool) -> Report:

@@ -70,7 +70,7 @@ def traced_step(
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
         raise TraceError(
             f"{step!r} cannot be compiled for this field, because its code does not run on traced numbers "
-            f"({type(error).__name__}: {error}): write psi with numpy functions, or integrate without compile="
+            f"({type(error).__name__}: {error}): write psi with numpy functions, or take engine='numpy'"
         ) from error
 
 

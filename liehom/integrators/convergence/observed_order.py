@@ -21,7 +21,9 @@ from liehom.homogeneous import GeneratorField
 from liehom.integrators.convergence.convergence_table import MARGIN, NAN, ConvergenceTable
 from liehom.integrators.convergence.orbit_error import orbit_distance
 from liehom.integrators.convergence.reference import Reference
+from liehom.integrators.engine import Engine
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, all_solved
+from liehom.integrators.propagator import engine_option
 from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike
@@ -37,6 +39,7 @@ def observed_order(
     t_span: Iterable[float] = (0.0, 1.0),
     exponential: ExponentialLike = "exp",
     clock: str = "corrected",
+    engine: str | Engine = "numpy",
     compile: str | None = None,
     reference: Reference | None = None,
     executor: ExecutorLike = None,
@@ -55,7 +58,7 @@ def observed_order(
         Step sizes; halvings are best.
     t_span : (float, float)
         Errors are measured at its end, by default t = 1 from t = 0. Choose it so that a point moves by about |m|.
-    exponential, clock, compile
+    exponential, clock, engine, compile
         As for `integrate`. With clock="nominal" the trajectory is compared at the nominal time.
     reference : Reference, optional
         The exact solution through (t_span[0], y0); by default it is computed in extended precision.
@@ -94,7 +97,8 @@ def observed_order(
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
     if reference is not None and not isinstance(reference, Reference):
         raise InputError(f"reference is {reference!r}, expected a liehom.integrators.Reference")
-    options = {"step": step, "exponential": exponential, "clock": clock, "compile": compile}
+    chosen = engine_option(engine, compile, stacklevel=3)
+    options = {"step": step, "exponential": exponential, "clock": clock, "engine": chosen}
     problems = [EnsembleProblem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
     if all(run.status == -1 for run in runs):

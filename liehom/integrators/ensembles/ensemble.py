@@ -17,9 +17,10 @@ import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
+from liehom.integrators.arguments import EnsembleOptions
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, Fields, solved
 from liehom.integrators.ensembles.merging import from_shard, merged, to_shard
-from liehom.integrators.run.options import EnsembleOptions
+from liehom.integrators.propagator import engine_option
 from liehom.integrators.run.points import points_of
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.solution import Solution, warn_of_order
@@ -116,6 +117,7 @@ def integrate_ensemble(
     ((20, 3, 2), True)
     """
     given: Any = y0
+    options = _renamed(options, stacklevel=4)
     with Progress(progress) as shown:
         parts: list[EnsemblePart] = []
         for part in ensemble_parts(
@@ -182,7 +184,8 @@ def ensemble_parts(
         raise ShapeError(f"y0 has shape {start.shape}, expected an ensemble, (n, ..., N); one run is `integrate`'s")
     if isinstance(chunk, bool) or not isinstance(chunk, int | np.integer) or chunk < 1:
         raise InputError(f"chunk is {chunk!r}, expected the number of trajectories of a task")
-    problem = EnsembleProblem(field, t_span, start, _checked(parameters, field, len(start)), dict(options))
+    given = _checked(parameters, field, len(start))
+    problem = EnsembleProblem(field, t_span, start, given, dict(_renamed(options, stacklevel=4)))
     bounds = _bounds(len(start), int(chunk))
     whole = problem.check(bounds)
     kept = None if store is None else open_store(store, problem.fingerprint(whole, bounds))
@@ -232,6 +235,14 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
     kept = open_store(store)
     rows = [(int(m[1]), int(m[2])) for m in (re.fullmatch(r"part-(\d+)-(\d+)", name) for name in kept.names()) if m]
     return (EnsemblePart(*r, from_shard(*kept.load(_name(r)))) for r in sorted(rows))
+
+
+def _renamed(options: EnsembleOptions, stacklevel: int) -> EnsembleOptions:
+    """The options with `engine` in place of its former name `compile`."""
+    renamed = options.copy()
+    if "compile" in renamed:
+        renamed["engine"] = engine_option(options.get("engine", "numpy"), renamed.pop("compile"), stacklevel=stacklevel)
+    return renamed
 
 
 def _checked(parameters: Mapping[str, npt.ArrayLike] | None, field: Fields, n: int) -> dict[str, npt.NDArray[Any]]:

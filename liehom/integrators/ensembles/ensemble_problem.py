@@ -14,7 +14,8 @@ from liehom.errors import InputError, LiehomError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.ensembles.merging import from_shard, to_shard
-from liehom.integrators.integration import integrate, without_order_warning
+from liehom.integrators.integration import integrate
+from liehom.integrators.propagator import without_order_warning
 from liehom.integrators.run.checkpoint import stable_repr
 from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
@@ -95,7 +96,8 @@ class EnsembleProblem(NamedTuple):
 
     def fingerprint(self, whole: GeneratorField, bounds: list[tuple[int, int]]) -> str:
         """Digest that distinguishes this problem from others: numbers, strings, psi at the initial points and near."""
-        texts = [f"{name}={_option_text(value)}" for name, value in sorted(self.options.items()) if name not in ARRAYS]
+        named = sorted(_as_before(name, value) for name, value in self.options.items())
+        texts = [f"{name}={_option_text(value)}" for name, value in named if name not in ARRAYS]
         numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
         parameters = [self.parameters[name] for name in sorted(self.parameters)]
         matrices = [a.to_numpy() for a in whole.representation.matrices]
@@ -157,6 +159,11 @@ def _whole_only(rows: tuple[int, int]) -> ShapeError:
         f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
         "carry one parameter for each trajectory? Pass a function that makes the field, and parameters={'name': array}"
     )
+
+
+def _as_before(name: str, value: object) -> tuple[str, object]:
+    """An option under the name it had in version 0.1.0, whose stores can still be continued."""
+    return ("compile", None if value == "numpy" else value) if name == "engine" else (name, value)
 
 
 def _option_text(value: object) -> str:

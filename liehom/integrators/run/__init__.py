@@ -1,8 +1,8 @@
 """The loop behind `integrate`: steps and their sizes, events, dense output, checkpoints and the result.
 
 `run` is the loop, `state` the part of it that changes from step to step and is saved in checkpoints, `records` the
-path, samples, events and statistics, `solution` the object that users get. `liehom.integrators.integration` and the
-compiled runs use it; see docs/tutorials/integrating.md.
+path, samples, events and statistics, `solution` the object that users get. `liehom.integrators.engine`
+and compiled runs use it; see docs/tutorials/integrating.md.
 """
 
 from liehom.integrators.run.conservation_statistics import ConservationReport as ConservationReport

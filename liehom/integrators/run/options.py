@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeAlias, TypedDict, final
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias, final
 
 import numpy as np
-import numpy.typing as npt
 
-from liehom.correctors.step import ExponentialLike, Step
 from liehom.integrators.run.events import EventFunction
 from liehom.typing import Array, BooleanArray, IntegerArray
 
@@ -38,37 +36,6 @@ TRAJECTORY_MARK, LOST = ", trajectory ", " did not keep it"
 """In a message, the first string precedes the index of the first trajectory, the second one may end it."""
 
 
-class RunOptions(TypedDict, total=False):
-    """Keyword arguments of `integrate` that ensembles and lattices of spins hand on to it."""
-
-    rtol: float
-    atol: float
-    t_eval: npt.ArrayLike | None
-    events: EventFunction | Sequence[EventFunction] | None
-    exponential: ExponentialLike
-    clock: str
-    max_step: float
-    first_step: float | None
-    max_steps: int
-    compile: str | None
-
-
-class EnsembleOptions(RunOptions, total=False):
-    """Keyword arguments of `integrate` that `integrate_ensemble` hands on to it."""
-
-    step: Step | None
-    dt: npt.ArrayLike | None
-
-
-class SingleRunOptions(RunOptions, total=False):
-    """All keyword arguments of `integrate` but `step` and `dt`."""
-
-    dense_output: bool
-    progress: bool | Callable[[float], object]
-    checkpoint: str | os.PathLike[str] | None
-    checkpoint_every: float
-
-
 @final
 @dataclass(frozen=True, slots=True)
 class Options:
@@ -82,6 +49,9 @@ class Options:
         In the direction of integration.
     nominal : bool
         Whether time advances by the parameter of the step rather than by its time reparametrization τ.
+    progress : bool or callable
+    checkpoint : Path or None
+        A file that can be written.
     """
 
     dt: Array | None
@@ -95,6 +65,8 @@ class Options:
     first_step: float | None
     max_steps: float
     checkpoint_every: float
+    progress: bool | Callable[[float], object] = False
+    checkpoint: Path | None = None
 
     @property
     def clock(self) -> str:

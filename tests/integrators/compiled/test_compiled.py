@@ -68,7 +68,7 @@ def a_field(name: str, space: spaces.Space) -> lh.GeneratorField:
 
 def both(field: lh.GeneratorField, span: Any, y0: Any, **options: Any) -> tuple[Any, Any]:
     plain = lh.integrate(field, span, y0, **options)
-    return plain, lh.integrate(field, span, y0, compile="llvm", **options)
+    return plain, lh.integrate(field, span, y0, engine="llvm", **options)
 
 
 def assert_same(plain: Any, made: Any, ulps: int = ULPS) -> None:
@@ -144,7 +144,7 @@ def test_fields_that_depend_on_time() -> None:
 def test_fields_of_least_norm_are_refused_or_agree() -> None:
     field = lh.GeneratorField.from_vector_field(lh.defining(lh.so(3)), lambda m: np.cross(m, m * [1.0, 2.0, 3.0]))
     with pytest.raises(TraceError, match="cannot be compiled"):
-        lh.integrate(field, (0, 1), START, step=lh.Euler(), dt=0.1, compile="llvm")
+        lh.integrate(field, (0, 1), START, step=lh.Euler(), dt=0.1, engine="llvm")
 
 
 def test_orbits_of_several_dimensions_in_one_ensemble() -> None:
@@ -179,7 +179,7 @@ def test_max_steps_ends_a_run_as_without() -> None:
 
 
 def test_progress_and_interruption_keep_what_was_done(tmp_path: Path) -> None:
-    options: dict[str, Any] = {"step": lh.Corrected(lh.Euler(), 2), "dt": 1e-3, "t_eval": [50.0], "compile": "llvm"}
+    options: dict[str, Any] = {"step": lh.Corrected(lh.Euler(), 2), "dt": 1e-3, "t_eval": [50.0], "engine": "llvm"}
     whole = lh.integrate(BODY, (0, 50), START, **options)
     file = tmp_path / "state.npz"
 
@@ -195,7 +195,7 @@ def test_progress_and_interruption_keep_what_was_done(tmp_path: Path) -> None:
 
 def test_results_do_not_depend_on_threads_or_the_number_of_lanes(monkeypatch: pytest.MonkeyPatch) -> None:
     starts = sphere(300)
-    options: dict[str, Any] = {"step": lh.Corrected(lh.Euler(), 3), "dt": 0.01, "t_eval": [4.0], "compile": "llvm"}
+    options: dict[str, Any] = {"step": lh.Corrected(lh.Euler(), 3), "dt": 0.01, "t_eval": [4.0], "engine": "llvm"}
     monkeypatch.setenv("LIEHOM_NUM_THREADS", "1")
     one = lh.integrate(BODY, (0, 4), starts, **options)
     monkeypatch.setenv("LIEHOM_NUM_THREADS", "3")
@@ -209,21 +209,21 @@ def test_results_do_not_depend_on_threads_or_the_number_of_lanes(monkeypatch: py
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"compile": "fortran"}, "expected one of"),
-        ({"compile": "numba"}, 'is "llvm"'),
+        ({"engine": "fortran"}, "expected one of"),
+        ({"engine": "numba"}, 'is "llvm"'),
         ({"events": lambda t, y: y[0]}, "events"),
     ],
     ids=["backend", "former name", "events"],
 )
 def test_what_is_not_compiled_is_refused(options: dict[str, Any], message: str) -> None:
-    given = {"dt": 0.1, "compile": "llvm", **options}
+    given = {"dt": 0.1, "engine": "llvm", **options}
     with pytest.raises(InputError, match=message):
         lh.integrate(BODY, (0, 1), START, **given)
 
 
 def test_extended_floats_are_refused() -> None:
     with pytest.raises(InputError, match="float64"):
-        lh.integrate(BODY, (0, 1), START.astype(np.longdouble), dt=0.1, compile="llvm")
+        lh.integrate(BODY, (0, 1), START.astype(np.longdouble), dt=0.1, engine="llvm")
 
 
 def branching(m: Any) -> Any:
@@ -238,7 +238,7 @@ def plain_floats(m: Any) -> Any:
 def test_a_psi_that_looks_at_values_is_refused_with_the_reason(psi: Any) -> None:
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), psi)
     with pytest.raises(TraceError, match=r"Euler\(\) cannot be compiled for this field"):
-        lh.integrate(field, (0, 1), START, step=lh.Euler(), dt=0.1, compile="llvm")
+        lh.integrate(field, (0, 1), START, step=lh.Euler(), dt=0.1, engine="llvm")
 
 
 # -- machine code ------------------------------------------------------------------------------------------

@@ -37,7 +37,7 @@ STEPS = {
 
 def both(field: lh.GeneratorField, span: Any, y0: Any, backend: str = "llvm", **options: Any) -> tuple[Any, Any]:
     plain = lh.integrate(field, span, y0, **options)
-    return plain, lh.integrate(field, span, y0, compile=backend, **options)
+    return plain, lh.integrate(field, span, y0, engine=backend, **options)
 
 
 def assert_same(plain: Any, made: Any, times: float = ULPS * EPS) -> None:
@@ -226,7 +226,7 @@ def test_an_interrupted_run_goes_on_bit_for_bit(
 ) -> None:
     """Whatever the pauses are in which interruptions are noticed."""
     file, starts = tmp_path / "state.npz", sphere(3)
-    options: dict[str, Any] = {"step": STEPS["Heun to 3"], "dt": dt, "compile": "llvm", "t_eval": [7.3, 50.0]}
+    options: dict[str, Any] = {"step": STEPS["Heun to 3"], "dt": dt, "engine": "llvm", "t_eval": [7.3, 50.0]}
     whole = lh.integrate(BODY, (0, 50), starts, **options)
     monkeypatch.setattr(compiled, "OPERATIONS_PER_CALL", 10_000)
     calls: list[int] = []
@@ -273,7 +273,7 @@ def test_steps_by_jax_agree(step: str) -> None:
 
 def test_what_is_not_compiled_is_refused() -> None:
     with pytest.raises(InputError, match="events"):
-        lh.integrate(BODY, (0, 1), START, step=STEPS["RK45"], events=lambda t, y: y[0], compile="llvm")
+        lh.integrate(BODY, (0, 1), START, step=STEPS["RK45"], events=lambda t, y: y[0], engine="llvm")
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True), pytest.raises(InputError, match="give dt"):
-        lh.integrate(BODY, (0, 1), jax.numpy.asarray(START), step=STEPS["RK45"], compile="jax")
+        lh.integrate(BODY, (0, 1), jax.numpy.asarray(START), step=STEPS["RK45"], engine="jax")

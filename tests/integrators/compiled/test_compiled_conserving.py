@@ -46,7 +46,7 @@ def test_points_values_and_reports_agree(base: str, aim: str) -> None:
 
 
 def test_without_the_correction_it_drifts() -> None:
-    made = lh.integrate(BODY, (0, 3), starts(), step=lh.Heun(), dt=0.1, compile="llvm")
+    made = lh.integrate(BODY, (0, 3), starts(), step=lh.Heun(), dt=0.1, engine="llvm")
     assert np.abs(energy(np.moveaxis(made.y, 1, -1)) - energy(starts())[:, None]).max() > 1e-6
 
 
@@ -55,7 +55,7 @@ def test_a_clock_of_the_base_and_a_given_value() -> None:
     plain, made = both(BODY, (0, 3), sphere(5), step=step, dt=0.1, t_eval=[1.0, 3.0])
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=16 * ULPS * EPS)
     start, value = np.array([0.6, 0.48, 0.64]), float(energy(np.array([0.6, 0.48, 0.64]))) + 1e-6
-    made = lh.integrate(BODY, (0, 1), start, step=Conserving(lh.Heun(), energy, value=value), dt=0.1, compile="llvm")
+    made = lh.integrate(BODY, (0, 1), start, step=Conserving(lh.Heun(), energy, value=value), dt=0.1, engine="llvm")
     assert np.abs(energy(made.y[:, 1:].T) - value).max() <= 4 * EPS
 
 
@@ -96,7 +96,7 @@ def test_a_field_that_vanishes_at_a_time() -> None:
 def test_jax_gives_the_same() -> None:
     step = Conserving(lh.Heun(), energy)
     plain = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1)
-    made = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, compile="jax")
+    made = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, engine="jax")
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=16 * ULPS * EPS)
     assert made.report.conservation.defect <= 4 * EPS
 
@@ -111,7 +111,7 @@ def test_jax_gives_the_same() -> None:
 )
 def test_what_is_not_compiled_is_refused(step: Any) -> None:
     with pytest.raises(TraceError, match="compiled"):
-        lh.integrate(BODY, (0, 1), sphere(1)[0], step=step, dt=0.1, compile="llvm")
+        lh.integrate(BODY, (0, 1), sphere(1)[0], step=step, dt=0.1, engine="llvm")
 
 
 @pytest.mark.parametrize("dt", [0.2, 1.0, 2.5])
@@ -134,7 +134,7 @@ def test_adapted_sizes_know_what_isotropy_does_to_the_error(base: Any) -> None:
     step = lh.Conserving(base, lambda m: np.sum(m * m * [1.0, 0.5, 0.25], axis=-1) / 2)
     options: dict[str, Any] = {"step": step, "rtol": 1e-5, "t_eval": [2.0]}
     plain = lh.integrate(field, (0, 2), starts, **options)
-    made = lh.integrate(field, (0, 2), starts, compile="llvm", **options)
+    made = lh.integrate(field, (0, 2), starts, engine="llvm", **options)
     np.testing.assert_array_equal(made.n_steps, plain.n_steps)
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-10)
 
@@ -143,4 +143,4 @@ def test_a_value_for_each_trajectory_is_refused_with_the_reason() -> None:
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
     step = lh.Conserving(lh.Heun(), "m0**2 + m1**2/2 + m2**2/4", value=[0.5, 0.6])
     with pytest.raises(TraceError, match="for each trajectory"):
-        lh.integrate(field, (0, 1), np.eye(3)[:2] + 0.3, step=step, dt=0.1, compile="llvm")
+        lh.integrate(field, (0, 1), np.eye(3)[:2] + 0.3, step=step, dt=0.1, engine="llvm")

@@ -105,7 +105,7 @@ def into_floats(m: Any) -> Any:
 )
 def test_what_cannot_be_compiled_is_refused_with_the_reason(psi: Any, message: str) -> None:
     with pytest.raises(TraceError, match=message):
-        lh.integrate(lh.GeneratorField(SO3, psi), (0, 1), sphere(2), step=lh.Euler(), dt=0.1, compile="llvm")
+        lh.integrate(lh.GeneratorField(SO3, psi), (0, 1), sphere(2), step=lh.Euler(), dt=0.1, engine="llvm")
 
 
 def test_constants_are_folded_as_numpy_has_them() -> None:

@@ -48,7 +48,7 @@ def test_lanes_iterate_as_long_as_they_need() -> None:
     w = np.array([1.0, 0.5, 0.25])
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * w * (1 + 30 * m[..., :1] ** 2))
     y0 = np.concatenate([[[0.0, 0.0, 1.0]], sphere(9)])
-    options: dict[str, Any] = {"step": lh.RKMK("gauss2"), "dt": 0.01, "compile": "llvm"}
+    options: dict[str, Any] = {"step": lh.RKMK("gauss2"), "dt": 0.01, "engine": "llvm"}
     many = lh.integrate(field, (0, 1), y0, **options)
     for k in (0, 1, 9):
         alone = lh.integrate(field, (0, 1), y0[k], **options)
@@ -61,7 +61,7 @@ def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
     fast = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -300 * m * [1.0, 0.5, 0.25] * m[..., :1] ** 2)
     y0 = np.array([[0.6, 0.48, 0.64], [0.0, 0.6, 0.8], [0.1, 0.6, np.sqrt(0.63)]])
     plain = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1)
-    made = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1, compile=backend)
+    made = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1, engine=backend)
     assert list(plain.statuses) == list(made.statuses) and set(plain.statuses) == {0, int(plain.statuses.min())}
     assert plain.statuses.min() < 0
     assert plain.message == made.message
@@ -71,14 +71,14 @@ def test_jax_agrees_and_differentiates() -> None:
     jax = pytest.importorskip("jax")
     step = lh.RKMK("implicit midpoint")
     plain = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1)
-    made = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, compile="jax")
+    made = lh.integrate(BODY, (0, 2), sphere(3), step=step, dt=0.1, engine="jax")
     np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=ULPS * EPS)
 
     def last(m: Any, **how: Any) -> Any:
         return lh.integrate(BODY, (0, 0.5), m, step=step, dt=0.1, t_eval=[0.5], **how).y[1, -1]
 
     with jax.enable_x64(True):
-        found = np.asarray(jax.jit(jax.grad(lambda m: last(m, compile="jax")))(jax.numpy.asarray(START)))
+        found = np.asarray(jax.jit(jax.grad(lambda m: last(m, engine="jax")))(jax.numpy.asarray(START)))
     e = 1e-6
     wanted = [(last(START + e * d) - last(START - e * d)) / (2 * e) for d in np.eye(3)]
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-8)

@@ -69,7 +69,7 @@ def run(manifold: str, step: lh.Step, engine: str, count: int, *, precise: bool 
         step=step,
         dt=p.t / count,
         t_eval=[p.t],
-        compile=None if engine == "numpy" else engine,
+        engine=engine,
     )
     return sol.y[..., 0] if sol.success else None
 

@@ -1,0 +1,235 @@
+"""Arguments of `Propagator` and `integrate`: their names and types, and checks that say what is not right."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.correctors.isotropy.corrected import Corrected
+from liehom.correctors.step import ExponentialLike, Step
+from liehom.errors import InputError, ShapeError, displayed
+from liehom.homogeneous import Action, GeneratorField
+from liehom.homogeneous.fields.field import check_point
+from liehom.homogeneous.frames.branch_free_frames import tight_frame
+from liehom.integrators.engine import Engine
+from liehom.integrators.run.events import EventFunction
+from liehom.integrators.run.options import Span
+from liehom.representations import Representation
+from liehom.series.arrays import is_traced
+from liehom.typing import Array, IntegerArray, Values
+
+CLOCKS = ("corrected", "nominal")
+
+
+class SharedOptions(TypedDict, total=False):
+    """Options of a call of a `Propagator` that make sense for every kind of run."""
+
+    rtol: float
+    atol: float
+    t_eval: npt.ArrayLike | None
+    events: EventFunction | Sequence[EventFunction] | None
+    max_step: float
+    first_step: float | None
+    max_steps: int
+
+
+class FileOptions(TypedDict, total=False):
+    """Options of a call of a `Propagator` that are for one run, not for an ensemble in chunks."""
+
+    dense_output: bool
+    progress: bool | Callable[[float], object]
+    checkpoint: str | os.PathLike[str] | None
+    checkpoint_every: float
+
+
+class CallOptions(SharedOptions, FileOptions, total=False):
+    """Keyword arguments of a call of a `Propagator`."""
+
+    dt: npt.ArrayLike | None
+
+
+class RunOptions(SharedOptions, total=False):
+    """Keyword arguments of `integrate` that ensembles and lattices of spins hand on to it."""
+
+    exponential: ExponentialLike
+    clock: str
+    engine: str | Engine
+    compile: str | None
+
+
+class EnsembleOptions(RunOptions, total=False):
+    """Keyword arguments of `integrate` that `integrate_ensemble` hands on to it."""
+
+    step: Step | None
+    dt: npt.ArrayLike | None
+
+
+class SingleRunOptions(RunOptions, FileOptions, total=False):
+    """All keyword arguments of `integrate` but `step` and `dt`."""
+
+
+def checked_clock(clock: str) -> bool:
+    """Whether a clock is the nominal one; `InputError` for an unknown name.
+
+    Examples
+    --------
+    >>> checked_clock("nominal"), checked_clock("corrected")
+    (True, False)
+    """
+    if clock not in CLOCKS:
+        raise InputError(f"clock is {displayed(clock)}, expected one of {', '.join(map(repr, CLOCKS))}")
+    return clock == "nominal"
+
+
+def with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: int | IntegerArray) -> Action:
+    """The action with what a corrected step can use of the orbits, if all orbits are of one dimension.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> action = lh.Action(lh.defining(lh.so(3)))
+    >>> with_tight_frame(action, lh.Corrected(lh.Euler(), 3), np.eye(3), 2).tight_frame is None
+    False
+    """
+    dimensions = np.unique(orbit_dimension)
+    if len(dimensions) != 1 or start.dtype != np.float64 or not isinstance(step, Corrected):
+        return action
+    return action.with_tight_frame(tight_frame(action, start.reshape(-1, start.shape[-1]), int(dimensions[0])))
+
+
+def jax_start(representation: Representation, y0: Values) -> tuple[Values, int | IntegerArray]:
+    """Initial points that are a JAX array, and the dimensions of their orbits; the largest one if JAX traces them.
+
+    Raises
+    ------
+    InputError
+        If they are not of type float64, or do not have N coordinates.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> jax_start(lh.defining(lh.so(2)), np.ones(2, dtype=np.float32))
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: engine='jax' computes in float64, the start is of type float32: ...
+    """
+    start: Any = y0
+    if start.dtype != np.float64:
+        raise InputError(
+            f"engine='jax' computes in float64, the start is of type {start.dtype}: "
+            'jax.config.update("jax_enable_x64", True)'
+        )
+    n = representation.size
+    if start.ndim == 0 or start.shape[-1] != n:
+        raise InputError(f"a point has {n} coordinates (on its last axis), got shape {start.shape}")
+    if is_traced(start):
+        points = np.random.default_rng(0).normal(size=(16, n))
+        return start, int(check_point(representation, points).max())
+    return start, check_point(representation, np.asarray(start))
+
+
+def check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) -> None:
+    """Raise InputError unless psi is real and finite at the initial points (`field.psi` checks its shape).
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["1/m0"])
+    >>> check_generator(field, np.array([0.0, 1.0]), np.float64(0))
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: psi is [inf] at the start, t = 0.0, m = [0. 1.]: it must be finite
+    """
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        psi = np.asarray(field.psi(start, np.full(start.shape[:-1], t)))
+    if psi.dtype.kind not in "iuf":
+        raise InputError(f"psi has the type {psi.dtype} at the start, expected real numbers")
+    bad = ~np.isfinite(psi).all(axis=-1)
+    if bool(bad.any()):
+        index = tuple(int(i) for i in np.argwhere(bad)[0])
+        where = f" of trajectory {index}" if index else ""
+        raise InputError(f"psi is {psi[index]} at the start{where}, t = {t}, m = {start[index]}: it must be finite")
+
+
+def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:
+    """Fixed step sizes of shape (...,), checked.
+
+    Examples
+    --------
+    >>> step_sizes(0.5, np.zeros((2, 3)), (np.float64(0), np.float64(1)))
+    array([0.5, 0.5])
+    """
+    kind: Any = start
+    kind = kind.dtype
+    try:
+        sizes = np.asarray(dt).astype(kind, casting="same_kind")
+    except (TypeError, ValueError):
+        raise InputError(f"dt is {displayed(dt)}, expected a positive step size") from None
+    if not bool(np.all(np.isfinite(sizes) & (sizes > 0))):
+        raise InputError(f"dt is {displayed(dt)}, expected a positive step size (the direction is that of t_span)")
+    least = 8 * np.finfo(kind).eps * max(abs(span[0]), abs(span[1]))
+    if span[0] != span[1] and bool(np.any(sizes < least)):
+        raise InputError(f"dt is {displayed(dt)}, below the round-off of times in t_span, {least:.2g}")
+    try:
+        return np.broadcast_to(sizes, start.shape[:-1]).copy()
+    except ValueError:
+        raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
+
+
+def flag(name: str, value: object) -> bool:
+    """The value as a boolean; `InputError` for arrays, which have none.
+
+    Examples
+    --------
+    >>> flag("dense_output", 1)
+    True
+    """
+    try:
+        return bool(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} is {displayed(value)}, expected True or False") from None
+
+
+def positive(name: str, value: float, *, zero: bool = False) -> float:
+    """The value as a positive float, or 0 if that is allowed.
+
+    Examples
+    --------
+    >>> positive("rtol", 1)
+    1.0
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = np.nan
+    if not (number > 0 or (zero and number == 0)):
+        raise InputError(f"{name} is {displayed(value)}, expected a positive number")
+    return number
+
+
+def times_of(t_eval: npt.ArrayLike, span: Span) -> Array:
+    """Times of t_eval, shape (k,), checked.
+
+    Examples
+    --------
+    >>> times_of([0, 1], (np.float64(0), np.float64(1)))
+    array([0., 1.])
+    """
+    try:
+        times: Any = np.asarray(t_eval, dtype=span[0].dtype)
+    except (TypeError, ValueError):
+        raise InputError(f"t_eval is {displayed(t_eval)}, expected a list of times") from None
+    if times.ndim != 1:
+        raise ShapeError(f"t_eval has shape {times.shape}, expected a list of times")
+    low, high = min(span), max(span)
+    if not bool(np.all((times >= low) & (times <= high))):
+        raise InputError(f"t_eval must lie within t_span, {low} to {high}")
+    steps = np.diff(times) * (1 if span[1] >= span[0] else -1)
+    if bool(np.any(steps <= 0)):
+        raise InputError("t_eval must be sorted in the direction of integration, without repetitions")
+    checked: Array = times.copy()
+    return checked

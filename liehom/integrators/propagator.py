@@ -1,0 +1,254 @@
+"""Propagator: a generator field with its method and its engine, made once and called for many starts and spans."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import Unpack, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.correctors.step import ExponentialLike, Step
+from liehom.errors import InputError, displayed
+from liehom.homogeneous import Action, GeneratorField
+from liehom.homogeneous.fields.field import check_point
+from liehom.integrators.arguments import (
+    CallOptions,
+    check_generator,
+    checked_clock,
+    flag,
+    jax_start,
+    positive,
+    step_sizes,
+    times_of,
+    with_tight_frame,
+)
+from liehom.integrators.compiled.compiled import LlvmEngine
+from liehom.integrators.compiled.jax_integration import JaxEngine
+from liehom.integrators.engine import Engine, NumpyEngine, Problem
+from liehom.integrators.methods.steps import LieTaylor
+from liehom.integrators.run.checkpoint import checked_path
+from liehom.integrators.run.events import EventFunction
+from liehom.integrators.run.options import Options, Span
+from liehom.integrators.run.points import points_of, span_of
+from liehom.integrators.run.solution import Solution, warn_of_order
+from liehom.series.arrays import is_jax
+from liehom.typing import IntegerArray, Values
+
+ENGINES: dict[str, Callable[[], Engine]] = {"numpy": NumpyEngine, "llvm": LlvmEngine, "jax": JaxEngine}
+WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)
+"""Whether an `OrderWarning` is issued."""
+
+
+@final
+class Propagator:
+    """A field with a method and an engine: call it for a time span and initial points.
+
+    Parameters
+    ----------
+    field : GeneratorField
+    step : Step, optional
+        The method (default ``LieTaylor(6)``).
+    exponential, clock, engine
+        As for `integrate`.
+
+    Attributes
+    ----------
+    field : GeneratorField
+    step : Step
+    engine : Engine
+        It keeps what it has compiled from one call to the next.
+
+    Raises
+    ------
+    InputError
+        If the field is not a `GeneratorField`, or an option is not right.
+
+    Notes
+    -----
+    `integrate` makes a propagator and calls it once. A propagator that is kept promises that psi is the same function
+    in all calls, so that its engine traces and compiles the step once.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> body = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    >>> propagator = lh.Propagator(body, lh.RKMK("rk4"))
+    >>> for height in (0.1, 0.2):
+    ...     sol = propagator((0, 5), [np.sqrt(1 - height**2), 0.0, height], dt=0.1)
+    ...     print(sol.status, sol.y.shape)
+    0 (3, 51)
+    0 (3, 51)
+    """
+
+    def __init__(
+        self,
+        field: GeneratorField,
+        step: Step | None = None,
+        *,
+        exponential: ExponentialLike = "exp",
+        clock: str = "corrected",
+        engine: str | Engine = "numpy",
+    ) -> None:
+        if not isinstance(field, GeneratorField):
+            raise InputError(f"expected a GeneratorField, got {displayed(field)}: call liehom.GeneratorField(rho, psi)")
+        step = LieTaylor(6) if step is None else step
+        if not isinstance(step, Step):
+            raise InputError(
+                f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)"
+            )
+        self.field: GeneratorField = field
+        self.step: Step = step
+        self.engine: Engine = engine_of(engine)
+        self._nominal = checked_clock(clock)
+        self._action = Action(field.representation, exponential)
+
+    def __call__(self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, **options: Unpack[CallOptions]) -> Solution:
+        """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
+        return warned(self.engine.solve(self.problem(t_span, y0, **options)), stacklevel=3)
+
+    def problem(
+        self,
+        t_span: Iterable[float] | Span,
+        y0: npt.ArrayLike,
+        *,
+        dt: npt.ArrayLike | None = None,
+        rtol: float = 1e-6,
+        atol: float = 1e-9,
+        t_eval: npt.ArrayLike | None = None,
+        dense_output: bool = False,
+        events: EventFunction | Sequence[EventFunction] | None = None,
+        max_step: float = np.inf,
+        first_step: float | None = None,
+        max_steps: int = 10_000_000,
+        progress: bool | Callable[[float], object] = False,
+        checkpoint: str | os.PathLike[str] | None = None,
+        checkpoint_every: float = 30.0,
+    ) -> Problem:
+        """The `Problem` of a call, with all arguments checked."""
+        field, action = self.field, self._action
+        start: Values
+        orbit_dimension: int | IntegerArray
+        if self.engine.name == "jax" and is_jax(y0):
+            start, orbit_dimension = jax_start(field.representation, y0)
+            span = span_of(t_span, np.dtype(np.float64))
+        else:
+            start = points = points_of(y0)
+            orbit_dimension = check_point(field.representation, points)
+            span = span_of(t_span, points.dtype)
+            check_generator(field, points, span[0])
+            action = with_tight_frame(action, self.step, points, orbit_dimension)
+        options = Options(
+            dt=None if dt is None else step_sizes(dt, start, span),
+            rtol=positive("rtol", rtol, zero=True),
+            atol=positive("atol", atol, zero=True),
+            t_eval=None if t_eval is None else times_of(t_eval, span),
+            dense_output=flag("dense_output", dense_output),
+            events=events,
+            nominal=self._nominal,
+            max_step=positive("max_step", max_step),
+            first_step=None if first_step is None else positive("first_step", first_step),
+            max_steps=positive("max_steps", max_steps),
+            checkpoint_every=positive("checkpoint_every", checkpoint_every, zero=True),
+            progress=progress,
+            checkpoint=None if checkpoint is None else checked_path(checkpoint),
+        )
+        if options.dt is None and options.rtol == 0 and options.atol == 0:
+            raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
+        return Problem(action, field, self.step, span, start, orbit_dimension, options)
+
+    def __repr__(self) -> str:
+        return f"Propagator({self.field!r}, {self.step!r}, engine={self.engine.name!r})"
+
+
+def engine_of(engine: str | Engine) -> Engine:
+    """A new engine by its name, or the engine itself.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown.
+
+    Examples
+    --------
+    >>> engine_of("numpy").name
+    'numpy'
+    """
+    hint = ""
+    if isinstance(engine, str):
+        if engine in ENGINES:
+            return ENGINES[engine]()
+        hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if engine == "numba" else ""
+    elif callable(getattr(engine, "solve", None)) and isinstance(getattr(engine, "name", None), str):
+        return engine
+    raise InputError(f"engine is {displayed(engine)}, expected one of {', '.join(map(repr, ENGINES))}{hint}")
+
+
+def engine_option(engine: str | Engine, compile: str | None, *, stacklevel: int) -> str | Engine:
+    """The option `engine`, by its former name `compile` if that was given, which is deprecated.
+
+    Parameters
+    ----------
+    engine, compile
+        As for `integrate`.
+    stacklevel : int
+        That of `warnings.warn`.
+
+    Examples
+    --------
+    >>> engine_option("llvm", None, stacklevel=2)
+    'llvm'
+    """
+    if compile is None:
+        return engine
+    if engine != "numpy":
+        raise InputError(
+            f"engine={displayed(engine)} and compile={displayed(compile)} are one option: leave out compile"
+        )
+    engine_of(compile)
+    warnings.warn(
+        f"compile= is called engine= now: write engine={compile!r}", DeprecationWarning, stacklevel=stacklevel
+    )
+    return compile
+
+
+@contextmanager
+def without_order_warning() -> Iterator[None]:
+    """A context without `OrderWarning`, for callers that show the message or merge reports.
+
+    Examples
+    --------
+    >>> with without_order_warning():
+    ...     WARNS.get()
+    False
+    """
+    token = WARNS.set(False)
+    try:
+        yield
+    finally:
+        WARNS.reset(token)
+
+
+def warned(solution: Solution, stacklevel: int) -> Solution:
+    """The solution, after an `OrderWarning` if it did not keep its order.
+
+    Parameters
+    ----------
+    solution : Solution
+    stacklevel : int
+        That of `warnings.warn`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> sol = lh.integrate(lh.GeneratorField(lh.defining(lh.so(2)), [1]), (0, 1), [1.0, 0.0])
+    >>> warned(sol, stacklevel=2) is sol
+    True
+    """
+    if WARNS.get():
+        warn_of_order(solution.report, stacklevel)
+    return solution

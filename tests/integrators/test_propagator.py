@@ -1,0 +1,110 @@
+"""A propagator: `integrate` made once and called often, and what an engine may rely on."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.errors import InputError, OrderWarning
+from liehom.integrators.engine import NumpyEngine, Problem
+
+FIELD = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+START = np.array([0.6, 0.0, 0.8])
+
+
+class Recording:
+    """The engine "numpy", with the problems that it was given."""
+
+    name = "recording"
+
+    def __init__(self) -> None:
+        self.problems: list[Problem] = []
+
+    def solve(self, problem: Problem) -> lh.Solution:
+        self.problems.append(problem)
+        return NumpyEngine().solve(problem)
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm", "jax"])
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}, {"dt": 0.1, "t_eval": [0.25, 1.0]}])
+def test_a_call_is_integrate_bit_for_bit_and_so_is_the_next(engine: str, options: dict[str, Any]) -> None:
+    if engine == "jax":
+        pytest.importorskip("jax")
+    step = lh.RKMK("rk45")
+    propagator = lh.Propagator(FIELD, step, engine=engine)
+    for start, end in ((START, 1.0), (np.array([START, [0.0, 1.0, 0.0]]), 2.0), (START, -1.0)):
+        given = {**options, "t_eval": np.sign(end) * np.array(options["t_eval"])} if "t_eval" in options else options
+        once = lh.integrate(FIELD, (0, end), start, step=step, engine=engine, **given)
+        made = propagator((0, end), start, **given)
+        np.testing.assert_array_equal(made.y, once.y)
+        np.testing.assert_array_equal(made.t, once.t)
+        assert (made.status, made.nfev, str(made.report)) == (once.status, once.nfev, str(once.report))
+
+
+def test_an_engine_gets_the_same_field_step_and_exponential_in_all_calls() -> None:
+    engine = Recording()
+    propagator = lh.Propagator(FIELD, exponential="cayley", clock="nominal", engine=engine)
+    assert propagator((0, 1), START, dt=0.5).status == propagator((1, 0), [START, START], rtol=1e-3).status == 0
+    first, second = engine.problems
+    assert first.field is second.field is FIELD
+    assert first.step is second.step is propagator.step
+    assert first.action.exponential is second.action.exponential
+    assert first.options.nominal and second.options.nominal
+    assert second.start.shape == (2, 3) and np.array_equal(second.orbit_dimension, [2, 2])
+    assert propagator.engine is engine
+
+
+def test_the_default_step_is_that_of_integrate() -> None:
+    assert repr(lh.Propagator(FIELD).step) == "LieTaylor(n=6)"
+    np.testing.assert_array_equal(lh.Propagator(FIELD)((0, 1), START).y, lh.integrate(FIELD, (0, 1), START).y)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"field": 3}, "GeneratorField"),
+        ({"step": 3}, "expected a step"),
+        ({"engine": "fortran"}, "'numpy', 'llvm', 'jax'"),
+        ({"engine": "numba"}, 'is "llvm"'),
+        ({"engine": 3}, "engine is 3"),
+        ({"clock": "wall"}, "'corrected', 'nominal'"),
+    ],
+)
+def test_what_is_not_right_is_refused_when_the_propagator_is_made(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        lh.Propagator(**{"field": FIELD, **given})
+
+
+def test_a_lost_order_is_warned_of_where_the_call_is() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["3/4 + 3*m0/4", "1/2", "-3*m1/4 - m2/4"])
+    step = lh.Corrected(lh.Euler(), 4)
+    with pytest.warns(OrderWarning) as caught:
+        lh.Propagator(field, step)((0, 2), [0.6, 0.8, 0.0], dt=0.05)
+        lh.integrate(field, (0, 2), [0.6, 0.8, 0.0], step=step, dt=0.05)
+    assert [w.filename for w in caught] == [__file__] * 2
+
+
+# -- the former name of the option -------------------------------------------------------------------------
+@pytest.mark.parametrize("ensemble", [False, True])
+def test_compile_is_engine_with_a_warning(ensemble: bool) -> None:
+    integrate: Any = lh.integrate_ensemble if ensemble else lh.integrate
+    starts = np.array([START, [0.0, 0.6, 0.8]])
+    wanted = integrate(FIELD, (0, 1), starts, step=lh.Euler(), dt=0.25, engine="llvm")
+    with pytest.warns(DeprecationWarning, match="engine='llvm'") as caught:
+        made = integrate(FIELD, (0, 1), starts, step=lh.Euler(), dt=0.25, compile="llvm")
+    np.testing.assert_array_equal(made.y, wanted.y)
+    assert [w.filename for w in caught] == [__file__]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        integrate(FIELD, (0, 1), starts, step=lh.Euler(), dt=0.25, compile=None)
+
+
+def test_compile_does_not_contradict_engine() -> None:
+    with pytest.raises(InputError, match="one option"):
+        lh.integrate(FIELD, (0, 1), START, engine="jax", compile="llvm")
+    with pytest.raises(InputError, match='is "llvm"'):
+        lh.integrate(FIELD, (0, 1), START, compile="numba")
