@@ -174,6 +174,7 @@ if TYPE_CHECKING:
     from liehom.integrators import Propagator as Propagator
     from liehom.integrators import Solution as Solution
     from liehom.integrators import Tableau as Tableau
+    from liehom.integrators import Taylor as Taylor
     from liehom.integrators import integrate as integrate
     from liehom.integrators import integrate_ensemble as integrate_ensemble
     from liehom.integrators import observed_order as observed_order
@@ -283,7 +284,7 @@ _NAMES = {
     ),
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK Solution Tableau "
-        "integrate integrate_ensemble observed_order tableau"
+        "Taylor integrate integrate_ensemble observed_order tableau"
     ),
     "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
     "liehom.io": (

@@ -27,6 +27,7 @@ from liehom.integrators.methods import Heun as Heun
 from liehom.integrators.methods import LieTaylor as LieTaylor
 from liehom.integrators.methods import ProductStep as ProductStep
 from liehom.integrators.methods import Scheme as Scheme
+from liehom.integrators.methods import Taylor as Taylor
 from liehom.integrators.methods import step_named as step_named
 from liehom.integrators.methods import step_names as step_names
 from liehom.integrators.propagator import Propagator as Propagator

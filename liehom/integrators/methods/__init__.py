@@ -1,4 +1,4 @@
-"""Steps of Lie group methods: Euler, Heun, Lie-Taylor, RKMK, Crouch-Grossman, commutator-free.
+"""Steps of Lie group methods: Euler, Heun, Taylor, Lie-Taylor, RKMK, Crouch-Grossman, commutator-free.
 
 Each method is a `Step` of `liehom.correctors`. `step_named` finds methods by name, for files and the command line.
 docs/extending.md explains how to write a custom one.
@@ -16,3 +16,4 @@ from liehom.integrators.methods.steps import BackwardEuler as BackwardEuler
 from liehom.integrators.methods.steps import Euler as Euler
 from liehom.integrators.methods.steps import Heun as Heun
 from liehom.integrators.methods.steps import LieTaylor as LieTaylor
+from liehom.integrators.methods.taylor import Taylor as Taylor

@@ -1,4 +1,4 @@
-"""Steps by name, for files and the command line: "euler", "heun", "lietaylor", "rk4", "cg3", ...
+"""Steps by name, for files and the command line: "euler", "heun", "taylor", "lietaylor", "rk4", "cg3", ...
 
 A name with an order above that of the method gives the corrected step, Corrected(step, order).
 """
@@ -15,11 +15,13 @@ from liehom.errors import InputError, displayed
 from liehom.integrators.methods.products import CommutatorFree4, CrouchGrossman3
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import BackwardEuler, Euler, Heun, LieTaylor
+from liehom.integrators.methods.taylor import Taylor
 from liehom.integrators.tableaux.tableaux import tableau, tableau_names
 
 DEFAULT_ORDER = 6
-_OWN = ("euler", "backward euler", "heun", "lietaylor", "cg3", "cf4")
-_TAYLOR = re.compile(r"lietaylor([0-9]{1,3})", re.ASCII)
+_OWN = ("euler", "backward euler", "heun", "taylor", "lietaylor", "cg3", "cf4")
+_SERIES: dict[str, type[Taylor | LieTaylor]] = {"taylor": Taylor, "lietaylor": LieTaylor}
+_OF_ORDER = re.compile(r"(taylor|lietaylor)([0-9]{1,3})", re.ASCII)
 _ALIASES = {"impliciteuler": "backwardeuler", "expliciteuler": "euler", "forwardeuler": "euler"}
 
 
@@ -29,9 +31,9 @@ def step_named(base: str, order: int | None = None) -> Step:
     Parameters
     ----------
     base : str
-        One of `step_names`; case, spaces, hyphens and underscores do not matter. "lietaylor" takes any order
-        itself, 6 by default. "lietaylor4" is `LieTaylor(4)`, which a higher order corrects. The name of a tableau
-        gives the Runge-Kutta-Munthe-Kaas step with that tableau.
+        One of `step_names`; case, spaces, hyphens and underscores do not matter. "taylor" and
+        "lietaylor" take any order themselves, 6 by default. "lietaylor4" is `LieTaylor(4)`, which a higher order
+        corrects. The name of a tableau gives the Runge-Kutta-Munthe-Kaas step with that tableau.
     order : int, optional
         The order to reach. Above that of the base it gives `Corrected(step, order)`, else the base itself.
 
@@ -54,8 +56,8 @@ def step_named(base: str, order: int | None = None) -> Step:
     if order is not None and (isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1):
         raise InputError(f"the order is an integer at least 1, got {displayed(order)}")
     key = _key(base)
-    if key == "lietaylor":
-        return LieTaylor(DEFAULT_ORDER if order is None else int(order))
+    if key in _SERIES:
+        return _SERIES[key](DEFAULT_ORDER if order is None else int(order))
     step = _plain(_ALIASES.get(key, key), base)
     return step if order is None or order <= step.order else Corrected(step, int(order))
 
@@ -66,7 +68,7 @@ def step_names() -> tuple[str, ...]:
     Examples
     --------
     >>> step_names()[:6]
-    ('euler', 'backward euler', 'heun', 'lietaylor', 'cg3', 'cf4')
+    ('euler', 'backward euler', 'heun', 'taylor', 'lietaylor', 'cg3')
     >>> "rk4" in step_names()
     True
     """
@@ -88,8 +90,8 @@ def _plain(key: str, base: str) -> Step:
     }
     if key in own:
         return own[key]()
-    if found := _TAYLOR.fullmatch(key):
-        return LieTaylor(int(found[1]))
+    if found := _OF_ORDER.fullmatch(key):
+        return _SERIES[found[1]](int(found[2]))
     try:
         return RKMK(tableau(base))
     except InputError:

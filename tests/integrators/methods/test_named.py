@@ -14,7 +14,7 @@ from liehom.errors import InputError
 from liehom.integrators import LieTaylor, tableau, tableau_names
 from liehom.integrators.methods.named import step_named, step_names
 
-ORDERS = {"euler": 1, "backward euler": 1, "heun": 2, "lietaylor": 6, "cg3": 3, "cf4": 4}
+ORDERS = {"euler": 1, "backward euler": 1, "heun": 2, "taylor": 6, "lietaylor": 6, "cg3": 3, "cf4": 4}
 
 
 @pytest.mark.parametrize("name", step_names())
@@ -24,7 +24,7 @@ def test_every_name_is_a_step_that_steps(name: str) -> None:
     field = lh.GeneratorField(lh.defining(lh.so(3)), ["m0", "2*m1", "1 + m2"])
     action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 2)
     m, h = np.array([0.6, 0.0, 0.8]), np.array([0.01])
-    made = lh.correctors.apply_factors(action, step.factors(action, psi, m, np.array([0.0]), h), m)
+    made = step.at(action, psi, m, np.array([0.0])).point(h)
     assert np.linalg.norm(made) == pytest.approx(1, abs=1e-14)
     assert np.abs((made - m) / 0.01 - field.vector(m)).max() < 0.05
 
@@ -42,6 +42,9 @@ def test_every_tableau_has_a_step(name: str) -> None:
         ("forward-euler", None, "Euler()"),
         ("implicit euler", 2, "Corrected(BackwardEuler(), order=2)"),
         ("HEUN", 1, "Heun()"),
+        ("taylor", None, "Taylor(n=6)"),
+        ("Taylor", 12, "Taylor(n=12)"),
+        ("taylor16", None, "Taylor(n=16)"),
         ("lietaylor", None, "LieTaylor(n=6)"),
         ("Lie Taylor", 3, "LieTaylor(n=3)"),
         ("lietaylor2", None, "LieTaylor(n=2)"),

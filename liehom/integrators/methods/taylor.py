@@ -1,0 +1,230 @@
+"""Taylor: the Taylor series of the trajectory, landed on the orbit.
+
+    m~(h) = m_0 + m_1 h + ... + m_n h^n,   (k + 1) m_(k+1) = sum_(i <= k) rho(psi_i) m_(k-i)
+
+is next to the orbit, at a distance of order n + 1. The landing moves it there without a loss of order: see
+docs/theory/taylor.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.expansion import Flow, flow_series
+from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.errors import InputError
+from liehom.homogeneous import Action
+from liehom.homogeneous.exponentials import TrueExponential
+from liehom.homogeneous.orbits.quadrics import Quadrics, quadric_orbits
+from liehom.integrators.run.control import length
+from liehom.series.jet import Jet
+from liehom.tracing import Traced
+from liehom.typing import Array, IntegerArray, Values
+
+MAGNUS_ORDER = 4
+"""Order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential."""
+SECOND_ORDER = 2
+"""The same for any other Exp, which agrees with the true one through order 2."""
+
+
+@final
+@dataclass(frozen=True)
+class Taylor(Step):
+    """The Taylor series of the trajectory, of any order n, landed on the orbit.
+
+    Parameters
+    ----------
+    n : int
+        The order, at least 1.
+
+    Raises
+    ------
+    InputError
+        If n is not an integer at least 1.
+
+    Notes
+    -----
+    The series of the trajectory costs n (n + 1) / 2 actions rho(psi_i) m_k, and no bracket. It is landed on the orbit
+
+    * by projection onto level sets of invariant quadratic forms, if the orbits are open in such level sets, as
+      spheres, hyperboloids, light cones and their products are: the levels are those at the start of the run;
+    * by nothing, if the orbits are open in V, or in V up to constant coordinates;
+    * otherwise by two exponentials, Exp(eta) Exp(xi) m: xi is the Magnus series of order 4 of the psi_i, and eta the
+      generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations (theory/taylor).
+
+    An adaptive step size follows from the last two coefficients, without rejection: the terms m_(n-1) h^(n-1) and
+    m_n h^n are at most 0.9^(n-1) times the tolerance. The coefficients are those at the initial point of the step. If
+    psi has a jump or a kink within the step, they do not show it, and neither the order nor the tolerance is kept
+    there, though the points stay on the orbit: end the run at such a time and start it again, take `RKMK` with an
+    embedded pair, or `max_step`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    >>> sol = lh.integrate(field, (0, 10), [0.6, 0.0, 0.8], step=lh.Taylor(12), dt=0.5)
+    >>> bool(abs(np.linalg.norm(sol.y[:, -1]) - 1) < 1e-15)
+    True
+    """
+
+    n: int
+
+    def __post_init__(self) -> None:
+        if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
+            raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+
+    @property
+    def order(self) -> int:
+        return int(self.n)
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
+        quadrics = self._quadrics(action, psi, m)
+        if quadrics is None:
+            return LandedSeries(action, m, flow, self.order, psi.orbit_dimension)
+        return ProjectedSeries(action, m, flow, self.order, quadrics, psi.start)
+
+    def _quadrics(self, action: Action, psi: Generator, m: Values) -> Quadrics | None:
+        if self not in psi.prepared:
+            start: Any = psi.start if psi.start is not None else m
+            points = np.zeros((0, m.shape[-1])) if isinstance(start, Traced) else start
+            psi.prepared[self] = quadric_orbits(action.representation, psi.orbit_dimension, points)
+        found: Quadrics | None = psi.prepared[self]
+        return found
+
+
+class TaylorSeries(LocalStep):
+    """The Taylor polynomial of the trajectory at one point, next to the orbit.
+
+    Parameters
+    ----------
+    action : Action
+    m : array of shape (..., N)
+    flow : Flow
+    order : int
+    """
+
+    def __init__(self, action: Action, m: Values, flow: Flow, order: int) -> None:
+        super().__init__(action, m)
+        self.coefficients: list[Values] = [flow.point(k) for k in range(1, order + 1)]
+        last = range(max(order - 1, 1), order + 1)
+        self.defects: tuple[tuple[int, Values], ...] = tuple((k, length(self.coefficients[k - 1])) for k in last)
+
+    def series(self, h: Values) -> Values:
+        """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
+        return self.m + _polynomial(self.coefficients, h)
+
+
+@final
+class ProjectedSeries(TaylorSeries):
+    """The Taylor polynomial, projected onto level sets of quadratic forms.
+
+    Parameters
+    ----------
+    action : Action
+    m : array of shape (..., N)
+    flow : Flow
+    order : int
+    quadrics : Quadrics
+    start : array of shape (..., N) or None
+        Initial points of the run, at which the levels are taken.
+    """
+
+    def __init__(
+        self, action: Action, m: Values, flow: Flow, order: int, quadrics: Quadrics, start: Values | None
+    ) -> None:
+        super().__init__(action, m, flow, order)
+        self._quadrics = quadrics
+        self._levels: Values | None = None
+        if not quadrics.blocks:
+            return
+        if isinstance(m, Traced):  # computed once for each trajectory
+            count = range(len(quadrics.blocks))
+            levels = [m.tape.trajectory_constant(_level(quadrics, b)) for b in count]
+            self._levels = Traced(m.tape, levels)
+        else:
+            self._levels = quadrics.levels(m if start is None else start)
+
+    def point(self, h: Values) -> Values:
+        """Point after the step of size h (..., 1), shape (..., N)."""
+        made = self.series(h)
+        return made if self._levels is None else self._quadrics.project(made, self._levels)
+
+
+@final
+class LandedSeries(TaylorSeries):
+    """The Taylor polynomial m~(h), landed on the orbit by exponentials: Exp(eta(h)) Exp(xi(h)) m.
+
+    Parameters
+    ----------
+    action : Action
+    m : array of shape (..., N)
+    flow : Flow
+    order : int
+    orbit_dimension : int or array of shape (...,)
+
+    Attributes
+    ----------
+    iterations : int
+        Number of corrections of eta. With q - 1 the order of Exp(xi(h)) m, the error after j of them is
+        O(h^(q (j + 1))).
+    """
+
+    def __init__(self, action: Action, m: Values, flow: Flow, order: int, orbit_dimension: int | IntegerArray) -> None:
+        super().__init__(action, m, flow, order)
+        self._dimension = orbit_dimension
+        self._velocity = [flow.psi(k) for k in range(order)]
+        magnus = MAGNUS_ORDER if isinstance(action.exponential, TrueExponential) else SECOND_ORDER
+        self.iterations: int = ceil((order + 1) / (magnus + 1)) - 1
+
+    def generator(self, h: Values) -> Values:
+        """xi(h) = M_0 - [M_0, M_1] for h of shape (..., 1), shape (..., dim g)."""
+        psi = self._velocity
+        mean = _polynomial([x / (k + 1) for k, x in enumerate(psi)], h)
+        if len(psi) == 1:
+            return mean
+        weights = [1 / (k + 2) - 1 / (2 * (k + 1)) for k in range(1, len(psi))]
+        moment = _polynomial([w * x for w, x in zip(weights, psi[1:], strict=True)], h) * h
+        made: Values = mean - self.action.bracket(mean, moment)
+        return made
+
+    def point(self, h: Values) -> Values:
+        """Point after the step of size h (..., 1), shape (..., N)."""
+        if isinstance(h, Jet):
+            raise InputError("the landing of a Taylor step on these orbits is not expanded in h: correct LieTaylor")
+        near = self.action.act(self.generator(h), self.m)
+        if not self.iterations:
+            return near
+        wanted = self.series(h)
+        frame = self.action.isotropy_frame(near, self._dimension)
+        eta, made = None, near
+        for _ in range(self.iterations):
+            tangential = (np.swapaxes(frame.tangent, -1, -2) @ (wanted - made)[..., None])[..., 0]
+            change = (frame.lift @ tangential[..., None])[..., 0]
+            eta = change if eta is None else eta + change
+            made = self.action.act(eta, near)
+        return made
+
+
+def _level(quadrics: Quadrics, index: int) -> Callable[[Array], Array]:
+    """Function of points (..., N) with the values of a form, of shape (...,)."""
+
+    def level(points: Array) -> Array:
+        found: Array = quadrics.levels(points)[..., index]
+        return found
+
+    return level
+
+
+def _polynomial(coefficients: Sequence[Values], h: Values) -> Values:
+    """c_1 h + ... + c_n h^n."""
+    total: Values = coefficients[-1] * h
+    for x in reversed(coefficients[:-1]):
+        total = (total + x) * h
+    return total
