@@ -9,6 +9,8 @@ from liehom.homogeneous.exponentials import SeriesExponential as SeriesExponenti
 from liehom.homogeneous.exponentials import TrueExponential as TrueExponential
 from liehom.homogeneous.exponentials import exponential_of as exponential_of
 from liehom.homogeneous.fields import GeneratorField as GeneratorField
+from liehom.homogeneous.fields import hamiltonian_field as hamiltonian_field
+from liehom.homogeneous.fields import lie_poisson_tensor as lie_poisson_tensor
 from liehom.homogeneous.frames import InnerProduct as InnerProduct
 from liehom.homogeneous.frames import inner_product as inner_product
 from liehom.homogeneous.orbits import ConjugacyInvariants as ConjugacyInvariants

@@ -6,3 +6,5 @@ of a tangent vector field. Correctors and integrators start from a `GeneratorFie
 
 from liehom.homogeneous.fields.components import Components as Components
 from liehom.homogeneous.fields.field import GeneratorField as GeneratorField
+from liehom.homogeneous.fields.hamiltonian import hamiltonian_field as hamiltonian_field
+from liehom.homogeneous.fields.hamiltonian import lie_poisson_tensor as lie_poisson_tensor
