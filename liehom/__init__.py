@@ -169,14 +169,20 @@ if TYPE_CHECKING:
     from liehom.integrators import RKMK as RKMK
     from liehom.integrators import BackwardEuler as BackwardEuler
     from liehom.integrators import CommutatorFree4 as CommutatorFree4
+    from liehom.integrators import Composition as Composition
     from liehom.integrators import CrouchGrossman3 as CrouchGrossman3
     from liehom.integrators import Euler as Euler
     from liehom.integrators import Heun as Heun
+    from liehom.integrators import IsospectralMidpoint as IsospectralMidpoint
     from liehom.integrators import LieTaylor as LieTaylor
+    from liehom.integrators import MoserVeselov as MoserVeselov
     from liehom.integrators import Propagator as Propagator
     from liehom.integrators import Solution as Solution
+    from liehom.integrators import SphericalMidpoint as SphericalMidpoint
+    from liehom.integrators import Splitting as Splitting
     from liehom.integrators import Tableau as Tableau
     from liehom.integrators import Taylor as Taylor
+    from liehom.integrators import VariationalMidpoint as VariationalMidpoint
     from liehom.integrators import integrate as integrate
     from liehom.integrators import integrate_ensemble as integrate_ensemble
     from liehom.integrators import observed_order as observed_order
@@ -286,7 +292,8 @@ _NAMES = {
     ),
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK Solution Tableau "
-        "Taylor integrate integrate_ensemble observed_order tableau"
+        "Taylor integrate integrate_ensemble observed_order tableau Composition IsospectralMidpoint "
+        "MoserVeselov SphericalMidpoint Splitting VariationalMidpoint "
     ),
     "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
     "liehom.io": (

@@ -70,6 +70,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "tableaux",
         "run",
         "methods",
+        "symplectic",
         "engine",
         "compiled",
         "arguments",

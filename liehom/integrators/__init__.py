@@ -35,6 +35,12 @@ from liehom.integrators.run import ConservationReport as ConservationReport
 from liehom.integrators.run import DenseSolution as DenseSolution
 from liehom.integrators.run import Report as Report
 from liehom.integrators.run import Solution as Solution
+from liehom.integrators.symplectic import Composition as Composition
+from liehom.integrators.symplectic import IsospectralMidpoint as IsospectralMidpoint
+from liehom.integrators.symplectic import MoserVeselov as MoserVeselov
+from liehom.integrators.symplectic import SphericalMidpoint as SphericalMidpoint
+from liehom.integrators.symplectic import Splitting as Splitting
+from liehom.integrators.symplectic import VariationalMidpoint as VariationalMidpoint
 from liehom.integrators.tableaux import RootedTree as RootedTree
 from liehom.integrators.tableaux import Tableau as Tableau
 from liehom.integrators.tableaux import Violation as Violation

@@ -1,8 +1,8 @@
 """Derivatives of a recorded graph in reverse mode, and the value of a graph on arrays, Jets and tracers.
 
 A function F of N numbers that is run once on tracers leaves a graph of scalar operations.  One pass backwards over it
-gives all N partial derivatives as graphs, for a few times the operations of F.  `evaluated` runs a graph through numpy's
-functions, so that it takes whatever they take.
+gives all N partial derivatives as graphs, for a few times the operations of F.  `evaluated` runs a graph through
+numpy's functions, so that it takes whatever they take.
 """
 
 from __future__ import annotations

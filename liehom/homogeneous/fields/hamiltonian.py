@@ -19,6 +19,7 @@ from liehom.homogeneous.fields.components import Components, GeneratorLike, join
 from liehom.homogeneous.fields.field import GeneratorField
 from liehom.representations import coadjoint
 from liehom.series.arrays import as_values
+from liehom.series.jet import Jet
 from liehom.tracing import Expr, Tape, Traced
 from liehom.tracing.gradient import evaluated
 from liehom.tracing.gradient import gradient as partial_derivatives
@@ -145,7 +146,7 @@ class _Gradient:
         self.slopes, self.n = slopes, n
 
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
-        point: Values = as_values(m)
+        point: Values = m if isinstance(m, Jet) else as_values(m)
         inputs: dict[int, Any] = {i: point[..., i] for i in range(self.n)}
         inputs[self.n] = t
         zero = 0.0 * point[..., 0]

@@ -2,8 +2,8 @@
 
     S_(p+2)(h) = S_p(c h)^k S_p((1 - 2k c) h) S_p(c h)^k,    c = 1 / (2k - (2k)^(1/(p+1)))
 
-with k = 1 (H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150, 1990) or k = 2 (M. Suzuki,
-Fractal decomposition of exponential operators, Phys. Lett. A 146, 1990).
+with k = 1 (H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150, 1990) or k = 2
+(M. Suzuki, Fractal decomposition of exponential operators, Phys. Lett. A 146, 1990).
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
     W = (1 - h B/2) P (1 + h B/2),    W' = (1 + h B/2) P (1 - h B/2),    B = D(psi(P))
 
 so that W' = cay(h B) W cay(h B)^-1: the spectrum of W is conserved (K. Modin and M. Viviani, Lie-Poisson methods for
-isospectral flows, Found. Comput. Math. 20, 2020).  It is `VariationalMidpoint` with the Cayley transform in place of the
-exponential map, and the midpoint rule on T* GL(n), reduced by the momentum map (Q, P) -> Q P^T of the group.
+isospectral flows, Found. Comput. Math. 20, 2020).  It is `VariationalMidpoint` with the Cayley transform in place of
+the exponential map, and the midpoint rule on T* GL(n), reduced by the momentum map (Q, P) -> Q P^T of the group.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from liehom.correctors.step import Generator, LocalStep, Step, solve_implicitly
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.symplectic.matrix_coordinates import MatrixCoordinates, coordinates_on_dual
+from liehom.integrators.symplectic.variational_midpoint import zeros_of
 from liehom.representations import Representation
 from liehom.typing import Values
 
@@ -28,7 +29,7 @@ class IsospectralMidpoint(Step):
     Parameters
     ----------
     matrices : Representation, optional
-        D, the matrices of the algebra, of a group such as SO(n), SO(p, q), SU(n) or Sp(n). By default the defining
+        D, the matrices of the algebra, of a group such as SO(n), SO(p, q), SU(n) or Sp(n), or of SL(n). By default the defining
         representation that the algebra's name stands for. The spin representation of so(3) gives the collective
         integrator on the dual of so(3) through the Hopf map.
 
@@ -77,7 +78,7 @@ class IsospectralMidpoint(Step):
         return LocalStep(action, m, point=lambda h: _point(coordinates, psi, m, t, h))
 
     def __repr__(self) -> str:
-        return f"IsospectralMidpoint({'' if self.matrices is None else self.matrices!r})"
+        return "IsospectralMidpoint()" if self.matrices is None else f"IsospectralMidpoint({self.matrices!r})"
 
 
 def _point(coordinates: MatrixCoordinates, psi: Generator, m: Values, t: Values, h: Values) -> Values:
@@ -96,6 +97,6 @@ def _point(coordinates: MatrixCoordinates, psi: Generator, m: Values, t: Values,
         found: Values = turned / 2 + square
         return found
 
-    x = solve_implicitly(middle, 0.0 * w, h, stacked=True)
+    x = solve_implicitly(middle, zeros_of(m, w.shape), h, stacked=True)
     found: Values = m + coordinates.point(moved(w + x)[0])
     return found

@@ -1,6 +1,6 @@
 """MatrixCoordinates: linear forms on a matrix Lie algebra as matrices, by its trace form.
 
-    <m, x> = tr(W D(x)) for all x,    W in D(g),    m -> -(ad x)^T m corresponds to W -> [D(x), W]
+<m, x> = tr(W D(x)) for all x,    W in D(g),    m -> -(ad x)^T m corresponds to W -> [D(x), W]
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ from liehom.correctors.step import Generator, LocalStep, Step, solve_implicitly
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.symplectic.matrix_coordinates import MatrixCoordinates, coordinates_on_dual
+from liehom.integrators.symplectic.variational_midpoint import zeros_of
 from liehom.typing import Array, Values
 
 RTOL = 1e-9
@@ -74,16 +75,18 @@ class MoserVeselov(Step):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         coordinates = coordinates_on_dual(action, None, "MoserVeselov")
-        inertia = inertia_of(coordinates, psi)
+        inertia = psi.prepared.get((self, Inertia))
+        if inertia is None:
+            inertia = psi.prepared[self, Inertia] = inertia_of(coordinates, psi)
         return LocalStep(action, m, point=lambda h: _point(coordinates, inertia, m, h))
 
 
 def _point(coordinates: MatrixCoordinates, inertia: Inertia, m: Values, h: Values) -> Values:
     """The point after a step of size h (..., 1)."""
     moments, axes, sign = inertia
-    form = axes.T @ (coordinates.form(m) @ axes)
+    form = -2 * coordinates.form(m)  # M
     step: Any = -sign * h[..., None] / 2
-    half = step * form  # h M / 2 in the principal axes
+    half = step * (axes.T @ form @ axes)  # h M / 2 in the principal axes
     sums = moments[:, None] + moments
     fixed = half @ half
 
@@ -92,8 +95,68 @@ def _point(coordinates: MatrixCoordinates, inertia: Inertia, m: Values, h: Value
         found: Values = (turned + fixed - y @ y) / sums
         return found
 
-    y = solve_implicitly(deviation, 0.0 * form, h, stacked=True)
-    w = (np.diag(moments) + y - half) / moments[:, None]
-    w = w + w @ (np.eye(len(moments)) - np.swapaxes(w, -1, -2) @ w) / 2  # orthogonal to round-off
-    moved = w @ form @ np.swapaxes(w, -1, -2)
-    return coordinates.point(axes @ moved @ axes.T)
+    y = solve_implicitly(deviation, zeros_of(m, form.shape), h, stacked=True)
+    # u = w - 1, without the rounding of 1 + u, which would let the spectrum drift
+    u = axes @ ((y - half) / moments[:, None]) @ axes.T
+    defect = u + _transposed(u) + _transposed(u) @ u
+    u = u - (defect + u @ defect) / 2  # w is orthogonal to round-off
+    turned = u @ form
+    found: Values = m + coordinates.point((turned - _transposed(turned) + turned @ _transposed(u)) / -2)
+    return found
+
+
+def _transposed(a: Values) -> Values:
+    found: Values = np.swapaxes(a, -1, -2)
+    return found
+
+
+def inertia_of(coordinates: MatrixCoordinates, psi: Generator) -> Inertia:
+    """The matrix J of the rigid body whose generator is psi = +-Om, J Om + Om J = M, from psi at a basis.
+
+    Raises
+    ------
+    InputError
+        If psi is not linear, if there is no such J, or if J or a sum of two of its eigenvalues vanishes.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> coordinates = MatrixCoordinates(lh.defining(lh.so(3)))
+    >>> psi = Generator(lh.RigidBody([2, 3, 4]).field("b"), 2)
+    >>> inertia = inertia_of(coordinates, psi)
+    >>> inertia.moments.round(12).tolist(), inertia.sign
+    ([0.5, 1.5, 2.5], -1.0)
+    """
+    n, r = coordinates.size, len(coordinates.basis)
+    points, time = np.eye(r), np.zeros((r, 1))
+    velocity = np.asarray(psi(points, time), dtype=float)
+    probe = np.cos(np.arange(1.0, r + 1))
+    turned, forms = coordinates.element(velocity), -2 * coordinates.form(points)
+    units = [_symmetric_unit(n, i, j) for i in range(n) for j in range(i, n)]
+    columns = np.stack([(u @ turned + turned @ u).ravel() for u in units], axis=-1)
+    found = np.linalg.lstsq(columns, forms.ravel(), rcond=None)[0]
+    rest = np.abs(columns @ found - forms.ravel()).max()
+    linear = np.abs(psi(probe, np.zeros(1)) - probe @ velocity).max() <= RTOL * np.abs(velocity).max()
+    if not linear or not rest <= RTOL * np.abs(forms).max():
+        raise InputError(
+            f"psi is not that of a free rigid body in R^{n}, psi = +-Om with M = J Om + Om J for a symmetric J: take "
+            "liehom.IsospectralMidpoint()"
+        )
+    j = sum(x * u for x, u in zip(found, units, strict=True))
+    moments, axes = np.linalg.eigh(j)
+    sums = (moments[:, None] + moments)[np.triu_indices(n, 1)]
+    sign = float(np.sign(sums[0]))
+    size = np.abs(moments).max()
+    if np.abs(moments).min() <= RTOL * size or (sign * sums).min() <= RTOL * size:
+        raise InputError(
+            f"the body has J = {(sign * moments).tolist()} in its principal axes: all J_i must differ from 0, and all "
+            "J_i + J_j, i != j, must be positive; take liehom.IsospectralMidpoint()"
+        )
+    order = np.argsort(sign * moments)
+    return Inertia((sign * moments)[order], axes[:, order], sign)
+
+
+def _symmetric_unit(n: int, i: int, j: int) -> Array:
+    made = np.zeros((n, n))
+    made[i, j] = made[j, i] = 1.0
+    return made

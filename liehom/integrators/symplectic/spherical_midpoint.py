@@ -3,23 +3,23 @@
     m_i' = m_i + h psi_i(G) x G_i,    G_i = |m_i| (m_i + m_i') / |m_i + m_i'|
 
 for points (m_1, ..., m_n) of n vectors in R^3 (R. I. McLachlan, K. Modin and O. Verdier, A minimal-variable symplectic
-integrator on spheres, Math. Comp. 86, 2017).  It is the classical midpoint rule for the vector field that is extended from
-the spheres constantly along rays.
+integrator on spheres, Math. Comp. 86, 2017).  It is the classical midpoint rule for the vector field that is extended
+from the spheres constantly along rays.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from liehom.correctors.step import Generator, LocalStep, Step, solve_implicitly
 from liehom.errors import InputError
 from liehom.homogeneous import Action
+from liehom.integrators.symplectic.variational_midpoint import zeros_of
 from liehom.representations import Representation
-from liehom.series.jet import Jet
 from liehom.typing import Values
 
 
@@ -77,8 +77,7 @@ def _point(psi: Generator, m: Values, t: Values, h: Values) -> Values:
         found: Values = h * (2 * over * velocity.reshape(spins.shape)).reshape(whole)
         return found
 
-    start = np.zeros(whole) * 0.0 if isinstance(m, Jet) else 0.0 * m
-    x = solve_implicitly(rotation, start, h)
+    x = solve_implicitly(rotation, zeros_of(m, whole), h)
     found: Values = _rotated(x.reshape(spins.shape), spins).reshape(whole)
     return found
 
@@ -90,8 +89,9 @@ def _rotated(x: Values, m: Values) -> Values:
     return found
 
 
-def _length(m: Values) -> Any:
-    return np.sqrt(np.sum(m * m, axis=-1, keepdims=True))
+def _length(m: Values) -> Values:
+    found: Values = np.sqrt(np.sum(m * m, axis=-1, keepdims=True))
+    return found
 
 
 @lru_cache(maxsize=32)

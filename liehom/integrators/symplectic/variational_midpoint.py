@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import final
 
+import numpy as np
 
 from liehom.correctors.step import Generator, OneExponential, solve_implicitly
 from liehom.errors import InputError
@@ -60,9 +61,14 @@ class VariationalMidpoint(OneExponential):
     def order(self) -> int:
         return 2
 
+    @property
+    def symmetric(self) -> bool:
+        """Whether a step of size -h is the inverse of a step of size h: True."""
+        return True
+
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         require_exponential(action, "VariationalMidpoint")
-        start = zeros(m, (*np.shape(m)[:-1], action.dimension))
+        start = zeros_of(m, (*np.shape(m)[:-1], action.dimension))
         terms = h.order if isinstance(h, Jet) else SERIES_TERMS
         return solve_implicitly(lambda x: h * psi(mean_of_arc(action, x, m, terms), t + h / 2), start, h)
 
@@ -86,6 +92,18 @@ def mean_of_arc(action: Action, x: Values, m: Values, terms: int = SERIES_TERMS)
     return total
 
 
+def zeros_of(m: Values, shape: tuple[int, ...]) -> Values:
+    """Zeros of a shape, of the kind of numbers in m: where an iteration starts.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> zeros_of(lh.Jet([[1.0, 2.0], [3.0, 4.0]]), (3,)).tolist()
+    [0.0, 0.0, 0.0]
+    """
+    return zeros(m.value if isinstance(m, Jet) else m, shape)
+
+
 def require_exponential(action: Action, name: str) -> None:
     """Raise InputError if Exp of an action is not the exponential map.
 
@@ -95,7 +113,7 @@ def require_exponential(action: Action, name: str) -> None:
     >>> require_exponential(lh.Action(lh.defining(lh.so(3)), "cayley"), "Splitting")
     Traceback (most recent call last):
     ...
-    liehom.errors.InputError: Splitting needs the exponential map, got 'cayley': leave out exponential=
+    liehom.errors.InputError: Splitting needs the exponential map, got 'Cayley': leave out exponential=
     """
     if not isinstance(action.exponential, TrueExponential):
         raise InputError(f"{name} needs the exponential map, got {action.exponential.name!r}: leave out exponential=")
