@@ -122,7 +122,8 @@ def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values
         timed = parts.time_dependent
 
         def function(m: Values, t: Real = 0.0) -> Values:
-            return parts(m, t)[..., 0]
+            found: Values = parts(m, t)[..., 0]
+            return found
 
     tape = Tape()
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))

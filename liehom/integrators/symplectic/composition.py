@@ -55,7 +55,7 @@ class Composition(Step):
     """
 
     step: Step
-    order: int = 4  # type: ignore[assignment]
+    order: int = 4
     scheme: str = "suzuki"
     sizes: tuple[float, ...] = field(init=False, repr=False)
 

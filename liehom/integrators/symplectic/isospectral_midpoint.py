@@ -29,9 +29,9 @@ class IsospectralMidpoint(Step):
     Parameters
     ----------
     matrices : Representation, optional
-        D, the matrices of the algebra, of a group such as SO(n), SO(p, q), SU(n) or Sp(n), or of SL(n). By default the defining
-        representation that the algebra's name stands for. The spin representation of so(3) gives the collective
-        integrator on the dual of so(3) through the Hopf map.
+        D, the matrices of the algebra, of a group such as SO(n), SO(p, q), SU(n) or Sp(n), or of SL(n). By default
+        the defining representation that the algebra's name stands for. The spin representation of so(3) gives the
+        collective integrator on the dual of so(3) through the Hopf map.
 
     Notes
     -----

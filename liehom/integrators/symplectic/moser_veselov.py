@@ -131,9 +131,9 @@ def inertia_of(coordinates: MatrixCoordinates, psi: Generator) -> Inertia:
     points, time = np.eye(r), np.zeros((r, 1))
     velocity = np.asarray(psi(points, time), dtype=float)
     probe = np.cos(np.arange(1.0, r + 1))
-    turned, forms = coordinates.element(velocity), -2 * coordinates.form(points)
+    turned, forms = np.asarray(coordinates.element(velocity)), np.asarray(-2 * coordinates.form(points))
     units = [_symmetric_unit(n, i, j) for i in range(n) for j in range(i, n)]
-    columns = np.stack([(u @ turned + turned @ u).ravel() for u in units], axis=-1)
+    columns: Array = np.stack([(u @ turned + turned @ u).ravel() for u in units], axis=-1)
     found = np.linalg.lstsq(columns, forms.ravel(), rcond=None)[0]
     rest = np.abs(columns @ found - forms.ravel()).max()
     linear = np.abs(psi(probe, np.zeros(1)) - probe @ velocity).max() <= RTOL * np.abs(velocity).max()
