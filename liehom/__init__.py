@@ -162,8 +162,11 @@ if TYPE_CHECKING:
     from liehom.homogeneous import relative_invariant as relative_invariant
     from liehom.homogeneous import structure_name as structure_name
     from liehom.homogeneous import symmetric_strata as symmetric_strata
+    from liehom.instances import AttitudeBody as AttitudeBody
+    from liehom.instances import HeavyTop as HeavyTop
     from liehom.instances import LandauLifshitz as LandauLifshitz
     from liehom.instances import RigidBody as RigidBody
+    from liehom.instances import SE3Body as SE3Body
     from liehom.instances import Sphere as Sphere
     from liehom.instances import SymmetricMatrices as SymmetricMatrices
     from liehom.integrators import RKMK as RKMK
@@ -295,7 +298,7 @@ _NAMES = {
         "Taylor integrate integrate_ensemble observed_order tableau Composition IsospectralMidpoint "
         "MoserVeselov SphericalMidpoint Splitting VariationalMidpoint "
     ),
-    "liehom.instances": "LandauLifshitz RigidBody Sphere SymmetricMatrices",
+    "liehom.instances": "AttitudeBody HeavyTop LandauLifshitz RigidBody SE3Body Sphere SymmetricMatrices",
     "liehom.io": (
         "dump from_gap from_json from_sage latex load load_pair load_problem loads to_gap to_json to_sage to_sympy"
     ),

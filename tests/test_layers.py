@@ -79,7 +79,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "ensembles",
         "convergence",
     ),
-    "instances": ("spheres", "rigid_body", "spins", "sym_conjugation", "isospectral"),
+    "instances": ("spheres", "bodies", "rigid_body", "spins", "sym_conjugation", "isospectral"),
 }
 
 # the class files: a method may delegate, inside its body, to a wing above its class; nothing else may point upwards

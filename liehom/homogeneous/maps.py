@@ -342,11 +342,24 @@ def action_map(representation: Representation) -> FieldMap:
     (3, 3)
     """
     n = representation.size
+    return FieldMap(action_entries(representation), (representation.algebra.dimension, n, n), representation.field)
+
+
+def action_entries(representation: Representation) -> list[tuple[int, int, int, Scalar]]:
+    """The entries (a, j, i, value) of rho(e_a) in row i and column j that are not 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> action_entries(lh.defining(lh.so(2)))
+    [(0, 1, 0, -1), (0, 0, 1, 1)]
+    """
+    n = representation.size
     entries = []
     for a, matrix in enumerate(representation.matrices):
         rows = matrix.to_rows()
         entries += [(a, j, i, rows[i][j]) for i in range(n) for j in range(n) if rows[i][j] != 0]
-    return FieldMap(entries, (representation.algebra.dimension, n, n), representation.field)
+    return entries
 
 
 def bracket_map(representation: Representation) -> FieldMap:

@@ -1,10 +1,16 @@
 """Systems of the paper and related ones, all of them uses of the generic code.
 
-`spheres` has SO(k) on spheres and the order conditions on S^2, `rigid_body` the exact motion and the updates of
-Figure 6, `sym_conjugation` and `isospectral` the symmetric matrices with given eigenvalues and their flows, and `spins`
-the Landau-Lifshitz-Gilbert equation. Users, `liehom.paper` and the examples may use them; see docs/api/instances.md.
+`spheres` has SO(k) on spheres and the order conditions on S^2, `bodies` rigid bodies under torques and forces, and
+`rigid_body` the exact motion of the free body and the updates of Figure 6. `sym_conjugation` and `isospectral` have the
+symmetric matrices with given eigenvalues and their flows, `spins` the Landau-Lifshitz-Gilbert equation. Users,
+`liehom.paper` and the examples may use them; see docs/api/instances.md.
 """
 
+from liehom.instances.bodies import AttitudeBody as AttitudeBody
+from liehom.instances.bodies import BodyState as BodyState
+from liehom.instances.bodies import HeavyTop as HeavyTop
+from liehom.instances.bodies import PoseState as PoseState
+from liehom.instances.bodies import SE3Body as SE3Body
 from liehom.instances.isospectral import double_bracket_flow as double_bracket_flow
 from liehom.instances.isospectral import qr_flow as qr_flow
 from liehom.instances.isospectral import qr_solution as qr_solution

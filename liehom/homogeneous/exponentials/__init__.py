@@ -3,6 +3,7 @@
 `exponential_of` gives the exponential that a name denotes. Actions and integrators use them; see docs/notation.md.
 """
 
+from liehom.homogeneous.exponentials.block_exponential import BlockExponential as BlockExponential
 from liehom.homogeneous.exponentials.cayley import Cayley as Cayley
 from liehom.homogeneous.exponentials.custom_exponential import CustomExponential as CustomExponential
 from liehom.homogeneous.exponentials.custom_exponential import exponential_of as exponential_of

@@ -8,9 +8,10 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from liehom.errors import InputError, SeriesError, ShapeError, displayed
+from liehom.homogeneous.exponentials.block_exponential import default_exponential
 from liehom.homogeneous.exponentials.cayley import Cayley
 from liehom.homogeneous.exponentials.exponential import Exponential, MatrixExponential, SeriesExponential
-from liehom.homogeneous.exponentials.rodrigues import Rodrigues, cubic_form
+from liehom.homogeneous.exponentials.rodrigues import Rodrigues
 from liehom.homogeneous.maps import action_map
 from liehom.representations import Representation
 from liehom.series.jet import Jet
@@ -150,9 +151,9 @@ def exponential_of(representation: Representation, which: ExponentialLike = "exp
     ----------
     representation : Representation
     which : str, Exponential or callable
-        One of the names "exp" (Rodrigues' formula where it applies, else the series), "series", "expm", "rodrigues"
-        and "cayley"; an `Exponential`; a subclass of `Exponential` whose constructor takes a representation; or a
-        function (x, m) -> Exp(x) m.
+        One of the names "exp" (Rodrigues' formula where it applies, to the whole or to each block of coordinates, else
+        the series), "series", "expm", "rodrigues" and "cayley"; an `Exponential`; a subclass of `Exponential` whose
+        constructor takes a representation; or a function (x, m) -> Exp(x) m.
 
     Raises
     ------
@@ -173,9 +174,7 @@ def exponential_of(representation: Representation, which: ExponentialLike = "exp
         return which
     if isinstance(which, str):
         if which == "exp":
-            return (
-                SeriesExponential(representation) if cubic_form(representation) is None else Rodrigues(representation)
-            )
+            return default_exponential(representation)
         if which in _BY_NAME:
             return _BY_NAME[which](representation)
     elif callable(which):

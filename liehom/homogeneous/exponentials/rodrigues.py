@@ -1,15 +1,19 @@
-"""Rodrigues' formula: the closed form of exp for representations with rho(x)^3 = -q(x) rho(x), q a quadratic form.
+"""Rodrigues' formula: exp in closed form for representations whose eigenvalues are 0 and two of opposite sign.
 
-    exp(A) = 1 + S A + C A^2,   S = sin(r)/r,   C = (1 - cos r)/r^2,   r^2 = q
+    rho(x)^3 = -q(x) rho(x):      exp(A) = 1 + S A + C A^2
+    rho(x)^4 = -q(x) rho(x)^2:    exp(A) = 1 + A + C A^2 + D A^3
+    S = sin(r)/r,   C = (1 - cos r)/r^2,   D = (1 - S)/r^2,   r^2 = q, a quadratic form on g,
 
-with hyperbolic functions where q < 0.  The formula holds for so(3) and so(2,1) on R^3, for su(2) and sl(2) on spinors,
-and for the Heisenberg algebra.
+with hyperbolic functions where q < 0.  The first identity holds for so(3) and so(2,1) on R^3, for su(2) and sl(2) on
+spinors, and for the Heisenberg algebra; the second for the Euclidean algebra se(3) on R^4.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import combinations_with_replacement
 from math import isfinite, sin, sinh, sqrt
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
@@ -17,20 +21,28 @@ from liehom.errors import InputError
 from liehom.homogeneous.exponentials.exponential import TrueExponential, exact_exponential
 from liehom.homogeneous.maps import FieldMap
 from liehom.representations import Representation
-from liehom.scalars import Matrix, Scalar
+from liehom.scalars import Field, Matrix
 from liehom.series.arrays import is_exact, namespace
 from liehom.tracing.array import Traced
 from liehom.tracing.exponentials import entire_function
 from liehom.typing import Array, Values
 
 CUBIC_DIMENSION = 10
+"""Algebras of larger dimension are not searched for an identity."""
 RTOL = 1e-12
 NEAR = 1e-3
 
 
+class PowerIdentity(NamedTuple):
+    """The identity rho(x)^(power + 2) = -q(x) rho(x)^power, with q as a bilinear map of shape (dim, dim, 1)."""
+
+    form: FieldMap
+    power: int
+
+
 @final
 class Rodrigues(TrueExponential):
-    """The exponential by Rodrigues' formula, for representations with rho(x)^3 = -q(x) rho(x), q a quadratic form.
+    """The exponential by Rodrigues' formula, for representations with rho(x)^3 = -q(x) rho(x) or one power higher.
 
     Parameters
     ----------
@@ -39,7 +51,7 @@ class Rodrigues(TrueExponential):
     Raises
     ------
     InputError
-        If the identity does not hold.
+        If neither identity holds.
 
     Examples
     --------
@@ -49,32 +61,53 @@ class Rodrigues(TrueExponential):
     """
 
     def __init__(self, representation: Representation) -> None:
-        form = cubic_form(representation)
-        if form is None:
+        identity = power_identity(representation.matrices, representation.field)
+        if identity is None:
             raise InputError(
                 f"{representation!r} does not satisfy rho(x)^3 = -q(x) rho(x), so Rodrigues' formula does not apply; "
                 "use exponential='exp'"
             )
         super().__init__(representation)
-        self._form = form
+        self._identity = identity
 
     @property
     def name(self) -> str:
         return "exp (Rodrigues)"
 
     def act(self, x: Values, m: Values) -> Values:
-        if is_exact(x) or is_exact(m):
-            return exact_exponential(self.infinitesimal, x, m)
-        once = self.infinitesimal(x, m)
-        q: Any = self._form(x, x)
-        if type(q) is Traced:  # S(q) = S(q/4) C(q/4): no branches
-            sine: Values = entire_function("sinq", q / 4)
-            return m + (sine * entire_function("cosq", q / 4) * once + 0.5 * sine * sine * self.infinitesimal(x, once))
-        if q.shape == (1,) and type(q) is np.ndarray and q.dtype == np.float64 and -1e5 < q[0] < 1e15:
-            whole, half = _sine_quotient_of(float(q[0])), _sine_quotient_of(float(q[0]) / 4)
-            return m + (whole * once + 0.5 * half * half * self.infinitesimal(x, once))
-        s, c = _quotients(q)
-        return m + (s * once + c * self.infinitesimal(x, once))
+        return rodrigues_action(self.infinitesimal, self._identity, x, m)
+
+
+def rodrigues_action(infinitesimal: FieldMap, identity: PowerIdentity, x: Values, m: Values) -> Values:
+    """The points exp(rho(x)) m for x (..., dim) and m (..., N), with (x, m) -> rho(x) m as a bilinear map.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> from liehom.homogeneous.maps import action_map
+    >>> rho = lh.defining(lh.so(2))
+    >>> identity = power_identity(rho.matrices, rho.field)
+    >>> turned = rodrigues_action(action_map(rho), identity, np.array([np.pi / 2]), np.array([1.0, 0.0]))
+    >>> turned.round(12).tolist()
+    [0.0, 1.0]
+    """
+    if is_exact(x) or is_exact(m):
+        return exact_exponential(infinitesimal, x, m)
+    form, power = identity
+    once = infinitesimal(x, m)
+    q: Any = form(x, x)
+    if power == 2:
+        twice = infinitesimal(x, once)
+        c, d = _high_quotients(q)
+        return m + (once + (c * twice + d * infinitesimal(x, twice)))
+    if type(q) is Traced:  # S(q) = S(q/4) C(q/4): no branches
+        sine: Values = entire_function("sinq", q / 4)
+        return m + (sine * entire_function("cosq", q / 4) * once + 0.5 * sine * sine * infinitesimal(x, once))
+    if q.shape == (1,) and type(q) is np.ndarray and q.dtype == np.float64 and -1e5 < q[0] < 1e15:
+        whole, half = _sine_quotient_of(float(q[0])), _sine_quotient_of(float(q[0]) / 4)
+        return m + (whole * once + 0.5 * half * half * infinitesimal(x, once))
+    s, c = _quotients(q)
+    return m + (s * once + c * infinitesimal(x, once))
 
 
 def _sine_quotient_of(q: float) -> float:
@@ -118,63 +151,86 @@ def _far(xp: Any, q: Values, r: Values, sine: str, cosine: str) -> tuple[Values,
     return 2.0 * half * getattr(xp, cosine)(0.5 * r), 2.0 * half * half
 
 
-def cubic_form(representation: Representation) -> FieldMap | None:
-    """The form q with rho(x)^3 = -q(x) rho(x) for all x, as a bilinear map of shape (dim, dim, 1), if there is one.
+def _high_quotients(q: Any) -> tuple[Values, Values]:
+    """Arrays or traced values of C and D.
+
+    D is (1 - S)/q except near 0: its error relative to 1/q is round-off, which is below that of A in D A^3.
+    """
+    if type(q) is Traced:
+        sine: Values = entire_function("sinq", q / 4)
+        s, c = sine * entire_function("cosq", q / 4), 0.5 * sine * sine
+    else:
+        s, c = _quotients(q)
+    xp = namespace(q)
+    small = xp.abs(q) < NEAR
+    near = (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110)))) / 6
+    return c, xp.where(small, near, (1 - s) / xp.where(small, 1.0, q))
+
+
+def power_identity(matrices: Sequence[Matrix], field: Field) -> PowerIdentity | None:
+    """The identity rho(x)^3 = -q(x) rho(x), or rho(x)^4 = -q(x) rho(x)^2, that matrices rho(e_i) satisfy, if any.
 
     Notes
     -----
-    Then q(x) = -tr(rho(x)^2) / rank of a generic rho(x); the polarized identity is proved on the basis, over floats
-    to 1e-12. Algebras of dimension above 10 are not tried.
+    Then q(x) = -tr(rho(x)^2) / rank of a generic rho(x)^power. Both sides are homogeneous polynomials in x of degree
+    d = power + 2, and agree if they do at all x with integer coordinates >= 0 of sum d; this is proved over an exact
+    field, and over floats holds to 1e-12. Algebras of dimension above 10 are not tried.
 
     Examples
     --------
     >>> import liehom as lh
-    >>> cubic_form(lh.defining(lh.so(3)))([1.0, 2.0, 2.0], [1.0, 2.0, 2.0])
-    array([9.])
-    >>> cubic_form(lh.defining(lh.so(4))) is None
-    True
+    >>> turn, shift = np.zeros((2, 3, 3), dtype=int)
+    >>> turn[0, 1], turn[1, 0], shift[0, 2] = -1, 1, 1
+    >>> plane = lh.Representation.from_matrices([turn, shift])
+    >>> power_identity(plane.matrices, plane.field).power
+    2
     """
-    n, field = representation.algebra.dimension, representation.field
+    n = len(matrices)
     if not 0 < n <= CUBIC_DIMENSION:
         return None
-    a = np.array([m.to_numpy() for m in representation.matrices])
-    rank = int(np.linalg.matrix_rank(np.einsum("a,aij->ij", np.sqrt(np.arange(2, n + 2)), a)))
-    form = -np.einsum("aij,bji->ab", a, a) / max(rank, 1)
-    if not _is_cubic(a, form):
-        return None
-    if not field.exact:
-        return FieldMap([(i, j, 0, float(form[i, j])) for i in range(n) for j in range(n)], (n, n, 1), field)
-    exact = _exact_form(representation, rank)
-    entries = [(i, j, 0, exact[i][j]) for i in range(n) for j in range(n) if exact[i][j] != 0]
-    return FieldMap(entries, (n, n, 1), field) if _is_exactly_cubic(representation, exact) else None
+    a = np.array([m.to_numpy() for m in matrices])
+    generic = np.einsum("a,aij->ij", np.sqrt(np.arange(2, n + 2)), a)
+    for power in (1, 2):
+        rank = int(np.linalg.matrix_rank(np.linalg.matrix_power(generic, power)))
+        form = -np.einsum("aij,bji->ab", a, a) / max(rank, 1)
+        if not _holds(a, form, power):
+            continue
+        if not field.exact:
+            entries = [(i, j, 0, float(form[i, j])) for i in range(n) for j in range(n)]
+            return PowerIdentity(FieldMap(entries, (n, n, 1), field), power)
+        exact = [[-(x @ y).trace() / max(rank, 1) for y in matrices] for x in matrices]
+        if _holds_exactly(matrices, exact, power):
+            found = [(i, j, 0, exact[i][j]) for i in range(n) for j in range(n) if exact[i][j] != 0]
+            return PowerIdentity(FieldMap(found, (n, n, 1), field), power)
+    return None
 
 
-def _is_cubic(a: Array, form: Array) -> bool:
-    squares = np.einsum("aij,bjk->abik", a, a)
-    left = np.einsum("abij,cjk->abcik", squares + np.swapaxes(squares, 0, 1), a)
-    right = 2 * np.einsum("ab,cij->abcij", form, a)
-    total = sum(np.transpose(left + right, (*p, 3, 4)) for p in ((0, 1, 2), (0, 2, 1), (2, 0, 1)))
-    scale = float(np.abs(left).max(initial=0.0))
-    return bool(isfinite(scale) and float(np.abs(total).max(initial=0.0)) <= RTOL * scale)
+def _nodes(n: int, degree: int) -> Iterator[list[int]]:
+    """The vectors of n integers >= 0 of this sum: a homogeneous polynomial of this degree is 0 if it is 0 there."""
+    for chosen in combinations_with_replacement(range(n), degree):
+        yield [chosen.count(i) for i in range(n)]
 
 
-def _exact_form(representation: Representation, rank: int) -> list[list[Scalar]]:
-    matrices = representation.matrices
-    return [[-(a @ b).trace() / max(rank, 1) for b in matrices] for a in matrices]
+def _holds(a: Array, form: Array, power: int) -> bool:
+    """Whether the identity holds to RTOL for matrices in floats."""
+    x = np.array(list(_nodes(len(a), power + 2)), dtype=float)
+    matrix = np.einsum("ka,aij->kij", x, a)
+    low = np.linalg.matrix_power(matrix, power)
+    high = low @ matrix @ matrix
+    q = np.einsum("ka,ab,kb->k", x, form, x)
+    scale = float(np.abs(matrix).max(initial=0.0)) ** (power + 2)
+    return isfinite(scale) and float(np.abs(high + q[:, None, None] * low).max(initial=0.0)) <= RTOL * scale
 
 
-def _is_exactly_cubic(representation: Representation, form: list[list[Scalar]]) -> bool:
-    a = representation.matrices
-    n = len(a)
-    squares = [[a[i] @ a[j] + a[j] @ a[i] for j in range(n)] for i in range(n)]
-
-    def part(i: int, j: int, k: int) -> Matrix:
-        made: Matrix = squares[i][j] @ a[k] + a[k].scale(2 * form[i][j])
-        return made
-
-    return all(
-        (part(i, j, k) + part(i, k, j) + part(j, k, i)).is_zero()
-        for i in range(n)
-        for j in range(i, n)
-        for k in range(j, n)
-    )
+def _holds_exactly(matrices: Sequence[Matrix], form: Sequence[Sequence[Any]], power: int) -> bool:
+    n = len(matrices)
+    for x in _nodes(n, power + 2):
+        at = [i for i in range(n) if x[i]]
+        parts = [matrices[i].scale(x[i]) for i in at]
+        matrix = sum(parts[1:], parts[0])
+        square = matrix @ matrix
+        q = sum(x[i] * x[j] * form[i][j] for i in at for j in at)
+        left, low = (square @ matrix, matrix) if power == 1 else (square @ square, square)
+        if not (left + low.scale(q)).is_zero():
+            return False
+    return True

@@ -20,6 +20,8 @@ from liehom.correctors.step import ExponentialLike
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.maps import FieldMatrix, remainder
+from liehom.instances.bodies.attitude_body import AttitudeBody
+from liehom.instances.bodies.inertia import inertia_tensor
 from liehom.instances.rigid_body.attitude import attitude
 from liehom.instances.rigid_body.closed_forms import ClosedFormUpdate
 from liehom.instances.rigid_body.exact_orbit import ExactOrbit, ExactOrbitUpdate
@@ -28,11 +30,8 @@ from liehom.instances.rigid_body.free_motion import free_motion
 from liehom.instances.rigid_body.updates import Update
 from liehom.integrators.run.points import points_of
 from liehom.representations import Representation, adjoint
-from liehom.scalars import QQ, ExactMatrix, Scalar
+from liehom.scalars import QQ, Scalar
 from liehom.typing import Array, ScalarLike, Values
-
-SYMMETRY_RTOL = 1e-10
-"""Largest difference of I[i, j] and I[j, i], relative to the largest entry."""
 
 
 @final
@@ -79,8 +78,8 @@ class RigidBody:
     """
 
     def __init__(self, inertia: Sequence[ScalarLike] | Sequence[Sequence[ScalarLike]] | npt.NDArray[Any]) -> None:
-        tensor = _tensor(inertia)
-        self._inverse = tensor.inverse()
+        tensor = inertia_tensor(inertia)
+        self._tensor, self._inverse = tensor, tensor.inverse()
         self._apply = FieldMatrix(self._inverse)
         self.representation: Representation = adjoint(so(3))
         self.inertia: Array = tensor.to_numpy()
@@ -304,7 +303,7 @@ class RigidBody:
 
         Notes
         -----
-        One rotation, with the generator omega_b, moves m and the rows of Q.
+        The state is that of `AttitudeBody`: one rotation, with the generator omega_b, moves the rows of Q.
 
         Examples
         --------
@@ -314,7 +313,7 @@ class RigidBody:
         >>> bool(np.allclose(q @ body.exact(m, 5.0), m, rtol=0, atol=1e-12)), round(float(np.linalg.det(q)), 12)
         (True, 1.0)
         """
-        return attitude(self.apply, point_of(m0), t, start)
+        return attitude(AttitudeBody(self._tensor), point_of(m0), t, start)
 
     # -- updates -----------------------------------------------------------------------------------------
     def update(self, name: str, exponential: ExponentialLike = "cayley") -> Update:
@@ -402,37 +401,3 @@ def point_of(m: npt.ArrayLike) -> Array:
 def _dot(a: Values, b: Values) -> Any:
     """<a, b> over the last axis, shape (...,)."""
     return np.sum(a * b, axis=-1)
-
-
-def _tensor(inertia: object) -> ExactMatrix:
-    """The inertia tensor as a matrix over QQ."""
-    given = np.asarray(inertia, dtype=object)
-    if given.shape == (3,):
-        given = np.diag(given)
-    if given.shape != (3, 3):
-        raise ShapeError(f"the inertia has shape {given.shape}, expected three moments or a (3, 3) matrix")
-    exact = [[_rational(x) for x in row] for row in given]
-    largest = max(abs(x) for row in exact for x in row)
-    for i, j in ((0, 1), (0, 2), (1, 2)):
-        gap = abs(exact[i][j] - exact[j][i])
-        if gap > SYMMETRY_RTOL * largest:
-            raise InputError(
-                f"the inertia tensor is not symmetric: I[{i}, {j}] = {given[i, j]}, I[{j}, {i}] = {given[j, i]}"
-            )
-        exact[i][j] = exact[j][i] = (exact[i][j] + exact[j][i]) / 2
-    tensor = QQ.matrix(exact)
-    if not tensor.is_positive_definite():
-        raise InputError(f"the inertia {inertia} is not positive definite: principal moments are positive")
-    return tensor
-
-
-def _rational(x: Any) -> Fraction:
-    """A number, or a string, as a fraction."""
-    try:
-        if isinstance(x, str | int | Fraction):
-            return Fraction(x)
-        if hasattr(x, "p") and hasattr(x, "q"):
-            return Fraction(int(x.p), int(x.q))
-        return Fraction(*np.float64(x).as_integer_ratio())
-    except (TypeError, ValueError, OverflowError, ZeroDivisionError):
-        raise InputError(f"a moment of inertia is {x!r}, expected a finite real number") from None
