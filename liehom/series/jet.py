@@ -18,7 +18,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from liehom.errors import SeriesError, ShapeError
 from liehom.series import jet_views, recurrences
 from liehom.series.arrays import NumbersLike, as_values, namespace, owned, zeros
-from liehom.series.jet_dispatch import Operand, dispatch
+from liehom.series.jet_dispatch import WITHOUT_SERIES, Operand, dispatch
 from liehom.series.jet_views import View, ViewOperation
 from liehom.series.node import Coefficient, Node, rewind
 from liehom.typing import Key, Real
@@ -419,5 +419,5 @@ def _checked(order: int) -> int:
 def _branch(what: str) -> SeriesError:
     return SeriesError(
         f"{what} depends on values, which a Taylor series does not allow; write the generator without branches, "
-        "or give it as sympy expressions"
+        f"or give it as sympy expressions; {WITHOUT_SERIES}"
     )

@@ -15,6 +15,12 @@ Operand: TypeAlias = Any
 """A Jet, an array, a number, or a nested list or array of objects that holds Jets."""
 
 
+WITHOUT_SERIES = (
+    "a Runge-Kutta step such as liehom.RKMK('rk45') calls the generator on points only, and runs it as it is"
+)
+"""Remedy of messages about generators that cannot be expanded."""
+
+
 @final
 class Dispatch:
     """Functions that implement methods of `Jet`.

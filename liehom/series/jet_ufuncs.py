@@ -20,7 +20,7 @@ from liehom.series import recurrences
 from liehom.series.arrays import across_lanes, constant_like, elementary, is_jax, namespace
 from liehom.series.assembly import holds_jets, nodes
 from liehom.series.jet import Jet
-from liehom.series.jet_dispatch import Operand, dispatch
+from liehom.series.jet_dispatch import WITHOUT_SERIES, Operand, dispatch
 from liehom.series.node import Node
 from liehom.typing import Values
 
@@ -98,7 +98,8 @@ def refused(name: str) -> SeriesError:
     """The `SeriesError` for a function without a Taylor recurrence."""
     return SeriesError(
         f"{name} has no Taylor recurrence here (it branches on values, or is not known): write the generator with "
-        "arithmetic, sqrt exp log sin cos tan sinh cosh tanh arctan and linear algebra, or as sympy expressions"
+        "arithmetic, sqrt exp log sin cos tan sinh cosh tanh arctan and linear algebra, or as sympy expressions; "
+        f"{WITHOUT_SERIES}"
     )
 
 

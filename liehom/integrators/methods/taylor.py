@@ -49,19 +49,20 @@ class Taylor(Step):
 
     Notes
     -----
-    The series of the trajectory costs n (n + 1) / 2 actions rho(psi_i) m_k, and no bracket. It is landed on the orbit
+    The series of the trajectory costs n (n + 1) / 2 actions rho(psi_i) m_k, and no bracket. How it is landed on the
+    orbit follows from the orbit (theory/taylor):
 
-    * by projection onto level sets of invariant quadratic forms, if the orbits are open in such level sets, as
-      spheres, hyperboloids, light cones and their products are: the levels are those at the start of the run;
-    * by nothing, if the orbits are open in V, or in V up to constant coordinates;
-    * otherwise by two exponentials, Exp(eta) Exp(xi) m: xi is the Magnus series of order 4 of the psi_i, and eta the
-      generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations (theory/taylor).
+    * by projection onto level sets of invariant quadratic forms, if the orbit is open in them. Spheres, hyperboloids,
+      light cones and their products are such orbits. The levels are those at the start of the run;
+    * by nothing, if the orbit is open in V, or in V up to constant coordinates;
+    * otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
+      is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
 
     An adaptive step size follows from the last two coefficients, without rejection: the terms m_(n-1) h^(n-1) and
-    m_n h^n are at most 0.9^(n-1) times the tolerance. The coefficients are those at the initial point of the step. If
-    psi has a jump or a kink within the step, they do not show it, and neither the order nor the tolerance is kept
-    there, though the points stay on the orbit: end the run at such a time and start it again, take `RKMK` with an
-    embedded pair, or `max_step`.
+    m_n h^n are at most 0.9^(n-1) times the tolerance. These coefficients are those at the initial point of the step.
+    If psi has a jump or a kink within the step, they do not show it. The points stay on the orbit, but order and
+    tolerance are not kept in that step. End the run at such a time and start it again, give `max_step`, or take `RKMK`
+    with an embedded pair.
 
     Examples
     --------
@@ -91,11 +92,11 @@ class Taylor(Step):
         return ProjectedSeries(action, m, flow, self.order, quadrics, psi.start)
 
     def _quadrics(self, action: Action, psi: Generator, m: Values) -> Quadrics | None:
-        if self not in psi.prepared:
+        if ("quadrics", self) not in psi.prepared:
             start: Any = psi.start if psi.start is not None else m
             points = np.zeros((0, m.shape[-1])) if isinstance(start, Traced) else start
-            psi.prepared[self] = quadric_orbits(action.representation, psi.orbit_dimension, points)
-        found: Quadrics | None = psi.prepared[self]
+            psi.prepared["quadrics", self] = quadric_orbits(action.representation, psi.orbit_dimension, points)
+        found: Quadrics | None = psi.prepared["quadrics", self]
         return found
 
 

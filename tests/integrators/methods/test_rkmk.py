@@ -12,7 +12,7 @@ import pytest
 import liehom as lh
 from liehom.correctors import Generator, apply_factors
 from liehom.correctors.step import step_variable
-from liehom.errors import ConvergenceError, InputError
+from liehom.errors import ConvergenceError, InputError, SeriesError
 from liehom.homogeneous.exponentials.exponential import Exponential, SeriesExponential
 from liehom.integrators import RKMK, EmbeddedStep, Tableau, tableau, tableau_names
 from tests.integrators.support import errors, exact_order, expansions, problem, run, slope, smooth_field, starts
@@ -372,3 +372,23 @@ def test_jax_differentiates_an_implicit_step(jax: Any) -> None:
     h = jax.numpy.full(1, 0.1)
     found = jax.jit(lambda size: jax.jvp(step, (size,), (jax.numpy.ones(1),))[1])(h)
     assert np.abs(found - (step(h + 1e-5) - step(h - 1e-5)) / 2e-5).max() < 1e-8
+
+
+# -- generators without a series -------------------------------------------------------------------------------
+BRANCHING: dict[str, Any] = {
+    "where": lambda m: np.where(m > 0, m, 0.0),
+    "abs": lambda m: np.abs(m),
+    "sign": lambda m: np.sign(m) * m,
+    "maximum": lambda m: np.maximum(m, 0.1),
+    "if": lambda m: m if float(m[..., 2]) > 0.5 else -m,
+    "comparison": lambda m: m if m[..., 2] > 0.5 else -m,
+}
+
+
+@pytest.mark.parametrize("name", BRANCHING)
+def test_a_generator_that_branches_is_refused_with_the_remedy_and_runs_with_it(name: str) -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(3)), BRANCHING[name])
+    with pytest.raises(SeriesError, match=r"such as liehom\.RKMK\('rk45'\)"):
+        lh.integrate(field, (0, 1), [0.6, 0.0, 0.8])
+    sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=lh.RKMK("rk45"))
+    assert sol.success and abs(np.linalg.norm(sol.y[:, -1]) - 1) < 1e-14
