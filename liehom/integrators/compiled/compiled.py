@@ -17,6 +17,7 @@ import numpy.typing as npt
 from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
+from liehom.integrators.compiled.llvm_engine import CodeStore, compiled_run
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.engine import Problem, executed
@@ -83,6 +84,8 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
     groups, kept_order = [], None
     if isinstance(run.step, Conserving) and run.options.dt is None and not run.step.linear:
         kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
+    if backend == "llvm":
+        return compiled_run(run, CodeStore())  # type: ignore
     for d in np.unique(dimensions):
         lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(

@@ -8,6 +8,7 @@ import numpy as np
 
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.homogeneous import Action
+from liehom.integrators.run.clock import MAX_RATE, MIN_RATE, NEWTON_ITERATIONS, SLACK
 from liehom.integrators.run.control import (
     MAX_GROWTH,
     Tolerance,
@@ -19,7 +20,12 @@ from liehom.integrators.run.control import (
     size_from_defects,
     time_scale,
 )
+from liehom.integrators.run.run import FIRST_STEP_FRACTION
+from liehom.tracing import while_loop
 from liehom.typing import Real, Values
+
+
+EPS = float(np.finfo(np.float64).eps)
 
 
 class SizeLimits(NamedTuple):
@@ -105,3 +111,55 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Values) -> 
         return True, MAX_GROWTH * np.abs(h)
     allowed = Tolerance(limits.rtol, limits.atol).norm(m)
     return judged(estimate(size), allowed, h, local.estimate_order)  # type: ignore[attr-defined]
+
+
+def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
+    """Size of the first step of an embedded pair, without sign; None where the Taylor coefficients give it.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> psi = Generator(lh.GeneratorField(lh.defining(lh.so(2)), [4]), 1)
+    >>> first_size(SizeLimits(1e-3, 1e-3, 1.0, 1.0, 1.0, 1e-15), LocalStep(psi, 1), psi, np.array([1.0, 0.0]), 0.0)
+    """
+    if getattr(local, "estimate", None) is None:
+        return None
+    bound = largest_size(limits.max_step, np.abs(limits.end - t))
+    return np.minimum(bound, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
+
+
+def size_to_stop(
+    local: LocalStep | None, h: Values, left: Values, bounds: tuple[Real, Real]
+) -> tuple[Values, Values, Values | bool]:
+    """A step size that ends at a stop in the time `left` if the step reaches it: on tracers.
+
+    Parameters
+    ----------
+    local : LocalStep or None
+        A step with a time reparametrization τ; None if the time that passes is the size.
+    h, left : traced arrays of shape ()
+        The signed size of the step, and the signed time to the stop.
+    bounds : (traced direction, traced time below which a rest is no step)
+
+    Returns
+    -------
+    size, reached, found : traced arrays of shape ()
+        The size, whether it is that to the stop, and whether τ(size) = left if so.
+    """
+    direction, tiny = bounds
+    if local is None:
+        reached = direction * (left - h) <= SLACK * np.abs(h) + tiny
+        return np.where(reached, left, h), reached, True
+    tape: Any = h.tape  # type: ignore[union-attr]
+    passed = local.time(h)
+    reached = direction * (left - passed) <= SLACK * np.abs(h)
+
+    def newton(wanted: Any, s: Any) -> tuple[list[Any], Any]:
+        slope = 1 + sum(k * c * s ** (k - 1) for k, c in local.clock)
+        new = s + (left - local.time(s)) / np.clip(slope, MIN_RATE, MAX_RATE)
+        again = wanted & (np.abs(new - s) > 2 * EPS * np.abs(s))
+        return [again, np.where(wanted, new, s)], again
+
+    _, s = while_loop(newton, [reached, h * left / passed], tape, NEWTON_ITERATIONS, guarded=True)
+    found = np.abs(local.time(s) - left) <= 64 * EPS * np.abs(left)
+    return np.where(reached, s, h), reached, found | ~reached

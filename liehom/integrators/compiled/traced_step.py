@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import reduce
 from typing import Any
 
@@ -15,7 +15,7 @@ from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
-from liehom.integrators.compiled.traced_size import SizeLimits, judgement, tried_size
+from liehom.integrators.compiled.traced_size import SizeLimits, first_size, judgement, size_to_stop, tried_size
 from liehom.integrators.run.clock import clock_at, has_clock
 from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
 from liehom.integrators.run.control import ERROR_TERMS
@@ -30,6 +30,7 @@ MAX_CLOCK_DEVIATION = 0.8
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
     ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None, kept_order: int | None = None,
+    stops: bool = False,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
@@ -49,6 +50,8 @@ def traced_step(
         Tolerances for an adaptive step size; without them the size is an input of the graph.
     kept_order : int, optional
         ``Conserving.kept_order``, on which the sizes of a conserving step depend.
+    stops : bool
+        Whether the graph goes no further than to a stop, whose time is an input.
 
     Raises
     ------
@@ -64,7 +67,7 @@ def traced_step(
     (2, None)
     """
     try:
-        return _traced(action, field, step, points, orbit_dimension, nominal, ends, limits, kept_order)
+        return _traced(action, field, step, points, orbit_dimension, nominal, ends, limits, kept_order, stops)
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -76,7 +79,7 @@ def traced_step(
 
 def _traced(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
-    ends: tuple[float, float], limits: SizeLimits | None, kept_order: int | None,
+    ends: tuple[float, float], limits: SizeLimits | None, kept_order: int | None, stops: bool,
 ) -> StepGraph:  # fmt: skip
     tape, n = Tape(), field.representation.size
     tight = action.tight_frame
@@ -95,21 +98,29 @@ def _traced(
     given_limits: SizeLimits | None = None
     certain: Any = True
     if limits is not None:
-        given_limits = SizeLimits._make(Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in limits)
+        given_limits = SizeLimits._make(Traced(tape, tape.run_constant(*x)) for x in limits._asdict().items())
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
+    own_clock, first, reached = has_clock(local) and not nominal, None, None
+    passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
+    if stops:
+        calls = tape.calls
+        first = first_size(given_limits, local, psi, m, t) if given_limits is not None else None
+        tape.calls = calls
+        stop, directed = Traced(tape, tape.input(n + 2)), Traced(tape, tape.run_constant("direction", 1.0))
+        bounds = directed, Traced(tape, tape.run_constant("tiny", 0.0))
+        h, reached, found = size_to_stop(local if own_clock else None, h, stop - t, bounds)
+        tape.required.append(_number(tape, found))
     size = h[..., None]
     made: Any = local.point(size)
-    passed, runs = None, None
+    runs = None
     clock: tuple[tuple[int, Expr], ...] = ()
-    if has_clock(local) and not nominal:
-        passed = _number(tape, local.time(h))
+    if own_clock:
         clock = _clock_coefficients(tape, local.clock)
         runs = _clock_is_admissible(tape, local.clock, h)
         if limits is not None:  # adaptive steps are larger than fixed ones: the rate is sampled, as in a run
             runs = _number(tape, clock_at(local, h)[0])
     sizes = None
     if given_limits is not None:
-        passed = _number(tape, h) if passed is None else passed
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
     worst, summed = _statistics(tape, local, step, t, size, ends)
     solved = reduce(tape.both, tape.required) if tape.required else None
@@ -119,7 +130,12 @@ def _traced(
     calls = int(tape.calls.value) if tape.calls.constant else None
     if calls is None:
         summed["calls"] = tape.calls
-    return StepGraph(point, passed, runs, worst, summed, tuple(tape.constant_functions), clock, solved, sizes, calls)
+    return StepGraph(
+        point, passed, runs, worst, summed, tuple(tape.constant_functions), clock, solved, sizes, calls,
+        reached=None if reached is None else _number(tape, reached),
+        tried=None if reached is None else _number(tape, h),
+        first=None if first is None else _number(tape, first),
+    )  # fmt: skip
 
 
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
@@ -131,11 +147,6 @@ def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
         return made
 
     return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
-
-
-def _everywhere(x: Real) -> Callable[[Array], Array]:
-    """Function of points (..., N) with the constant value x, of shape (...,)."""
-    return lambda points: np.full(points.shape[:-1], x)
 
 
 def _number(tape: Tape, x: object) -> Expr:
@@ -184,7 +195,9 @@ def _statistics(
             short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
             near = found.near_cone(size[..., 0])
             failed = np.where(short > 0, 1.0, 0.0)
-            direction, limit = [Traced(tape, tape.trajectory_constant(_everywhere(x))) for x in bounds_of(ends)]
+            direction, limit = [
+                Traced(tape, tape.run_constant(*x)) for x in zip(("direction", "latest"), bounds_of(ends), strict=True)
+            ]
             now = np.where((short > 0) | near, earliness(t, (direction, limit)), 0.0)
             largest |= {"residual": found.residual, "short": short, "unkept": now}
             summed |= {"failed": failed, "near": np.where(near, 1.0, 0.0)}

@@ -1,0 +1,216 @@
+"""The lanes of a kernel: their state as rows, and what becomes of them in the state of a run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+from typing import Any, NamedTuple, final
+
+import numpy as np
+
+from liehom.integrators.run.options import END
+from liehom.integrators.run.run import Run
+from liehom.tracing import Kernel, padded
+from liehom.tracing.kernel import PLACES
+from liehom.typing import Array, BooleanArray, IntegerArray
+
+LANE_STEPS_FOR_THREADS = 50_000
+"""Steps of a call, summed over lanes, from which on threads share the blocks."""
+_POOL: dict[int, ThreadPoolExecutor] = {}
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_POOL.clear)
+
+
+class Made(NamedTuple):
+    """What a kernel has made of some lanes.
+
+    Attributes
+    ----------
+    m, t, taken : arrays of shape (N, L), (L,) and (L,)
+        Points, times and numbers of steps.
+    going, done : bool arrays of shape (L,)
+        Which lanes have steps left to be made by the kernel, and which are at the end.
+    calls : array of shape (L,)
+        Calls of psi.
+    records : dict of arrays of shape (L,)
+        Largest and summed numbers of the steps.
+    outputs : array of int of shape (k,)
+        Indices of output times, which are contiguous.
+    points : array of shape (k, N, L)
+        The points at these times; only those are valid that `until` of a lane counts.
+    until : int array of shape (L,)
+        Number of output times that are reached.
+    path : (times (j, L), points (j, N, L), sizes (j, L)) or None
+        All steps; sizes are 0 where a lane did not move.
+    h : array of shape (L,) or None
+        Proposed sizes.
+    """
+
+    m: Array
+    t: Array
+    taken: IntegerArray
+    going: BooleanArray
+    done: BooleanArray
+    calls: Array
+    records: Mapping[str, Array]
+    outputs: IntegerArray
+    points: Array
+    until: IntegerArray
+    path: tuple[Array, Array, Array] | None
+    h: Array | None = None
+
+
+def packed(kernel: Kernel, lanes: int, given: Mapping[str, Any]) -> Array:
+    """The state of lanes as rows (names, lanes in whole blocks): given values, "x" for the points (N, L); else 0.
+
+    The lanes that fill up the last block are at the first point, so that their numbers are not out of bounds.
+    """
+    state = np.zeros((len(kernel.names), padded(lanes, kernel.width)))
+    for name, value in given.items():
+        if name == "x":
+            state[: len(value), :lanes] = value
+            state[: len(value), lanes:] = value[:, :1]
+        else:
+            state[kernel.names.index(name), :lanes] = value
+    return state
+
+
+def run_blocks(kernel: Kernel, state: Array, given: Mapping[str, Any], steps: int) -> None:
+    """Run a kernel on all blocks of a state, in threads if there is enough to do.
+
+    Parameters
+    ----------
+    kernel : Kernel
+    state : array of shape (names, lanes)
+        Changed in place.
+    given : dict
+        Other fields of the argument of the kernel: arrays, or numbers.
+    steps : int
+        About the number of steps.
+    """
+    count = state.shape[1]
+    blocks = count // kernel.width
+    argument = np.zeros(len(PLACES), dtype=np.int64)
+    fields = {"state": state, "lanes": count, "last": blocks, **given}
+    for name, value in fields.items():
+        if isinstance(value, np.ndarray):
+            argument[PLACES[name]] = value.ctypes.data
+        elif name == "origin":
+            argument.view(np.float64)[PLACES[name]] = value
+        elif value is not None:
+            argument[PLACES[name]] = value
+    workers = min(cores(), blocks) if count * steps >= LANE_STEPS_FOR_THREADS else 1
+    if workers == 1:
+        kernel.run(argument.ctypes.data)
+        return
+    cuts = np.linspace(0, blocks, 4 * workers + 1 if blocks >= 8 * workers else workers + 1).astype(int)
+    arguments = np.repeat(argument[None], len(cuts) - 1, axis=0)
+    arguments[:, PLACES["first"]], arguments[:, PLACES["last"]] = cuts[:-1], cuts[1:]
+    jobs = [_pool(workers).submit(kernel.run, row.ctypes.data) for row, (a, b) in zip(arguments, pairwise(cuts), strict=True) if b > a]
+    for job in jobs:
+        job.result()
+
+
+def _pool(workers: int) -> ThreadPoolExecutor:
+    """The threads that kernels share."""
+    if workers not in _POOL:
+        _POOL[workers] = ThreadPoolExecutor(workers, thread_name_prefix="liehom")
+    return _POOL[workers]
+
+
+def cores() -> int:
+    """Number of threads that may run at once.
+
+    Examples
+    --------
+    >>> cores() >= 1
+    True
+    """
+    given = os.environ.get("LIEHOM_NUM_THREADS")
+    if given and given.isdigit() and int(given) > 0:
+        return int(given)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@final
+class HandBack:
+    """Writes what kernels have made of lanes to the state of a run."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.size: int = run.start.shape[-1]
+        self.m = run.state.m.reshape(-1, self.size).astype(np.float64, copy=True)
+        self.t = np.array(run.state.t, dtype=np.float64).reshape(-1)
+        self.h = np.array(run.state.h, dtype=np.float64).reshape(-1)
+        self.taken = np.array(run.state.taken).reshape(-1)
+        self.before = self.taken.copy()
+        self.active = run.state.active.reshape(-1)
+        self.done = np.zeros(self.t.shape, dtype=bool)
+        self.going = np.zeros(self.t.shape, dtype=bool)
+        self.calls = np.zeros(self.t.shape)
+        self.paths: list[tuple[IntegerArray, tuple[Array, Array, Array]]] = []
+
+    def take(self, lanes: IntegerArray, made: Made) -> None:
+        """Take over some lanes."""
+        run = self.run
+        self.m[lanes], self.t[lanes], self.taken[lanes] = made.m.T, made.t, made.taken
+        self.going[lanes], self.done[lanes], self.calls[lanes] = made.going, made.done, made.calls
+        if made.h is not None:
+            self.h[lanes] = made.h
+        if made.records:
+            run.state.statistics.add_compiled(lanes, made.records, (float(run.span[0]), float(run.span[1])))
+        if made.path is not None:
+            self.paths.append((lanes, made.path))
+        samples = run.state.samples
+        if samples is None:
+            return
+        done = samples.done.reshape(-1).copy()
+        if len(made.outputs):
+            points = samples.points.reshape(-1, self.size, len(samples.times))
+            here = slice(int(made.outputs[0]), int(made.outputs[-1]) + 1)
+            new = made.points.transpose(2, 1, 0)
+            valid = (made.outputs < made.until[:, None]) & (made.outputs >= done[lanes, None])
+            if len(lanes) == len(points) and bool(valid.all()):
+                points[:, :, here] = new
+            else:
+                points[lanes, :, here] = np.where(valid[:, None], new, points[lanes, :, here])
+        done[lanes] = made.until
+        samples.done = done.reshape(run.shape)
+
+    def finish(self) -> bool:
+        """Write the state; whether kernels have more steps to make."""
+        run, now, shape = self.run, self.run.state, self.run.shape
+        if self.paths:
+            self._record()
+        now.m = self.m.reshape(run.start.shape)
+        now.t = self.t.reshape(shape)
+        now.h = self.h.reshape(shape)
+        now.taken = self.taken.reshape(shape)
+        done = self.done.reshape(shape)
+        if bool(done.any()):
+            run._stop(done, END)
+        return bool(self.going.any()) or not bool(now.active.any())
+
+    def _record(self) -> None:
+        """Append the steps of all lanes to the path of the run."""
+        run, shape = self.run, self.run.shape
+        most = max(len(path[0]) for _, path in self.paths)
+        if len(self.paths) == 1 and len(self.paths[0][0]) == len(self.t):
+            times, points, sizes = self.paths[0][1]
+            points = np.swapaxes(points, 1, 2)
+        else:
+            times, sizes = np.zeros((most, len(self.t))), np.zeros((most, len(self.t)))
+            points = np.zeros((most, len(self.t), self.size))
+            for lanes, path in self.paths:
+                count = len(path[0])
+                times[:count, lanes], sizes[:count, lanes] = path[0], path[2]
+                points[:count, lanes] = np.swapaxes(path[1], 1, 2)
+        if most:
+            run.state.path.extend(
+                times.reshape(most, *shape),
+                points.reshape(most, *run.start.shape),
+                sizes.reshape(most, *shape),
+                (sizes != 0).reshape(most, *shape),
+            )

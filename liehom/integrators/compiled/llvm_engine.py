@@ -1,0 +1,313 @@
+"""Runs in machine code: every step of every trajectory, in lockstep or with a size of its own.
+
+The machine code and the traces behind it are kept by a `CodeStore`. What compiled code does not decide (a point that is
+not finite, a clock that is not admissible, equations that were not solved) ends the compiled part of a trajectory
+before that step, which `Run.advance` then makes or diagnoses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.conserving import Conserving
+from liehom.correctors.isotropy.corrected import Corrected
+from liehom.errors import InputError
+from liehom.integrators.compiled.lanes import HandBack, Made, packed, run_blocks
+from liehom.integrators.compiled.schedule import Schedule, schedule
+from liehom.integrators.compiled.traced_size import SizeLimits
+from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.run.clock import SLACK
+from liehom.integrators.run.records import bounds_of
+from liehom.integrators.run.run import Run
+from liehom.tracing import Kernel, StepGraph, lanes_per_register, needed
+from liehom.typing import Array, IntegerArray
+
+SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
+"""Operations between two loops up to which code is short, and from which on it is long."""
+PATH_BYTES_PER_CALL = 64_000_000
+"""Bytes of points, times and sizes that a kernel call records at most."""
+OPERATIONS_PER_CALL = 4_000_000_000
+"""Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
+ASSUMED_ITERATIONS = 5
+"""Iterations that a loop in a step is assumed to make, for the number of its operations."""
+MIN_STEPS_PER_CALL = 8
+"""Steps per kernel call at least: the time between two calls is that of some steps."""
+MAX_SCHEDULES = 16
+"""Schedules that are kept."""
+
+
+@final
+class CodeStore:
+    """Traces, machine code and schedules for one field, step, exponential and clock.
+
+    Examples
+    --------
+    >>> CodeStore().kernels
+    {}
+    """
+
+    def __init__(self) -> None:
+        self.graphs: dict[Hashable, StepGraph] = {}
+        self.kernels: dict[Hashable, Kernel] = {}
+        self.schedules: dict[Hashable, Schedule] = {}
+
+    def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
+        """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
+        o, tight, kept_order = run.options, run.action.tight_frame, None
+        if isinstance(run.step, Conserving) and o.dt is None and not run.step.linear:
+            kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
+        frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
+        uniform = o.dt is not None and o.dt.size == 1
+        key = (dimension, uniform, o.dt is None, o.nominal, kept_order, frame)
+        if key not in self.graphs:
+            limits = SizeLimits(*_limits(run).values()) if o.dt is None else None
+
+            def traced(*, stops: bool) -> StepGraph:
+                return traced_step(
+                    run.action, run.field, run.step, points, dimension, nominal=o.nominal, limits=limits,
+                    ends=(float(run.span[0]), float(run.span[1])), kept_order=kept_order, stops=stops,
+                )  # fmt: skip
+
+            own_clock = isinstance(run.step, Corrected) and not o.nominal
+            made = traced(stops=not uniform or own_clock)
+            if made.reached is None and made.elapsed is not None:
+                made = traced(stops=True)
+            self.graphs[key] = made
+        return key, self.graphs[key]
+
+    def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
+        """The machine code of a graph, in blocks for so many lanes."""
+        width = block_width(graph, lanes)
+        if (key, width) not in self.kernels:
+            self.kernels[key, width] = Kernel(graph, width)
+        return self.kernels[key, width]
+
+    def schedule(self, run: Run) -> Schedule:
+        """The micro-steps of a run with steps of one size."""
+        span, dt = (float(run.span[0]), float(run.span[1])), float(np.max(run.options.dt))
+        times = None if run.state.samples is None else run.state.samples.times
+        key = (*span, dt, None if times is None else times.tobytes(), run.keeps)
+        if key not in self.schedules:
+            if len(self.schedules) >= MAX_SCHEDULES:
+                self.schedules.pop(next(iter(self.schedules)))
+            self.schedules[key] = schedule(span, dt, int(np.max(run.total)), times, keeps=run.keeps)
+        return self.schedules[key]
+
+
+def _limits(run: Run) -> dict[str, float]:
+    o = run.options
+    return {
+        "rtol": o.rtol, "atol": o.atol, "max_step": o.max_step,
+        "end": float(run.end), "direction": float(run.direction), "tiny": float(run.tiny),
+    }  # fmt: skip
+
+
+def compiled_run(run: Run, store: CodeStore) -> Callable[[Run], bool]:
+    """The fast path of a run: makes its steps by machine code; returns whether there are more for it to be made.
+
+    Raises
+    ------
+    InputError
+        If the run has something that is not compiled.
+    TraceError
+        If the step cannot be compiled.
+    """
+    if run.events is not None:
+        raise InputError("compile='llvm' does not look for events: integrate without compile=")
+    if run.dtype != np.float64:
+        raise InputError(f"compile='llvm' computes in float64, the start is of type {run.dtype}")
+    return _CompiledRun(run, store)
+
+
+@final
+class _CompiledRun:
+    """Steps of a run by machine code.
+
+    The number of steps in one call has no effect on the results: the next call continues where one ended.
+    """
+
+    def __init__(self, run: Run, store: CodeStore) -> None:
+        self.store = store
+        self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
+        dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
+        self.groups: list[tuple[IntegerArray, Hashable, StepGraph]] = []
+        for d in np.unique(dimensions):
+            lanes = np.flatnonzero(dimensions == d)
+            self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
+        self.work = max((_operations(graph) for _, _, graph in self.groups), default=1)
+        self.values = {**_limits(run), "latest": bounds_of((float(run.span[0]), float(run.span[1])))[1]}
+
+    def __call__(self, run: Run) -> bool:
+        """Make steps until every lane is at the end or has a step that is not made here, or a call is full."""
+        now, active = run.state, run.state.active.reshape(-1)
+        lanes = len(active)
+        if not active.any():
+            return False
+        most = max(MIN_STEPS_PER_CALL, OPERATIONS_PER_CALL // (self.work * lanes))
+        if run.keeps:
+            most = min(most, max(1, PATH_BYTES_PER_CALL // (8 * lanes * (self.start.shape[-1] + 2))))
+        steps = int(min(run.options.max_steps - 1 - int(np.max(now.taken)), most))
+        if steps < 1:
+            return False
+        back = HandBack(run)
+        for members, key, graph in self.groups:
+            here = members[active[members]] if not active.all() else members
+            if not len(here):
+                continue
+            if graph.reached is not None:
+                kernel = self.store.kernel(key, graph, len(here))
+                back.take(here, self._by_themselves(run, kernel, here, back, steps))
+                continue
+            for taken in np.unique(back.taken[here]):
+                some = here[back.taken[here] == taken]
+                kernel = self.store.kernel(key, graph, len(some))
+                back.take(some, self._in_lockstep(run, kernel, some, back, int(taken), steps))
+        # calls of psi are counted for the trajectory with the most of them
+        now.calls += int(np.max(back.calls, initial=0))
+        return back.finish()
+
+    def _given(self, kernel: Kernel, lanes: IntegerArray) -> dict[str, Any]:
+        """Fields of the argument of a kernel that do not depend on the loop."""
+        start = self.start[lanes]
+        given: dict[str, Any] = {"constants": kernel.run_values(self.values)}
+        filled = packed(kernel, len(lanes), {"x": start.T})
+        given["start"] = filled
+        if kernel.lane_constants:
+            rows = np.ones((len(kernel.lane_constants), filled.shape[1]))
+            rows[:, : len(lanes)] = [function(start) for function in kernel.lane_constants]
+            given["rows"] = rows
+        return given
+
+    def _in_lockstep(
+        self, run: Run, kernel: Kernel, lanes: IntegerArray, back: HandBack, taken: int, steps: int
+    ) -> Made:
+        """Steps of lanes that have all taken as many."""
+        plan, n, count = self.store.schedule(run), self.start.shape[-1], len(lanes)
+        last = min(taken + steps, plan.steps)
+        begin, end = int(plan.first[taken]), int(plan.first[last])
+        state = packed(kernel, count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end)})
+        low, high = int(plan.rows[begin]), int(plan.rows[end])
+        out = np.empty((high - low, n, state.shape[1]))
+        run_blocks(
+            kernel,
+            state,
+            {
+                **self._given(kernel, lanes),
+                "begin": begin, "end": end, "sizes": plan.sizes, "times": plan.times,
+                "codes": plan.codes, "out": out.ctypes.data - low * n * state.shape[1] * 8,
+            },
+            end - begin,
+        )  # fmt: skip
+        row = {name: state[i, :count] for i, name in enumerate(kernel.names)}
+        alive = row["alive"] > 0
+        made = np.where(alive, last, np.searchsorted(plan.first, row["count"], side="right") - 1)
+        reached, outputs, out = plan.reached[made], plan.output[low:high], out[..., :count]
+        path = None
+        if run.keeps:
+            ends = plan.ends[low:high]
+            number = np.arange(taken, last)[:, None]
+            sizes = plan.sizes[plan.first[1:] - 1][taken:last, None]
+            path = (np.broadcast_to(plan.reached[taken + 1 : last + 1, None], (last - taken, count)), out[ends],
+                    np.where(number < made, sizes, 0.0))  # fmt: skip
+        return Made(
+            m=state[:n, :count],
+            t=reached,
+            taken=made,
+            going=alive & (last < plan.steps),
+            done=alive & (last == plan.steps),
+            calls=(made - taken) * kernel.graph.calls if kernel.graph.calls is not None else _records(kernel, row)["calls"],
+            records=_records(kernel, row),
+            outputs=outputs[outputs >= 0],
+            points=out[outputs >= 0],
+            until=_until(run, reached),
+            path=path,
+        )
+
+    def _by_themselves(self, run: Run, kernel: Kernel, lanes: IntegerArray, back: HandBack, steps: int) -> Made:
+        """Steps of lanes with their own sizes and times."""
+        n, count, graph, samples = self.start.shape[-1], len(lanes), kernel.graph, run.state.samples
+        times = np.zeros(0) if samples is None else samples.times
+        at_end = len(times) > 0 and times[-1] == run.end
+        stops = np.concatenate([times[: len(times) - at_end], [run.end, run.end]]).astype(np.float64)
+        done = np.zeros(count) if samples is None else samples.done.reshape(-1)[lanes]
+        dt = run.options.dt
+        sizes = back.h[lanes] if dt is None else run.direction * np.broadcast_to(dt, run.shape).reshape(-1)[lanes]
+        given = {"x": back.m[lanes].T, "alive": 1.0, "count": back.taken[lanes], "t": back.t[lanes], "stop": done,
+                 "h": sizes}  # fmt: skip
+        state = packed(kernel, count, given if graph.sizes is None else {**given, "kept": done})
+        out = np.empty((len(stops) + 1, n, state.shape[1]))
+        path = np.zeros((steps, n + 2, state.shape[1])) if run.keeps else None
+        run_blocks(
+            kernel,
+            state,
+            {
+                **self._given(kernel, lanes),
+                "begin": 0, "end": steps, "stops": stops, "last_stop": len(stops) - 2,
+                "origin": float(run.span[0]), "out": out, "path": path,
+            },
+            steps,
+        )  # fmt: skip
+        row = {name: state[i, :count] for i, name in enumerate(kernel.names)}
+        taken, reached, alive = row["count"].astype(int), row["t"], row["alive"]
+        tries = row.get("tries", taken - back.taken[lanes])
+        until = np.where(alive < 0, len(times), row["stop" if graph.sizes is None else "kept"].astype(int))
+        records = _records(kernel, row)
+        first = int(done.min()) if count else 0
+        return Made(
+            m=state[:n, :count],
+            t=reached,
+            taken=taken,
+            going=alive > 0,
+            done=alive < 0,
+            calls=tries * graph.calls if graph.calls is not None else records["calls"],
+            records=records,
+            outputs=np.arange(first, int(until.max(initial=first))),
+            points=out[first : int(until.max(initial=first)), :, :count],
+            until=until,
+            path=None if path is None else _moved(path[..., :count], n),
+            h=row["h"] if graph.sizes is not None else None,
+        )
+
+
+def _moved(path: Array, n: int) -> tuple[Array, Array, Array]:
+    """Times, points and sizes up to the last row in which a lane moves."""
+    some = np.flatnonzero((path[:, n + 1] != 0).any(axis=-1))
+    path = path[: int(some[-1]) + 1 if len(some) else 0]
+    return path[:, n], path[:, :n], path[:, n + 1]
+
+
+def _until(run: Run, t: Array) -> IntegerArray:
+    """Number of output times up to t."""
+    if run.state.samples is None:
+        return np.zeros(t.shape, dtype=int)
+    found: IntegerArray = np.searchsorted(run.direction * run.state.samples.times, run.direction * t, side="right")
+    return found
+
+
+def _records(kernel: Kernel, row: dict[str, Array]) -> dict[str, Array]:
+    """The numbers that the steps recorded, by name."""
+    names = (*kernel.graph.largest, *kernel.graph.summed)
+    return {name: row[f"e{i}"] for i, name in enumerate(names)} if kernel.graph.summed else {}
+
+
+def _operations(graph: StepGraph) -> int:
+    """Approximate number of scalar operations of a step."""
+    rows = needed(graph.outputs)
+    return len(rows) + ASSUMED_ITERATIONS * sum(
+        len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded
+    )
+
+
+def block_width(graph: StepGraph, lanes: int) -> int:
+    """Number of lanes in a block: as many registers for a number as hide latencies and do not run out in long code."""
+    one = lanes_per_register()
+    if lanes <= one:
+        return 1 if lanes == 1 else one
+    ops = needed(graph.outputs)
+    breaks = sum(x.op == "expv" or (x.op == "loop" and not x.value.guarded) for x in ops)
+    registers = 4 if len(ops) < SHORT_OPERATIONS and not breaks else 2
+    widest = one if len(ops) >= LONG_OPERATIONS * (1 + breaks) else registers * one
+    return min(widest, 1 << (lanes - 1).bit_length())

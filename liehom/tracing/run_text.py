@@ -1,0 +1,407 @@
+"""LLVM assembly of a whole run: all steps of a block of lanes, the first, the last and those at output times included.
+
+A *block* is `width` lanes (trajectories); all steps of a block are made before the next block. There are two loops.
+
+* *In lockstep*: steps of one size without a time reparametrization. A schedule, made beforehand, gives the size and the
+  time of each micro-step, and what becomes of its point: it is stored, or the lane moves there, or both.
+* *By itself*: each lane has its own sizes and times. Input N + 2 is the time of the next stop (an output time or the
+  end). The graph says whether the stop is within the step; the point is then that at the stop.
+
+In a lane whose point is not finite, or whose step is not valid, nothing changes from then on (`alive` is 0).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeAlias, final
+
+from liehom.tracing.expr import Expr
+from liehom.tracing.graph import needed
+from liehom.tracing.llvm_text import Body, Writer
+from liehom.tracing.step_graph import StepGraph
+
+FIELDS = (
+    "state", "start", "lanes", "first", "last", "begin", "end", "constants", "rows", "out", "path",
+    "sizes", "times", "codes", "stops", "last_stop", "origin",
+)  # fmt: skip
+"""Entries of the argument of `run`, each of 8 bytes."""
+POINTERS = frozenset(["state", "start", "constants", "rows", "out", "path", "sizes", "times", "codes", "stops"])
+METADATA = """\
+attributes #0 = { nounwind "prefer-vector-width"="512" }
+!0 = !{!"branch_weights", i32 1, i32 1000}
+!1 = !{!"branch_weights", i32 1000, i32 1}
+"""
+ALIVE, FAILED, DONE = 1.0, 0.0, -1.0
+"""What `alive` says of a lane."""
+
+Constant: TypeAlias = tuple[str, int] | Expr
+"""Where an input -1, -2, ... comes from: ("run", place), ("lane", row), or an expression of the initial point."""
+
+
+def state_names(graph: StepGraph) -> list[str]:
+    """Names of the numbers of a lane that change from step to step: the rows of the argument `state`."""
+    names = [f"x{i}" for i in range(graph.size)] + ["alive", "count"]
+    if graph.reached is not None:
+        names += ["t", "stop", "h"]
+    if graph.sizes is not None:
+        names += ["tries", "kept"]
+    return names + [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+
+
+def run_module(graph: StepGraph, constants: Sequence[Constant], width: int) -> str:
+    """LLVM assembly of a module with the function `run`, whose argument points to the `FIELDS`.
+
+    Parameters
+    ----------
+    graph : StepGraph
+        With `reached`, lanes go by themselves, without it in lockstep.
+    constants : sequence
+        Where the inputs -1, -2, ... come from.
+    width : int
+        Lanes of a block.
+    """
+    return (_OwnSizes if graph.reached is not None else _Lockstep)(graph, constants, width).module()
+
+
+class _RunWriter:
+    """Writer of the function `run`."""
+
+    def __init__(self, graph: StepGraph, constants: Sequence[Constant], width: int) -> None:
+        self.graph, self.w = graph, Writer(width)
+        self.v, self.n = self.w.vector, graph.size
+        self.names = state_names(graph)
+        self.constants = constants
+        self.inputs: dict[int, str] = {}
+
+    def module(self) -> str:
+        """The whole module."""
+        self._entry()
+        self._prologue()
+        self._loop()
+        self._block_end()
+        w = self.w
+        parts = ["\n".join(dict.fromkeys(w.declared.values())), *w.functions.values(), "\n".join(w.lines), METADATA]
+        return "\n\n".join(parts)
+
+    def line(self, text: str) -> None:
+        """Append an instruction."""
+        self.w.lines.append(f"  {text}")
+
+    def label(self, name: str) -> None:
+        """Begin a basic block."""
+        self.w.lines.append(f"{name}:")
+        self.w.label = name
+
+    # -- blocks of lanes -------------------------------------------------------------------------------------
+    def _entry(self) -> None:
+        self.w.lines.append("define void @run(ptr noalias %argument) #0 {")
+        self.label("entry")
+        for place, name in enumerate(FIELDS):
+            kind = "ptr" if name in POINTERS else "double" if name == "origin" else "i64"
+            here = self.w.emit(f"getelementptr i64, ptr %argument, i64 {place}")
+            self.line(f"%{name} = load {kind}, ptr {here}, align 8")
+        self.line("%keeps = icmp ne ptr %path, null")
+        self.line("%some = icmp slt i64 %first, %last")
+        self.line("br i1 %some, label %next, label %done")
+        self.label("next")
+        self.line("%block = phi i64 [%first, %entry], [%block.next, %block.end]")
+        self.line(f"%lane = mul i64 %block, {self.w.width}")
+
+    def _block_end(self) -> None:
+        self.label("block.end")
+        for row, name in enumerate(self.names):
+            self.line(f"store {self.v} %{name}.next, ptr {self._place('%state', row)}, align 8")
+        self.line("%block.next = add i64 %block, 1")
+        self.line("%again = icmp slt i64 %block.next, %last")
+        self.line("br i1 %again, label %next, label %done")
+        self.label("done")
+        self.w.lines += ["  ret void", "}"]
+
+    def _place(self, base: str, row: str | int) -> str:
+        """Pointer to the lanes of this block in a row of an array (rows, lanes)."""
+        offset = self.w.emit(f"add i64 {self.w.emit(f'mul i64 %lanes, {row}')}, %lane")
+        return self.w.emit(f"getelementptr double, ptr {base}, i64 {offset}")
+
+    def _loaded(self, base: str, row: str | int) -> str:
+        return self.w.emit(f"load {self.v}, ptr {self._place(base, row)}, align 8")
+
+    def _shared(self, base: str, place: str | int) -> str:
+        """A number of an array, in all lanes."""
+        here = self.w.emit(f"getelementptr double, ptr {base}, i64 {place}")
+        return self.w.spread(self.w.emit(f"load double, ptr {here}, align 8"))
+
+    # -- before the first step -------------------------------------------------------------------------------
+    def _prologue(self) -> None:
+        """Load the state of a block, and compute what is constant along its trajectories."""
+        w, graph = self.w, self.graph
+        state = {name: self._loaded("%state", row) for row, name in enumerate(self.names)}
+        traced = [x for x in self.constants if isinstance(x, Expr)]
+        start = {i: self._loaded("%start", i) for i in range(self.n)} if traced else {}
+        body = Body(w, start)
+        body.write(needed(traced))
+        for i, constant in enumerate(self.constants):
+            if isinstance(constant, Expr):
+                made = body.name(constant)
+            else:
+                kind, place = constant
+                made = self._shared("%constants", place) if kind == "run" else self._loaded("%rows", place)
+            self.inputs[-1 - i] = made
+        if graph.first is not None:
+            here = {i: state[f"x{i}"] for i in range(self.n)}
+            first = Body(w, {**self.inputs, **here, self.n: state["t"]})
+            first.write(needed([graph.first]))
+            unknown = w.emit(f"fcmp oeq {self.v} {state['h']}, {w.splat(float('inf'))}")
+            state["h"] = w.emit(f"select {w.mask} {unknown}, {self.v} {first.name(graph.first)}, {self.v} {state['h']}")
+        before = w.label
+        self._before_loop(state)
+        self.line("br label %step")
+        self.label("step")
+        self.line(f"%k = phi i64 [%begin, %{before}], [%k.next, %step.end]")
+        for name in self.names:
+            self.line(f"%{name} = phi {self.v} [{state[name]}, %{before}], [%{name}.next, %step.end]")
+
+    def _before_loop(self, state: dict[str, str]) -> None:
+        """Write what else is needed before the loop."""
+
+    # -- steps -----------------------------------------------------------------------------------------------
+    def _loop(self) -> None:
+        raise NotImplementedError
+
+    def _body(self, more: dict[int, str]) -> Body:
+        """Write the operations of a step."""
+        body = Body(self.w, {**{i: f"%x{i}" for i in range(self.n)}, **self.inputs, **more})
+        body.write(needed(self.graph.outputs))
+        return body
+
+    def _valid(self, body: Body) -> str:
+        """Name of the mask of lanes in which the step is valid and the point finite."""
+        w, v, graph = self.w, self.v, self.graph
+        total = body.name(graph.point[0])
+        for x in graph.point[1:]:
+            total = w.emit(f"fadd {v} {total}, {body.name(x)}")
+        made = w.emit(f"fcmp oeq {v} {w.emit(f'fsub {v} {total}, {total}')}, {w.splat(0.0)}")
+        return made if graph.ordinary is None else self._and(made, body.name(graph.ordinary))
+
+    def _and(self, a: str, b: str) -> str:
+        return self.w.emit(f"and {self.w.mask} {a}, {b}")
+
+    def _not(self, a: str) -> str:
+        return self.w.emit(f"xor {self.w.mask} {a}, {self.w.splat(True)}")
+
+    def _select(self, where: str, a: str, b: str) -> str:
+        return self.w.emit(f"select {self.w.mask} {where}, {self.v} {a}, {self.v} {b}")
+
+    def _recorded(self, body: Body) -> dict[str, str]:
+        """Names of the largest and the summed numbers after the step."""
+        made, graph, w = {}, self.graph, self.w
+        for i, x in enumerate((*graph.largest.values(), *graph.summed.values())):
+            if i < len(graph.largest):
+                made[f"e{i}"] = w.intrinsic("maxnum", f"%e{i}", body.name(x))
+            elif x.constant and x.value == 0:
+                made[f"e{i}"] = f"%e{i}"
+            else:
+                made[f"e{i}"] = w.emit(f"fadd {self.v} %e{i}, {body.name(x)}")
+        return made
+
+    def _alive(self) -> str:
+        return self.w.emit(f"fcmp ogt {self.v} %alive, {self.w.splat(0.0)}")
+
+    def _step_end(self, going: str) -> None:
+        """Go on with the loop while steps and lanes are left."""
+        self.line("%k.next = add i64 %k, 1")
+        fewer = self.w.emit("icmp slt i64 %k.next, %end")
+        self.line(f"br i1 {self.w.emit(f'and i1 {going}, {fewer}')}, label %step, label %block.end")
+
+
+@final
+class _Lockstep(_RunWriter):
+    """Micro-steps of a schedule: `sizes`, `times`, and `codes`: bit 0 whether to go there, the rest the row of `out`.
+
+    `count` of a lane that fails is the micro-step that failed.
+    """
+
+    def _loop(self) -> None:
+        w = self.w
+        t, h = self._shared("%times", "%k"), self._shared("%sizes", "%k")
+        here = w.emit("getelementptr i64, ptr %codes, i64 %k")
+        self.line(f"%code = load i64, ptr {here}, align 8")
+        body = self._body({self.n: t, self.n + 1: h})
+        made = {f"x{i}": body.name(x) for i, x in enumerate(self.graph.point)}
+        records = self._recorded(body)
+        valid, alive = self._valid(body), self._alive()
+        go, before = self._and(valid, alive), w.label
+        # a predicted branch costs nothing; selections would lengthen the dependency chain from step to step
+        self.line(f"br i1 {w.all(go)}, label %made, label %mixed, !prof !1")
+        self._mixed({**made, **records}, go, alive)
+        self.label("made")
+        for name in self.names:
+            plain = {**made, **records}.get(name, f"%{name}")
+            self.line(f"%{name}.made = phi {self.v} [{plain}, %{before}], [%{name}.mixed, %mixed]")
+        self.line(f"%going = phi i1 [true, %{before}], [%going.mixed, %mixed]")
+        self._store()
+        self._commit()
+        self._step_end("%going")
+
+    def _mixed(self, made: dict[str, str], go: str, alive: str) -> None:
+        w = self.w
+        self.label("mixed")
+        fails = self._and(alive, self._not(go))
+        number = w.spread(w.emit("sitofp i64 %k to double"))
+        changed = {name: (go, value) for name, value in made.items()}
+        changed |= {"alive": (fails, w.splat(FAILED)), "count": (fails, number)}
+        for name, (where, value) in changed.items():
+            self.line(f"%{name}.mixed = select {w.mask} {where}, {self.v} {value}, {self.v} %{name}")
+        self.line(f"%going.mixed = or i1 {w.any(go)}, false")
+        self.line("br label %made")
+
+    def _store(self) -> None:
+        row = self.w.emit("ashr i64 %code, 1")
+        stored = self.w.emit(f"icmp sge i64 {row}, 0")
+        self.line(f"br i1 {stored}, label %store, label %stored")
+        self.label("store")
+        first = self.w.emit(f"mul i64 {row}, {self.n}")
+        for i in range(self.n):
+            place = self._place("%out", self.w.emit(f"add i64 {first}, {i}"))
+            self.line(f"store {self.v} %x{i}.made, ptr {place}, align 8")
+        self.line("br label %stored")
+        self.label("stored")
+
+    def _commit(self) -> None:
+        self.line(f"br i1 {self.w.emit('trunc i64 %code to i1')}, label %commit, label %step.end")
+        self.label("commit")
+        self.line("br label %step.end")
+        self.label("step.end")
+        for name in self.names:
+            moved = name.startswith(("x", "e"))
+            old = f"%{name}" if moved else f"%{name}.made"
+            self.line(f"%{name}.next = phi {self.v} [%{name}.made, %commit], [{old}, %stored]")
+
+
+@final
+class _OwnSizes(_RunWriter):
+    """Steps of each lane's own size: `stops` are the times of its stops, the last of them the end.
+
+    A lane that has reached a stop stores the point there, and goes on to the next stop within the same step; at the
+    end it is `DONE`. If a step is rejected, the stops within it are sought again (`kept` is the first of them).
+    """
+
+    def _before_loop(self, state: dict[str, str]) -> None:
+        self.line(f"%stop.time.start = fadd {self.v} {self._at_stops(state['stop'])}, {self.w.splat(-0.0)}")
+        self.before = self.w.label
+
+    def _at_stops(self, number: str) -> str:
+        """The times of the stops of these numbers."""
+        return self._gathered([f"load double, ptr {p}, align 8" for p in self._pointers("%stops", number)])
+
+    def _gathered(self, loads: list[str]) -> str:
+        w = self.w
+        made = "poison"
+        for lane, load in enumerate(loads):
+            x = w.emit(load)
+            made = x if w.width == 1 else w.emit(f"insertelement {self.v} {made}, double {x}, i32 {lane}")
+        return made
+
+    def _integers(self, number: str) -> list[str]:
+        """A vector of doubles as an integer for each lane."""
+        w = self.w
+        kind = "i64" if w.width == 1 else f"<{w.width} x i64>"
+        whole = w.emit(f"fptosi {self.v} {number} to {kind}")
+        return [whole] if w.width == 1 else [w.emit(f"extractelement {kind} {whole}, i32 {i}") for i in range(w.width)]
+
+    def _pointers(self, base: str, number: str) -> list[str]:
+        return [self.w.emit(f"getelementptr double, ptr {base}, i64 {i}") for i in self._integers(number)]
+
+    def _loop(self) -> None:
+        w, v, graph = self.w, self.v, self.graph
+        self.line(f"%stop.time = phi {v} [%stop.time.start, %{self.before}], [%stop.time.next, %step.end]")
+        body = self._body({self.n: "%t", self.n + 1: "%h", self.n + 2: "%stop.time"})
+        more = w.emit(f"fadd {v} %count, {w.splat(1.0)}")
+        new = {f"x{i}": body.name(x) for i, x in enumerate(graph.point)} | self._recorded(body) | {"count": more}
+        if graph.elapsed is None:  # by counting, so that round-off does not add up
+            new["t"] = w.emit(f"fadd {v} {w.spread('%origin')}, {w.emit(f'fmul {v} {more}, %h')}")
+        else:
+            new["t"] = w.emit(f"fadd {v} %t, {body.name(graph.elapsed)}")
+        if graph.sizes is not None:
+            new |= {"h": body.name(graph.sizes.proposal), "tries": w.emit(f"fadd {v} %tries, {w.splat(1.0)}")}
+            new["kept"] = "%stop"
+        reached = w.splat(False) if graph.reached is None else body.name(graph.reached)
+        valid = self._and(self._valid(body), self._alive())
+        accepted = w.splat(True) if graph.sizes is None else body.name(graph.sizes.accepted)
+        plain = self._and(self._and(valid, accepted), self._not(reached))
+        before = w.label
+        self.line(f"br i1 {w.all(plain)}, label %made, label %mixed, !prof !1")
+        self._mixed(new, valid, accepted, reached)
+        self.label("made")
+        size = "%h" if graph.tried is None else body.name(graph.tried)
+        for name in self.names:
+            self.line(f"%{name}.next = phi {v} [{new.get(name, f'%{name}')}, %{before}], [%{name}.mixed, %mixed.end]")
+        self.line(f"%stop.time.next = phi {v} [%stop.time, %{before}], [%stop.time.mixed, %mixed.end]")
+        self.line(f"%moved = phi {w.mask} [{w.splat(True)}, %{before}], [%moved.mixed, %mixed.end]")
+        self.line(f"%going = phi i1 [true, %{before}], [%going.mixed, %mixed.end]")
+        self._store_path(size)
+        self.label("step.end")
+        self._step_end("%going")
+
+    def _mixed(self, new: dict[str, str], valid: str, accepted: str, reached: str) -> None:
+        """Lanes that do different things: move, reach a stop or the end, try another size, fail."""
+        w, v = self.w, self.v
+        self.label("mixed")
+        last = w.spread(w.emit("sitofp i64 %last_stop to double"))
+        ends = self._and(reached, w.emit(f"fcmp oge {v} %stop, {last}"))
+        stops = self._and(self._and(valid, reached), self._not(ends))
+        full = self._and(valid, self._not(stops))
+        moved = self._and(full, accepted)
+        done = self._and(moved, ends)
+        self.line(f"%moved.mixed = and {w.mask} {moved}, {moved}")
+        changed = {name: self._select(moved, value, f"%{name}") for name, value in new.items()}
+        changed["t"] = self._select(done, "%stop.time", changed["t"])
+        after = w.emit(f"fadd {v} %stop, {w.splat(1.0)}")
+        changed["stop"] = self._select(stops, after, "%stop")
+        if self.graph.sizes is not None:
+            changed["h"] = self._select(full, new["h"], "%h")
+            changed["tries"] = self._select(full, new["tries"], "%tries")
+            rejected = self._and(full, self._not(accepted))
+            changed["stop"] = self._select(rejected, "%kept", changed["stop"])
+        changed["alive"] = self._select(valid, w.splat(ALIVE), self._select(self._alive(), w.splat(FAILED), "%alive"))
+        changed["alive"] = self._select(done, w.splat(DONE), changed["alive"])
+        for name in self.names:
+            self.line(f"%{name}.mixed = fadd {v} {changed.get(name, f'%{name}')}, {w.splat(-0.0)}")
+        self.line(f"%stop.time.mixed = fadd {v} {self._at_stops(changed['stop'])}, {w.splat(-0.0)}")
+        alive = w.emit(f"fcmp ogt {v} %alive.mixed, {w.splat(0.0)}")
+        self.line(f"%going.mixed = or i1 {w.any(alive)}, false")
+        unused = w.emit(f"fadd {v} {last}, {w.splat(1.0)}")  # a row of `out` that nobody reads
+        some = w.emit(f"or {w.mask} {stops}, {done}")
+        row = self._select(some, "%stop", unused)
+        self.line(f"br i1 {w.any(some)}, label %output, label %mixed.end")
+        self._store(row, new)
+        self.label("mixed.end")
+        self.line("br label %made")
+
+    def _store(self, row: str, new: dict[str, str]) -> None:
+        """Store the points of the lanes in the rows of these numbers."""
+        w = self.w
+        self.label("output")
+        for lane, number in enumerate(self._integers(row)):
+            place = w.emit(f"add i64 %lane, {lane}")
+            first = w.emit(f"mul i64 {number}, {self.n}")
+            for i in range(self.n):
+                number = w.emit(f"add i64 {first}, {i}")
+                offset = w.emit(f"add i64 {w.emit(f'mul i64 {number}, %lanes')}, {place}")
+                here = w.emit(f"getelementptr double, ptr %out, i64 {offset}")
+                x = new[f"x{i}"]
+                x = x if w.width == 1 else w.emit(f"extractelement {self.v} {x}, i32 {lane}")
+                self.line(f"store double {x}, ptr {here}, align 8")
+        self.line("br label %mixed.end")
+
+    def _store_path(self, size: str) -> None:
+        """Store times, points and sizes of this step as row k of `path`; size 0 in lanes that did not move."""
+        w, v, rows = self.w, self.v, self.n + 2
+        self.line("br i1 %keeps, label %store, label %step.end")
+        self.label("store")
+        first = w.emit(f"mul i64 {w.emit('sub i64 %k, %begin')}, {rows}")
+        values: list[Any] = [f"%x{i}.next" for i in range(self.n)]
+        values += ["%t.next", self._select("%moved", size, w.splat(0.0))]
+        for i, value in enumerate(values):
+            place = self._place("%path", w.emit(f"add i64 {first}, {i}"))
+            self.line(f"store {v} {value}, ptr {place}, align 8")
+        self.line("br label %step.end")
