@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from liehom.errors import LiehomError
 from liehom.tracing.array import Traced
+from liehom.tracing.expr import Expr
 from liehom.tracing.graph import RunConstant, TrajectoryConstant
 from liehom.tracing.machine import engine_of
 from liehom.tracing.run_text import FIELDS, Constant, run_module, state_names
@@ -64,18 +65,57 @@ class Kernel:
             return "lane", len(self.lane_constants) - 1
         return made
 
+    def packed(self, lanes: int, given: Mapping[str, Any]) -> npt.NDArray[np.float64]:
+        """The state of lanes as rows (names, lanes in whole blocks): given values, "x" for the points (N, L); else 0.
+
+        The lanes that fill up the last block are at the first point, so that their numbers are not out of bounds.
+        """
+        state = np.zeros((len(self.names), padded(lanes, self.width)))
+        for name, value in given.items():
+            if name == "x":
+                state[: len(value), :lanes] = value
+                state[: len(value), lanes:] = value[:, :1]
+            else:
+                state[self.names.index(name), :lanes] = value
+        return state
+
+    def __call__(self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None) -> None:
+        """Make steps of the lanes of a state (names, lanes), in place.
+
+        Parameters
+        ----------
+        state : array
+        **fields : arrays, numbers or None
+            Other `FIELDS` of the argument of the machine code; by default all blocks of lanes are run.
+        """
+        argument = np.zeros(len(FIELDS), dtype=np.int64)
+        for name, value in {
+            "state": state,
+            "lanes": state.shape[1],
+            "last": state.shape[1] // self.width,
+            **fields,
+        }.items():
+            if isinstance(value, np.ndarray):
+                argument[PLACES[name]] = value.ctypes.data
+            elif name == "origin":
+                argument.view(np.float64)[PLACES[name]] = value
+            elif value is not None:
+                argument[PLACES[name]] = value
+        self.run(argument.ctypes.data)
+
     def run_values(self, given: Mapping[str, float]) -> npt.NDArray[np.float64]:
         """The numbers of a run as an array, from their values by name."""
         return np.array([given[name] for name in self.run_constants] or [0.0])
 
 
-def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Any:
+def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Expr | None:
     """A trajectory constant as an expression of inputs 0..N-1; None if the function needs numbers."""
     tape: Any = graph.point[0].tape
     points = Traced(tape, Traced.inputs(tape, 0, graph.size)[None])
     try:
         made = Traced(tape, function(points))
-        return made.entries.reshape(-1)[0] if made.size == 1 else None
+        entry: Expr = made.entries.reshape(-1)[0]
+        return entry if made.size == 1 else None
     except (LiehomError, TypeError, ValueError, AttributeError, IndexError):
         return None
 

@@ -59,16 +59,18 @@ def by_c(folder: Path) -> Callable[[Any, int], None]:
 
 def compiled(step: Any, width: int, *, nominal: bool, points: Any) -> Callable[[Any, int], None]:
     """The same with the kernel that is derived; x must have whole blocks of lanes."""
-    graph = traced_step(lh.Action(FIELD.representation), FIELD, step, points, 2, nominal=nominal)
-    kernel = Kernel(graph, width)
+    graph = traced_step(lh.Action(FIELD.representation), FIELD, step, points, 2, nominal=nominal, stops=not nominal)
+    kernel, values = Kernel(graph, width), {"direction": 1.0, "tiny": 0.0, "latest": 1e15}
 
     def run(x: Any, count: int) -> None:
-        lanes = x.shape[1]
-        one, zero = np.ones(lanes), np.zeros(lanes)
-        limit = np.full(lanes, 1e15)
-        constants = np.array(graph.constants(x.T)) if graph.constant_functions else None
-        arrays = [x, zero.copy(), H * one, limit, zero, one, np.zeros((4, lanes)), constants, None, None]
-        kernel(arrays, lanes, (0, lanes // width), count, (0.0, 1.0))
+        fields: dict[str, Any] = {"start": x.copy(), "constants": kernel.run_values(values), "end": count}
+        if nominal:
+            fields |= {"sizes": np.full(count, H), "times": np.zeros(count), "codes": np.full(count, -1)}
+        else:
+            fields |= {"stops": np.full(2, 1e15), "last_stop": 0, "out": np.empty((3, *x.shape))}
+        state = kernel.packed(x.shape[1], {"x": x, "alive": 1.0} | ({} if nominal else {"h": H}))
+        kernel(state, **fields)
+        x[:] = state[: len(x)]
 
     return run
 

@@ -1,4 +1,4 @@
-"""The fast path of a run: ordinary steps by compiled code, between the steps that `Run.advance` makes.
+"""The fast path of a run by JAX: ordinary steps by compiled code, between the steps that `Run.advance` makes.
 
 The trajectories are the lanes of a kernel, one kernel for all orbits of one dimension. A lane is masked out before its
 last step, before a time of t_eval, and before a step that fails in any way. Adaptive step sizes are those of each lane.
@@ -6,9 +6,6 @@ last step, before a time of t_eval, and before a step that fails in any way. Ada
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
 from typing import Any, final
 
 import numpy as np
@@ -17,18 +14,13 @@ import numpy.typing as npt
 from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
-from liehom.integrators.compiled.llvm_engine import CodeStore, compiled_run
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
-from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.run import Run
-from liehom.integrators.run.solution import Solution
-from liehom.tracing import Kernel, StepGraph, lanes_per_register, needed, padded
+from liehom.tracing import StepGraph, needed
 from liehom.typing import Array, IntegerArray
 
-SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
-"""Operations between two loops up to which code is short, and from which on it is long."""
 PATH_BYTES_PER_CALL = 64_000_000
 """Bytes of points, times and sizes that a kernel call records at most."""
 OPERATIONS_PER_CALL = 4_000_000_000
@@ -37,25 +29,6 @@ ASSUMED_ITERATIONS = 5
 """Iterations that a loop in a step is assumed to make, for the number of its operations."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
-LANE_STEPS_FOR_THREADS = 50_000
-"""Steps of a call, summed over lanes, from which on threads share the blocks."""
-
-
-@final
-class LlvmEngine:
-    """The engine "llvm", which makes ordinary steps by code of LLVM and the others in numpy.
-
-    Examples
-    --------
-    >>> LlvmEngine().name
-    'llvm'
-    """
-
-    name = "llvm"
-
-    def solve(self, problem: Problem) -> Solution:
-        """The solution of a problem."""
-        return executed(problem, lambda run: compiled_steps(run, self.name))
 
 
 def compiled_steps(run: Run, backend: str) -> FastPath:
@@ -64,7 +37,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
     Parameters
     ----------
     run : Run
-    backend : "llvm" or "jax"
+    backend : "jax"
 
     Raises
     ------
@@ -84,8 +57,6 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
     groups, kept_order = [], None
     if isinstance(run.step, Conserving) and run.options.dt is None and not run.step.linear:
         kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
-    if backend == "llvm":
-        return compiled_run(run, CodeStore())  # type: ignore
     for d in np.unique(dimensions):
         lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(
@@ -99,7 +70,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
             limits=_size_limits(run) if run.options.dt is None else None,
             kept_order=kept_order,
         )
-        groups.append(LaneGroup(graph, lanes, backend, points[lanes]))
+        groups.append(LaneGroup(graph, lanes, points[lanes]))
     return FastPath(groups)
 
 
@@ -117,7 +88,6 @@ class LaneGroup:
     graph : StepGraph
     lanes : array of int of shape (L,)
         Indices of the trajectories in the flattened ensemble.
-    backend : "llvm" or "jax"
     points : array of shape (L, N)
         Their initial points.
     """
@@ -125,46 +95,20 @@ class LaneGroup:
     graph: StepGraph
     lanes: IntegerArray
 
-    def __init__(self, graph: StepGraph, lanes: IntegerArray, backend: str, points: Array) -> None:
+    def __init__(self, graph: StepGraph, lanes: IntegerArray, points: Array) -> None:
         self.graph, self.lanes = graph, lanes
-        self.width: int = 1 if backend == "jax" else _width(graph, len(lanes))
-        self.kernel: Kernel | JaxKernel = JaxKernel(graph) if backend == "jax" else Kernel(graph, self.width)
-        self.blocks: int = padded(len(lanes), self.width) // self.width
-        rows = [self.padded_row(x) for x in graph.constants(points)]
+        self.kernel: JaxKernel = JaxKernel(graph)
+        rows = graph.constants(points)
         self.constants: Array | None = np.array(rows) if rows else None
 
-    def padded_row(self, values: Array) -> Array:
-        """Values (L,) of these lanes, filled up with 1 to whole blocks."""
-        out = np.ones(self.blocks * self.width)
-        out[: len(values)] = values
-        return out
-
-    def packed(self, values: npt.NDArray[Any], fill: float = 0.0) -> Array:
-        """Values of these lanes from those of the ensemble (last axis), filled up to whole blocks."""
-        count = self.blocks * self.width
-        if len(self.lanes) == values.shape[-1] == count:
-            return np.array(values, dtype=np.float64, order="C")
-        out = np.full((*values.shape[:-1], count), fill)
-        out[..., : len(self.lanes)] = values[..., self.lanes]
-        return out
+    def packed(self, values: npt.NDArray[Any]) -> Array:
+        """Values of these lanes from those of the ensemble (last axis)."""
+        return np.array(values[..., self.lanes], dtype=np.float64, order="C")
 
     def run(self, arrays: list[Array | None], steps: int, origin: float, direction: float) -> None:
-        """Make at most `steps` steps of all blocks, in threads if there are enough of them."""
-        count = self.blocks * self.width
-        shared = count * steps >= LANE_STEPS_FOR_THREADS and isinstance(self.kernel, Kernel)
-        workers = min(_cores(), self.blocks) if shared else 1
-        if workers == 1:
-            self.kernel(arrays, count, (0, self.blocks), steps, (origin, direction))
-            return
-        cuts = np.linspace(0, self.blocks, 4 * workers + 1 if self.blocks >= 8 * workers else workers + 1).astype(int)
-        with ThreadPoolExecutor(workers) as pool:
-            jobs = [
-                pool.submit(self.kernel, arrays, count, (int(a), int(b)), steps, (origin, direction))
-                for a, b in pairwise(cuts)
-                if b > a
-            ]
-            for job in jobs:
-                job.result()
+        """Make at most `steps` steps of all lanes."""
+        count = len(self.lanes)
+        self.kernel(arrays, count, (0, count), steps, (origin, direction))
 
 
 @final
@@ -322,23 +266,3 @@ class _Lanes:
             sizes.reshape(most, *shape),
             moved.reshape(most, *shape),
         )
-
-
-def _width(graph: StepGraph, lanes: int) -> int:
-    """Number of lanes in a block: as many registers for a number as hide latencies and do not run out in long code."""
-    one = lanes_per_register()
-    if lanes <= one:
-        return 1 if lanes == 1 else one
-    ops = needed(graph.outputs)
-    breaks = sum(x.op == "expv" or (x.op == "loop" and not x.value.guarded) for x in ops)
-    registers = 4 if len(ops) < SHORT_OPERATIONS and not breaks else 2
-    widest = one if len(ops) >= LONG_OPERATIONS * (1 + breaks) else registers * one
-    return min(widest, 1 << (lanes - 1).bit_length())
-
-
-def _cores() -> int:
-    """Number of threads that may run at once."""
-    given = os.environ.get("LIEHOM_NUM_THREADS")
-    if given and given.isdigit() and int(given) > 0:
-        return int(given)
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -12,8 +12,7 @@ import numpy as np
 
 from liehom.integrators.run.options import END
 from liehom.integrators.run.run import Run
-from liehom.tracing import Kernel, padded
-from liehom.tracing.kernel import PLACES
+from liehom.tracing import Kernel
 from liehom.typing import Array, BooleanArray, IntegerArray
 
 LANE_STEPS_FOR_THREADS = 50_000
@@ -62,21 +61,6 @@ class Made(NamedTuple):
     h: Array | None = None
 
 
-def packed(kernel: Kernel, lanes: int, given: Mapping[str, Any]) -> Array:
-    """The state of lanes as rows (names, lanes in whole blocks): given values, "x" for the points (N, L); else 0.
-
-    The lanes that fill up the last block are at the first point, so that their numbers are not out of bounds.
-    """
-    state = np.zeros((len(kernel.names), padded(lanes, kernel.width)))
-    for name, value in given.items():
-        if name == "x":
-            state[: len(value), :lanes] = value
-            state[: len(value), lanes:] = value[:, :1]
-        else:
-            state[kernel.names.index(name), :lanes] = value
-    return state
-
-
 def run_blocks(kernel: Kernel, state: Array, given: Mapping[str, Any], steps: int) -> None:
     """Run a kernel on all blocks of a state, in threads if there is enough to do.
 
@@ -90,25 +74,17 @@ def run_blocks(kernel: Kernel, state: Array, given: Mapping[str, Any], steps: in
     steps : int
         About the number of steps.
     """
-    count = state.shape[1]
-    blocks = count // kernel.width
-    argument = np.zeros(len(PLACES), dtype=np.int64)
-    fields = {"state": state, "lanes": count, "last": blocks, **given}
-    for name, value in fields.items():
-        if isinstance(value, np.ndarray):
-            argument[PLACES[name]] = value.ctypes.data
-        elif name == "origin":
-            argument.view(np.float64)[PLACES[name]] = value
-        elif value is not None:
-            argument[PLACES[name]] = value
-    workers = min(cores(), blocks) if count * steps >= LANE_STEPS_FOR_THREADS else 1
+    blocks = state.shape[1] // kernel.width
+    workers = min(cores(), blocks) if state.shape[1] * steps >= LANE_STEPS_FOR_THREADS else 1
     if workers == 1:
-        kernel.run(argument.ctypes.data)
+        kernel(state, **given)
         return
     cuts = np.linspace(0, blocks, 4 * workers + 1 if blocks >= 8 * workers else workers + 1).astype(int)
-    arguments = np.repeat(argument[None], len(cuts) - 1, axis=0)
-    arguments[:, PLACES["first"]], arguments[:, PLACES["last"]] = cuts[:-1], cuts[1:]
-    jobs = [_pool(workers).submit(kernel.run, row.ctypes.data) for row, (a, b) in zip(arguments, pairwise(cuts), strict=True) if b > a]
+    jobs = [
+        _pool(workers).submit(kernel, state, **{**given, "first": int(a), "last": int(b)})
+        for a, b in pairwise(cuts)
+        if b > a
+    ]
     for job in jobs:
         job.result()
 

@@ -1,27 +1,30 @@
-"""Runs in machine code: every step of every trajectory, in lockstep or with a size of its own.
+"""LlvmEngine: runs in machine code, every step of every trajectory, in lockstep or with a size of its own.
 
-The machine code and the traces behind it are kept by a `CodeStore`. What compiled code does not decide (a point that is
-not finite, a clock that is not admissible, equations that were not solved) ends the compiled part of a trajectory
-before that step, which `Run.advance` then makes or diagnoses.
+The engine keeps machine code, the traces behind it and schedules from call to call. What compiled code does not
+decide (a point that is not finite, a clock that is not admissible, equations that were not solved) ends the compiled
+part of a trajectory before that step, which `Run.advance` then makes or diagnoses.
 """
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Hashable
 from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.conserving import Conserving
-from liehom.correctors.isotropy.corrected import Corrected
-from liehom.errors import InputError
-from liehom.integrators.compiled.lanes import HandBack, Made, packed, run_blocks
+from liehom.correctors.conserving import Conserving, ConservingStep
+from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
+from liehom.correctors.step import Generator
+from liehom.errors import ConvergenceError, InputError
+from liehom.integrators.compiled.lanes import HandBack, Made, run_blocks
 from liehom.integrators.compiled.schedule import Schedule, schedule
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
-from liehom.integrators.run.clock import SLACK
+from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.records import bounds_of
 from liehom.integrators.run.run import Run
+from liehom.integrators.run.solution import Solution
 from liehom.tracing import Kernel, StepGraph, lanes_per_register, needed
 from liehom.typing import Array, IntegerArray
 
@@ -35,8 +38,30 @@ ASSUMED_ITERATIONS = 5
 """Iterations that a loop in a step is assumed to make, for the number of its operations."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
+RANKED = 64
+"""Number of initial points, at most, at which the rank of the range condition is found."""
 MAX_SCHEDULES = 16
 """Schedules that are kept."""
+
+
+@final
+class LlvmEngine:
+    """The engine "llvm", which makes steps by machine code; those that it cannot make are made in numpy.
+
+    Examples
+    --------
+    >>> LlvmEngine().name
+    'llvm'
+    """
+
+    name = "llvm"
+
+    def __init__(self) -> None:
+        self._store = CodeStore()
+
+    def solve(self, problem: Problem) -> Solution:
+        """The solution of a problem."""
+        return executed(problem, lambda run: compiled_run(run, self._store))
 
 
 @final
@@ -116,9 +141,9 @@ def compiled_run(run: Run, store: CodeStore) -> Callable[[Run], bool]:
         If the step cannot be compiled.
     """
     if run.events is not None:
-        raise InputError("compile='llvm' does not look for events: integrate without compile=")
+        raise InputError("engine='llvm' does not look for events: take engine='numpy'")
     if run.dtype != np.float64:
-        raise InputError(f"compile='llvm' computes in float64, the start is of type {run.dtype}")
+        raise InputError(f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'")
     return _CompiledRun(run, store)
 
 
@@ -139,6 +164,21 @@ class _CompiledRun:
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
         self.work = max((_operations(graph) for _, _, graph in self.groups), default=1)
         self.values = {**_limits(run), "latest": bounds_of((float(run.span[0]), float(run.span[1])))[1]}
+
+        if not run.state.taken.any() and isinstance(run.step, Corrected | Conserving):
+            self._note_ranks(run)
+
+    def _note_ranks(self, run: Run) -> None:
+        """Record the ranks of the range condition at some of the initial points; compiled steps know of none."""
+        some = np.unique(np.linspace(0, len(self.start) - 1, min(len(self.start), RANKED)).astype(int))
+        points, times = self.start[some], np.full(len(some), run.span[0])
+        dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
+        psi = Generator(run.field, dimensions[some], points)
+        with contextlib.suppress(np.linalg.LinAlgError, ConvergenceError):  # the first step will end with it
+            local = run.step.at(run.action, psi, points, times[:, None])
+            inner = local.base if isinstance(local, ConservingStep) else local
+            if isinstance(inner, CorrectedStep):
+                run.state.statistics.note_ranks(inner.correction, some, times, points)
 
     def __call__(self, run: Run) -> bool:
         """Make steps until every lane is at the end or has a step that is not made here, or a call is full."""
@@ -173,7 +213,7 @@ class _CompiledRun:
         """Fields of the argument of a kernel that do not depend on the loop."""
         start = self.start[lanes]
         given: dict[str, Any] = {"constants": kernel.run_values(self.values)}
-        filled = packed(kernel, len(lanes), {"x": start.T})
+        filled = kernel.packed(len(lanes), {"x": start.T})
         given["start"] = filled
         if kernel.lane_constants:
             rows = np.ones((len(kernel.lane_constants), filled.shape[1]))
@@ -188,7 +228,7 @@ class _CompiledRun:
         plan, n, count = self.store.schedule(run), self.start.shape[-1], len(lanes)
         last = min(taken + steps, plan.steps)
         begin, end = int(plan.first[taken]), int(plan.first[last])
-        state = packed(kernel, count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end)})
+        state = kernel.packed(count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end)})
         low, high = int(plan.rows[begin]), int(plan.rows[end])
         out = np.empty((high - low, n, state.shape[1]))
         run_blocks(
@@ -218,7 +258,9 @@ class _CompiledRun:
             taken=made,
             going=alive & (last < plan.steps),
             done=alive & (last == plan.steps),
-            calls=(made - taken) * kernel.graph.calls if kernel.graph.calls is not None else _records(kernel, row)["calls"],
+            calls=(made - taken) * kernel.graph.calls
+            if kernel.graph.calls is not None
+            else _records(kernel, row)["calls"],
             records=_records(kernel, row),
             outputs=outputs[outputs >= 0],
             points=out[outputs >= 0],
@@ -237,7 +279,7 @@ class _CompiledRun:
         sizes = back.h[lanes] if dt is None else run.direction * np.broadcast_to(dt, run.shape).reshape(-1)[lanes]
         given = {"x": back.m[lanes].T, "alive": 1.0, "count": back.taken[lanes], "t": back.t[lanes], "stop": done,
                  "h": sizes}  # fmt: skip
-        state = packed(kernel, count, given if graph.sizes is None else {**given, "kept": done})
+        state = kernel.packed(count, given if graph.sizes is None else {**given, "kept": done})
         out = np.empty((len(stops) + 1, n, state.shape[1]))
         path = np.zeros((steps, n + 2, state.shape[1])) if run.keeps else None
         run_blocks(

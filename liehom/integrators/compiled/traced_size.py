@@ -24,7 +24,6 @@ from liehom.integrators.run.run import FIRST_STEP_FRACTION
 from liehom.tracing import while_loop
 from liehom.typing import Real, Values
 
-
 EPS = float(np.finfo(np.float64).eps)
 
 
@@ -154,7 +153,7 @@ def size_to_stop(
     passed = local.time(h)
     reached = direction * (left - passed) <= SLACK * np.abs(h)
 
-    def newton(wanted: Any, s: Any) -> tuple[list[Any], Any]:
+    def newton(wanted: Values, s: Values) -> tuple[list[Values], Values]:
         slope = 1 + sum(k * c * s ** (k - 1) for k, c in local.clock)
         new = s + (left - local.time(s)) / np.clip(slope, MIN_RATE, MAX_RATE)
         again = wanted & (np.abs(new - s) > 2 * EPS * np.abs(s))

@@ -202,6 +202,17 @@ class CorrectionStatistics:
         if "usual" in extra:
             self._conservation.add_compiled(lanes, extra)
 
+    def note_ranks(self, found: Correction, lanes: IntegerArray, t: Array, m: Array) -> None:
+        """Record ranks and singular values of corrections (L,) at (t, m), for these trajectories of the ensemble."""
+        moving: BooleanArray = found.leading > 0
+        seen = {name: np.array(self._seen[name]).reshape(-1) for name in ("rank", "singular")}
+        shape = np.shape(self._seen["rank"])
+        seen["rank"][lanes] = np.minimum(seen["rank"][lanes], np.where(moving, found.rank, NO_RANK))
+        singular = np.where(moving, found.singular_value, np.inf)
+        self._note_where(singular, t, m)
+        seen["singular"][lanes] = np.minimum(seen["singular"][lanes], singular)
+        self._seen = {**self._seen, **{name: x.reshape(shape) for name, x in seen.items()}}
+
     def _note_where(self, lowest: Array, t: Array, m: Array) -> None:
         """Record where the smallest singular value of all trajectories was met, if it is in `lowest`."""
         if float(lowest.min()) < float(self._seen["singular"].min()):

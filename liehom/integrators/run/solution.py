@@ -55,8 +55,8 @@ class Report:
     singular_value : float
         The smallest singular value that decided the range condition (6.2); inf for steps without correction.
     singular_at : tuple or None
-        (t, point) where that singular value was met. Compiled steps compute no singular values: with the engine "llvm"
-        or "jax", this entry and `rank` are those of the steps between them.
+        (t, point) where that singular value was met. Compiled steps compute no singular values: with an engine that
+        compiles, this entry and `rank` are those at initial points, of at most 64 trajectories, and of steps in numpy.
     rank, orbit_dimension : int
         The smallest rank met in the range condition, and the dimension of the orbits, which it should have.
     failed_steps : int

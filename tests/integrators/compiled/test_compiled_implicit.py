@@ -106,11 +106,10 @@ def test_loops_within_loops_by_both_emitters() -> None:
     values = np.array([2.0, 1e-3, 5.0, 1e6, 1.0, 3.0, 7.0, 0.5])
     np.testing.assert_allclose(np.asarray(evaluate_with_jax([found], {0: values})[0]), np.sqrt(values), rtol=1e-6)
     for width in (1, 8):
-        m, one, zero = values[None].copy(), np.ones(8), np.zeros(8)
         kernel = Kernel(StepGraph([found], None, None, {}, {}), width)
-        kernel([m, zero.copy(), one, one, zero.copy(), one, np.zeros((1, 8)), None, None, None], 8, (0, 8 // width), 1,
-               (0.0, 1.0))  # fmt: skip
-        np.testing.assert_allclose(m[0], np.sqrt(values), rtol=1e-12)
+        state = kernel.packed(8, {"x": values[None], "alive": 1.0})
+        kernel(state, end=1, sizes=np.ones(1), times=np.zeros(1), codes=np.array([-1]))
+        np.testing.assert_allclose(state[0], np.sqrt(values), rtol=1e-12)
 
 
 def test_a_limit_is_kept() -> None:
