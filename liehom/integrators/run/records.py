@@ -147,8 +147,7 @@ class CorrectionStatistics:
         """Record the correction of one step of size h at (t, m), for the active trajectories."""
         seen = dict(self._seen)  # the arrays are replaced, never written into: older states stay whole
         moving: BooleanArray = active & (found.leading > 0)
-        if not bool(moving.all()):
-            seen["equilibria"] = seen["equilibria"] + (active & ~moving)
+        seen["equilibria"] = seen["equilibria"] + (active & ~moving)
         short = active & (found.reached < self._wanted)
         if bool(short.any()):
             seen["reached"] = np.where(short, np.minimum(seen["reached"], found.reached), seen["reached"])
@@ -160,12 +159,10 @@ class CorrectionStatistics:
         if bool(short.any()) or bool(near.any()):
             seen["unkept_from"] = np.where((short | near) & np.isnan(seen["unkept_from"]), t, seen["unkept_from"])
         worse = active & (found.residual > seen["residual"])
-        if bool(worse.any()):
-            seen["residual"] = np.where(worse, found.residual, seen["residual"])
+        seen["residual"] = np.where(worse, found.residual, seen["residual"])
         rank, singular = found.rank, found.singular_value
         less = moving & (rank < seen["rank"])
-        if bool(less.any()):
-            seen["rank"] = np.where(less, rank, seen["rank"])
+        seen["rank"] = np.where(less, rank, seen["rank"])
         lower = moving & (singular < seen["singular"])
         if bool(lower.any()):
             self._note_where(np.where(lower, singular, np.inf), t, m)
@@ -204,14 +201,12 @@ class CorrectionStatistics:
 
     def note_ranks(self, found: Correction, lanes: IntegerArray, t: Array, m: Array) -> None:
         """Record ranks and singular values of corrections (L,) at (t, m), for these trajectories of the ensemble."""
-        moving: BooleanArray = found.leading > 0
-        seen = {name: np.array(self._seen[name]).reshape(-1) for name in ("rank", "singular")}
-        shape = np.shape(self._seen["rank"])
-        seen["rank"][lanes] = np.minimum(seen["rank"][lanes], np.where(moving, found.rank, NO_RANK))
-        singular = np.where(moving, found.singular_value, np.inf)
+        singular = np.where(found.leading > 0, found.singular_value, np.inf)
         self._note_where(singular, t, m)
-        seen["singular"][lanes] = np.minimum(seen["singular"][lanes], singular)
-        self._seen = {**self._seen, **{name: x.reshape(shape) for name, x in seen.items()}}
+        for name, new in (("rank", np.where(found.leading > 0, found.rank, NO_RANK)), ("singular", singular)):
+            least = np.array(self._seen[name])
+            np.minimum.at(least.reshape(-1), lanes, new)
+            self._seen = {**self._seen, name: least}
 
     def _note_where(self, lowest: Array, t: Array, m: Array) -> None:
         """Record where the smallest singular value of all trajectories was met, if it is in `lowest`."""

@@ -55,14 +55,14 @@ def test_the_loop_takes_points(options: dict[str, Any], start: Any) -> None:
 def test_compiled_code_takes_points(options: dict[str, Any]) -> None:
     pytest.importorskip("llvmlite")
     for start in (START, ENSEMBLE):
-        made, _ = agree({**options, "compile": "llvm"}, start)
+        made, _ = agree({**options, "engine": "llvm"}, start)
         eager = lh.integrate(FIELD, (0, 2), start, step=Rotation(), **options)
         assert np.allclose(made.y, eager.y, rtol=1e-12, atol=1e-12, equal_nan=True)
 
 
 def test_jax_takes_points() -> None:
     pytest.importorskip("jax")
-    agree({"dt": 0.1, "compile": "jax"}, ENSEMBLE)
+    agree({"dt": 0.1, "engine": "jax"}, ENSEMBLE)
 
 
 def test_dense_output_and_events_take_points() -> None:
