@@ -9,16 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import Tape, needed
+from liehom.typing import Array
 
-Partials = tuple[Expr, ...]
-"""One partial derivative for each argument of an operation."""
+Number: TypeAlias = Any
+"""A number of a graph, or an array of such numbers."""
+Arithmetic: TypeAlias = Any
+"""A `Tape`, or an object with its methods add, sub, mul, ..., on other numbers."""
+
+SINQ_TERMS = 10
+"""Terms of the derivative of sin(r)/r by r^2, for |r| <= 1."""
 
 
 def gradient(output: Expr, inputs: Sequence[Expr]) -> list[Expr]:
@@ -55,7 +62,8 @@ def gradient(output: Expr, inputs: Sequence[Expr]) -> list[Expr]:
         seed = seeds.get(x.index)
         if seed is None or x.index in wanted or x.index not in moving:
             continue
-        for argument, partial in zip(x.args, _partials(tape, x), strict=True):
+        slopes = partials(tape, x.op, x.args, x, fixed_exponent=x.op == "pow" and x.args[1].constant)
+        for argument, partial in zip(x.args, slopes, strict=True):
             if argument.index in moving and not argument.boolean:
                 part = tape.mul(seed, partial)
                 known = seeds.get(argument.index)
@@ -112,35 +120,79 @@ _NUMPY: dict[str, Callable[..., Any]] = {
     "not": lambda a: np.logical_not(a),
     "select": lambda where, a, b: np.where(where, a, b),
     "abs": np.abs,
+    "sinq": lambda q: rotation(q, 1),
+    "cosq": lambda q: rotation(q, 0),
 }
 
 
-def _partials(tape: Tape, x: Expr) -> Partials:
-    """The partial derivatives of an operation by its arguments."""
-    one, args = tape.one, x.args
-    match x.op:
+def rotation(square: npt.ArrayLike, first: int) -> Array:
+    """sin(r)/r (first = 1) or cos(r) (first = 0) of r^2, hyperbolic for r^2 < 0.
+
+    Examples
+    --------
+    >>> rotation([0.0, -1.0], 1).round(6).tolist()
+    [1.0, 1.175201]
+    """
+    q: Array = np.asarray(square, dtype=np.float64)
+    r = np.sqrt(np.abs(q))
+    grown = np.where(q < 0, r, 0.0)
+    if not first:
+        return np.where(q < 0, np.cosh(grown), np.cos(r))
+    safe = np.where(r == 0, 1.0, r)
+    return np.where(r == 0, 1.0, np.where(q < 0, np.sinh(grown), np.sin(r)) / safe)
+
+
+def partials(
+    ops: Arithmetic, op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False
+) -> tuple[Number, ...]:
+    """The partial derivatives of an operation by its arguments, one for each.
+
+    Parameters
+    ----------
+    ops : Tape, or an object with its arithmetic
+    op : str
+    args : sequence of numbers
+    value : number
+        The result of the operation.
+    fixed_exponent : bool
+        Whether the exponent of a power is a constant.
+
+    Raises
+    ------
+    TraceError
+        If the operation has no derivative here.
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, y = tape.input(0), tape.input(1)
+    >>> partials(tape, "mul", (x, y), x * y) == (y, x)
+    True
+    """
+    one = ops.one
+    match op:
         case "add":
             return one, one
         case "sub":
-            return one, tape.neg(one)
+            return one, ops.neg(one)
         case "neg":
-            return (tape.neg(one),)
+            return (ops.neg(one),)
         case "mul":
             return args[1], args[0]
         case "div":
-            return tape.div(one, args[1]), tape.neg(tape.div(x, args[1]))
+            return ops.div(one, args[1]), ops.neg(ops.div(value, args[1]))
         case "pow":
-            slope = tape.mul(args[1], tape.power(args[0], tape.sub(args[1], one)))
-            return slope, tape.zero if args[1].constant else tape.mul(x, tape.call("log", args[0]))
+            slope = ops.mul(args[1], ops.power(args[0], ops.sub(args[1], one)))
+            return slope, ops.zero if fixed_exponent else ops.mul(value, ops.call("log", args[0]))
         case "select":
-            return tape.zero, tape.select(args[0], one, tape.zero), tape.select(args[0], tape.zero, one)
+            return ops.zero, ops.select(args[0], one, ops.zero), ops.select(args[0], ops.zero, one)
         case "arctan2":
-            size = tape.add(tape.mul(args[0], args[0]), tape.mul(args[1], args[1]))
-            return tape.div(args[1], size), tape.neg(tape.div(args[0], size))
-    rule = _SLOPES.get(x.op)
+            size = ops.add(ops.mul(args[0], args[0]), ops.mul(args[1], args[1]))
+            return ops.div(args[1], size), ops.neg(ops.div(args[0], size))
+    rule = _SLOPES.get(op)
     if rule is None:
-        raise TraceError(f"the operation {x.op} of a recorded function is not differentiated")
-    return (rule(tape, args[0], x),)
+        raise TraceError(f"the operation {op} of a recorded function is not differentiated")
+    return (rule(ops, args[0], value),)
 
 
 def _scaled(tape: Tape, factor: float, x: Expr) -> Expr:
@@ -153,6 +205,16 @@ def _one_minus(tape: Tape, x: Expr) -> Expr:
 
 def _one_plus(tape: Tape, x: Expr) -> Expr:
     return tape.add(tape.one, tape.mul(x, x))
+
+
+def _sinq_slope(tape: Tape, a: Expr, x: Expr) -> Expr:
+    """Derivative of sin(r)/r by q = r^2: (cos(r) - sin(r)/r) / 2q, and near q = 0 its series."""
+    near = tape.compare("lt", tape.call("abs", a), tape.one)
+    total: Any = tape.zero
+    for k in range(SINQ_TERMS, 0, -1):
+        total = tape.add(tape.mul(total, a), tape.constant(k * (-1) ** k / math.factorial(2 * k + 1)))
+    safe = tape.select(near, tape.one, a)
+    return tape.select(near, total, tape.div(_scaled(tape, 0.5, tape.sub(tape.call("cosq", a), x)), safe))
 
 
 # slope of a function of one number: (tape, argument, value) -> derivative
@@ -178,5 +240,7 @@ _SLOPES: dict[str, Callable[[Tape, Expr, Expr], Expr]] = {
     "arcsinh": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", _one_plus(tape, a))),
     "arccosh": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", tape.neg(_one_minus(tape, a)))),
     "arctanh": lambda tape, a, x: tape.div(tape.one, _one_minus(tape, a)),
+    "sinq": _sinq_slope,
+    "cosq": lambda tape, a, x: _scaled(tape, -0.5, tape.call("sinq", a)),
     "abs": lambda tape, a, x: tape.select(tape.compare("lt", a, tape.zero), tape.constant(-1.0), tape.one),
 }

@@ -53,7 +53,7 @@ class Taylor(Step):
     orbit follows from the orbit (theory/taylor):
 
     * by projection onto level sets of invariant quadratic forms, if the orbit is open in them. Spheres, hyperboloids,
-      light cones and their products are such orbits. The levels are those at the start of the run;
+      light cones and their products are such orbits, and the levels are those at the start of the run;
     * by nothing, if the orbit is open in V, or in V up to constant coordinates;
     * otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
       is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
