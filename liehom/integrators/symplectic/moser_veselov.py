@@ -44,8 +44,8 @@ class MoserVeselov(Step):
 
     Notes
     -----
-    Conserved to round-off are the spectrum of M, and the first integrals of the discrete body, which are close to
-    those of the continuous one.
+    The spectrum of M is conserved to round-off, and so are the coefficients of det(J^2 + x h M - x^2) in x, the first
+    integrals of Moser and Veselov. For n = 3 and n = 4 the energy is a function of these.
 
     Raises
     ------

@@ -46,6 +46,17 @@ def test_first_integrals_of_the_discrete_body_are_conserved() -> None:
     assert np.abs(m - given.start).max() > 0.1
 
 
+@pytest.mark.parametrize("name", ["body", "body in R^4"])
+def test_energy_is_conserved_to_round_off(name: str) -> None:
+    given = system(name)
+    spans = [
+        np.ptp(given.energy(lh.integrate(given.field, (0, 20), 3 * given.start, step=step, dt=0.1).y.T))
+        for step in (STEP, lh.IsospectralMidpoint())
+    ]
+    assert spans[0] < 1e-13
+    assert spans[1] > 1e-5  # a control
+
+
 @pytest.mark.parametrize("kind", [1, -1])
 def test_inertia_of_a_turned_body(kind: int) -> None:
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]

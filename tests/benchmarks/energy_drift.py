@@ -1,0 +1,192 @@
+"""Energy and Casimir functions over 10^6 steps of symplectic, corrected, conserving and other steps.
+
+    python -m tests.benchmarks.energy_drift [--steps 1000000] [--page docs/lie-poisson.md] [--pictures docs/_static]
+
+prints a table; with --page it replaces the table between the markers of the page, with --pictures it draws
+energy_drift_light.svg and energy_drift_dark.svg. All runs are compiled by LLVM, in one thread.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import liehom as lh
+from liehom.plotting.canvas import COLOURS, matplotlib_module, style
+
+DT = 0.1
+SAMPLES = 600
+"""Times at which energy and Casimir functions are looked at; half of them are spread evenly over the logarithm."""
+MARKERS = ("<!-- energy drift: begin -->", "<!-- energy drift: end -->")
+DARK = {"text.color": "#dddddd", "axes.labelcolor": "#dddddd", "axes.titlecolor": "#dddddd", "xtick.labelcolor": "#dddddd",
+        "ytick.labelcolor": "#dddddd", "grid.color": "#3a3a3a", "axes.edgecolor": "#999999", "axes.facecolor": "none",
+        "legend.labelcolor": "#dddddd"}  # fmt: skip
+DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
+HAIRLINE = 1e-17
+SYMPLECTIC = ("Midpoint", "MoserVeselov", "Splitting")
+"""Words in the names of the symplectic steps, whose lines are drawn without dashes."""
+
+
+class System(NamedTuple):
+    """A Hamiltonian system with its Casimir functions and the steps that are tried on it."""
+
+    title: str
+    field: lh.GeneratorField
+    energy: Callable[[Any], Any]
+    casimirs: Callable[[Any], Sequence[Any]]
+    start: Any
+    steps: dict[str, lh.Step]
+
+
+class Row(NamedTuple):
+    """What a run has shown."""
+
+    name: str
+    order: int
+    times: Any
+    energy: Any
+    casimir: float
+    cost: float
+
+
+def spin() -> System:
+    """A spin with an energy of degree 4, on S^2."""
+
+    def energy(m: Any) -> Any:
+        x, y, z = m[..., 0], m[..., 1], m[..., 2]
+        return (x**4 + 2 * y**4 + 3 * z**4) / 4 + x / 5 + 3 * y * z / 10
+
+    steps: dict[str, lh.Step] = {
+        "Heun": lh.Heun(),
+        "RKMK rk4": lh.RKMK("rk4"),
+        "Corrected(Heun, 4)": lh.Corrected(lh.Heun(), 4),
+        "Conserving(Heun)": lh.Conserving(lh.Heun(), energy),
+        "SphericalMidpoint": lh.SphericalMidpoint(),
+        "VariationalMidpoint": lh.VariationalMidpoint(),
+        "Composition(SphericalMidpoint, 4)": lh.Composition(lh.SphericalMidpoint(), 4),
+    }
+    field = lh.hamiltonian_field(lh.so(3), energy, sign=1)
+    return System(
+        "a spin with an energy of degree 4, on S²",
+        field,
+        energy,
+        lambda m: [np.sum(m * m, axis=-1)],
+        np.array([0.6, 0.48, 0.64]),
+        steps,
+    )
+
+
+def body() -> System:
+    """A free rigid body in R^4."""
+    places = [np.nonzero(a.to_numpy())[0] for a in lh.defining(lh.so(4)).matrices]
+    w = 1 / np.array([np.array([1.0, 2.0, 3.5, 5.0])[place].sum() for place in places])
+
+    def energy(m: Any) -> Any:
+        return np.sum(w * m * m, axis=-1) / 2
+
+    def casimirs(m: Any) -> list[Any]:
+        return [np.sum(m * m, axis=-1), m[..., 0] * m[..., 5] - m[..., 1] * m[..., 4] + m[..., 2] * m[..., 3]]
+
+    steps: dict[str, lh.Step] = {
+        "Heun": lh.Heun(),
+        "RKMK rk4": lh.RKMK("rk4"),
+        "Conserving(Heun)": lh.Conserving(lh.Heun(), energy),
+        "MoserVeselov": lh.MoserVeselov(),
+        "IsospectralMidpoint": lh.IsospectralMidpoint(),
+        "Splitting": lh.Splitting(),
+        "Composition(Splitting, 4)": lh.Composition(lh.Splitting(), 4),
+    }
+    field = lh.hamiltonian_field(lh.so(4), energy, sign=-1)
+    start = np.array([3.0, -1.0, 2.0, 1.5, 0.5, -2.0])
+    return System("a free rigid body in R⁴", field, energy, casimirs, start, steps)
+
+
+def measured(system: System, name: str, count: int) -> Row:
+    """A run of `count` steps."""
+    end = count * DT
+    times = np.union1d(np.geomspace(DT, end, SAMPLES // 2), np.linspace(0, end, SAMPLES // 2 + 1)[1:])
+    propagator = lh.Propagator(system.field, system.steps[name], engine="llvm")
+    sol = propagator((0, end), system.start, dt=DT, t_eval=times)
+    if not sol.success:
+        raise SystemExit(f"{name} on {system.title}: {sol.message}")
+    begin = time.process_time()  # once more, without the steps to the sampled times, which numpy makes
+    again = propagator((0, end), system.start, dt=DT, t_eval=[end])
+    taken = time.process_time() - begin
+    points = sol.y.T
+    energy = np.abs(system.energy(points) - system.energy(system.start))
+    values = zip(system.casimirs(points), system.casimirs(system.start), strict=True)
+    moved = [np.abs(after / before - 1).max() for after, before in values]
+    return Row(name, system.steps[name].order, times, energy, float(max(moved)), taken / int(again.n_steps) * 1e6)
+
+
+def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
+    """The rows as Markdown."""
+    lines = [
+        f"{count:,} steps of size {DT}, compiled by LLVM. Errors are relative to the values at the initial point.",
+        "",
+    ]
+    for system, rows in found:
+        scale = abs(float(system.energy(system.start)))
+        lines += [
+            f"**{system.title[0].upper() + system.title[1:]}**",
+            "",
+            "| step | order | largest energy error, first tenth | all | Casimir functions | µs per step |",
+            "|---|---|---|---|---|---|",
+        ]
+        for row in rows:
+            early = row.energy[row.times <= count * DT / 10].max() / scale
+            lines.append(
+                f"| `{row.name}` | {row.order} | {early:.1e} | {row.energy.max() / scale:.1e} | {row.casimir:.0e} | "
+                f"{row.cost:.2f} |"
+            )
+        lines.append("")
+    return "\n".join(lines)
+
+
+def draw(found: Sequence[tuple[System, Sequence[Row]]], folder: Path) -> None:
+    """energy_drift_light.svg and energy_drift_dark.svg: the largest energy error so far over time."""
+    pyplot = matplotlib_module("figure")
+    for kind, options, colours in (("light", {}, COLOURS), ("dark", DARK, DARK_COLOURS)):
+        with style(), matplotlib_module("").rc_context(options):
+            figure = pyplot.Figure(figsize=(9.0, 4.4), layout="constrained")
+            figure.patch.set_alpha(0.0)
+            for axes, (system, rows) in zip(figure.subplots(1, len(found), sharey=True), found, strict=True):
+                scale = abs(float(system.energy(system.start)))
+                for colour, row in zip(colours, rows, strict=True):
+                    worst = np.maximum.accumulate(np.maximum(row.energy / scale, HAIRLINE))
+                    dashes = "-" if any(word in row.name for word in SYMPLECTIC) else "--"
+                    axes.loglog(row.times, worst, dashes, color=colour, label=row.name)
+                axes.set_title(system.title)
+                axes.set_xlabel("time")
+                axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize=8)
+            figure.axes[0].set_ylabel("largest relative energy error so far")
+            figure.savefig(folder / f"energy_drift_{kind}.svg", metadata={"Date": None})
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--steps", type=int, default=1_000_000)
+    parser.add_argument("--page", type=Path)
+    parser.add_argument("--pictures", type=Path)
+    given = parser.parse_args()
+    found = []
+    for system in (spin(), body()):
+        found.append((system, [measured(system, name, given.steps) for name in system.steps]))
+    text = table(found, given.steps)
+    print(text)
+    if given.page:
+        page = given.page.read_text(encoding="utf-8")
+        before, rest = page.split(MARKERS[0])
+        _, after = rest.split(MARKERS[1])
+        given.page.write_text(f"{before}{MARKERS[0]}\n\n{text}\n{MARKERS[1]}{after}", encoding="utf-8")
+    if given.pictures:
+        draw(found, given.pictures)
+
+
+if __name__ == "__main__":
+    main()
