@@ -23,9 +23,20 @@ DT = 0.1
 SAMPLES = 600
 """Times at which energy and Casimir functions are looked at; half of them are spread evenly over the logarithm."""
 MARKERS = ("<!-- energy drift: begin -->", "<!-- energy drift: end -->")
-DARK = {"text.color": "#dddddd", "axes.labelcolor": "#dddddd", "axes.titlecolor": "#dddddd", "xtick.labelcolor": "#dddddd",
-        "ytick.labelcolor": "#dddddd", "grid.color": "#3a3a3a", "axes.edgecolor": "#999999", "axes.facecolor": "none",
-        "legend.labelcolor": "#dddddd"}  # fmt: skip
+LETTERS = (
+    "text.color",
+    "axes.labelcolor",
+    "axes.titlecolor",
+    "xtick.labelcolor",
+    "ytick.labelcolor",
+    "legend.labelcolor",
+)
+DARK = {
+    **dict.fromkeys(LETTERS, "#dddddd"),
+    "grid.color": "#3a3a3a",
+    "axes.edgecolor": "#999999",
+    "axes.facecolor": "none",
+}
 DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 HAIRLINE = 1e-17
 SYMPLECTIC = ("Midpoint", "MoserVeselov", "Splitting")
