@@ -33,6 +33,7 @@ LETTERS = (
 )
 DARK = {
     **dict.fromkeys(LETTERS, "#dddddd"),
+    "legend.labelcolor": "#dddddd",
     "grid.color": "#3a3a3a",
     "axes.edgecolor": "#999999",
     "axes.facecolor": "none",
@@ -75,8 +76,8 @@ def spin() -> System:
     steps: dict[str, lh.Step] = {
         "Heun": lh.Heun(),
         "RKMK rk4": lh.RKMK("rk4"),
-        "Corrected(Heun, 4)": lh.Corrected(lh.Heun(), 4),
         "Conserving(Heun)": lh.Conserving(lh.Heun(), energy),
+        "Corrected(Heun, 4)": lh.Corrected(lh.Heun(), 4),
         "SphericalMidpoint": lh.SphericalMidpoint(),
         "VariationalMidpoint": lh.VariationalMidpoint(),
         "Composition(SphericalMidpoint, 4)": lh.Composition(lh.SphericalMidpoint(), 4),
