@@ -16,8 +16,8 @@ import liehom.paper
 from liehom.cli.app import app
 from liehom.errors import FormatError, InputError
 from liehom.instances import RigidBody
-from liehom.paper import NAMES, Check, Reproduction, Table, reproduce
-from liehom.paper.costs import operations
+from liehom.paper import NAMES, Check, Reproduction, Table, efficiency, reproduce
+from liehom.paper.costs import Cost, operations
 from liehom.paper.efficiency import accuracy, own_consistency
 from liehom.paper.energy_errors import energy_errors, scale
 from liehom.paper.kernels import MISPRINTS, Body, kernel
@@ -158,6 +158,38 @@ def test_the_crossover_of_the_paper_lies_in_the_range() -> None:
     _, _, low, high, paper = rows["the paper's CPU times"]
     assert paper == CROSSOVER
     assert low < paper < high
+
+
+def test_conclusions_do_not_depend_on_measured_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With other times only the columns of times differ."""
+    fields = ("checks", "tables", "sample")
+    found = []
+    for factor in (1.0, 30.0):
+        costs = {n: Cost(operations(n), factor ** (-1.0) ** k, 1.0) for k, n in enumerate(UPDATES)}
+        monkeypatch.setattr(efficiency, "measured_costs", lambda quick, costs=costs: costs)
+        done = reproduce("fig7", quick=True)
+        found.append({field: getattr(done, field) for field in fields})
+        assert done.holds
+    first, second = found
+    assert first["checks"] == second["checks"]
+    for name, table in first["tables"].items():
+        timed = [i for i, column in enumerate(table.columns) if "time" in column]
+        assert len(timed) == 1
+        rows = zip(table.rows, second["tables"][name].rows, strict=True)
+        assert any(a[timed[0]] != b[timed[0]] for a, b in rows)
+        for a, b in zip(table.rows, second["tables"][name].rows, strict=True):
+            assert [x for i, x in enumerate(a) if i not in timed] == [x for i, x in enumerate(b) if i not in timed]
+
+
+@pytest.mark.slow
+def test_fig6_fits_are_in_operations(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = []
+    for time in (1.0, 7.0):
+        costs = {n: Cost(operations(n), time, time) for n in UPDATES}
+        monkeypatch.setattr(efficiency, "measured_costs", lambda quick, costs=costs: costs)
+        done = reproduce("fig6", quick=True)
+        found.append((done.tables["fits"].csv(), done.checks))
+    assert found[0] == found[1]
 
 
 def test_fits_are_least_squares() -> None:
