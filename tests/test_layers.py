@@ -65,7 +65,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "reasons",
         "decide",
     ),
-    "correctors": ("step", "expansion", "points", "isotropy", "conserving", "symbolic"),
+    "correctors": ("implicit", "step", "expansion", "points", "isotropy", "conserving", "symbolic"),
     "integrators": (
         "tableaux",
         "run",

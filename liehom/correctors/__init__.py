@@ -18,6 +18,7 @@ from liehom.correctors.expansion import Flow as Flow
 from liehom.correctors.expansion import flow_series as flow_series
 from liehom.correctors.expansion import leading_order as leading_order
 from liehom.correctors.expansion import step_series as step_series
+from liehom.correctors.implicit import solve_implicitly as solve_implicitly
 from liehom.correctors.isotropy import Corrected as Corrected
 from liehom.correctors.isotropy import CorrectedStep as CorrectedStep
 from liehom.correctors.isotropy import Correction as Correction
@@ -28,7 +29,6 @@ from liehom.correctors.step import LocalStep as LocalStep
 from liehom.correctors.step import OneExponential as OneExponential
 from liehom.correctors.step import Step as Step
 from liehom.correctors.step import apply_factors as apply_factors
-from liehom.correctors.step import solve_implicitly as solve_implicitly
 from liehom.correctors.step import step_variable as step_variable
 from liehom.correctors.symbolic import ClosedForm as ClosedForm
 from liehom.correctors.symbolic import OrderCondition as OrderCondition

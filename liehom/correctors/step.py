@@ -8,27 +8,22 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable
-from importlib import import_module
 from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from liehom.errors import ConvergenceError, InputError
+from liehom.errors import InputError
 from liehom.homogeneous import Action, Exponential, GeneratorField
-from liehom.series.arrays import is_jax, zeros
+from liehom.series.arrays import zeros
 from liehom.series.jet import Jet
 from liehom.series.node import Node
-from liehom.tracing import Tape, Traced, while_loop
-from liehom.typing import IntegerArray, Real, Values
+from liehom.typing import IntegerArray, Values
 
 Factors: TypeAlias = tuple[Values, ...]
 """Generators x_1, ..., x_s of shape (..., dim g); their step is m -> Exp(x_s) ... Exp(x_1) m."""
 
 ExponentialLike: TypeAlias = str | Exponential | Callable[..., Any]
 """A name such as "exp" or "cayley", an `Exponential`, or a function that `Action` takes as one."""
-
-MAX_ITERATIONS = 200
-JAX_ITERATIONS = 60
 
 
 @final
@@ -316,74 +311,3 @@ def step_variable(order: int, like: Values) -> Jet:
     """
     zero = zeros(like, (1,))
     return Jet.from_node(Node(order, zero, [None, zero + 1, *[None] * (order - 1)][: order + 1]))
-
-
-def solve_implicitly(function: Callable[[Any], Values], start: Values, h: Real, *, stacked: bool = False) -> Values:
-    """Solution x of x = function(x), where function has a factor h.
-
-    Jets are solved coefficient by coefficient. Arrays are iterated from `start` until x no longer changes, each
-    trajectory separately, so that no result depends on the other trajectories. With `stacked`, the first axis is
-    not one of the ensemble (it holds the stages of a method).
-
-    Raises
-    ------
-    ConvergenceError
-        If the iteration does not converge: the step size is too large.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> float(solve_implicitly(lambda x: 0.5 * np.cos(x), np.array(0.0), 0.5).round(6))
-    0.450184
-    """
-    if isinstance(h, Jet):
-        x = Jet.growing(zeros(start, np.shape(start)), h.order, zero=True)
-        made: Any = function(x)
-        x.node.depends((made.node, 0), rule=lambda k: made.node.known[k])
-        return x
-    if isinstance(h, Traced):
-        return _solved_on_tape(function, start, h.tape)
-    if isinstance(start, Traced):
-        return _solved_on_tape(function, start, start.tape)
-    if is_jax(start):
-        # a loop, as sixty copies of the function would take minutes to compile
-        found: Values = import_module("jax.lax").fori_loop(0, JAX_ITERATIONS, lambda _, x: function(x), start)
-        return found
-    eps = np.finfo(np.result_type(start, float)).eps
-    axes = (0, -1) if stacked else (-1,) if np.ndim(start) else ()
-    before: Any = np.inf
-    change: Any = np.zeros(())
-    settled: Any = np.zeros((), dtype=bool)
-    for _ in range(MAX_ITERATIONS):
-        with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported below
-            new = function(start)
-            change = np.where(settled, 0.0, np.abs(new - start).max(axis=axes, keepdims=True, initial=0.0))
-        size = np.abs(new).max(axis=axes, keepdims=True, initial=0.0)
-        start = np.where(settled, start, new) if settled.any() else new
-        settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
-        if settled.all():
-            return start
-        if not np.isfinite(change).all():
-            break
-        before = change
-    raise ConvergenceError(
-        f"an implicit step did not converge in {MAX_ITERATIONS} iterations (last change {np.max(change):.2g}): "
-        "take a smaller step size"
-    )
-
-
-def _solved_on_tape(function: Callable[[Any], Values], start: Values, tape: Tape) -> Traced:
-    """Solution of x = function(x) in compiled code, by the same iteration; numpy takes a step for which it fails."""
-    eps = float(np.finfo(np.float64).eps)
-
-    def iteration(x: Traced, before: Traced, settled: Values) -> tuple[list[Values], Values]:
-        made = function(x)
-        change: Values = np.where(settled, 0.0, np.abs(made - x).max())
-        size = np.abs(made).max()
-        kept: Values = np.where(settled, x, made)
-        settled = settled | (change <= 2 * eps * size) | ((change <= 1e4 * eps * size) & (change >= before))
-        return [kept, change, settled], ~settled & np.isfinite(change)
-
-    solved, _, settled = while_loop(iteration, [start, np.inf, tape.false], tape, MAX_ITERATIONS)
-    tape.required.append(settled.entry)
-    return solved

@@ -42,10 +42,15 @@ class Loop:
     guarded: bool = False
 
     def __repr__(self) -> str:
-        # equal loops must print equally: the repr is part of the compile-cache key
-        rows = [(x.op, *[a.index for a in x.args], x.value) for x in self.inside]
-        ends = [x.index for x in (*self.variables, *self.new, self.again)]
+        # equal loops must print equally, and no others: the repr is part of the compile-cache key
+        rows = [(x.op, *[_printed(a) for a in x.args], x.value) for x in self.inside]
+        ends = [_printed(x) for x in (*self.variables, *self.new, self.again)]
         return f"Loop({ends}, {rows}, {self.limit}{', guarded' if self.guarded else ''})"
+
+
+def _printed(x: Expr) -> int | tuple[str, Any]:
+    """The index of an expression; the value of a constant, which has no other place in the repr."""
+    return ("=", x.value) if x.constant else x.index
 
 
 def scalar_while_loop(

@@ -15,7 +15,8 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.instances.rigid_body.closed_forms import Ingredients

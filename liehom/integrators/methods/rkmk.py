@@ -12,21 +12,19 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeAlias, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.correctors.implicit import SparseRow, combined, reach_of, solve_implicitly
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.tableaux.tableau import Tableau
 from liehom.integrators.tableaux.tableaux import tableau as tableau_of
 from liehom.scalars import QQ
-from liehom.series.arrays import is_exact, is_jax, namespace, zeros
+from liehom.series.arrays import is_exact, is_jax, zeros
 from liehom.typing import Values
-
-SparseRow: TypeAlias = tuple[tuple[int, Any], ...]
-"""(index, entry) of the nonzero entries of a row of coefficients."""
 
 
 class Coefficients(NamedTuple):
@@ -219,7 +217,7 @@ class _Stages:
 
     def combined(self, weights: SparseRow, h: Values) -> Values:
         """sum_i weights[i] k_i."""
-        total: Values = _combined(weights, self._through(h, weights[-1][0] + 1))
+        total: Values = combined(weights, self._through(h, weights[-1][0] + 1))
         return total
 
     def _through(self, h: Values, count: int) -> list[Values]:
@@ -243,24 +241,22 @@ class _Stages:
         i = len(self._known)
         row = self.numbers.a[i]
         if not row or row[-1][0] < i:
-            return self._stage(i, _combined(row, self._known), h)
-        before, (_, diagonal) = _combined(row[:-1], self._known), row[-1]
+            return self._stage(i, combined(row, self._known), h)
+        before, (_, diagonal) = combined(row[:-1], self._known), row[-1]
 
         def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
 
-        return solve_implicitly(stage, zeros(self.m, self._shape), h)
+        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action))
 
     def _solved(self, h: Values) -> list[Values]:
         """All stages of an implicit method, from one equation for an array with a first axis for the stages."""
-        rows = self.numbers.a
+        rows, start = self.numbers.a, zeros(self.m, (len(self.numbers.a), *self._shape))
 
-        def stages(k: Any) -> Values:
-            made = [self._stage(i, _combined(row, k), h) for i, row in enumerate(rows)]
-            stacked: Values = namespace(*made).stack(made)
-            return stacked
+        def stages(u: list[Any]) -> list[Values]:
+            return [self._stage(i, x, h) for i, x in enumerate(u)]
 
-        k = solve_implicitly(stages, zeros(self.m, (len(rows), *self._shape)), h, stacked=True)
+        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action))
         return [k[i] for i in range(len(rows))]
 
     def _stage(self, i: int, u: Values | None, h: Values) -> Values:
@@ -303,12 +299,3 @@ def _coefficients(rows: Sequence[Sequence[Any]]) -> Coefficients:
 
 def _sparse(row: Sequence[Any]) -> SparseRow:
     return tuple((j, x) for j, x in enumerate(row) if x != 0)
-
-
-def _combined(row: SparseRow, terms: Sequence[Values]) -> Any:
-    """sum_j row[j] terms[j]; None if the row has no entries."""
-    total = None
-    for j, weight in row:
-        term = terms[j] * weight
-        total = term if total is None else total + term
-    return total

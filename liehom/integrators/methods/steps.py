@@ -9,7 +9,8 @@ from typing import final
 import numpy as np
 
 from liehom.correctors.expansion import Flow, flow_series, step_series
-from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential, solve_implicitly
+from liehom.correctors.implicit import reach_of, solve_implicitly
+from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.series.arrays import as_values, zeros
@@ -57,7 +58,8 @@ class BackwardEuler(OneExponential):
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
         start = zeros(m, (*np.shape(m)[:-1], action.dimension))
-        return solve_implicitly(lambda x: h * psi(action.act(x, m), t + h), start, h)
+        reach = reach_of(action)
+        return solve_implicitly(lambda x: h * psi(action.act(x, m), t + h), start, h, reach=reach)
 
 
 @final
@@ -157,7 +159,7 @@ def _fitted(action: Action, psi: Generator, flow: Flow, m: Values, order: int) -
     found: list[Values] = []
     for k in range(1, order + 1):
         guess = flow.psi(k - 1) / k
-        step = step_series(action, _Polynomial([*found, guess]), m, k)
+        step = step_series(action, _Polynomial(action, m, [*found, guess]), m, k)
         missing = flow.point(k) - step.coefficient(k)
         tangential = (np.swapaxes(frame.tangent, -1, -2) @ missing[..., None])[..., 0]
         found.append(guess + (frame.lift @ tangential[..., None])[..., 0])

@@ -12,7 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, final
 
-from liehom.correctors.step import Generator, LocalStep, Step, solve_implicitly
+from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.symplectic.matrix_coordinates import MatrixCoordinates, coordinates_on_dual

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.correctors.step import Generator, LocalStep, Step, solve_implicitly
+from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.symplectic.matrix_coordinates import MatrixCoordinates, coordinates_on_dual

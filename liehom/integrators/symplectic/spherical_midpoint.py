@@ -15,7 +15,8 @@ from typing import final
 
 import numpy as np
 
-from liehom.correctors.step import Generator, LocalStep, Step, solve_implicitly
+from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.symplectic.variational_midpoint import zeros_of

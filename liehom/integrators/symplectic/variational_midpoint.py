@@ -14,7 +14,8 @@ from typing import final
 
 import numpy as np
 
-from liehom.correctors.step import Generator, OneExponential, solve_implicitly
+from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.step import Generator, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action, TrueExponential
 from liehom.series.arrays import zeros

@@ -58,10 +58,12 @@ def test_lanes_iterate_as_long_as_they_need() -> None:
 
 @pytest.mark.parametrize("backend", ["llvm", "jax"])
 def test_an_iteration_that_fails_ends_as_on_arrays(backend: str) -> None:
-    fast = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -300 * m * [1.0, 0.5, 0.25] * m[..., :1] ** 2)
+    # across a jump of psi that points back, the equation of the midpoint rule has no solution
+    jump = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: [0.0, 0.0, 1.0] * np.where(m[..., :1] > 0, 1.0, -3.0))
     y0 = np.array([[0.6, 0.48, 0.64], [0.0, 0.6, 0.8], [0.1, 0.6, np.sqrt(0.63)]])
-    plain = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1)
-    made = lh.integrate(fast, (0, 2), y0, step=lh.RKMK("gauss2"), dt=0.1, engine=backend)
+    y0[1] = [-0.6, 0.48, 0.64]
+    plain = lh.integrate(jump, (0, 0.5), y0, step=lh.RKMK("implicit midpoint"), dt=0.1)
+    made = lh.integrate(jump, (0, 0.5), y0, step=lh.RKMK("implicit midpoint"), dt=0.1, engine=backend)
     assert list(plain.statuses) == list(made.statuses) and set(plain.statuses) == {0, int(plain.statuses.min())}
     assert plain.statuses.min() < 0
     assert plain.message == made.message
@@ -118,3 +120,32 @@ def test_a_limit_is_kept() -> None:
     found = while_loop(lambda y: ([y + 1], y < 1e9), [Traced(tape, x)], tape, 7)[0].entries[()]
     for whole in (False, True):
         assert float(evaluate_with_jax([found], {0: 0.0}, differentiable=whole)[0]) == 7.0
+
+
+# -- stiff fields --------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("backend", "name"), [("llvm", "implicit euler"), ("llvm", "radau2a"), ("jax", "implicit euler")]
+)
+def test_newton_in_compiled_code_agrees_with_arrays(backend: str, name: str) -> None:
+    y0 = sphere(9)
+    for rate in (10.0, 1000.0):  # two fields whose numbers appear inside loops only
+        field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, k=rate: k * np.cross(m, [0.0, 0.0, 1.0]))
+        plain = lh.integrate(field, (0, 1), y0, step=lh.RKMK(name), dt=0.1, t_eval=[0.2, 1.0])
+        made = lh.integrate(field, (0, 1), y0, step=lh.RKMK(name), dt=0.1, t_eval=[0.2, 1.0], engine=backend)
+        assert (plain.statuses == 0).all() and (made.statuses == 0).all()
+        np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-13)
+
+
+@pytest.mark.slow
+def test_jax_differentiates_a_stiff_step() -> None:
+    jax = pytest.importorskip("jax")
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: 1000 * np.cross(m, [0.0, 0.0, 1.0]))
+
+    def last(m: Any, **how: Any) -> Any:
+        return lh.integrate(field, (0, 0.01), m, step=lh.BackwardEuler(), dt=0.01, t_eval=[0.01], **how).y[:, -1]
+
+    with jax.enable_x64(True):
+        found = np.asarray(jax.jacfwd(lambda m: last(m, engine="jax"))(jax.numpy.asarray(START)))
+    e = 1e-6
+    wanted = [(last(START + e * d) - last(START - e * d)) / (2 * e) for d in np.eye(3)]
+    np.testing.assert_allclose(found, np.array(wanted).T, rtol=0, atol=1e-8)

@@ -168,7 +168,14 @@ def test_extended_precision(step: lh.Step, name: str) -> None:
     assert 0 < np.abs(wide - moved(step, given, given.start[None], 0.2)).max() < 1e-14
 
 
-@pytest.mark.parametrize("step", [VARIATIONAL, ISOSPECTRAL, MOSER], ids=str)
+def test_large_steps_of_the_isospectral_midpoint_are_solved_and_stay_on_the_sphere() -> None:
+    given = system("body")
+    sol = lh.integrate(given.field, (0, 1000), 20 * given.start, step=ISOSPECTRAL, dt=10.0)
+    assert sol.success
+    np.testing.assert_allclose(np.linalg.norm(sol.y, axis=0), 20 * np.linalg.norm(given.start), rtol=1e-12)
+
+
+@pytest.mark.parametrize("step", [VARIATIONAL, MOSER], ids=str)
 def test_too_large_steps_end_a_run_with_a_message(step: lh.Step) -> None:
     given = system("body")
     sol = lh.integrate(given.field, (0, 1000), 20 * given.start, step=step, dt=10.0)
