@@ -15,6 +15,7 @@ import numpy as np
 
 from liehom.errors import InputError, ShapeError
 from liehom.representations import Representation
+from liehom.representations.core.copies import copies_of
 from liehom.scalars import Field, Matrix, Scalar
 from liehom.series import recurrences
 from liehom.series.arrays import across_lanes, in_lanes, is_exact, is_lazy, namespace, zeros
@@ -354,6 +355,9 @@ def action_entries(representation: Representation) -> list[tuple[int, int, int, 
     >>> action_entries(lh.defining(lh.so(2)))
     [(0, 1, 0, -1), (0, 0, 1, 1)]
     """
+    copies = copies_of(representation)
+    if copies is not None:
+        return copies.entries()
     n = representation.size
     entries = []
     for a, matrix in enumerate(representation.matrices):

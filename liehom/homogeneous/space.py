@@ -19,6 +19,7 @@ from liehom.homogeneous.frames.branch_free_frames import TightFrame, orthogonal_
 from liehom.homogeneous.frames.inner_product import InnerProduct, inner_product
 from liehom.homogeneous.maps import FieldMap, action_map, bracket_map
 from liehom.representations import Representation
+from liehom.representations.core.copies import copies_of
 from liehom.series.arrays import is_jax, namespace
 from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
@@ -73,9 +74,14 @@ class Action:
         self.bracket: FieldMap = bracket_map(representation)
         self.inner_product: InnerProduct = inner_product(representation)
         self._basis = self.inner_product.orthonormal_basis()
+        self.even: TightFrame | None = None
+        self._size: float
+        copies = copies_of(representation)
+        if copies is not None:
+            self._size = Action(copies.single).max_norm
+            return
         shape = (representation.algebra.dimension, representation.size**2)
         tensor = np.array([a.to_numpy() for a in representation.matrices]).reshape(shape)
-        self.even: TightFrame | None = None
         self._size = float(np.linalg.norm(self._basis.T @ tensor, axis=1).max(initial=0.0))
 
     @property

@@ -57,7 +57,9 @@ class BlockExponential(TrueExponential):
         super().__init__(representation)
         self._blocks = blocks
         moved = np.concatenate([block.coordinates.ravel() for block in blocks])
-        fixed = np.setdiff1d(np.arange(representation.size), moved)
+        rests = np.ones(representation.size, dtype=bool)
+        rests[moved] = False
+        fixed = np.flatnonzero(rests)
         order = np.concatenate([moved, fixed])
         self._fixed = fixed
         self._order: IntegerArray | None = None if np.array_equal(order, np.arange(len(order))) else np.argsort(order)

@@ -60,6 +60,8 @@ class Rodrigues(TrueExponential):
     'exp (Rodrigues)'
     """
 
+    _power: int = 1  # pickles of 0.1.0 have the form only
+
     def __init__(self, representation: Representation) -> None:
         identity = power_identity(representation.matrices, representation.field)
         if identity is None:
@@ -68,14 +70,14 @@ class Rodrigues(TrueExponential):
                 "use exponential='exp'"
             )
         super().__init__(representation)
-        self._identity = identity
+        self._form, self._power = identity
 
     @property
     def name(self) -> str:
         return "exp (Rodrigues)"
 
     def act(self, x: Values, m: Values) -> Values:
-        return rodrigues_action(self.infinitesimal, self._identity, x, m)
+        return rodrigues_action(self.infinitesimal, PowerIdentity(self._form, self._power), x, m)
 
 
 def rodrigues_action(infinitesimal: FieldMap, identity: PowerIdentity, x: Values, m: Values) -> Values:

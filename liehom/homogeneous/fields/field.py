@@ -17,6 +17,7 @@ from liehom.homogeneous.maps import action_map
 from liehom.homogeneous.range.batched_ranks import batched_ranks
 from liehom.immutable import Immutable
 from liehom.representations import Representation
+from liehom.representations.core.copies import copies_of
 from liehom.series.arrays import as_values, is_traced, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.typing import Array, IntegerArray, Real, Values, ValuesLike
@@ -38,6 +39,9 @@ class GeneratorField(Immutable):
     time_dependent : bool, optional
         Whether a function psi is called with t. By default it is if it has a second parameter without a default, or
         a parameter named t.
+    sites : tuple of int
+        Lengths of the last leading axes of m, if these are the sites of a lattice that psi couples by np.roll. All
+        sites of a lattice are then integrated with one step size.
 
     Raises
     ------
@@ -63,10 +67,15 @@ class GeneratorField(Immutable):
     representation: Representation
     source: GeneratorLike | LeastNorm
 
-    __slots__ = ("_action", "_components", "_dimension", "representation", "source", "time_dependent")
+    __slots__ = ("_action", "_components", "_dimension", "_sites", "representation", "source", "time_dependent")
 
     def __init__(
-        self, representation: Representation, psi: GeneratorLike | LeastNorm, *, time_dependent: bool | None = None
+        self,
+        representation: Representation,
+        psi: GeneratorLike | LeastNorm,
+        *,
+        time_dependent: bool | None = None,
+        sites: tuple[int, ...] = (),
     ) -> None:
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {displayed(representation)}")
@@ -80,6 +89,12 @@ class GeneratorField(Immutable):
         )
         self._dimension = dimension
         self.time_dependent: bool = self._components.time_dependent
+        self._sites = sites
+
+    @property
+    def sites(self) -> tuple[int, ...]:
+        """Lengths of the axes of the lattice whose sites psi couples; () for other fields."""
+        return getattr(self, "_sites", ())  # pickles of 0.1.0 do not have it
 
     @classmethod
     def from_vector_field(
@@ -220,7 +235,9 @@ def check_point(representation: Representation, m: ValuesLike) -> IntegerArray:
     point = np.asarray(given, dtype=float)
     if not bool(np.all(np.isfinite(point))):
         raise InputError(f"the point {given} is not finite")
-    scale = max((float(np.abs(a.to_numpy()).max(initial=0.0)) for a in representation.matrices), default=0.0)
+    copies = copies_of(representation)
+    matrices = representation.matrices if copies is None else copies.single.matrices
+    scale = max((float(np.abs(a.to_numpy()).max(initial=0.0)) for a in matrices), default=0.0)
     bound = RANK_RTOL * scale * np.linalg.norm(point, axis=-1)
     ranks: IntegerArray = batched_ranks(action_map(representation).right(point), bound)
     if bool(np.any(ranks == 0)):

@@ -17,6 +17,7 @@ import numpy as np
 from liehom.algebra import LieAlgebra
 from liehom.errors import InputError
 from liehom.representations import Representation, defining
+from liehom.representations.core.copies import copies_of
 from liehom.scalars import Matrix
 from liehom.typing import Array
 
@@ -90,6 +91,11 @@ def inner_product(representation: Representation) -> InnerProduct:
     """
     algebra = representation.algebra
     n = algebra.dimension
+    copies = copies_of(representation)
+    if copies is not None:
+        single = inner_product(copies.single)
+        form: Array = np.kron(np.eye(copies.copies), single.matrix).astype(np.float64)
+        return InnerProduct(form, single.name, single.invariant)
     flat, turned = _rows(representation)
     trace = -flat @ turned.T
     if _is_positive(trace):

@@ -79,7 +79,7 @@ class RigidBody:
 
     def __init__(self, inertia: Sequence[ScalarLike] | Sequence[Sequence[ScalarLike]] | npt.NDArray[Any]) -> None:
         tensor = inertia_tensor(inertia)
-        self._tensor, self._inverse = tensor, tensor.inverse()
+        self._inverse = tensor.inverse()
         self._apply = FieldMatrix(self._inverse)
         self.representation: Representation = adjoint(so(3))
         self.inertia: Array = tensor.to_numpy()
@@ -313,7 +313,7 @@ class RigidBody:
         >>> bool(np.allclose(q @ body.exact(m, 5.0), m, rtol=0, atol=1e-12)), round(float(np.linalg.det(q)), 12)
         (True, 1.0)
         """
-        return attitude(AttitudeBody(self._tensor), point_of(m0), t, start)
+        return attitude(AttitudeBody(self._inverse.inverse()), point_of(m0), t, start)
 
     # -- updates -----------------------------------------------------------------------------------------
     def update(self, name: str, exponential: ExponentialLike = "cayley") -> Update:

@@ -2,7 +2,7 @@
 
     rho(x_1, ..., x_n)(m_1, ..., m_n) = (x_1 x m_1, ..., x_n x m_n)
 
-The representation has 3n matrices of size 3n, which limits n to some dozen spins.
+Steps of k exponentials cost O(n) per trajectory; what needs the isotropy or a series in matrices costs O(n^3).
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from liehom.algebra import direct_sum, so
 from liehom.homogeneous import GeneratorField
 from liehom.instances.spins.spin_lattice import SpinLattice
 from liehom.representations import Representation, adjoint
+from liehom.representations.core.copies import Copies
 from liehom.typing import Real, Values
 
 
@@ -95,9 +96,5 @@ def product_of_spheres(n: int) -> Representation:
     >>> product_of_spheres(2)
     <representation 'n spins' of <Lie algebra so(3)+so(3) of dimension 6 over QQ> on QQ^6>
     """
-    single = np.array([a.to_numpy() for a in adjoint(so(3)).matrices]).astype(int)
-    matrices = np.zeros((3 * n, 3 * n, 3 * n), dtype=int)
-    for i in range(n):
-        matrices[3 * i : 3 * i + 3, 3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = single
     # unchecked, because it is a direct sum of representations of the summands
-    return Representation(direct_sum(*[so(3)] * n), matrices, name="n spins", check=False)
+    return Representation(direct_sum(*[so(3)] * n), Copies(adjoint(so(3)), n), name="n spins", check=False)

@@ -139,7 +139,8 @@ class LandauLifshitz:
             if constant.shape[-1:] != (3,):
                 raise ShapeError(f"the applied field has shape {constant.shape}, expected (..., 3)")
         psi: Callable[..., Any] = self.generator if self.time_dependent else lambda m: self.generator(m)
-        self.field = GeneratorField(adjoint(so(3)), psi, time_dependent=self.time_dependent)
+        sites = self.lattice.shape if self.coupled else ()
+        self.field = GeneratorField(adjoint(so(3)), psi, time_dependent=self.time_dependent, sites=sites)
 
     # -- properties --------------------------------------------------------------------------------------
     @property
@@ -228,7 +229,8 @@ class LandauLifshitz:
         step : Step, optional
             Default `LieTaylor(6)`. Corrected steps are for spins without coupling only.
         dt : float, optional
-            The step size. Coupled spins need one. For other spins the default is adaptive, for each spin separately.
+            The step size. By default it is adaptive: one for all coupled spins of a lattice, by the error of all
+            together, and one for each spin without coupling.
         **options
             Options of `liehom.integrate`.
 
@@ -246,10 +248,9 @@ class LandauLifshitz:
 
         Examples
         --------
-        >>> LandauLifshitz((3,), exchange=1.0).integrate((0, 1), [[0, 0, 1.0], [0, 1.0, 0], [1.0, 0, 0]])
-        Traceback (most recent call last):
-        ...
-        liehom.errors.InputError: the spins are coupled, so they need one step size: give dt, or take joint() ...
+        >>> sol = LandauLifshitz((3,), exchange=1.0).integrate((0, 1), [[0, 0, 1.0], [0, 1.0, 0], [1.0, 0, 0]])
+        >>> sol.y.shape[:2], bool(np.ptp(sol.t, axis=0).max() == 0)
+        ((3, 3), True)
         """
         spins = np.asarray(m0)
         self.lattice.check(spins)
@@ -278,10 +279,8 @@ class LandauLifshitz:
     # -- private -----------------------------------------------------------------------------------------
     def _check_together(self, step: Step | None, dt: npt.ArrayLike | None, options: SingleRunOptions) -> None:
         """Raise InputError if the options would bring coupled spins to different times."""
-        if dt is None or np.ndim(dt):
-            raise InputError(
-                "the spins are coupled, so they need one step size: give dt, or take joint() for adaptive steps"
-            )
+        if np.ndim(dt):  # type: ignore[arg-type]
+            raise InputError("the spins are coupled, so they need one step size: give one number dt, or none")
         if isinstance(step.step if isinstance(step, Conserving) else step, Corrected):
             raise InputError(
                 "the spins are coupled: isotropy and clock do not correct a step on a product of spheres, and clocks "

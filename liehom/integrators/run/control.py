@@ -48,7 +48,8 @@ Defects: TypeAlias = tuple[tuple[int, Values], ...]
 class Tolerance:
     """Error allowed in a step: at most atol + rtol |m|, as root mean squares over the coordinates.
 
-    It is never less than 10 units of round-off of m. Compiled steps give tracers for `rtol` and `atol`.
+    It is never less than 10 units of round-off of m. Compiled steps give tracers for `rtol` and `atol`. The last `axes`
+    leading axes of m are the sites of a lattice, whose coordinates count together.
 
     Examples
     --------
@@ -59,13 +60,14 @@ class Tolerance:
 
     rtol: Real
     atol: Real
+    axes: int = 0
 
     def norm(self, m: Values) -> Array:
         """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
         point: Any = m
         relative = np.maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
         allowed: Array = self.atol * point.shape[-1] ** 0.5 + relative * length(point)
-        return allowed
+        return over_sites(allowed, self.axes)
 
 
 def length(x: Values) -> Array:
@@ -80,6 +82,34 @@ def length(x: Values) -> Array:
     values = _floats(x)
     found: Array = np.sqrt((values * values).sum(axis=-1))
     return found
+
+
+def over_sites(x: Values, axes: int) -> Array:
+    """Root of the sum of squares over the last axes, the sites of a lattice, repeated for each site.
+
+    Examples
+    --------
+    >>> over_sites(np.array([[3.0, 4.0], [0.0, 1.0]]), 1).tolist()
+    [[5.0, 5.0], [1.0, 1.0]]
+    """
+    if not axes:
+        return x  # type: ignore[return-value]
+    found = np.sqrt(np.sum(x * x, axis=tuple(range(-axes, 0)), keepdims=True))
+    return np.broadcast_to(found, x.shape)
+
+
+def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
+    """All sites of the lattices, on the last axes, that have one of these sites; the same sites without a lattice.
+
+    Examples
+    --------
+    >>> whole_lattice(np.array([[True, False], [False, False]]), 1).tolist()
+    [[True, True], [False, False]]
+    """
+    if not axes:
+        return where
+    some: BooleanArray = np.any(where, axis=tuple(range(-axes, 0)), keepdims=True)
+    return np.broadcast_to(some, where.shape)
 
 
 def _floats(x: Values) -> Any:
@@ -121,7 +151,8 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     >>> float(time_scale(lh.GeneratorField(lh.defining(lh.so(2)), [4]), np.array([1.0, 0.0]), np.array(0.0)))
     0.25
     """
-    return length(m) / length(field.vector(m, t))
+    axes = len(field.sites)
+    return over_sites(length(m), axes) / over_sites(length(field.vector(m, t)), axes)
 
 
 def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest: Values) -> Array:
@@ -179,8 +210,10 @@ def defects_of(action: Action, psi: Generator, local: LocalStep, m: Values, t: V
     return tuple((k, length(flow.point(k) - made.coefficient(k))) for k in range(order + 1, total + 1))
 
 
-def judged(error: Values, allowed: Values, h: Values, order: int) -> tuple[BooleanArray, Array]:
+def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:
     """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next step size.
+
+    The last `axes` leading axes are the sites of a lattice.
 
     Examples
     --------
@@ -188,7 +221,7 @@ def judged(error: Values, allowed: Values, h: Values, order: int) -> tuple[Boole
     >>> bool(accepted), float(size.round(4))
     (True, 0.107)
     """
-    ratio: Any = length(error) / allowed
+    ratio: Any = over_sites(length(error), axes) / allowed
     ratio = np.where(np.isfinite(ratio), ratio, NONFINITE_RATIO)
     return ratio <= 1, next_size(np.abs(h), ratio, order)
 

@@ -35,9 +35,11 @@ from liehom.integrators.run.control import (
     judged,
     largest_size,
     length,
+    over_sites,
     size_from_defects,
     time_scale,
     unsolvable,
+    whole_lattice,
 )
 from liehom.integrators.run.dense import DenseSolution
 from liehom.integrators.run.events import Events
@@ -105,13 +107,13 @@ class Run:
 
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.step, self.options = action, step, options
-        self.psi_raised = False
+        self.psi_raised, self.axes = False, len(psi.field.sites)
         self.field: GeneratorField = psi.field
         self.psi: Generator = Generator(self._counted(psi.field), psi.orbit_dimension, start)
         self.span, self.start, self.shape, self.dtype = span, in_lanes(start), start.shape[:-1], start.dtype
         self.end, self.direction = span[1], self.dtype.type(1 if span[1] >= span[0] else -1)
         self.tried: tuple[LocalStep, Array] | None = None
-        self.tolerance: Tolerance = Tolerance(options.rtol, options.atol)
+        self.tolerance: Tolerance = Tolerance(options.rtol, options.atol, self.axes)
         self.tiny = 8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))
         self.total: Array | None = None if options.dt is None else self._number_of_steps(options.dt)
         self.events: Events | None = None if options.events is None else Events(options.events)
@@ -155,7 +157,7 @@ class Run:
                 raise
             return made
 
-        return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
+        return GeneratorField(field.representation, psi, time_dependent=field.time_dependent, sites=field.sites)
 
     def _number_of_steps(self, dt: Array) -> Array:
         """Numbers of steps of size dt to the end; a rest below 1e-9 dt, or below round-off, is not a step."""
@@ -263,7 +265,7 @@ class Run:
         inner = local.base if isinstance(local, ConservingStep) else local
         if isinstance(inner, CorrectedStep):
             _ = inner.correction.singular_value  # computed when it is asked for, and fails if psi is not finite
-        good = np.isfinite(made).all(axis=-1)
+        good = ~whole_lattice(~np.isfinite(made).all(axis=-1), self.axes)
         if not good.all():
             if adaptive:
                 now.h = np.where(good, now.h, np.abs(h) * MAX_SHRINK)
@@ -291,9 +293,10 @@ class Run:
             now.h = np.where(np.isinf(now.h), np.minimum(bound, FIRST_STEP_FRACTION * scale), now.h)
         h = np.minimum(now.h, bound)
         if not embedded:
-            defects = defects_of(self.action, self.psi, local, now.m, now.t, self.step.order)
-            speed = length(now.m) / scale
-            h = size_from_defects(defects, self.tolerance.norm(now.m), speed, h).astype(self.dtype)
+            found = defects_of(self.action, self.psi, local, now.m, now.t, self.step.order)
+            defects = tuple((k, over_sites(d, self.axes)) for k, d in found)
+            speed, allowed = over_sites(length(now.m), self.axes) / scale, self.tolerance.norm(now.m)
+            h = size_from_defects(defects, allowed, speed, h).astype(self.dtype)
         small = now.active & ~is_large_enough(h, self.tiny, left)
         if small.any():
             self._fail(small & np.isnan(h), PSI)
@@ -327,7 +330,7 @@ class Run:
 
     def _judged(self, error: Array, h: Array, order: int) -> BooleanArray:
         """For which trajectories an embedded pair accepts the step; adapts the next step size."""
-        accepted, self.state.h = judged(error, self.tolerance.norm(self.state.m), h, order)
+        accepted, self.state.h = judged(error, self.tolerance.norm(self.state.m), h, order, self.axes)
         return accepted
 
     # -- events -------------------------------------------------------------------------------------------
@@ -364,8 +367,7 @@ class Run:
     # -- the end of a step -------------------------------------------------------------------------------
     def _commit(self, proposal: StepProposal, halted: BooleanArray) -> None:
         now = self.state
-        now.t, now.m = proposal.after, proposal.made
-        now.taken = now.taken + proposal.moves
+        now.t, now.m, now.taken = proposal.after, proposal.made, now.taken + proposal.moves
         if self.keeps:
             now.path.add(now.t, now.m, proposal.h, proposal.moves)
         done = proposal.moves & (proposal.last | halted)
@@ -384,8 +386,7 @@ class Run:
         now.t, now.m = np.where(where, self.span[0], now.t), np.where(where[..., None], self.start, now.m)
 
     def _fail(self, where: BooleanArray, code: int | IntegerArray) -> None:
-        where = self.state.active & where
-        if where.any():
+        if (where := self.state.active & whole_lattice(where, self.axes)).any():
             if self.logs:
                 LOGGER.debug("%d trajectories fail with code %s at t = %s", where.sum(), code, self.state.t[where])
             self._stop(where, code)
@@ -426,9 +427,8 @@ class Run:
         if o.dense_output:
             psi = Generator(self.field, self.psi.orbit_dimension, self.start)
             dense = DenseSolution(self.action, psi, self.step, times, points, sizes, nominal=o.nominal)
-        if now.samples is None:
-            t, y = np.moveaxis(times, 0, -1), np.moveaxis(points, 0, -1)
-        else:
+        t, y = np.moveaxis(times, 0, -1), np.moveaxis(points, 0, -1)
+        if now.samples is not None:
             t, y = now.samples.times, now.samples.points
             if not self.shape:
                 t, y = t[: int(now.samples.done)], y[..., : int(now.samples.done)]

@@ -24,6 +24,7 @@ from liehom.representations.core.coordinates import (
     real_point,
     require_coordinates,
 )
+from liehom.representations.core.copies import Copies
 from liehom.representations.core.pair import Pair
 from liehom.representations.invariants.bracket_proof import failing_pair
 from liehom.representations.invariants.induced import (
@@ -110,15 +111,20 @@ class Representation(Immutable):
         coordinates: Coordinates = "real",
         check: bool = True,
     ) -> None:
-        given_matrices, was_complex = as_real_matrices(matrices, algebra.field)
-        made: tuple[Matrix, ...] = tuple(square_matrices(given_matrices, algebra.field))
+        made: tuple[Matrix, ...]
+        if isinstance(matrices, Copies):  # a sequence of matrices that are made when they are asked for
+            made, was_complex, size = cast("tuple[Matrix, ...]", matrices), False, matrices.size
+        else:
+            given_matrices, was_complex = as_real_matrices(matrices, algebra.field)
+            made = tuple(square_matrices(given_matrices, algebra.field))
+            size = int(made[0].nrows) if made else size
         if len(made) != algebra.dimension:
             raise ShapeError(f"{len(made)} matrices for an algebra of dimension {algebra.dimension}")
         if not made and size is None:
             raise ShapeError("a representation of the zero algebra needs its size")
         self.algebra: LieAlgebra = algebra
         self.matrices: tuple[Matrix, ...] = made
-        self.size: int = int(made[0].nrows) if made else int(size or 0)
+        self.size: int = int(size or 0)
         self.name: str | None = name
         self.given: int = len(made) if given is None else given
         self.appended: tuple[tuple[int, int], ...] = appended

@@ -265,9 +265,7 @@ def test_coupled_spins_are_not_full() -> None:
 
 def test_coupled_spins_keep_one_time() -> None:
     model, m0 = LandauLifshitz((3,), exchange=1.0), unit(14, 3)
-    with pytest.raises(lh.errors.InputError, match="give dt"):
-        model.integrate((0, 1), m0)
-    with pytest.raises(lh.errors.InputError, match="give dt"):
+    with pytest.raises(lh.errors.InputError, match="one number dt"):
         model.integrate((0, 1), m0, dt=[0.1, 0.1, 0.2])
     with pytest.raises(lh.errors.InputError, match="events"):
         model.integrate((0, 1), m0, dt=0.1, events=lambda t, y: y[0])
@@ -288,6 +286,51 @@ def test_joint_spins_are_the_same_system_with_common_step_sizes() -> None:
     fixed = model.integrate((0, 2), m0, step=lh.LieTaylor(6), dt=0.02, t_eval=[2.0])
     adapted = lh.integrate(joint.field, (0, 2), joint.point(m0), rtol=1e-10, atol=1e-12, t_eval=[2.0])
     assert np.abs(joint.spins(adapted.y[..., -1]) - fixed.y[..., -1]).max() < 1e-8
+
+
+@pytest.mark.parametrize("step", [lh.LieTaylor(4), lh.RKMK("rk45"), lh.Heun()])
+def test_adaptive_steps_of_a_grid_are_those_of_all_spins_as_one_point(step: Any) -> None:
+    """One size for each lattice, by the error of all its spins: the lattices of an ensemble have sizes of their own."""
+    model = LandauLifshitz(
+        (4, 3), exchange=1.0, anisotropy=0.3, applied=lambda t: [np.cos(t), 0 * t, 0 * t], damping=0.1
+    )
+    joint, m0 = model.joint(), unit(19, 2, 4, 3)
+    grid = model.integrate((0, 2), m0, step=step, rtol=1e-5, atol=1e-8)
+    point = lh.integrate(joint.field, (0, 2), joint.point(m0), step=step, rtol=1e-5, atol=1e-8)
+    assert np.ptp(grid.n_steps, axis=(1, 2)).max() == 0
+    assert np.array_equal(grid.n_steps[:, 0, 0], point.n_steps)
+    assert np.allclose(np.where(np.isnan(grid.t[:, 0, 0]), 0, grid.t[:, 0, 0] - point.t), 0, rtol=0, atol=1e-12)
+    ends = [np.moveaxis(grid.y[k], -1, 0)[point.n_steps[k]] for k in range(2)]
+    wanted = [joint.spins(point.y[k, :, point.n_steps[k]]) for k in range(2)]
+    assert np.allclose(ends, wanted, rtol=0, atol=1e-12)
+    one = model.integrate((0, 2), m0[0], step=step, rtol=1e-5, atol=1e-8)
+    assert one.n_steps[0, 0] == grid.n_steps[0, 0, 0]
+
+
+def test_a_lattice_fails_as_a_whole() -> None:
+    model = LandauLifshitz((3,), exchange=1.0, applied=lambda t: [np.where(t > 0.5, np.nan, 0.0) + 0 * t, 0 * t, 0 * t])
+    sol = model.integrate((0, 1), unit(20, 3), step=lh.RKMK("rk45"))
+    assert sol.status == -1
+    assert (sol.statuses == -1).all()
+
+
+def test_many_spins_are_joined_without_their_matrices() -> None:
+    """100 spins: 300 matrices of size 300, of which none is made."""
+    joint = LandauLifshitz((10, 10), exchange=1.0).joint()
+    action = lh.Action(joint.representation)
+    assert action.exponential.name == "exp (Rodrigues in blocks)"
+    few = LandauLifshitz((4,), exchange=1.0).joint().representation
+    explicit = lh.Representation(few.algebra, [a.to_numpy().astype(int) for a in few.matrices])
+    assert few == explicit
+    rng = np.random.default_rng(0)
+    x, m = rng.normal(size=(2, 12))
+    made, wanted = lh.Action(few), lh.Action(explicit)
+    assert np.allclose(made.infinitesimal(x, m), wanted.infinitesimal(x, m), atol=1e-15)
+    assert np.allclose(made.bracket(x, m), wanted.bracket(x, m), atol=1e-15)
+    assert np.allclose(made.inner_product.matrix, wanted.inner_product.matrix, atol=1e-12)
+    assert made.inner_product.invariant
+    assert abs(made.max_norm - wanted.max_norm) < 1e-12
+    assert np.allclose(made.act(x, m), lh.Action(explicit, "expm").act(x, m), atol=1e-13)
 
 
 # -- energy and length -----------------------------------------------------------------------------------
