@@ -115,6 +115,8 @@ GROWN: dict[str, tuple[str, ...]] = {
     "liehom.algebra.structure_constants:StructureConstants": ("error",),
     "liehom.scalars.floating:FloatMatrix": ("_norm", "_spectral", "error"),
     "liehom.scalars.floating:RankDecision": ("error",),
+    "liehom.homogeneous.field:GeneratorField": ("_sites",),
+    "liehom.homogeneous.rodrigues:Rodrigues": ("_power",),
     "liehom.integrators.solution:Report": ("near_steps", "unkept_from", "stopped_at"),
 }
 """Attributes since 0.1.0 that `__setstate__` of the class fills in, 'old module:old name' -> names."""

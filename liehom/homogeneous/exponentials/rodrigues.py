@@ -60,8 +60,6 @@ class Rodrigues(TrueExponential):
     'exp (Rodrigues)'
     """
 
-    _power: int = 1  # pickles of 0.1.0 have the form only
-
     def __init__(self, representation: Representation) -> None:
         identity = power_identity(representation.matrices, representation.field)
         if identity is None:
@@ -71,6 +69,9 @@ class Rodrigues(TrueExponential):
             )
         super().__init__(representation)
         self._form, self._power = identity
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update({"_power": 1, **state})  # pickles of 0.1.0 have the form only
 
     @property
     def name(self) -> str:

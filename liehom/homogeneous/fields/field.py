@@ -6,7 +6,7 @@ of g, or one per matrix that the user gave to `Representation.from_matrices`.
 
 from __future__ import annotations
 
-from typing import final, overload
+from typing import Any, final, overload
 
 import numpy as np
 
@@ -89,12 +89,16 @@ class GeneratorField(Immutable):
         )
         self._dimension = dimension
         self.time_dependent: bool = self._components.time_dependent
-        self._sites = sites
+        self._sites: tuple[int, ...] = sites
 
     @property
     def sites(self) -> tuple[int, ...]:
         """Lengths of the axes of the lattice whose sites psi couples; () for other fields."""
-        return getattr(self, "_sites", ())  # pickles of 0.1.0 do not have it
+        return self._sites
+
+    def __setstate__(self, state: tuple[None, dict[str, Any]]) -> None:
+        for name, value in {"_sites": (), **state[1]}.items():  # pickles of 0.1.0 have no sites
+            setattr(self, name, value)
 
     @classmethod
     def from_vector_field(
