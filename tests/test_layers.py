@@ -73,6 +73,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "symplectic",
         "engine",
         "compiled",
+        "jax_engine",
         "arguments",
         "propagator",
         "integration",

@@ -27,9 +27,9 @@ from liehom.integrators.arguments import (
     times_of,
     with_tight_frame,
 )
-from liehom.integrators.compiled.jax_integration import JaxEngine
 from liehom.integrators.compiled.llvm_engine import LlvmEngine
 from liehom.integrators.engine import Engine, NumpyEngine, Problem
+from liehom.integrators.jax_engine import JaxEngine
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.run.checkpoint import checked_path
 from liehom.integrators.run.events import EventFunction

@@ -1,4 +1,4 @@
-"""Adaptive step sizes of a traced step: the rules of `liehom.integrators.run.control`, run on tracers."""
+"""Adaptive step sizes of a traced step: the rules of `liehom.integrators.run.control` on tracers and JAX arrays."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ from liehom.integrators.run.control import (
     judged,
     largest_size,
     length,
+    over_sites,
     size_from_defects,
     time_scale,
 )
 from liehom.integrators.run.run import FIRST_STEP_FRACTION
+from liehom.series.arrays import namespace
 from liehom.tracing import while_loop
 from liehom.typing import Real, Values
 
@@ -85,17 +87,23 @@ def tried_size(
     >>> float(h), bool(certain)
     (-0.5, True)
     """
-    left = np.abs(limits.end - t)
-    h: Any = np.minimum(proposal, largest_size(limits.max_step, left))
+    xp = namespace(m, t)
+    left = xp.abs(limits.end - t)
+    h: Any = xp.minimum(proposal, largest_size(limits.max_step, left))
     if getattr(local, "estimate", None) is None:
-        speed = length(m) / time_scale(psi.field, m, t)
-        defects = defects_of(action, psi, local, m, t, step.order)
-        h = size_from_defects(defects, Tolerance(limits.rtol, limits.atol).norm(m), speed, h)
+        axes = len(psi.field.sites)
+        speed = over_sites(length(m), axes) / time_scale(psi.field, m, t)
+        defects = tuple((k, over_sites(d, axes)) for k, d in defects_of(action, psi, local, m, t, step.order))
+        h = size_from_defects(defects, Tolerance(limits.rtol, limits.atol, axes).norm(m), speed, h)
     return limits.direction * h, is_large_enough(h, limits.tiny, left)
 
 
-def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Values) -> tuple[Values | bool, Values]:
+def judgement(
+    limits: SizeLimits, local: LocalStep, m: Values, size: Values, axes: int = 0
+) -> tuple[Values | bool, Values]:
     """Whether a step of signed size (..., 1) is accepted, and the size proposed for the next step.
+
+    The last `axes` leading axes are those of a lattice, which has one size.
 
     Examples
     --------
@@ -107,9 +115,9 @@ def judgement(limits: SizeLimits, local: LocalStep, m: Values, size: Values) -> 
     h: Values = size[..., 0]
     estimate = getattr(local, "estimate", None)
     if estimate is None:
-        return True, MAX_GROWTH * np.abs(h)
-    allowed = Tolerance(limits.rtol, limits.atol).norm(m)
-    return judged(estimate(size), allowed, h, local.estimate_order)  # type: ignore[attr-defined]
+        return True, MAX_GROWTH * abs(h)
+    allowed = Tolerance(limits.rtol, limits.atol, axes).norm(m)
+    return judged(estimate(size), allowed, h, local.estimate_order, axes)  # type: ignore[attr-defined]
 
 
 def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
@@ -123,8 +131,9 @@ def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, 
     """
     if getattr(local, "estimate", None) is None:
         return None
-    bound = largest_size(limits.max_step, np.abs(limits.end - t))
-    return np.minimum(bound, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
+    xp = namespace(m, t)
+    bound = largest_size(limits.max_step, xp.abs(limits.end - t))
+    return xp.minimum(bound, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
 
 
 def size_to_stop(

@@ -13,7 +13,7 @@ from liehom.correctors.implicit import reach_of, solve_implicitly
 from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action
-from liehom.series.arrays import as_values, zeros
+from liehom.series.arrays import as_values, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.typing import Values
 
@@ -132,7 +132,7 @@ class LieTaylor(OneExponential):
         if error_terms:
             step = step_series(action, local, m, self.order + error_terms)
             local.defects = tuple(
-                (k, np.linalg.norm(flow.point(k) - step.coefficient(k), axis=-1))
+                (k, namespace(m).linalg.norm(flow.point(k) - step.coefficient(k), axis=-1))
                 for k in range(self.order + 1, self.order + error_terms + 1)
             )
         return local

@@ -18,6 +18,7 @@ from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import Generator, LocalStep
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
+from liehom.series.arrays import is_jax, namespace
 from liehom.typing import Array, BooleanArray, Real, Values
 
 SAFETY = 0.9
@@ -65,7 +66,7 @@ class Tolerance:
     def norm(self, m: Values) -> Array:
         """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
         point: Any = m
-        relative = np.maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
+        relative = namespace(self.rtol).maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
         allowed: Array = self.atol * point.shape[-1] ** 0.5 + relative * length(point)
         return over_sites(allowed, self.axes)
 
@@ -80,7 +81,7 @@ def length(x: Values) -> Array:
     5.0
     """
     values = _floats(x)
-    found: Array = np.sqrt((values * values).sum(axis=-1))
+    found: Array = namespace(values).sqrt((values * values).sum(axis=-1))
     return found
 
 
@@ -94,8 +95,9 @@ def over_sites(x: Values, axes: int) -> Array:
     """
     if not axes:
         return x  # type: ignore[return-value]
-    found = np.sqrt(np.sum(x * x, axis=tuple(range(-axes, 0)), keepdims=True))
-    return np.broadcast_to(found, x.shape)
+    xp = namespace(x)
+    found: Array = xp.sqrt(xp.sum(x * x, axis=tuple(range(-axes, 0)), keepdims=True))
+    return xp.broadcast_to(found, x.shape)
 
 
 def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
@@ -108,12 +110,15 @@ def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
     """
     if not axes:
         return where
-    some: BooleanArray = np.any(where, axis=tuple(range(-axes, 0)), keepdims=True)
-    return np.broadcast_to(some, where.shape)
+    xp = namespace(where)
+    some: BooleanArray = xp.any(where, axis=tuple(range(-axes, 0)), keepdims=True)
+    return xp.broadcast_to(some, where.shape)
 
 
 def _floats(x: Values) -> Any:
-    """x in float64; a tracer is in float64 already."""
+    """x in float64; tracers and JAX arrays as they are."""
+    if is_jax(x):
+        return x
     return x.astype(np.float64, copy=False) if hasattr(x, "astype") else np.asarray(x, dtype=np.float64)
 
 
@@ -125,7 +130,7 @@ def largest_size(max_step: Real, left: Values) -> Array:
     >>> float(largest_size(np.inf, np.array(0.5)))
     1.0
     """
-    bound: Array = np.minimum(max_step, 2 * left)
+    bound: Array = namespace(max_step, left).minimum(max_step, 2 * left)
     return bound
 
 
@@ -138,7 +143,7 @@ def is_large_enough(h: Values, tiny: Real, left: Real) -> BooleanArray:
     [True, False, False]
     """
     size: Any = h
-    enough: BooleanArray = size >= np.minimum(tiny, left)
+    enough: BooleanArray = size >= namespace(tiny, left).minimum(tiny, left)
     return enough
 
 
@@ -174,17 +179,18 @@ def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest:
     >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0), np.array(1.0)))
     0.009000000000000001
     """
+    xp = namespace(largest, speed)
     h: Array = _floats(largest)
     way: Any = speed
     for k, defect in defects:
         size = _floats(defect)
         some = size > 0
-        safe = np.where(some, size, 1.0)
+        safe = xp.where(some, size, 1.0)
         found: Any = (allowed / safe) ** (1 / k)
         if k > 2:  # not for k = 2: next to a time at which X vanishes steps would shrink with X
             series = (SERIES_FRACTION * way / safe) ** (1 / (k - 1))
-            found = np.where(way > 0, np.minimum(found, series), found)
-        h = np.minimum(h, np.where(some, SAFETY * found, np.where(np.isnan(size), np.nan, np.inf)))
+            found = xp.where(way > 0, xp.minimum(found, series), found)
+        h = xp.minimum(h, xp.where(some, SAFETY * found, xp.where(xp.isnan(size), np.nan, np.inf)))
     return h
 
 
@@ -221,9 +227,10 @@ def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0)
     >>> bool(accepted), float(size.round(4))
     (True, 0.107)
     """
+    xp = namespace(error, h)
     ratio: Any = over_sites(length(error), axes) / allowed
-    ratio = np.where(np.isfinite(ratio), ratio, NONFINITE_RATIO)
-    return ratio <= 1, next_size(np.abs(h), ratio, order)
+    ratio = xp.where(xp.isfinite(ratio), ratio, NONFINITE_RATIO)
+    return ratio <= 1, next_size(xp.abs(h), ratio, order)
 
 
 def next_size(h: Array, ratio: Array, order: int) -> Array:
@@ -235,9 +242,10 @@ def next_size(h: Array, ratio: Array, order: int) -> Array:
     >>> float(next_size(np.array(0.1), np.array(0.0), 5)), float(next_size(np.array(0.1), np.array(1e9), 5).round(4))
     (0.5, 0.02)
     """
-    safe = np.where(ratio > 0, ratio, 1.0)
-    factor = np.where(ratio > 0, SAFETY * safe ** (-1 / order), MAX_PAIR_GROWTH)
-    size: Array = h * np.clip(factor, MAX_SHRINK, MAX_PAIR_GROWTH)
+    xp = namespace(h, ratio)
+    safe = xp.where(ratio > 0, ratio, 1.0)
+    factor = xp.where(ratio > 0, SAFETY * safe ** (-1 / order), MAX_PAIR_GROWTH)
+    size: Array = h * xp.clip(factor, MAX_SHRINK, MAX_PAIR_GROWTH)
     return size
 
 
