@@ -104,12 +104,15 @@ class Propagator:
         self.field: GeneratorField = field
         self.step: Step = step
         self.engine: Engine = engine_of(engine)
+        # engines may know calls that differ in the points only
+        self._again: Callable[..., Solution | None] | None = getattr(self.engine, "again", None)
         self._nominal = checked_clock(clock)
         self._action = Action(field.representation, exponential)
 
     def __call__(self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, **options: Unpack[CallOptions]) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        return warned(self.engine.solve(self.problem(t_span, y0, **options)), stacklevel=3)
+        made = None if self._again is None else self._again(t_span, y0, options)
+        return warned(self.engine.solve(self.problem(t_span, y0, **options)), stacklevel=3) if made is None else made
 
     def problem(
         self,

@@ -88,24 +88,26 @@ class Kernel:
         **fields : arrays, numbers or None
             Other `FIELDS` of the argument of the machine code; by default all blocks of lanes are run.
         """
+        self.run(self.argument(state, **fields).ctypes.data)
+
+    def argument(
+        self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None
+    ) -> npt.NDArray[np.int64]:
+        """The argument of the machine code for a state and other fields, which must outlive it."""
         argument = np.zeros(len(FIELDS), dtype=np.int64)
-        for name, value in {
-            "state": state,
-            "lanes": state.shape[1],
-            "last": state.shape[1] // self.width,
-            **fields,
-        }.items():
+        count = state.shape[1]
+        for name, value in {"state": state, "lanes": count, "last": count // self.width, **fields}.items():
             if isinstance(value, np.ndarray):
                 argument[PLACES[name]] = value.ctypes.data
             elif name == "origin":
                 argument.view(np.float64)[PLACES[name]] = value
             elif value is not None:
                 argument[PLACES[name]] = value
-        self.run(argument.ctypes.data)
+        return argument
 
     def run_values(self, given: Mapping[str, float]) -> npt.NDArray[np.float64]:
-        """The numbers of a run as an array, from their values by name."""
-        return np.array([given[name] for name in self.run_constants] or [0.0])
+        """The numbers of a run as an array, from their values by name; 0 by default."""
+        return np.array([given.get(name, 0.0) for name in self.run_constants] or [0.0])
 
 
 def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Expr | None:

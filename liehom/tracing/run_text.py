@@ -136,22 +136,21 @@ class _RunWriter:
         w, graph = self.w, self.graph
         state = {name: self._loaded("%state", row) for row, name in enumerate(self.names)}
         traced = [x for x in self.constants if isinstance(x, Expr)]
+        traced += [] if graph.guard is None else [graph.guard]
         start = {i: self._loaded("%start", i) for i in range(self.n)} if traced else {}
-        body = Body(w, start)
+        given = {-1 - i: self._given(x) for i, x in enumerate(self.constants) if not isinstance(x, Expr)}
+        body = Body(w, {**start, **given})
         body.write(needed(traced))
-        for i, constant in enumerate(self.constants):
-            if isinstance(constant, Expr):
-                made = body.name(constant)
-            else:
-                kind, place = constant
-                made = self._shared("%constants", place) if kind == "run" else self._loaded("%rows", place)
-            self.inputs[-1 - i] = made
+        made = {-1 - i: body.name(x) for i, x in enumerate(self.constants) if isinstance(x, Expr)}
+        self.inputs = {**given, **made}
+        if graph.guard is not None:
+            state["alive"] = self._select(body.name(graph.guard), state["alive"], w.splat(FAILED))
         if graph.first is not None:
             here = {i: state[f"x{i}"] for i in range(self.n)}
             first = Body(w, {**self.inputs, **here, self.n: state["t"]})
             first.write(needed([graph.first]))
             unknown = w.emit(f"fcmp oeq {self.v} {state['h']}, {w.splat(float('inf'))}")
-            state["h"] = w.emit(f"select {w.mask} {unknown}, {self.v} {first.name(graph.first)}, {self.v} {state['h']}")
+            state["h"] = self._select(unknown, first.name(graph.first), state["h"])
         before = w.label
         self._before_loop(state)
         self.line("br label %step")
@@ -159,6 +158,10 @@ class _RunWriter:
         self.line(f"%k = phi i64 [%begin, %{before}], [%k.next, %step.end]")
         for name in self.names:
             self.line(f"%{name} = phi {self.v} [{state[name]}, %{before}], [%{name}.next, %step.end]")
+
+    def _given(self, place: tuple[str, int]) -> str:
+        kind, number = place
+        return self._shared("%constants", number) if kind == "run" else self._loaded("%rows", number)
 
     def _before_loop(self, state: dict[str, str]) -> None:
         """Write what else is needed before the loop."""

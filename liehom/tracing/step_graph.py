@@ -64,6 +64,8 @@ class StepGraph:
         The signed size of the step, to the stop if it is reached.
     first : Expr or None
         Size of the first step, without sign, where none is proposed; a function of point and time.
+    guard : Expr or None
+        Boolean: whether a run may begin at the initial point, a function of it; None if it may.
     """
 
     point: list[Expr]
@@ -79,6 +81,7 @@ class StepGraph:
     reached: Expr | None = None
     tried: Expr | None = None
     first: Expr | None = None
+    guard: Expr | None = None
 
     @property
     def size(self) -> int:

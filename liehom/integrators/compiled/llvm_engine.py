@@ -8,7 +8,8 @@ part of a trajectory before that step, which `Run.advance` then makes or diagnos
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
 from typing import Any, final
 
 import numpy as np
@@ -17,16 +18,20 @@ from liehom.correctors.conserving import Conserving, ConservingStep
 from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
 from liehom.correctors.step import Generator
 from liehom.errors import ConvergenceError, InputError
+from liehom.homogeneous import Action
+from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.compiled.lanes import HandBack, Made, run_blocks
+from liehom.integrators.compiled.plan import Plan, plan_key
 from liehom.integrators.compiled.schedule import Schedule, schedule
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.engine import Problem, executed
+from liehom.integrators.run.options import END
 from liehom.integrators.run.records import bounds_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
-from liehom.tracing import Kernel, StepGraph, lanes_per_register, needed
-from liehom.typing import Array, IntegerArray
+from liehom.tracing import Kernel, StepGraph, Traced, lanes_per_register, needed
+from liehom.typing import Array, IntegerArray, Values
 
 SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
 """Operations between two loops up to which code is short, and from which on it is long."""
@@ -40,8 +45,12 @@ MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
 RANKED = 64
 """Number of initial points, at most, at which the rank of the range condition is found."""
-MAX_SCHEDULES = 16
-"""Schedules that are kept."""
+MAX_SCHEDULES = MAX_PLANS = 16
+"""Numbers of schedules and of plans that are kept."""
+GUARD_RTOL = 1e-10
+"""A pivot above this fraction of the trace is certainly not 0."""
+GUARD_PROJECTIONS = 2
+"""Number of random projections, one of which shows the rank."""
 
 
 @final
@@ -58,10 +67,58 @@ class LlvmEngine:
 
     def __init__(self) -> None:
         self._store = CodeStore()
+        self._plans: dict[Hashable, Plan] = {}
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
-        return executed(problem, lambda run: compiled_run(run, self._store))
+        made: list[_CompiledRun] = []
+
+        def fast_path(run: Run) -> Callable[[Run], bool]:
+            made.append(compiled_run(run, self._store))
+            return made[0]
+
+        solution = executed(problem, fast_path)
+        self._keep_plan(problem, made[0], solution)
+        return solution
+
+    def again(self, t_span: object, y0: object, options: Mapping[str, Any]) -> Solution | None:
+        """The solution of a call like one before, for other points; None if there was none, or it needs a closer look.
+
+        Parameters
+        ----------
+        t_span, y0, options
+            Arguments of `Propagator`, not checked.
+        """
+        if not self._plans:
+            return None
+        key = plan_key(t_span, y0, options)
+        try:
+            plan = self._plans.get(key)
+        except TypeError:  # not hashable
+            return None
+        return None if plan is None else plan(y0)  # type: ignore[arg-type]
+
+    def _keep_plan(self, problem: Problem, run: _CompiledRun, solution: Solution) -> None:
+        """Keep the plan of a call, if it was one that needs nothing but points."""
+        o, (_, key, graph) = problem.options, run.groups[0]
+        if (
+            len(run.groups) > 1 or graph.guard is None or solution.status != END or o.dt is None or not _uniform(o.dt)
+            or o.checkpoint is not None or o.progress or o.dense_output or o.max_steps < np.max(solution.n_steps)
+            or run.work * np.sum(solution.n_steps) > OPERATIONS_PER_CALL
+        ):  # fmt: skip
+            return
+        start = np.asarray(problem.start)
+        lanes = int(np.prod(start.shape[:-1], dtype=int))
+        plan = Plan(
+            self._store.kernel(key, graph, lanes), run.schedule, start.shape, o.t_eval, run.values, solution.report
+        )
+        span = (float(problem.span[0]), float(problem.span[1]))
+        given = {"dt": float(np.max(o.dt))} | ({} if o.t_eval is None else {"t_eval": o.t_eval})
+        if len(self._plans) >= MAX_PLANS:
+            self._plans.pop(next(iter(self._plans)))
+        times = {} if o.t_eval is None else {"t_eval": tuple(o.t_eval.tolist())}
+        for options in (given, given | times):
+            self._plans[plan_key(span, np.asarray(start, dtype=np.float64), options)] = plan
 
 
 @final
@@ -85,7 +142,7 @@ class CodeStore:
         if isinstance(run.step, Conserving) and o.dt is None and not run.step.linear:
             kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
         frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
-        uniform = o.dt is not None and o.dt.size == 1
+        uniform = o.dt is not None and _uniform(o.dt)
         key = (dimension, uniform, o.dt is None, o.nominal, kept_order, frame)
         if key not in self.graphs:
             limits = SizeLimits(*_limits(run).values()) if o.dt is None else None
@@ -100,7 +157,7 @@ class CodeStore:
             made = traced(stops=not uniform or own_clock)
             if made.reached is None and made.elapsed is not None:
                 made = traced(stops=True)
-            self.graphs[key] = made
+            self.graphs[key] = with_guard(made, run.action, dimension) if made.reached is None else made
         return key, self.graphs[key]
 
     def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
@@ -122,6 +179,10 @@ class CodeStore:
         return self.schedules[key]
 
 
+def _uniform(sizes: Array) -> bool:
+    return bool((sizes == np.max(sizes, initial=0.0)).all())
+
+
 def _limits(run: Run) -> dict[str, float]:
     o = run.options
     return {
@@ -130,7 +191,40 @@ def _limits(run: Run) -> dict[str, float]:
     }  # fmt: skip
 
 
-def compiled_run(run: Run, store: CodeStore) -> Callable[[Run], bool]:
+def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
+    """The graph with a `guard`: whether a point is finite and its orbit is certainly of a dimension, the largest.
+
+    It is in force where the number "checks" of the run is 1. Orbits are of dimension d if a random projection of
+    g onto d coordinates, followed by the action on the point, is injective. Graphs
+    whose steps record numbers, and orbits that are not of the largest dimension, have no guard.
+    """
+    rng = np.random.default_rng((0, dimension))
+    generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
+    if graph.largest or graph.summed or graph.calls is None or dimension != int(generic.max()):
+        return graph
+    tape: Any = graph.point[0].tape
+    m: Any = Traced.inputs(tape, 0, graph.size)
+    frame: Any = action.infinitesimal.right(m)
+    certain: Any = False
+    for _ in range(GUARD_PROJECTIONS):
+        certain = certain | _is_injective(frame @ rng.normal(size=(action.dimension, dimension)), (m * m).sum())
+    unchecked = Traced(tape, tape.run_constant("checks", 0.0)) == 0
+    guard = Traced(tape, unchecked | certain).entry
+    return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
+
+
+def _is_injective(matrix: Values, scale: Values) -> Values:
+    """Whether a traced matrix (N, d) is certainly of rank d, by elimination in its Gram matrix; of entries ~ scale."""
+    gram: Any = np.swapaxes(matrix, -1, -2) @ matrix
+    total = np.trace(gram)
+    certain: Any = total > GUARD_RTOL * scale
+    for i in range(len(gram)):
+        certain = certain & (gram[i, i] > GUARD_RTOL * total)
+        gram = gram - gram[i][:, None] * gram[i][None] / gram[i, i]
+    return certain
+
+
+def compiled_run(run: Run, store: CodeStore) -> _CompiledRun:
     """The fast path of a run: makes its steps by machine code; returns whether there are more for it to be made.
 
     Raises
@@ -163,6 +257,7 @@ class _CompiledRun:
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
         self.work = max((_operations(graph) for _, _, graph in self.groups), default=1)
+        self.schedule = store.schedule(run) if self.groups[0][2].reached is None else None
         self.values = {**_limits(run), "latest": bounds_of((float(run.span[0]), float(run.span[1])))[1]}
 
         if not run.state.taken.any() and isinstance(run.step, Corrected | Conserving):
@@ -225,7 +320,7 @@ class _CompiledRun:
         self, run: Run, kernel: Kernel, lanes: IntegerArray, back: HandBack, taken: int, steps: int
     ) -> Made:
         """Steps of lanes that have all taken as many."""
-        plan, n, count = self.store.schedule(run), self.start.shape[-1], len(lanes)
+        plan, n, count = self.schedule, self.start.shape[-1], len(lanes)
         last = min(taken + steps, plan.steps)
         begin, end = int(plan.first[taken]), int(plan.first[last])
         state = kernel.packed(count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end)})

@@ -1,0 +1,100 @@
+"""Calls of a propagator that differ in the points only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.errors import InputError
+from liehom.integrators.compiled.llvm_engine import LlvmEngine
+from tests.integrators.compiled.test_compiled import BODY, START, sphere
+
+pytest.importorskip("llvmlite")
+SPAN = (0.0, 3.0)
+
+
+class Watched(LlvmEngine):
+    """The engine, which counts the calls that are made from the beginning."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.solved = 0
+
+    def solve(self, problem: Any) -> Any:
+        self.solved += 1
+        return super().solve(problem)
+
+
+def propagator(field: lh.GeneratorField = BODY, step: Any = None) -> tuple[lh.Propagator, Watched]:
+    engine = Watched()
+    return lh.Propagator(field, step, engine=engine), engine
+
+
+@pytest.mark.parametrize("options", [{}, {"t_eval": [0.0, 0.55, 3.0]}, {"t_eval": [3.0]}], ids=str)
+@pytest.mark.parametrize("count", [1, 2, 7, 100])
+def test_a_second_call_is_that_of_numpy(count: int, options: dict[str, Any]) -> None:
+    made, engine = propagator(step=lh.LieTaylor(4))
+    starts = sphere(2 * count).reshape(2, count, 3)
+    points = starts if count > 1 else starts[:, 0]
+    for y0 in points:
+        sol, plain = made(SPAN, y0, dt=0.1, **options), lh.integrate(BODY, SPAN, y0, step=made.step, dt=0.1, **options)
+        np.testing.assert_allclose(sol.y, plain.y, rtol=0, atol=1e-14)
+        np.testing.assert_array_equal(sol.t, plain.t)
+        np.testing.assert_array_equal(sol.n_steps, plain.n_steps)
+        np.testing.assert_array_equal(sol.statuses, plain.statuses)
+        assert (sol.nfev, sol.status, sol.message, sol.report) == (plain.nfev, 0, plain.message, plain.report)
+    assert engine.solved == 1
+
+
+def test_a_result_is_not_that_of_the_next_call() -> None:
+    made, _ = propagator(step=lh.RKMK("rk4"))
+    made(SPAN, START, dt=0.1)
+    first, second = (made(SPAN, y0, dt=0.1) for y0 in (START, -START))
+    kept = second.y.copy()
+    first.y[:], first.t[:] = 7.0, 7.0
+    np.testing.assert_array_equal(second.y, kept)
+    assert made(SPAN, START, dt=0.1).t[-1] == 3.0
+
+
+@pytest.mark.parametrize("bad", [[np.nan, 0.0, 1.0], [0.0, 0.0, 0.0], [np.inf, 0.0, 1.0]])
+@pytest.mark.parametrize("count", [1, 100])
+def test_points_are_checked_in_every_call(bad: list[float], count: int) -> None:
+    made, _ = propagator(step=lh.RKMK("rk4"))
+    points = sphere(count) if count > 1 else START
+    made(SPAN, points, dt=0.1)
+    wrong = points.copy()
+    wrong[-1 if count > 1 else slice(None)] = bad
+    with pytest.raises(InputError, match=r"not finite|fixed"):
+        made(SPAN, wrong, dt=0.1)
+
+
+def test_a_trajectory_that_fails_is_made_from_the_beginning() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: np.sqrt(m[..., :1] + 0.5) * [0.01, 0, 0] + [0, 0.5, 1.0])
+    made, engine = propagator(field, lh.RKMK("rk4"))
+    good, bad = np.array([0.0, 0.45, 0.9]), np.array([0.4, -0.8, 0.1])
+    assert made(SPAN, good, dt=0.1).status == 0 and made(SPAN, good, dt=0.1).status == 0 and engine.solved == 1
+    failed, plain = made(SPAN, bad, dt=0.1), lh.integrate(field, SPAN, bad, step=made.step, dt=0.1)
+    assert engine.solved == 2 and failed.status == plain.status == -1 and failed.message == plain.message
+
+
+@pytest.mark.parametrize("change", [{"dt": 0.2}, {"t_eval": [1.0]}, {"max_steps": 3}, {"rtol": 1e-3}], ids=str)
+def test_another_call_is_made_from_the_beginning(change: dict[str, Any]) -> None:
+    made, engine = propagator(step=lh.RKMK("rk4"))
+    made(SPAN, START, dt=0.1)
+    options: dict[str, Any] = {"dt": 0.1, **change}
+    sol = made(SPAN, START, **options)
+    assert engine.solved == 2
+    np.testing.assert_allclose(sol.y, lh.integrate(BODY, SPAN, START, step=made.step, **options).y, atol=1e-14)
+
+
+def test_points_on_smaller_orbits_are_looked_at_closely() -> None:
+    field = lh.GeneratorField(lh.sym_conjugation(3), lambda m: np.stack([m[..., 1], m[..., 2], m[..., 4]], axis=-1))
+    made, engine = propagator(field, lh.RKMK("rk4"))
+    made(SPAN, np.array([1.0, 0.1, 0.2, 2.0, 0.3, 3.0]), dt=0.1)
+    small = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 2.0])
+    assert made(SPAN, small, dt=0.1).report.orbit_dimension == 2 and engine.solved == 2
+    made(SPAN, np.array([1.0, 0.1, 0.3, 2.0, 0.3, 4.0]), dt=0.1)
+    assert engine.solved == 2
