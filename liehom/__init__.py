@@ -6,6 +6,7 @@ The layers, in reading order; each imports only those above it in this list:
 `immutable`        classes whose attributes are set once
 `budget`           how large an input may be, how long a computation may take
 `disk`             files that are written whole, checksums
+`pytrees`          numbers and arrays in nested containers
 `parallel`         many tasks on any executor, and their results on disk
 `scalars`          QQ, real number fields, float64, and linear algebra over them
 `algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
@@ -203,6 +204,7 @@ if TYPE_CHECKING:
     from liehom.io import to_json as to_json
     from liehom.io import to_sage as to_sage
     from liehom.io import to_sympy as to_sympy
+    from liehom.pytrees import PerTrajectory as PerTrajectory
     from liehom.representations import Decomposition as Decomposition
     from liehom.representations import HermitianForms as HermitianForms
     from liehom.representations import HighestWeightModule as HighestWeightModule
@@ -309,6 +311,7 @@ _NAMES = {
         "RealModule Representation spin_representation spinor_type sym_conjugation tensor_product_decomposition "
         "trivial weyl_dimension weyl_orbit"
     ),
+    "liehom.pytrees": "PerTrajectory",
     "liehom.series": "Jet",
     "liehom.scalars": "QQ RR FloatField NumberField Subspace number_field",
 }

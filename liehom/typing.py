@@ -32,6 +32,10 @@ Key: TypeAlias = "SupportsIndex | slice | EllipsisType | npt.NDArray[Any] | Sequ
 """Index of an array: integers, slices, Ellipsis, masks, and tuples of these."""
 
 
+Pytree: TypeAlias = Any
+"""Numbers and arrays in nested containers: dicts, lists, tuples, dataclasses (`liehom.pytrees`)."""
+
+
 class Number(Protocol):
     """A number with field arithmetic: of Python, numpy, flint or sympy, or an element of a number field."""
 

@@ -19,7 +19,8 @@ from liehom.algebra import Subalgebra
 from liehom.algebra.closure.closure import square_matrices
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.homogeneous.fields.components import joined, takes_time
+from liehom.homogeneous.fields.components import joined
+from liehom.homogeneous.fields.signature import takes_time
 from liehom.representations import Pair, Representation, sym_conjugation
 from liehom.scalars import ExactMatrix, Polynomial
 from liehom.scalars.fields.field import MatrixLike

@@ -18,9 +18,10 @@ from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.engine import Engine
 from liehom.integrators.run.events import EventFunction
 from liehom.integrators.run.options import Span
+from liehom.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
 from liehom.representations import Representation
-from liehom.series.arrays import is_traced
-from liehom.typing import Array, IntegerArray, Values
+from liehom.series.arrays import is_jax, is_traced
+from liehom.typing import Array, IntegerArray, Pytree, Values
 
 CLOCKS = ("corrected", "nominal")
 
@@ -55,6 +56,7 @@ class CallOptions(SharedOptions, FileOptions, total=False):
 class RunOptions(SharedOptions, total=False):
     """Keyword arguments of `integrate` that ensembles and lattices of spins hand on to it."""
 
+    args: Pytree
     exponential: ExponentialLike
     clock: str
     engine: str | Engine
@@ -130,6 +132,43 @@ def jax_start(representation: Representation, y0: Values) -> tuple[Values, int |
         points = np.random.default_rng(0).normal(size=(16, n))
         return start, int(check_point(representation, points).max())
     return start, check_point(representation, np.asarray(start))
+
+
+def has_jax(args: Pytree) -> bool:
+    """Whether a leaf is a JAX array.
+
+    Examples
+    --------
+    >>> has_jax({"gain": 1.0})
+    False
+    """
+    return any(is_jax(leaf.value) for leaf in leaves(unwrapped(args)))
+
+
+def without_jax(args: Pytree) -> Pytree:
+    """args with numpy arrays in place of JAX arrays, for engines that take no others.
+
+    Raises
+    ------
+    InputError
+        If JAX traces a leaf.
+
+    Examples
+    --------
+    >>> without_jax({"gain": 1.0})
+    {'gain': 1.0}
+    """
+
+    def plain(leaf: Leaf) -> object:
+        inner = leaf.value.value if isinstance(leaf.value, PerTrajectory) else leaf.value
+        if not is_jax(inner):
+            return leaf.value
+        if is_traced(inner):
+            raise InputError(f"JAX traces {leaf.path}: take engine='jax', which passes through jax.jit and jax.grad")
+        array = np.asarray(inner)
+        return PerTrajectory(array) if isinstance(leaf.value, PerTrajectory) else array
+
+    return mapped(args, plain)
 
 
 def check_generator(field: GeneratorField, start: Array, t: np.floating[Any]) -> None:

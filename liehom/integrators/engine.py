@@ -16,7 +16,7 @@ from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators.run.options import Options, Span
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
-from liehom.typing import IntegerArray, Values
+from liehom.typing import IntegerArray, Pytree, Values
 
 
 @final
@@ -29,6 +29,7 @@ class Problem:
     action : Action
         With a tight frame of the orbits of these initial points, if a corrected step can use one.
     field : GeneratorField
+        As it was given to the propagator: the same object in all calls.
     step : Step
     span : (float, float)
         Initial and final time, in the type of the points.
@@ -37,8 +38,11 @@ class Problem:
     orbit_dimension : int or array of shape (...,)
         The dimension of the orbit of each point. For points that JAX traces it is the largest dimension of an orbit.
     options : Options
-    args : object
-        What psi gets as its last argument.
+    bound : GeneratorField
+        The field with `args`, whose psi is a function of (m, t).
+    args : pytree
+        What psi gets as its last argument, with arrays in `liehom.PerTrajectory` of one slice for each point; None if
+        psi takes none. Their structure may differ from call to call. With the engine "jax", leaves may be JAX arrays.
     """
 
     action: Action
@@ -48,7 +52,8 @@ class Problem:
     start: Values
     orbit_dimension: int | IntegerArray
     options: Options
-    args: object = None
+    bound: GeneratorField
+    args: Pytree = None
 
 
 class Engine(Protocol):
@@ -123,6 +128,6 @@ def executed(problem: Problem, fast_path: Callable[[Run], Callable[[Run], bool]]
     p, options = problem, problem.options
     # numbers that are not finite are noticed, and end a trajectory with a message
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        run = Run(p.action, Generator(p.field, p.orbit_dimension), p.step, p.span, np.asarray(p.start), options)
+        run = Run(p.action, Generator(p.bound, p.orbit_dimension), p.step, p.span, np.asarray(p.start), options)
         run.fast_path = None if fast_path is None else fast_path(run)
         return run.execute(options.progress, options.checkpoint)

@@ -14,6 +14,7 @@ from liehom.integrators.engine import Engine
 from liehom.integrators.propagator import Propagator, engine_option, warned
 from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
+from liehom.typing import Pytree
 
 
 def integrate(
@@ -22,6 +23,7 @@ def integrate(
     y0: npt.ArrayLike,
     *,
     step: Step | None = None,
+    args: Pytree = None,
     exponential: ExponentialLike = "exp",
     clock: str = "corrected",
     engine: str | Engine = "numpy",
@@ -40,6 +42,9 @@ def integrate(
         the whole ensemble). numpy.longdouble gives a solution in extended precision.
     step : Step, optional
         The method (default ``LieTaylor(6)``): ``Corrected(Euler(), order=4)``, ``RKMK("rk45")``, ....
+    args : pytree, optional
+        The last argument of psi(m, t, args): numbers and arrays in dicts, lists, tuples and dataclasses, for all
+        trajectories; `liehom.PerTrajectory` marks an array with one slice per trajectory.
     dt : float or array of shape (...,), optional
         A fixed step size. Without it the step size is adaptive, by `rtol` and `atol`, for every trajectory separately.
     rtol, atol : float
@@ -150,6 +155,11 @@ def integrate(
     (3, True, 4)
     """
     propagator = Propagator(
-        field, step, exponential=exponential, clock=clock, engine=engine_option(engine, compile, stacklevel=3)
+        field,
+        step,
+        args=args,
+        exponential=exponential,
+        clock=clock,
+        engine=engine_option(engine, compile, stacklevel=3),
     )
     return warned(propagator.engine.solve(propagator.problem(t_span, y0, **options)), stacklevel=3)

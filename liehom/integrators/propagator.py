@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from importlib import import_module
 from typing import Unpack, final
 
 import numpy as np
@@ -21,11 +22,13 @@ from liehom.integrators.arguments import (
     check_generator,
     checked_clock,
     flag,
+    has_jax,
     jax_start,
     positive,
     step_sizes,
     times_of,
     with_tight_frame,
+    without_jax,
 )
 from liehom.integrators.compiled.llvm_engine import LlvmEngine
 from liehom.integrators.engine import Engine, NumpyEngine, Problem
@@ -36,8 +39,9 @@ from liehom.integrators.run.events import EventFunction
 from liehom.integrators.run.options import Options, Span
 from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.solution import Solution, warn_of_order
+from liehom.pytrees import check_numbers
 from liehom.series.arrays import is_jax
-from liehom.typing import IntegerArray, Values
+from liehom.typing import IntegerArray, Pytree, Values
 
 ENGINES: dict[str, Callable[[], Engine]] = {"numpy": NumpyEngine, "llvm": LlvmEngine, "jax": JaxEngine}
 WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)
@@ -53,6 +57,8 @@ class Propagator:
     field : GeneratorField
     step : Step, optional
         The method (default ``LieTaylor(6)``).
+    args : pytree, optional
+        The last argument of psi(m, t, args), where a call gives none.
     exponential, clock, engine
         As for `integrate`.
 
@@ -71,7 +77,7 @@ class Propagator:
     Notes
     -----
     `integrate` makes a propagator and calls it once. A propagator that is kept promises that psi is the same function
-    in all calls, so that its engine traces and compiles the step once.
+    in all calls, so that its engine traces and compiles the step once. What changes from call to call goes into `args`.
 
     Examples
     --------
@@ -83,6 +89,14 @@ class Propagator:
     ...     print(sol.status, sol.y.shape)
     0 (3, 51)
     0 (3, 51)
+
+    Inertia that changes from call to call:
+
+    >>> body = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args["inertia"])
+    >>> propagator = lh.Propagator(body, lh.RKMK("rk4"))
+    >>> for third in (3.0, 4.0):
+    ...     end = propagator((0, 5), [0.6, 0.0, 0.8], dt=0.1, args={"inertia": np.array([1.0, 2.0, third])}).y[:, -1]
+    ...     print(end.round(4))
     """
 
     def __init__(
@@ -90,6 +104,7 @@ class Propagator:
         field: GeneratorField,
         step: Step | None = None,
         *,
+        args: Pytree = None,
         exponential: ExponentialLike = "exp",
         clock: str = "corrected",
         engine: str | Engine = "numpy",
@@ -102,6 +117,7 @@ class Propagator:
                 f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)"
             )
         self.field: GeneratorField = field
+        self.args: Pytree = args
         self.step: Step = step
         self.engine: Engine = engine_of(engine)
         # engines may know calls that differ in the points only
@@ -109,16 +125,26 @@ class Propagator:
         self._nominal = checked_clock(clock)
         self._action = Action(field.representation, exponential)
 
-    def __call__(self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, **options: Unpack[CallOptions]) -> Solution:
+    def __call__(
+        self,
+        t_span: Iterable[float] | Span,
+        y0: npt.ArrayLike,
+        *,
+        args: Pytree = None,
+        **options: Unpack[CallOptions],
+    ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        made = None if self._again is None else self._again(t_span, y0, options)
-        return warned(self.engine.solve(self.problem(t_span, y0, **options)), stacklevel=3) if made is None else made
+        made = None if self._again is None or self.field.takes_args else self._again(t_span, y0, options)
+        if made is None:
+            made = self.engine.solve(self.problem(t_span, y0, args=args, **options))
+        return warned(made, stacklevel=3)
 
     def problem(
         self,
         t_span: Iterable[float] | Span,
         y0: npt.ArrayLike,
         *,
+        args: Pytree = None,
         dt: npt.ArrayLike | None = None,
         rtol: float = 1e-6,
         atol: float = 1e-9,
@@ -133,18 +159,24 @@ class Propagator:
         checkpoint_every: float = 30.0,
     ) -> Problem:
         """The `Problem` of a call, with all arguments checked."""
-        field, action = self.field, self._action
+        args = next((x for x in (args, self.args, self.field.args) if x is not None), None)
         start: Values
         orbit_dimension: int | IntegerArray
-        if self.engine.name == "jax" and is_jax(y0):
-            start, orbit_dimension = jax_start(field.representation, y0)
-            span = span_of(t_span, np.dtype(np.float64))
+        rho, action = self.field.representation, self._action
+        on_jax = self.engine.name == "jax" and (is_jax(y0) or has_jax(args))
+        if on_jax:
+            given = y0 if is_jax(y0) else import_module("jax.numpy").asarray(points_of(y0))
+            start, orbit_dimension = jax_start(rho, given)
         else:
-            start = points = points_of(y0)
-            orbit_dimension = check_point(field.representation, points)
-            span = span_of(t_span, points.dtype)
-            check_generator(field, points, span[0])
-            action = with_tight_frame(action, self.step, points, orbit_dimension)
+            args = without_jax(args)
+            start = points_of(y0)
+            orbit_dimension = check_point(rho, start)
+            action = with_tight_frame(action, self.step, start, orbit_dimension)
+        check_numbers(args, start.shape[:-1])
+        span = span_of(t_span, np.dtype(np.float64) if on_jax else start.dtype)
+        bound = self.field if args is None else self.field.with_args(args)
+        if not on_jax:
+            check_generator(bound, np.asarray(start), span[0])
         options = Options(
             dt=None if dt is None else step_sizes(dt, start, span),
             rtol=positive("rtol", rtol, zero=True),
@@ -162,7 +194,7 @@ class Propagator:
         )
         if options.dt is None and options.rtol == 0 and options.atol == 0:
             raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
-        return Problem(action, field, self.step, span, start, orbit_dimension, options)
+        return Problem(action, self.field, self.step, span, start, orbit_dimension, options, bound, args)
 
     def __repr__(self) -> str:
         return f"Propagator({self.field!r}, {self.step!r}, engine={self.engine.name!r})"

@@ -10,7 +10,8 @@ docs/api/tracing.md.
 
 from liehom.tracing.array import Traced as Traced
 from liehom.tracing.expr import Expr as Expr
-from liehom.tracing.graph import RunConstant as RunConstant
+from liehom.tracing.expr import LaneConstant as LaneConstant
+from liehom.tracing.expr import RunConstant as RunConstant
 from liehom.tracing.graph import Tape as Tape
 from liehom.tracing.graph import needed as needed
 from liehom.tracing.kernel import Kernel as Kernel

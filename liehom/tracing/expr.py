@@ -1,11 +1,15 @@
-"""Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it."""
+"""Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it; constants of a run."""
 
 from __future__ import annotations
 
 import cmath
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, final
+
+import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import TraceError
 
@@ -161,3 +165,52 @@ class Expr:
 
     def __repr__(self) -> str:
         return repr(self.value) if self.constant else f"<{self.op} {self.index}>"
+
+
+# -- numbers that a graph is given when it runs, by their names ------------------------------------------
+@final
+@dataclass(frozen=True, slots=True)
+class RunConstant:
+    """A number that all trajectories of a run share and that may differ from run to run, as a trajectory constant.
+
+    Attributes
+    ----------
+    name : str
+    value : float
+        Its value in the run for which the step was traced.
+
+    Examples
+    --------
+    >>> RunConstant("rtol", 1e-3)(np.zeros((2, 3))).tolist()
+    [0.001, 0.001]
+    """
+
+    name: str
+    value: float
+
+    def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+        return np.full(points.shape[:-1], self.value)
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class LaneConstant:
+    """A number that each trajectory is given, as a trajectory constant that is not a function of the initial point.
+
+    Attributes
+    ----------
+    name : str
+    values : array of shape (L,)
+        Its values in the run for which the step was traced.
+
+    Examples
+    --------
+    >>> LaneConstant("rate", np.array([1.0, 2.0]))(np.zeros((2, 3)))
+    array([1., 2.])
+    """
+
+    name: str
+    values: npt.NDArray[Any]
+
+    def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        return self.values

@@ -9,42 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import TraceError
-from liehom.tracing.expr import FOLDED, Expr, NumberLike, Payload
+from liehom.tracing.expr import FOLDED, Expr, LaneConstant, NumberLike, Payload, RunConstant
 
 TrajectoryConstant: TypeAlias = Callable[[Any], Any]
 """A number of each trajectory, shape (L,), as a function of the initial points (L, N)."""
-
-
-@final
-@dataclass(frozen=True, slots=True)
-class RunConstant:
-    """A number that all trajectories of a run share and that may differ from run to run, as a trajectory constant.
-
-    Attributes
-    ----------
-    name : str
-    value : float
-        Its value in the run for which the step was traced.
-
-    Examples
-    --------
-    >>> RunConstant("rtol", 1e-3)(np.zeros((2, 3))).tolist()
-    [0.001, 0.001]
-    """
-
-    name: str
-    value: float
-
-    def __call__(self, points: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-        return np.full(points.shape[:-1], self.value)
-
 
 COMMUTATIVE = frozenset(["add", "mul", "and", "or", "eq", "ne"])
 MAX_TERMS = 10
@@ -101,6 +75,10 @@ class Tape:
             if isinstance(known, RunConstant) and known.name == name:
                 return self.input(-1 - place)
         return self.trajectory_constant(RunConstant(name, value))
+
+    def lane_constant(self, name: str, values: npt.NDArray[Any]) -> Expr:
+        """Tracer of a number that each trajectory is given, by its name."""
+        return self.trajectory_constant(LaneConstant(name, values))
 
     def variable(self, name: Hashable, *, boolean: bool = False) -> Expr:
         """Tracer of a number, or boolean, that changes in a loop."""

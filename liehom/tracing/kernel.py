@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from liehom.errors import LiehomError
 from liehom.tracing.array import Traced
-from liehom.tracing.expr import Expr
-from liehom.tracing.graph import RunConstant, TrajectoryConstant
+from liehom.tracing.expr import Expr, LaneConstant, RunConstant
+from liehom.tracing.graph import TrajectoryConstant
 from liehom.tracing.machine import engine_of
 from liehom.tracing.run_text import FIELDS, Constant, run_module, state_names
 from liehom.tracing.step_graph import StepGraph
@@ -36,7 +36,8 @@ class Kernel:
     run_constants : list of str
         Names of the numbers that a run gives, in their order.
     lane_constants : list of callable
-        Functions of the initial points that did not run on tracers: numpy computes their values.
+        Functions of the initial points that did not run on tracers, and numbers that trajectories are given: numpy
+        computes their values.
     cached : bool
         Whether the code was found in the cache.
     """
@@ -59,7 +60,7 @@ class Kernel:
         if isinstance(function, RunConstant):
             self.run_constants.append(function.name)
             return "run", len(self.run_constants) - 1
-        made = _on_tracers(function, self.graph)
+        made = None if isinstance(function, LaneConstant) else _on_tracers(function, self.graph)
         if made is None:
             self.lane_constants.append(function)
             return "lane", len(self.lane_constants) - 1

@@ -53,6 +53,7 @@ def test_an_engine_gets_the_same_field_step_and_exponential_in_all_calls() -> No
     assert first.field is second.field is FIELD
     assert first.step is second.step is propagator.step
     assert first.action.exponential is second.action.exponential
+    assert first.bound is FIELD and first.args is None
     assert first.options.nominal and second.options.nominal
     assert second.start.shape == (2, 3) and np.array_equal(second.orbit_dimension, [2, 2])
     assert propagator.engine is engine

@@ -15,8 +15,9 @@ import numpy as np
 
 from liehom.correctors.expansion import Flow
 from liehom.errors import InputError, ShapeError
-from liehom.homogeneous.fields.components import Components, joined, takes_time
+from liehom.homogeneous.fields.components import Components, joined
 from liehom.homogeneous.fields.expression import TREES
+from liehom.homogeneous.fields.signature import takes_time
 from liehom.series.arrays import as_values, is_exact, zeros
 from liehom.series.jet import Jet
 from liehom.typing import ScalarLike, Values

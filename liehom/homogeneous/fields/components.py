@@ -11,7 +11,6 @@ All of them run on arrays, on exact numbers and on Jets.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, final
 
@@ -22,15 +21,14 @@ from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous.fields.evaluation import Evaluation, Value
 from liehom.homogeneous.fields.expression import FUNCTIONS as FUNCTIONS
 from liehom.homogeneous.fields.expression import ComponentLike, compiled
+from liehom.homogeneous.fields.signature import CallForm, Evaluated, called, called_with, checked_form
+from liehom.pytrees import unwrapped
 from liehom.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.series.jet import Jet
-from liehom.typing import Array, Real, Values, ValuesLike
+from liehom.typing import Array, Pytree, Real, Values, ValuesLike
 
 GeneratorLike: TypeAlias = "Callable[..., Any] | Sequence[ComponentLike] | npt.NDArray[Any]"
 """What is read as a generator or vector field: a function of m (and t), a list of components, or a constant array."""
-
-Evaluated: TypeAlias = Callable[[Any, Any], Any]
-"""A function of (m, t)."""
 
 
 @final
@@ -40,7 +38,8 @@ class Components:
     Parameters
     ----------
     source : callable, array, or sequence of numbers, strings, sympy expressions or parsed strings
-        A function is called as f(m), or as f(m, t) if it has a second parameter without a default, or one named t.
+        A function is called as f(m), or as f(m, t) if it has a second parameter without a default, or one named t,
+        and with args too if it has a third parameter without a default, or one named args.
         A constant array may have leading axes, which broadcast against those of m.
     size : int
         N, the number of coordinates of m.
@@ -50,6 +49,13 @@ class Components:
         Name in error messages.
     time_dependent : bool, optional
         Whether a function is called with t (default: decided by its parameters).
+    bound : tuple
+        (args,), what a function with args is called with; () if they are not known yet.
+
+    Attributes
+    ----------
+    takes_args : bool
+        Whether the source is a function with args.
 
     Raises
     ------
@@ -70,16 +76,27 @@ class Components:
     size: int
     time_dependent: bool
     what: str
+    bound: tuple[Pytree, ...]
 
-    __slots__ = ("_function", "_source", "counts", "size", "time_dependent", "what")
+    __slots__ = ("_form", "_function", "_source", "bound", "counts", "size", "time_dependent", "what")
 
     def __init__(
-        self, source: GeneratorLike, size: int, counts: tuple[int, ...], what: str, time_dependent: bool | None = None
+        self,
+        source: GeneratorLike,
+        size: int,
+        counts: tuple[int, ...],
+        what: str,
+        time_dependent: bool | None = None,
+        bound: tuple[Pytree, ...] = (),
     ) -> None:
-        self.size, self.counts, self.what, self._source = size, counts, what, source
+        self.size, self.counts, self.what, self._source, self.bound = size, counts, what, source, ()
         self._function: Evaluated
+        self._form: CallForm | None = None
         if callable(source):
-            self._function, self.time_dependent = _called(source, what, time_dependent)
+            self._form, self.time_dependent = checked_form(source, what, time_dependent)
+            self._function = called(source, self._form, self.time_dependent)
+            if self.takes_args:
+                self._bind(bound)
         elif is_jax(source) or (isinstance(source, np.ndarray) and (source.dtype != object or source.ndim != 1)):
             self._function, self.time_dependent = self._constant(source), False
         elif isinstance(source, str | bytes | dict | set | frozenset) or not np.iterable(source):
@@ -92,7 +109,54 @@ class Components:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # closures over the source cannot be pickled; the source can, if it is not a function or has a name in a module
-        return Components, (self._source, self.size, self.counts, self.what, self.time_dependent)
+        return Components, (self._source, self.size, self.counts, self.what, self.time_dependent, self.bound)
+
+    @property
+    def takes_args(self) -> bool:
+        """Whether the source is a function with args."""
+        return self._form is not None and self._form.args is not None
+
+    def with_args(self, args: Pytree) -> Components:
+        """The function with these args.
+
+        Parameters
+        ----------
+        args : pytree
+
+        Raises
+        ------
+        InputError
+            If the source takes no args.
+
+        Examples
+        --------
+        >>> f = Components(lambda m, t, args: args["gain"] * m, 1, (1,), "psi")
+        >>> f.with_args({"gain": 3.0})(np.array([2.0]))
+        array([6.])
+        """
+        if not self.takes_args:
+            raise InputError(f"args were given, but {self.what} takes none: write a function (m, t, args)")
+        made = object.__new__(Components)
+        made.size, made.counts, made.what, made._source = self.size, self.counts, self.what, self._source
+        made.time_dependent, made._form = self.time_dependent, self._form
+        made._bind((args,))
+        return made
+
+    def _bind(self, bound: tuple[Pytree, ...]) -> None:
+        """Set the function for args, or for a message that there are none yet."""
+        source: Any = self._source
+        self.bound = bound
+        if bound and self._form is not None:
+            self._function = called_with(source, self._form, self.time_dependent, unwrapped(bound[0]))
+            return
+        name = self.what
+
+        def unbound(m: Values, t: Real) -> Values:
+            raise InputError(
+                f"{name} takes args, but none were given: integrate(..., args=...), or field.with_args(args)"
+            )
+
+        self._function = unbound
 
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The components at m (..., N) and t (...,): array or Jet of shape (..., count)."""
@@ -221,48 +285,6 @@ class Components:
             return _stacked([function(at) for function in functions], m)
 
         return evaluated, any(timed for _, timed in made)
-
-
-def takes_time(function: Callable[..., Any]) -> bool:
-    """Whether a function is called with (m, t), and not with m alone.
-
-    Examples
-    --------
-    >>> takes_time(lambda m: m), takes_time(lambda m, t: m), takes_time(lambda m, scale=2.0: m)
-    (False, True, False)
-    """
-    return _signature(function)[0]
-
-
-def _signature(function: Callable[..., Any]) -> tuple[bool, bool, list[str]]:
-    """Whether a function takes t, whether t is keyword-only, and the names of further required parameters."""
-    try:
-        parameters = list(inspect.signature(function).parameters.values())
-    except (TypeError, ValueError):
-        return False, False, []
-    positional = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
-    needed = [p for p in positional if p.default is p.empty]
-    by_name = any(p.kind is p.KEYWORD_ONLY and p.name == "t" for p in parameters)
-    second = len(needed) >= 2 or (len(positional) >= 2 and positional[1].name == "t")
-    more = [p.name for p in needed[2:]]
-    more += [p.name for p in parameters if p.kind is p.KEYWORD_ONLY and p.default is p.empty and p.name != "t"]
-    if not positional and not any(p.kind is p.VAR_POSITIONAL for p in parameters):
-        more.append("no m")
-    return second or by_name, by_name and not second, more
-
-
-def _called(source: Callable[..., Any], what: str, time_dependent: bool | None) -> tuple[Evaluated, bool]:
-    """A user's function as a function of (m, t), and whether it depends on t."""
-    timed, by_name, more = _signature(source)
-    if more:
-        raise InputError(
-            f"{what} is a function with the parameters {inspect.signature(source)}: expected (m) or (m, t); "
-            "bind others with functools.partial or a default"
-        )
-    timed = timed if time_dependent is None else time_dependent
-    if timed and by_name:
-        return (lambda m, t: source(m, t=t)), True
-    return (source, True) if timed else ((lambda m, t: source(m)), False)
 
 
 # -- one array or Jet from the results of functions ----------------------------------------------------

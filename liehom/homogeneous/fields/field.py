@@ -20,7 +20,7 @@ from liehom.representations import Representation
 from liehom.representations.core.copies import copies_of
 from liehom.series.arrays import as_values, is_traced, namespace, zeros
 from liehom.series.jet import Jet
-from liehom.typing import Array, IntegerArray, Real, Values, ValuesLike
+from liehom.typing import Array, IntegerArray, Pytree, Real, Values, ValuesLike
 
 
 @final
@@ -32,9 +32,9 @@ class GeneratorField(Immutable):
     representation : Representation
         rho, on vectors of N coordinates, of an algebra of dimension r.
     psi : callable, array or sequence
-        The generator: a function psi(m) or psi(m, t) that returns an array of shape (..., r) for m of shape
-        (..., N) and t of shape (...,), written with numpy functions; or r components, each a number, a string such
-        as "1 + m0**2*sin(t)", or a sympy expression in m0, m1, ..., t; or a constant array. If the algebra is the
+        The generator: a function psi(m), psi(m, t) or psi(m, t, args) that returns an array of shape (..., r) for m
+        of shape (..., N) and t of shape (...,), written with numpy functions; or r components, each a number, a string
+        such as "1 + m0**2*sin(t)", or a sympy expression in m0, m1, ..., t; or a constant array. If the algebra is the
         closure of fewer given matrices, psi may have one coefficient for each of these.
     time_dependent : bool, optional
         Whether a function psi is called with t. By default it is if it has a second parameter without a default, or
@@ -54,6 +54,11 @@ class GeneratorField(Immutable):
     -----
     These are equations (2.2) and (2.3) of the paper, with the convention that g is a matrix algebra.
 
+    The arguments `args` of a function psi(m, t, args) are any pytree: numbers and arrays in dicts, lists, tuples and
+    dataclasses. They are given when the field is integrated, ``integrate(field, ..., args=...)``, or by `with_args`.
+    Compiled code takes them as inputs, so that one compiled step serves all values; what psi closes over is compiled
+    into it. A psi without t may be psi(m, args), with this name.
+
     Examples
     --------
     >>> import numpy as np
@@ -65,14 +70,14 @@ class GeneratorField(Immutable):
     """
 
     representation: Representation
-    source: GeneratorLike | LeastNorm
+    source: GeneratorLike | LeastNorm | Components
 
     __slots__ = ("_action", "_components", "_dimension", "_sites", "representation", "source", "time_dependent")
 
     def __init__(
         self,
         representation: Representation,
-        psi: GeneratorLike | LeastNorm,
+        psi: GeneratorLike | LeastNorm | Components,
         *,
         time_dependent: bool | None = None,
         sites: tuple[int, ...] = (),
@@ -85,7 +90,9 @@ class GeneratorField(Immutable):
         dimension = representation.algebra.dimension
         counts = (representation.given, dimension)
         self._components: Components | LeastNorm = (
-            psi if isinstance(psi, LeastNorm) else Components(psi, representation.size, counts, "psi", time_dependent)
+            psi
+            if isinstance(psi, LeastNorm | Components)
+            else Components(psi, representation.size, counts, "psi", time_dependent)
         )
         self._dimension = dimension
         self.time_dependent: bool = self._components.time_dependent
@@ -146,6 +153,39 @@ class GeneratorField(Immutable):
         if not isinstance(representation, Representation):
             raise InputError(f"expected a Representation, got {displayed(representation)}")
         return cls(representation, LeastNorm(representation, field, orbit_dimension, rtol, time_dependent))
+
+    @property
+    def takes_args(self) -> bool:
+        """Whether psi, or the vector field, is a function with args."""
+        return self._components.takes_args
+
+    @property
+    def args(self) -> Pytree:
+        """The args that psi is called with, a pytree; None if it has none."""
+        bound = self._components.bound
+        return bound[0] if bound else None
+
+    def with_args(self, args: Pytree) -> GeneratorField:
+        """The field with these args, whose psi is a function of (m, t).
+
+        Parameters
+        ----------
+        args : pytree
+
+        Raises
+        ------
+        InputError
+            If psi takes no args.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args["inertia"])
+        >>> field.with_args({"inertia": np.array([1.0, 2.0, 4.0])}).psi(np.array([0.6, 0.0, 0.8]))
+        array([-0.6, -0. , -0.2])
+        """
+        return GeneratorField(self.representation, self._components.with_args(args), sites=self.sites)
 
     def psi(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The generator at m (..., N) and t: an array or Jet of shape (..., r)."""

@@ -15,8 +15,9 @@ import numpy as np
 
 from liehom.algebra import LieAlgebra
 from liehom.errors import InputError, LiehomError, ShapeError, displayed
-from liehom.homogeneous.fields.components import Components, GeneratorLike, joined, takes_time
+from liehom.homogeneous.fields.components import Components, GeneratorLike, joined
 from liehom.homogeneous.fields.field import GeneratorField
+from liehom.homogeneous.fields.signature import takes_time
 from liehom.representations import coadjoint
 from liehom.series.arrays import as_values
 from liehom.series.jet import Jet

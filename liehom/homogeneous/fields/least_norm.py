@@ -22,7 +22,7 @@ from liehom.representations import Representation
 from liehom.series import recurrences
 from liehom.series.arrays import is_exact, is_jax, is_traced, namespace
 from liehom.series.jet import Jet
-from liehom.typing import Array, Real, Values, ValuesLike
+from liehom.typing import Array, Pytree, Real, Values, ValuesLike
 
 RANK_RTOL = 1e-9
 NOISE_RTOL = 1e-13
@@ -123,6 +123,32 @@ class LeastNorm:
         first = inverse(gram.value)
         y = recurrences.solution(recurrences.linear(image, [field]), gram, _product, lambda a, _: first @ a)
         return Jet.from_node(recurrences.multilinear(lifted, [along, y]))
+
+    @property
+    def takes_args(self) -> bool:
+        """Whether the vector field is a function with args."""
+        return self.components.takes_args
+
+    @property
+    def bound(self) -> tuple[Pytree, ...]:
+        """(args,) that the vector field is called with, or ()."""
+        return self.components.bound
+
+    def with_args(self, args: Pytree) -> LeastNorm:
+        """The same for the vector field with these args.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> psi = LeastNorm(lh.defining(lh.so(2)), lambda m, t, args: args * m[..., ::-1] * [-1, 1])
+        >>> float(psi.with_args(3.0)(np.array([0.6, 0.8]))[0].round(12))
+        3.0
+        """
+        made = object.__new__(LeastNorm)
+        for name in self.__slots__:
+            setattr(made, name, getattr(self, name))
+        made.components = self.components.with_args(args)
+        return made
 
     def check(self, m: ValuesLike, t: Real = 0.0) -> None:
         """Check that X is finite at initial points and tangent to their orbits."""

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
+from liehom.integrators.compiled.parameters import args_of_lanes
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.run.clock import SLACK
@@ -69,6 +70,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
             nominal=run.options.nominal,
             limits=_size_limits(run) if run.options.dt is None else None,
             kept_order=kept_order,
+            args=args_of_lanes(run.field.args, run.shape, lanes),
         )
         groups.append(LaneGroup(graph, lanes, points[lanes]))
     return FastPath(groups)

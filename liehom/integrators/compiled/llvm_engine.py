@@ -21,6 +21,7 @@ from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import Action
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.compiled.lanes import HandBack, Made, run_blocks
+from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
 from liehom.integrators.compiled.plan import Plan, plan_key
 from liehom.integrators.compiled.schedule import Schedule, schedule
 from liehom.integrators.compiled.traced_size import SizeLimits
@@ -30,7 +31,7 @@ from liehom.integrators.run.options import END
 from liehom.integrators.run.records import bounds_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
-from liehom.tracing import Kernel, StepGraph, Traced, lanes_per_register, needed
+from liehom.tracing import Kernel, LaneConstant, StepGraph, Traced, lanes_per_register, needed
 from liehom.typing import Array, IntegerArray, Values
 
 SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
@@ -102,7 +103,7 @@ class LlvmEngine:
         """Keep the plan of a call, if it was one that needs nothing but points."""
         o, (_, key, graph) = problem.options, run.groups[0]
         if (
-            len(run.groups) > 1 or graph.guard is None or solution.status != END or o.dt is None or not _uniform(o.dt)
+            problem.args is not None or len(run.groups) > 1 or graph.guard is None or solution.status != END or o.dt is None or not _uniform(o.dt)
             or o.checkpoint is not None or o.progress or o.dense_output or o.max_steps < np.max(solution.n_steps)
             or run.work * np.sum(solution.n_steps) > OPERATIONS_PER_CALL
         ):  # fmt: skip
@@ -143,7 +144,8 @@ class CodeStore:
             kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
         frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
         uniform = o.dt is not None and _uniform(o.dt)
-        key = (dimension, uniform, o.dt is None, o.nominal, kept_order, frame)
+        args, lead = run.field.args, len(run.shape)
+        key = (dimension, uniform, o.dt is None, o.nominal, kept_order, frame, args_form(args, lead))
         if key not in self.graphs:
             limits = SizeLimits(*_limits(run).values()) if o.dt is None else None
 
@@ -151,6 +153,7 @@ class CodeStore:
                 return traced_step(
                     run.action, run.field, run.step, points, dimension, nominal=o.nominal, limits=limits,
                     ends=(float(run.span[0]), float(run.span[1])), kept_order=kept_order, stops=stops,
+                    args=args, lead=lead,
                 )  # fmt: skip
 
             own_clock = isinstance(run.step, Corrected) and not o.nominal
@@ -258,7 +261,8 @@ class _CompiledRun:
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
         self.work = max((_operations(graph) for _, _, graph in self.groups), default=1)
         self.schedule = store.schedule(run) if self.groups[0][2].reached is None else None
-        self.values = {**_limits(run), "latest": bounds_of((float(run.span[0]), float(run.span[1])))[1]}
+        latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
+        self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **_limits(run), "latest": latest}
 
         if not run.state.taken.any() and isinstance(run.step, Corrected | Conserving):
             self._note_ranks(run)
@@ -268,7 +272,9 @@ class _CompiledRun:
         some = np.unique(np.linspace(0, len(self.start) - 1, min(len(self.start), RANKED)).astype(int))
         points, times = self.start[some], np.full(len(some), run.span[0])
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
-        psi = Generator(run.field, dimensions[some], points)
+        args = run.field.args
+        field = run.field if args is None else run.field.with_args(args_of_lanes(args, run.shape, some))
+        psi = Generator(field, dimensions[some], points)
         with contextlib.suppress(np.linalg.LinAlgError, ConvergenceError):  # the first step will end with it
             local = run.step.at(run.action, psi, points, times[:, None])
             inner = local.base if isinstance(local, ConservingStep) else local
@@ -312,7 +318,10 @@ class _CompiledRun:
         given["start"] = filled
         if kernel.lane_constants:
             rows = np.ones((len(kernel.lane_constants), filled.shape[1]))
-            rows[:, : len(lanes)] = [function(start) for function in kernel.lane_constants]
+            rows[:, : len(lanes)] = [
+                self.values[number.name][lanes] if isinstance(number, LaneConstant) else number(start)
+                for number in kernel.lane_constants
+            ]
             given["rows"] = rows
         return given
 

@@ -15,13 +15,14 @@ from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
+from liehom.integrators.compiled.parameters import traced_args
 from liehom.integrators.compiled.traced_size import SizeLimits, first_size, judgement, size_to_stop, tried_size
 from liehom.integrators.run.clock import clock_at, has_clock
 from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
 from liehom.integrators.run.control import ERROR_TERMS
 from liehom.integrators.run.records import bounds_of, earliness
 from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
-from liehom.typing import Array, Real, Values
+from liehom.typing import Array, Pytree, Real, Values
 
 MAX_CLOCK_DEVIATION = 0.8
 """τ certainly increases at an admissible rate if |τ' - 1| is below this over the whole step."""
@@ -30,7 +31,7 @@ MAX_CLOCK_DEVIATION = 0.8
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
     ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None, kept_order: int | None = None,
-    stops: bool = False,
+    stops: bool = False, args: Pytree = None, lead: int = 1,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
 
@@ -52,6 +53,10 @@ def traced_step(
         ``Conserving.kept_order``, on which the sizes of a conserving step depend.
     stops : bool
         Whether the graph goes no further than to a stop, whose time is an input.
+    args : pytree, optional
+        The args of psi; their numbers are constants by name, see `liehom.integrators.compiled.parameters`.
+    lead : int
+        The number of leading axes of arrays with one slice per trajectory in `args`.
 
     Raises
     ------
@@ -67,7 +72,9 @@ def traced_step(
     (2, None)
     """
     try:
-        return _traced(action, field, step, points, orbit_dimension, nominal, ends, limits, kept_order, stops)
+        tape = Tape()
+        field = field if args is None else field.with_args(traced_args(tape, args, lead))
+        return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, kept_order, stops)
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -78,10 +85,10 @@ def traced_step(
 
 
 def _traced(
-    action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
+    tape: Tape, action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
     ends: tuple[float, float], limits: SizeLimits | None, kept_order: int | None, stops: bool,
 ) -> StepGraph:  # fmt: skip
-    tape, n = Tape(), field.representation.size
+    n = field.representation.size
     tight = action.tight_frame
     if tight is None and isinstance(step, Corrected | Conserving):  # others ask for no isotropy
         tight = tight_frame(action, points, orbit_dimension)

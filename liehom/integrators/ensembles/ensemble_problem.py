@@ -20,7 +20,8 @@ from liehom.integrators.run.checkpoint import stable_repr
 from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike, completed, open_store
-from liehom.typing import Array
+from liehom.pytrees import Leaf, PerTrajectory, check_numbers, mapped, numbers_of
+from liehom.typing import Array, Pytree
 
 ARRAYS = ("dt", "t_eval")
 """The options of `integrate` that are arrays."""
@@ -56,6 +57,8 @@ class EnsembleProblem(NamedTuple):
                 options = {**options, "dt": np.broadcast_to(np.asarray(dt), self.start.shape[:-1])[here]}
             except ValueError:
                 raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
+        if "args" in options:
+            options = {**options, "args": _rows(options["args"], here)}
         mine = {name: array[here] for name, array in self.parameters.items()}
         return EnsembleProblem(self.field, self.t_span, self.start[here], mine, options)
 
@@ -68,14 +71,16 @@ class EnsembleProblem(NamedTuple):
         return first, last
 
     def made(self) -> GeneratorField:
-        """The field of these trajectories."""
+        """The field of these trajectories, with its args if they are given."""
         found = self.field if isinstance(self.field, GeneratorField) else self.field(**self.parameters)
         if not isinstance(found, GeneratorField):
             raise InputError(f"field(**parameters) returned {found!r}, expected a GeneratorField")
-        return found
+        args = self.options.get("args")
+        return found if args is None else found.with_args(args)
 
     def check(self, bounds: list[tuple[int, int]]) -> GeneratorField:
         """The field of the whole ensemble, after a test that psi of a chunk equals psi of the whole on its rows."""
+        check_numbers(self.options.get("args"), self.start.shape[:-1])
         whole = self.made()
         time = self.ends()[0]
         # here rather than by the workers, who would count trajectories from the first of their chunk
@@ -97,9 +102,10 @@ class EnsembleProblem(NamedTuple):
     def fingerprint(self, whole: GeneratorField, bounds: list[tuple[int, int]]) -> str:
         """Digest that distinguishes this problem from others: numbers, strings, psi at the initial points and near."""
         named = sorted(_as_before(name, value) for name, value in self.options.items())
-        texts = [f"{name}={_option_text(value)}" for name, value in named if name not in ARRAYS]
+        texts = [f"{name}={_option_text(value)}" for name, value in named if name not in (*ARRAYS, "args")]
         numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
         parameters = [self.parameters[name] for name in sorted(self.parameters)]
+        parameters += numbers_of(self.options.get("args"))
         matrices = [a.to_numpy() for a in whole.representation.matrices]
         first, last = self.ends()
         lead, ahead = self.start.shape[:-1], 1e-3 * (last - first)
@@ -159,6 +165,15 @@ def _whole_only(rows: tuple[int, int]) -> ShapeError:
         f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
         "carry one parameter for each trajectory? Pass a function that makes the field, and parameters={'name': array}"
     )
+
+
+def _rows(args: Pytree, rows: slice) -> Pytree:
+    """args of some rows of an ensemble."""
+
+    def taken(leaf: Leaf) -> object:
+        return leaf.value.rows(rows) if isinstance(leaf.value, PerTrajectory) else leaf.value
+
+    return mapped(args, taken)
 
 
 def _as_before(name: str, value: object) -> tuple[str, object]:

@@ -63,6 +63,7 @@ from liehom.integrators.run.proposal import LOGGER, StepProposal
 from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples, near_cone
 from liehom.integrators.run.solution import Solution
 from liehom.integrators.run.state import RunState
+from liehom.pytrees import numbers_of
 from liehom.series.arrays import in_lanes
 from liehom.series.jet import Jet
 from liehom.typing import Array, BooleanArray, IntegerArray, Real, Values
@@ -206,14 +207,13 @@ class Run:
         o, events, field = self.options, self.events, self.field
         strings = f"{files.stable_repr(self.step)} {self.action.exponential.name} {o.fixed_text()}"
         strings += "" if events is None else f" {events.directions} {events.terminal}"
-        matrices = [a.to_numpy() for a in field.representation.matrices]
-        t = np.full(self.shape, self.span[0])
+        t, ahead = np.full(self.shape, self.span[0]), 1e-3 * (self.end - self.span[0])
         here = np.asarray(field.psi(self.start, t))
-        ahead = 1e-3 * (self.end - self.span[0])
         near = self.action.act((ahead * here).astype(self.dtype), self.start)
         there = np.asarray(field.psi(near, t + ahead))
-        numbers = [np.array(self.span), o.dt if o.dt is not None else 0, o.t_eval if o.t_eval is not None else 0]
-        return digest(strings, self.start, *numbers, *matrices, here, near, there, *self.state.event_values)
+        numbers = [np.array(self.span), *(0 if x is None else x for x in (o.dt, o.t_eval)), *numbers_of(field.args)]
+        numbers += [a.to_numpy() for a in field.representation.matrices]
+        return digest(strings, self.start, *numbers, here, near, there, *self.state.event_values)
 
     def _fraction(self) -> float:
         passed = np.min(np.abs(self.state.t - self.span[0]), where=self.state.active, initial=np.inf)

@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.errors import FieldError, InputError, ParseError, SeriesError, ShapeError
-from liehom.homogeneous.fields.components import Components, takes_time
+from liehom.homogeneous.fields.components import Components
+from liehom.homogeneous.fields.signature import takes_time
 
 M0, M1, M2, T = sympy.symbols("m0 m1 m2 t")
 POINT = np.array([0.3, -0.7, 1.1])
@@ -116,7 +117,7 @@ def test_whether_t_is_taken_can_be_said() -> None:
     ]
 
 
-@pytest.mark.parametrize("function", [lambda: 0, lambda m, t, u: m, lambda m, *, scale: m])
+@pytest.mark.parametrize("function", [lambda: 0, lambda m, t, args, u: m, lambda m, *, scale: m])
 def test_functions_with_other_parameters_are_refused(function: Any) -> None:
     with pytest.raises(InputError, match=r"expected \(m\) or \(m, t\)"):
         components(function)
