@@ -139,6 +139,21 @@ def test_jax_differentiates_by_args() -> None:
         assert abs(float(many[1] - many[0])) > 1e-3
 
 
+def test_jax_differentiates_by_slices_per_trajectory() -> None:
+    jax = pytest.importorskip("jax")
+    field = lh.GeneratorField(RHO, lambda m, t, args: np.sin(args["rate"])[..., None] * np.array([0.0, 0.0, 1.0]))
+    propagator = lh.Propagator(field, lh.Euler(), engine="jax")
+
+    def first(args: Any) -> Any:
+        return propagator((0, 1), np.tile([1.0, 0.0, 0.0], (2, 1)), args=args, dt=0.5).y[:, 0, -1].sum()
+
+    with jax.enable_x64(True):
+        rates = jax.numpy.asarray([0.5, 1.0])
+        slope = jax.grad(first)({"rate": lh.PerTrajectory(rates)})["rate"].value
+        expected = -np.sin(np.sin(rates)) * np.cos(rates)
+        np.testing.assert_allclose(np.asarray(slope), np.asarray(expected), atol=1e-13)
+
+
 def test_jax_arrays_in_args_are_numpy_arrays_for_other_engines() -> None:
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):

@@ -22,7 +22,7 @@ from liehom.homogeneous.fields.evaluation import Evaluation, Value
 from liehom.homogeneous.fields.expression import FUNCTIONS as FUNCTIONS
 from liehom.homogeneous.fields.expression import ComponentLike, compiled
 from liehom.homogeneous.fields.signature import CallForm, Evaluated, called, called_with, checked_form
-from liehom.pytrees import unwrapped
+from liehom.pytrees import leaves, mapped, unwrapped
 from liehom.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
 from liehom.series.jet import Jet
 from liehom.typing import Array, Pytree, Real, Values, ValuesLike
@@ -78,7 +78,7 @@ class Components:
     what: str
     bound: tuple[Pytree, ...]
 
-    __slots__ = ("_form", "_function", "_source", "bound", "counts", "size", "time_dependent", "what")
+    __slots__ = ("_form", "_function", "_jax_leaves", "_source", "bound", "counts", "size", "time_dependent", "what")
 
     def __init__(
         self,
@@ -92,6 +92,7 @@ class Components:
         self.size, self.counts, self.what, self._source, self.bound = size, counts, what, source, ()
         self._function: Evaluated
         self._form: CallForm | None = None
+        self._jax_leaves: tuple[Values, ...] = ()
         if callable(source):
             self._form, self.time_dependent = checked_form(source, what, time_dependent)
             self._function = called(source, self._form, self.time_dependent)
@@ -138,7 +139,7 @@ class Components:
             raise InputError(f"args were given, but {self.what} takes none: write a function (m, t, args)")
         made = object.__new__(Components)
         made.size, made.counts, made.what, made._source = self.size, self.counts, self.what, self._source
-        made.time_dependent, made._form = self.time_dependent, self._form
+        made.time_dependent, made._form, made._jax_leaves = self.time_dependent, self._form, ()
         made._bind((args,))
         return made
 
@@ -147,7 +148,11 @@ class Components:
         source: Any = self._source
         self.bound = bound
         if bound and self._form is not None:
-            self._function = called_with(source, self._form, self.time_dependent, unwrapped(bound[0]))
+            form, timed, args = self._form, self.time_dependent, unwrapped(bound[0])
+            self._function = called_with(source, form, timed, args)
+            self._jax_leaves = tuple(leaf.value for leaf in leaves(args) if is_jax(leaf.value))
+            if self._jax_leaves:
+                self._function = lambda m, t: called_with(source, form, timed, _as_jets(args, m))(m, t)
             return
         name = self.what
 
@@ -161,11 +166,11 @@ class Components:
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The components at m (..., N) and t (...,): array or Jet of shape (..., count)."""
         if isinstance(m, Jet):
-            return self._checked(self._function(m, t), m)
+            return self._checked(self._function(m, Jet.constant(t, m.order) if is_jax(t) else t), m)
         point: Values = as_values(m)
-        if is_jax(point) or is_jax(t):
+        if is_jax(point) or is_jax(t) or self._jax_leaves:
             # numpy functions run on Jets over JAX arrays, not on the arrays themselves
-            xp = namespace(point, t)
+            xp = namespace(point, t, *self._jax_leaves)
             found = self(Jet.constant(xp.asarray(point), 0), t)
             value: Values = found.value if isinstance(found, Jet) else xp.asarray(found)
             return value
@@ -320,6 +325,12 @@ def _joined(parts: list[Any], axis: int) -> Any:
         return np.stack([np.broadcast_to(p, shape) if p.shape != shape else p for p in map(_arrayed, parts)], axis=axis)
     xp = namespace(*parts)
     return xp.stack([xp.broadcast_to(p if is_lazy(p) else xp.asarray(p), shape) for p in parts], axis=axis)
+
+
+def _as_jets(args: Pytree, m: Values) -> Pytree:
+    """args with series in place of JAX arrays, on which numpy functions do not run."""
+    order = m.order if isinstance(m, Jet) else 0
+    return mapped(args, lambda leaf: Jet.constant(leaf.value, order) if is_jax(leaf.value) else leaf.value)
 
 
 def _arrayed(part: Value) -> Any:

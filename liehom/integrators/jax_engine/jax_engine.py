@@ -11,7 +11,7 @@ A call on JAX arrays is one of three.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from math import ceil
 from typing import Any, final
 
@@ -34,6 +34,7 @@ from liehom.integrators.jax_engine.programs import Leaves, Program, is_float
 from liehom.integrators.jax_engine.solutions import Found, solution_of
 from liehom.integrators.run.control import ERROR_TERMS
 from liehom.integrators.run.solution import Solution
+from liehom.pytrees import PerTrajectory
 from liehom.series.arrays import is_jax, is_traced, namespace
 from liehom.tracing import needed
 from liehom.tracing.jax_code import JaxArray
@@ -63,6 +64,7 @@ class JaxEngine:
     name = "jax"
 
     def __init__(self) -> None:
+        _register_with_jax()
         self._programs: dict[Hashable, Program] = {}
         self._steps: dict[Hashable, StepOnJax] = {}
 
@@ -371,3 +373,19 @@ def _rounded(number: int) -> int:
     """
     unit = 1 << max(0, number.bit_length() - 3)
     return -(-number // unit) * unit
+
+
+def _register_with_jax() -> None:
+    """Make `PerTrajectory` a container for JAX, so that jax.grad, jax.jit and jax.vmap look into it."""
+    try:
+        import jax
+    except ImportError:
+        return  # the first run says what is missing
+
+    def made(_: None, inside: tuple[Any, ...]) -> PerTrajectory:
+        found = object.__new__(PerTrajectory)  # JAX puts placeholders into containers
+        (found.value,) = inside
+        return found
+
+    with suppress(ValueError):  # it is registered already
+        jax.tree_util.register_pytree_node(PerTrajectory, lambda given: ((given.value,), None), made)
