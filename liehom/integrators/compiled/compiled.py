@@ -17,17 +17,16 @@ from liehom.integrators.compiled.jax_kernel import JaxKernel
 from liehom.integrators.compiled.parameters import args_of_lanes
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.compiled.widths import operations
 from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.run import Run
-from liehom.tracing import StepGraph, needed
+from liehom.tracing import StepGraph
 from liehom.typing import Array, IntegerArray
 
 PATH_BYTES_PER_CALL = 64_000_000
 """Bytes of points, times and sizes that a kernel call records at most."""
 OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
-ASSUMED_ITERATIONS = 5
-"""Iterations that a loop in a step is assumed to make, for the number of its operations."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
 
@@ -126,7 +125,7 @@ class FastPath:
 
     def __init__(self, groups: list[LaneGroup]) -> None:
         self.groups = groups
-        self.work: int = max((group.kernel.cost * _operations(group.graph) for group in groups), default=1)
+        self.work: int = max((group.kernel.cost * operations(group.graph) for group in groups), default=1)
         self.calls: Array = np.zeros(())
 
     def __call__(self, run: Run) -> bool:
@@ -148,14 +147,6 @@ class FastPath:
         run.state.calls += int(np.max(self.calls) - before)
         state.hand_back()
         return bool((state.going > 0).any())
-
-
-def _operations(graph: StepGraph) -> int:
-    """Approximate number of scalar operations of a step."""
-    rows = needed(graph.outputs)
-    return len(rows) + ASSUMED_ITERATIONS * sum(
-        len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded
-    )
 
 
 class _Lanes:

@@ -26,22 +26,19 @@ from liehom.integrators.compiled.plan import Plan, plan_key
 from liehom.integrators.compiled.schedule import Schedule, schedule
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.compiled.widths import block_width, operations
 from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.options import END
 from liehom.integrators.run.records import bounds_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
-from liehom.tracing import Kernel, LaneConstant, StepGraph, Traced, lanes_per_register, needed
+from liehom.tracing import Kernel, LaneConstant, StepGraph, Traced
 from liehom.typing import Array, IntegerArray, Values
 
-SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
-"""Operations between two loops up to which code is short, and from which on it is long."""
 PATH_BYTES_PER_CALL = 64_000_000
 """Bytes of points, times and sizes that a kernel call records at most."""
 OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
-ASSUMED_ITERATIONS = 5
-"""Iterations that a loop in a step is assumed to make, for the number of its operations."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
 RANKED = 64
@@ -103,8 +100,8 @@ class LlvmEngine:
         """Keep the plan of a call, if it was one that needs nothing but points."""
         o, (_, key, graph) = problem.options, run.groups[0]
         if (
-            problem.args is not None or len(run.groups) > 1 or graph.guard is None or solution.status != END or o.dt is None or not _uniform(o.dt)
-            or o.checkpoint is not None or o.progress or o.dense_output or o.max_steps < np.max(solution.n_steps)
+            problem.args is not None or len(run.groups) > 1 or graph.guard is None or solution.status != END
+            or o.dt is None or not _uniform(o.dt) or o.checkpoint is not None or o.progress or o.dense_output or o.max_steps < np.max(solution.n_steps)
             or run.work * np.sum(solution.n_steps) > OPERATIONS_PER_CALL
         ):  # fmt: skip
             return
@@ -259,7 +256,7 @@ class _CompiledRun:
         for d in np.unique(dimensions):
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
-        self.work = max((_operations(graph) for _, _, graph in self.groups), default=1)
+        self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
         self.schedule = store.schedule(run) if self.groups[0][2].reached is None else None
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **_limits(run), "latest": latest}
@@ -437,23 +434,3 @@ def _records(kernel: Kernel, row: dict[str, Array]) -> dict[str, Array]:
     """The numbers that the steps recorded, by name."""
     names = (*kernel.graph.largest, *kernel.graph.summed)
     return {name: row[f"e{i}"] for i, name in enumerate(names)} if kernel.graph.summed else {}
-
-
-def _operations(graph: StepGraph) -> int:
-    """Approximate number of scalar operations of a step."""
-    rows = needed(graph.outputs)
-    return len(rows) + ASSUMED_ITERATIONS * sum(
-        len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded
-    )
-
-
-def block_width(graph: StepGraph, lanes: int) -> int:
-    """Number of lanes in a block: as many registers for a number as hide latencies and do not run out in long code."""
-    one = lanes_per_register()
-    if lanes <= one:
-        return 1 if lanes == 1 else one
-    ops = needed(graph.outputs)
-    breaks = sum(x.op == "expv" or (x.op == "loop" and not x.value.guarded) for x in ops)
-    registers = 4 if len(ops) < SHORT_OPERATIONS and not breaks else 2
-    widest = one if len(ops) >= LONG_OPERATIONS * (1 + breaks) else registers * one
-    return min(widest, 1 << (lanes - 1).bit_length())

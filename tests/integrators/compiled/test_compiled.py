@@ -258,7 +258,7 @@ def test_machine_code_is_kept_and_damage_is_noticed(cache: Path) -> None:
 
 
 def test_blocks_are_no_wider_than_the_ensemble_and_narrow_in_long_code() -> None:
-    from liehom.integrators.compiled.llvm_engine import block_width
+    from liehom.integrators.compiled.widths import block_width
 
     one = lanes_per_register()
     short, long = (
