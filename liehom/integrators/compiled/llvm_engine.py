@@ -101,8 +101,8 @@ class LlvmEngine:
         o, (_, key, graph) = problem.options, run.groups[0]
         if (
             problem.args is not None or len(run.groups) > 1 or graph.guard is None or solution.status != END
-            or o.dt is None or not _uniform(o.dt) or o.checkpoint is not None or o.progress or o.dense_output or o.max_steps < np.max(solution.n_steps)
-            or run.work * np.sum(solution.n_steps) > OPERATIONS_PER_CALL
+            or o.dt is None or not _uniform(o.dt) or o.checkpoint is not None or o.progress or o.dense_output
+            or o.max_steps < np.max(solution.n_steps) or run.work * np.sum(solution.n_steps) > OPERATIONS_PER_CALL
         ):  # fmt: skip
             return
         start = np.asarray(problem.start)

@@ -30,7 +30,7 @@ def plan_key(t_span: object, y0: object, options: Mapping[str, Any]) -> Hashable
     Examples
     --------
     >>> plan_key((0, 1), np.zeros(3), {"dt": 0.1})
-    (0.0, 1.0, 0.1, None, (3,))
+    (0, 1, 0.1, None, (3,))
     """
     if type(t_span) is not tuple or type(y0) is not np.ndarray or y0.dtype != np.float64:
         return None
