@@ -111,12 +111,14 @@ if TYPE_CHECKING:
     from liehom.catalog import pair as pair
     from liehom.correctors import Conserving as Conserving
     from liehom.correctors import Corrected as Corrected
+    from liehom.correctors import MomentumMap as MomentumMap
     from liehom.correctors import OneExponential as OneExponential
     from liehom.correctors import Step as Step
     from liehom.correctors import chi as chi
     from liehom.correctors import closed_form as closed_form
     from liehom.correctors import correction as correction
     from liehom.correctors import flow_series as flow_series
+    from liehom.correctors import moving_frame_field as moving_frame_field
     from liehom.correctors import order_condition as order_condition
     from liehom.correctors import step_series as step_series
     from liehom.errors import CatalogError as CatalogError
@@ -280,7 +282,8 @@ _NAMES = {
     "liehom.budget": "Limits current_limits limits",
     "liehom.catalog": "pair",
     "liehom.correctors": (
-        "Conserving Corrected OneExponential Step chi closed_form correction flow_series order_condition step_series"
+        "Conserving Corrected MomentumMap OneExponential Step chi closed_form correction flow_series "
+        "moving_frame_field order_condition step_series"
     ),
     "liehom.errors": (
         "CatalogError CertificateError ConvergenceError DamageWarning FieldError FormatError InputError JacobiError "

@@ -66,7 +66,17 @@ WINGS: dict[str, tuple[str, ...]] = {
         "reasons",
         "decide",
     ),
-    "correctors": ("implicit", "step", "expansion", "points", "isotropy", "conserving", "symbolic"),
+    "correctors": (
+        "implicit",
+        "step",
+        "expansion",
+        "points",
+        "curvature",
+        "isotropy",
+        "moving_frame",
+        "conserving",
+        "symbolic",
+    ),
     "integrators": (
         "tableaux",
         "run",

@@ -11,8 +11,13 @@ from liehom.correctors.conserving import ConservedOrder as ConservedOrder
 from liehom.correctors.conserving import Conserving as Conserving
 from liehom.correctors.conserving import ConservingStep as ConservingStep
 from liehom.correctors.conserving import FirstIntegral as FirstIntegral
+from liehom.correctors.conserving import MomentumMap as MomentumMap
 from liehom.correctors.conserving import conservation_map as conservation_map
 from liehom.correctors.conserving import conserved_order as conserved_order
+from liehom.correctors.conserving import cotangent_momentum as cotangent_momentum
+from liehom.correctors.curvature import Submanifold as Submanifold
+from liehom.correctors.curvature import curvature_defect as curvature_defect
+from liehom.correctors.curvature import geodesic_curvature as geodesic_curvature
 from liehom.correctors.expansion import Clock as Clock
 from liehom.correctors.expansion import Flow as Flow
 from liehom.correctors.expansion import flow_series as flow_series
@@ -24,6 +29,7 @@ from liehom.correctors.isotropy import CorrectedStep as CorrectedStep
 from liehom.correctors.isotropy import Correction as Correction
 from liehom.correctors.isotropy import RangeSolver as RangeSolver
 from liehom.correctors.isotropy import correction as correction
+from liehom.correctors.moving_frame import moving_frame_field as moving_frame_field
 from liehom.correctors.step import Generator as Generator
 from liehom.correctors.step import LocalStep as LocalStep
 from liehom.correctors.step import OneExponential as OneExponential

@@ -12,3 +12,5 @@ from liehom.correctors.conserving.conserving import Conserving as Conserving
 from liehom.correctors.conserving.conserving_step import Conserved as Conserved
 from liehom.correctors.conserving.conserving_step import ConservingStep as ConservingStep
 from liehom.correctors.conserving.first_integral import FirstIntegral as FirstIntegral
+from liehom.correctors.conserving.momentum_map import MomentumMap as MomentumMap
+from liehom.correctors.conserving.momentum_map import cotangent_momentum as cotangent_momentum

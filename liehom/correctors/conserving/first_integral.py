@@ -135,7 +135,7 @@ class FirstIntegral:
             Its expansion at a point or several, at least to this order.
         order : int
         scale : array of shape (..., k), optional
-            See `conditioning`; computed if it is not given.
+            The size of F to which derivatives are compared; |F| + |DF| |m| if it is not given.
 
         Raises
         ------
@@ -159,7 +159,7 @@ class FirstIntegral:
         m = flow.point(0)
         exact = is_exact(m)
         if not exact:
-            unit = conditioning(*self.gradient(m), m) if scale is None else scale
+            unit = _largest(*self.gradient(m), m) if scale is None else scale
             sizes = [np.linalg.norm(np.asarray(flow.point(k), dtype=float), axis=-1) for k in range(order + 1)]
         rate: Any = 0.0
         for k in range(1, order + 1):
@@ -191,6 +191,13 @@ def conditioning(value: Values, gradient: Values, m: Values) -> Values:
     [57.0]
     """
     found: Values = np.abs(value) + (np.abs(gradient) @ np.abs(m)[..., None])[..., 0]
+    return found
+
+
+def _largest(value: Values, gradient: Values, m: Values) -> Values:
+    """|F| + |DF| |m|, shape (..., k): at least `conditioning`, and not 0 where m and DF have disjoint coordinates."""
+    lengths = np.linalg.norm(gradient, axis=-1) * np.linalg.norm(m, axis=-1)[..., None]
+    found: Values = np.abs(value) + lengths
     return found
 
 

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra import so
+from liehom.correctors.curvature import Submanifold, geodesic_curvature
 from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import ExponentialLike, Generator, Step
 from liehom.errors import InputError
@@ -254,14 +255,15 @@ class Sphere:
         >>> (sphere.curvature_series(curve).coefficients.round(12) + 0.0).tolist()
         [1.333333333333, 0.0, 0.0]
         """
-        n = curve.order - 2
-        if n < 0:
-            raise InputError(f"a curve of order {curve.order} has no curvature: take order 2 or more")
-        y = curve.coefficients
-        weights = np.arange(1, n + 3).reshape(-1, *[1] * (y.ndim - 1))
-        first = weights * y[1:]
-        second = weights[: n + 1] * first[1:]
-        return self._curvature_along(Jet(y[: n + 1]), Jet(first[: n + 1]), Jet(second))
+        vectors = geodesic_curvature(curve, Submanifold.level_set(lambda m: np.sum(m * m, axis=-1), self.k))
+        if self.k != 3:
+            return vectors
+        y, n = curve.coefficients, vectors.order
+        m: Any = Jet(y[: n + 1])
+        velocity: Any = Jet(np.arange(1, n + 2).reshape(-1, *[1] * (y.ndim - 1)) * y[1 : n + 2])
+        left: Any = np.cross(m, velocity)
+        signed: Jet = np.sum(vectors * left, axis=-1) / np.sqrt(np.sum(left * left, axis=-1))
+        return signed
 
     def improvement(self, field: GeneratorField, m: npt.ArrayLike, t: Real = 0.0) -> Array:
         """Isotropy with which Euler's step with the orthogonal generator follows the osculating circle: (3.7).
@@ -295,17 +297,6 @@ class Sphere:
             return vector
         signed: Array = np.sum(vector * np.cross(m / np.sqrt(dot(m, m)), unit), axis=-1)
         return signed
-
-    def _curvature_along(self, m: Any, x: Any, acceleration: Any) -> Jet:
-        """Curvature along Jets of points, velocities and accelerations; the velocities are not 0."""
-        if self.k == 3:
-            above: Any = np.sum(acceleration * np.cross(m, x), axis=-1)
-            signed: Jet = above / (np.sqrt(np.sum(m * m, axis=-1)) * np.sum(x * x, axis=-1) ** 1.5)
-            return signed
-        square = dot(x, x)
-        rest = acceleration - m * (dot(acceleration, m) / dot(m, m)) - x * (dot(acceleration, x) / square)
-        vector: Jet = rest / square
-        return vector
 
     def __repr__(self) -> str:
         return f"Sphere({self.k})" if self.radius == 1 else f"Sphere({self.k}, radius={self.radius})"
