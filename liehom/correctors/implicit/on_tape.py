@@ -98,20 +98,45 @@ def _whole(equation: Equation, x: Tracer) -> Tracer:
     return np.stack([np.stack(row) for row in rows])
 
 
-def solved_by_jax(equation: Equation, start: Tracer) -> Tracer:
-    """Solution of x = F(A x) on JAX arrays of shape (S, ..., n), by a loop of fixed length."""
+def solved_by_jax(equation: Equation, start: Tracer, reach: float) -> Tracer:
+    """Solution of x = F(A x) on JAX arrays of shape (S, ..., n); NaN for trajectories for which none is found.
+
+    Iterations are not differentiated. One more step of Newton's method from the solution has the derivative that the
+    implicit function theorem gives.
+    """
     jax = import_module("jax")
     jnp = jax.numpy
     s, n = start.shape[0], start.shape[-1]
     if s * n > MAX_TRACED:
         # a loop, as sixty copies of the function would take minutes to compile
-        return jax.lax.fori_loop(0, JAX_ITERATIONS, lambda _, x: equation.value(x), start)
-    lead, matrix, one = start.shape[1:-1], jnp.asarray(equation.matrix), jnp.eye(s * n)
+        found = jax.lax.fori_loop(0, JAX_ITERATIONS, lambda _, x: equation.value(x), start)
+        return jnp.where(_is_small(equation.value(found) - found, found), found, jnp.nan)
+    lead, matrix, one = start.shape[1:-1], jnp.asarray(equation.matrix, start.dtype), jnp.eye(s * n, dtype=start.dtype)
 
-    def iteration(_: int, x: Tracer) -> Tracer:
+    def newton(x: Tracer) -> Tracer:
         whole = jnp.einsum("i...ab,ij->...iajb", equation.blocks(x), matrix).reshape(*lead, s * n, s * n)
         right = jnp.moveaxis(equation.value(x) - x, 0, -2).reshape(*lead, s * n, 1)
         step = jnp.linalg.solve(one - whole, right).reshape(*lead, s, n)
-        return x + jnp.moveaxis(step, -2, 0)
+        return jnp.moveaxis(step, -2, 0)
 
-    return jax.lax.fori_loop(0, NEWTON_ITERATIONS, iteration, start)
+    def iteration(state: tuple[int, Tracer, Tracer]) -> tuple[int, Tracer, Tracer]:
+        k, x, _ = state
+        step = newton(x)
+        length = jnp.sqrt(jnp.sum(step * step, axis=(0, -1), keepdims=True))
+        along = (jnp.sum(step * (equation.value(x) - x), axis=(0, -1), keepdims=True) > 0) | (length <= 0.1 * reach)
+        step = step * jnp.where(length > reach, reach / jnp.where(length > reach, length, 1.0), 1.0)
+        step = jnp.where(along, step, jnp.nan)  # it would lead to another solution, far away
+        return k + 1, x + step, jnp.all(_is_small(step, x) | ~jnp.isfinite(step))
+
+    found = jax.lax.while_loop(lambda s: (s[0] < NEWTON_ITERATIONS) & ~s[2], iteration, (0, start, start.size == 0))[1]
+    found = jax.lax.stop_gradient(found)
+    step = newton(found)
+    return jnp.where(_is_small(jax.lax.stop_gradient(step), found), found + step, jnp.nan)
+
+
+def _is_small(change: Tracer, x: Tracer) -> Tracer:
+    """Whether a change of x (S, ..., n) is below 10^4 units of round-off, bool (1, ..., 1); False for NaN."""
+    jnp = import_module("jax.numpy")
+    bound = 1e4 * float(jnp.finfo(x.dtype).eps) * jnp.maximum(jnp.max(jnp.abs(x), axis=(0, -1), keepdims=True), 1.0)
+    small: Tracer = jnp.max(jnp.abs(change), axis=(0, -1), keepdims=True) <= bound
+    return small

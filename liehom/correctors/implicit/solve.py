@@ -83,7 +83,7 @@ def solve_implicitly(
     if tape is not None:
         found: Any = solved_on_tape(equation, start, tape, SLOW, reach)
     else:
-        found = solved_by_jax(equation, start) if is_jax(start) else _solved(equation, np.asarray(start), reach)
+        found = solved_by_jax(equation, start, reach) if is_jax(start) else _solved(equation, np.asarray(start), reach)
     solution: Values = found if rows is not None else _shaped(found[0], shape, stacked)
     return solution
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple, final
 import numpy as np
 
 from liehom.representations import Representation
+from liehom.series.arrays import namespace
 from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
 from liehom.typing import Array, IntegerArray, Values
@@ -69,7 +70,7 @@ class Quadrics:
     def levels(self, m: Values) -> Values:
         """The values m^T Q_b m of the forms, shape (..., number of blocks)."""
         values = [self._value(block, self._part(block, m)) for block in self.blocks]
-        found: Values = np.stack(values, axis=-1)
+        found: Values = namespace(m).stack(values, axis=-1)
         return found
 
     def project(self, m: Values, levels: Values) -> Values:
@@ -84,13 +85,13 @@ class Quadrics:
         for block, part in zip(self.blocks, made, strict=True):
             for j, i in enumerate(block.indices):
                 columns[i] = part[..., j]
-        points: Values = np.stack(columns, axis=-1)
+        points: Values = namespace(m).stack(columns, axis=-1)
         return points
 
     def _part(self, block: Block, m: Values) -> Values:
         if len(block.indices) == self.size:
             return m
-        part: Values = np.stack([m[..., i] for i in block.indices], axis=-1)
+        part: Values = namespace(m).stack([m[..., i] for i in block.indices], axis=-1)
         return part
 
     @staticmethod
@@ -100,13 +101,13 @@ class Quadrics:
 
     def _projected(self, block: Block, m: Values, level: Values) -> Values:
         if block.form is None:
-            scaled: Values = m * np.sqrt(level / (m * m).sum(axis=-1))[..., None]
+            scaled: Values = m * namespace(m).sqrt(level / (m * m).sum(axis=-1))[..., None]
             return scaled
         gradient = _times(m, block.form)
         square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
         # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
         curvature = self._value(block, gradient)
-        share = missing / (square + np.sqrt(square * square + missing * curvature))
+        share = missing / (square + namespace(m).sqrt(square * square + missing * curvature))
         moved: Values = m + share[..., None] * gradient
         return moved
 

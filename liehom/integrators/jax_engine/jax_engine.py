@@ -36,7 +36,7 @@ from liehom.integrators.run.control import ERROR_TERMS
 from liehom.integrators.run.solution import Solution
 from liehom.pytrees import PerTrajectory
 from liehom.series.arrays import is_jax, is_traced, namespace
-from liehom.tracing import needed
+from liehom.tracing import StepGraph, needed
 from liehom.tracing.jax_code import JaxArray
 
 MAX_GRAPH_OPERATIONS = 700
@@ -89,8 +89,7 @@ class JaxEngine:
         if key not in self._steps:
             try:
                 graph = traced_step(action, problem.field, step, points, dimension, nominal=o.nominal)
-                short = len(needed([*graph.point, *graph.summed.values()])) <= MAX_GRAPH_OPERATIONS
-                made: StepOnJax = GraphStep(graph) if short or isinstance(step, Conserving) else array
+                made: StepOnJax = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
             except TraceError:
                 made = array
             self._steps[key] = made
@@ -321,6 +320,12 @@ class _Call:
 
 
 # -- private helpers -------------------------------------------------------------------------------------
+def _is_short(graph: StepGraph) -> bool:
+    """Whether a graph is compiled as such: array code differentiates loops by the implicit function theorem."""
+    operations = needed([*graph.point, *graph.summed.values()])
+    return len(operations) <= MAX_GRAPH_OPERATIONS and not any(x.op == "loop" for x in operations)
+
+
 def _output_times(problem: Problem) -> JaxArray:
     """Times of `t_eval`, by default the initial and the final time."""
     times = problem.options.t_eval

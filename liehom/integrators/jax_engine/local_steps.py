@@ -129,7 +129,7 @@ class ArrayStep:
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
         """The step at the points m (..., N) and times t (...,)."""
-        psi = Generator(field, self.orbit_dimension)
+        psi = Generator(field, self.orbit_dimension, start)
         local = self.step.at(self.action, psi, m, t[..., None], error_terms=self.error_terms)
         clock: Any = () if self.nominal else local.clock
         return LocalOnJax(partial(_moved, local, self.step, m, t), clock, local)

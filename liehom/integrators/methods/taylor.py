@@ -22,6 +22,7 @@ from liehom.homogeneous import Action
 from liehom.homogeneous.exponentials import TrueExponential
 from liehom.homogeneous.orbits.quadrics import Quadrics, quadric_orbits
 from liehom.integrators.run.control import length
+from liehom.series.arrays import is_traced, namespace
 from liehom.series.jet import Jet
 from liehom.tracing import Traced
 from liehom.typing import Array, IntegerArray, Values
@@ -94,7 +95,7 @@ class Taylor(Step):
     def _quadrics(self, action: Action, psi: Generator, m: Values) -> Quadrics | None:
         if ("quadrics", self) not in psi.prepared:
             start: Any = psi.start if psi.start is not None else m
-            points = np.zeros((0, m.shape[-1])) if isinstance(start, Traced) else start
+            points = np.zeros((0, m.shape[-1])) if is_traced(start) else start
             psi.prepared["quadrics", self] = quadric_orbits(action.representation, psi.orbit_dimension, points)
         found: Quadrics | None = psi.prepared["quadrics", self]
         return found
@@ -206,7 +207,7 @@ class LandedSeries(TaylorSeries):
         frame = self.action.isotropy_frame(near, self._dimension)
         eta, made = None, near
         for _ in range(self.iterations):
-            tangential = (np.swapaxes(frame.tangent, -1, -2) @ (wanted - made)[..., None])[..., 0]
+            tangential = (namespace(near).swapaxes(frame.tangent, -1, -2) @ (wanted - made)[..., None])[..., 0]
             change = (frame.lift @ tangential[..., None])[..., 0]
             eta = change if eta is None else eta + change
             made = self.action.act(eta, near)
