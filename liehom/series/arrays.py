@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from liehom.errors import FieldError, SeriesError, SingularError
 from liehom.tracing.array import Traced
+from liehom.tracing.lattice.lattice_array import LatticeTraced
 from liehom.typing import Number, ObjectArray, Values
 
 ExactNumber: TypeAlias = Any
@@ -64,7 +65,7 @@ def is_lazy(x: object) -> TypeGuard[Any]:
     >>> is_lazy(np.zeros(2))
     False
     """
-    return type(x) is Traced or is_jax(x)
+    return type(x) is Traced or type(x) is LatticeTraced or is_jax(x)
 
 
 def is_traced(x: object) -> bool:

@@ -120,6 +120,10 @@ class Tape:
             self.recorded.append(found)
         return found
 
+    def again(self, x: Expr, args: tuple[Expr, ...]) -> Expr:
+        """The operation of x with other arguments."""
+        return self._make(x.op, args, x.value)
+
     # -- arithmetic --------------------------------------------------------------------------------------
     def add(self, a: Expr, b: Expr) -> Expr:
         """a + b."""

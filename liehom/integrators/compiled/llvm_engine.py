@@ -21,6 +21,7 @@ from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import Action
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.compiled.lanes import HandBack, Made, run_blocks
+from liehom.integrators.compiled.lattice import solved_on_lattice
 from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
 from liehom.integrators.compiled.plan import Plan, plan_key
 from liehom.integrators.compiled.schedule import Schedule, schedule
@@ -69,6 +70,8 @@ class LlvmEngine:
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
+        if problem.field.sites:
+            return solved_on_lattice(problem)
         made: list[_CompiledRun] = []
 
         def fast_path(run: Run) -> Callable[[Run], bool]:

@@ -1,0 +1,283 @@
+"""Lattice fields in machine code: the stages of an explicit step, each for all sites, by the engine "llvm".
+
+Every trajectory of the run is a site, and psi couples the sites. psi is traced at one site, with np.roll as loads at
+shifted sites; the step is cut where it calls psi, because psi needs the points of that stage at all sites.
+"""
+
+from __future__ import annotations
+
+import time as wall
+from typing import Any, final
+
+import numpy as np
+
+from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.errors import InputError, LiehomError, TraceError
+from liehom.homogeneous import Action, GeneratorField
+from liehom.integrators.engine import Problem
+from liehom.integrators.run.clock import SLACK
+from liehom.integrators.run.run import Run
+from liehom.series.jet import Jet
+from liehom.tracing import Expr, Tape, Traced, needed
+from liehom.tracing.lattice import LatticeKernel, LatticeTraced, SiteInputs, Stage
+from liehom.typing import Array, Values
+
+SECONDS_PER_CALL = 0.5
+"""Seconds of steps in machine code between progress, checkpoints and Ctrl-C."""
+
+
+@final
+class LatticeStep(Step):
+    """An explicit step of a lattice field in machine code.
+
+    Parameters
+    ----------
+    step : Step
+    field : GeneratorField
+        With `sites`.
+    action : Action
+    orbit_dimension : int
+    workers : int
+        Number of threads.
+
+    Raises
+    ------
+    TraceError
+        If the step cannot be compiled.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> chain = lh.LandauLifshitz((8,), exchange=1.0)
+    >>> made = LatticeStep(lh.Heun(), chain.field, lh.Action(chain.field.representation), 2)
+    >>> made.order, made.calls
+    (2, 2)
+    """
+
+    def __init__(
+        self, step: Step, field: GeneratorField, action: Action, orbit_dimension: int, *, workers: int = 1
+    ) -> None:
+        self.step, self.workers = step, workers
+        try:
+            recorded = _Recorded(step, field, action, orbit_dimension)
+        except TraceError as error:
+            raise TraceError(f"{step!r} cannot be compiled on a lattice: {error}") from error
+        except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
+            raise TraceError(
+                f"{step!r} cannot be compiled on a lattice, because its code does not run on one traced site "
+                f"({type(error).__name__}: {error}): write psi with numpy functions of the last axis and np.roll, or "
+                "take engine='numpy'"
+            ) from error
+        self.kernel = LatticeKernel(
+            recorded.inputs, recorded.stages, recorded.time, recorded.size, field.representation.size
+        )
+        self.calls: int = recorded.calls
+        self.estimate_order: int | None = recorded.estimate_order
+
+    @property
+    def order(self) -> int:
+        return self.step.order
+
+    def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> tuple[Values, ...]:
+        return self.step.factors(action, psi, m, t, h)
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        if isinstance(m, Jet) or not isinstance(m, np.ndarray) or m.dtype != np.float64:
+            return self.step.at(action, psi, m, t, error_terms=error_terms)
+        if error_terms and self.estimate_order is None:
+            raise InputError(
+                f"{self.step!r} has no estimate of its error in machine code on a lattice: give dt, take a pair such as "
+                "RKMK('rk45'), or engine='numpy'"
+            )
+        return _LatticeLocal(self, action, m, t) if self.estimate_order is None else _Estimated(self, action, m, t)
+
+    def made(self, m: Array, t: Array, h: Array) -> tuple[Array, Array | None]:
+        """Points after steps of sizes h from (m, t), and estimates of the error, lattice by lattice."""
+        sites = self.kernel.layout.sites
+        lead = m.shape[: m.ndim - 1 - len(sites)]
+        first = (0,) * len(sites)
+        points = np.empty(m.shape)
+        errors = None if self.estimate_order is None else np.empty(m.shape)
+        for index in np.ndindex(*lead):
+            size = float(h[index + first])
+            if size == 0:
+                points[index] = m[index]
+                if errors is not None:
+                    errors[index] = 0.0
+                continue
+            self.kernel.put(m[index])
+            self.kernel.run(0, 1, float(t[index + first]), size, self.workers)
+            points[index] = self.kernel.get()
+            if errors is not None:
+                errors[index] = self.kernel.get("e")
+        return points, errors
+
+    def __repr__(self) -> str:
+        return repr(self.step)
+
+
+class _LatticeLocal(LocalStep):
+    """A step from one state of the lattices, by machine code."""
+
+    def __init__(self, step: LatticeStep, action: Action, m: Array, t: Values) -> None:
+        super().__init__(action, m, point=self._moved)
+        self.step, self.t = step, np.broadcast_to(np.asarray(t)[..., 0], m.shape[:-1])
+        self._last: tuple[Array, tuple[Array, Array | None]] | None = None
+
+    def _made(self, h: Values) -> tuple[Array, Array | None]:
+        sizes = np.broadcast_to(np.asarray(h)[..., 0], self.m.shape[:-1])
+        if self._last is None or not np.array_equal(self._last[0], sizes):
+            start: Any = self.m
+            self._last = sizes.copy(), self.step.made(np.asarray(start), self.t, sizes)
+        return self._last[1]
+
+    def _moved(self, h: Values) -> Values:
+        return self._made(h)[0]
+
+
+@final
+class _Estimated(_LatticeLocal):
+    """The same with the estimate of an embedded pair."""
+
+    @property
+    def estimate_order(self) -> int:
+        """The estimate is of this order in h."""
+        return int(self.step.estimate_order or 0)
+
+    def estimate(self, h: Values) -> Values:
+        """Estimate of the error as a vector in V, shape (..., N)."""
+        found: Any = self._made(h)[1]
+        made: Values = found
+        return made
+
+
+class _Recorded:
+    """The stages of a step at one site."""
+
+    def __init__(self, step: Step, field: GeneratorField, action: Action, orbit_dimension: int) -> None:
+        self.field, self.calls = field, 0
+        self.tape = tape = Tape()
+        self.inputs = SiteInputs(tape, field.sites)
+        self.time, self.size = self.inputs.fresh(), self.inputs.fresh()
+        self.stages = [Stage()]
+        n = field.representation.size
+        self.start = [self.inputs.load(("m", 0, c), self._here) for c in range(n)]
+        psi = Generator(GeneratorField(field.representation, self._psi, time_dependent=True), orbit_dimension)
+        h: Values = Traced(tape, self.size)[..., None]
+        local = step.at(action, psi, Traced(tape, self.start), Traced(tape, self.time)[..., None])
+        made: list[tuple[str, Any]] = [("m", local.point(h))]
+        estimate: Any = getattr(local, "estimate", None)
+        self.estimate_order: int | None = getattr(local, "estimate_order", None) if estimate is not None else None
+        if estimate is not None:
+            made.append(("e", estimate(h)))
+        if tape.required:
+            raise TraceError("an implicit step is solved at all sites together: take an explicit one")
+        for name, values in made:
+            entries = Traced(tape, values).entries.reshape(n)
+            self.stages[-1].stores += [((name, 0, c), x) for c, x in enumerate(entries)]
+
+    @property
+    def _here(self) -> tuple[int, ...]:
+        return (0,) * len(self.field.sites)
+
+    def _psi(self, m: Values, t: Values) -> Values:
+        """Values of psi at a stage, as inputs that stand for them."""
+        if type(m) is not Traced or type(t) is not Traced:
+            raise TraceError(
+                "it expands psi in a series, which needs derivatives at other sites: take Euler, Heun, RKMK(...) or a "
+                "product of exponentials"
+            )
+        tape, lattice = self.tape, len(self.field.sites)
+        entries: list[Expr] = list(m.entries.reshape(-1))
+        if any(x.op in ("variable", "flag", "loop") for x in needed(entries)):
+            raise TraceError("an implicit step is solved at all sites together: take an explicit one")
+        plane = "m", 0
+        if any(x is not y for x, y in zip(entries, self.start, strict=True)):
+            plane = "y", self.calls
+            self.stages[-1].stores += [((*plane, c), x) for c, x in enumerate(entries)]
+            self.stages.append(Stage())
+        self.calls += 1
+        loads = np.array([self.inputs.load((*plane, c), self._here) for c in range(len(entries))], dtype=object)
+        point = LatticeTraced(self.inputs, Traced(tape, loads.reshape((1,) * lattice + loads.shape)))
+        moment = LatticeTraced(self.inputs, Traced(tape, np.broadcast_to(t.entries.reshape(()), (1,) * lattice)))
+        found: Any = self.field.psi(point, moment)  # type: ignore[arg-type]
+        values = found.inner.entries if isinstance(found, LatticeTraced) else Traced(tape, found).entries
+        made = np.empty(self.field.representation.algebra.dimension, dtype=object)
+        for a, x in enumerate(np.broadcast_to(values, (*(1,) * lattice, len(made))).reshape(-1)):
+            made[a] = x
+            if not x.constant:
+                made[a] = self.inputs.fresh()
+                self.stages[-1].values.append((made[a], x))
+        return Traced(tape, made)
+
+
+@final
+class LatticePath:
+    """Ordinary steps of a run on lattices: those of fixed size before the last one and before an output time.
+
+    Parameters
+    ----------
+    step : LatticeStep
+    """
+
+    def __init__(self, step: LatticeStep) -> None:
+        self.step = step
+        self.stopped = False
+        self._per_call = 1
+
+    def __call__(self, run: Run) -> bool:
+        """Make steps until the next one is not ordinary or a call is full; whether any was made."""
+        now, dt, total = run.state, run.options.dt, run.total
+        if self.stopped or dt is None or total is None or run.events is not None or not now.active.all():
+            return False
+        taken, size = int(np.max(now.taken)), float(run.direction) * float(np.max(dt))
+        limit = min(int(np.max(total)) - 1, run.options.max_steps - 1)
+        if now.samples is not None:
+            done, times = int(np.min(now.samples.done)), now.samples.times
+            if done < len(times):
+                limit = min(limit, int(np.ceil(abs(times[done] - run.span[0]) / abs(size) - SLACK)) - 1)
+        steps = min(int(limit) - taken, 1 if run.keeps else self._per_call)
+        if steps < 1 or int(np.min(now.taken)) != taken:
+            return False
+        begin = wall.perf_counter()
+        kernel, sites = self.step.kernel, self.step.kernel.layout.sites
+        made = np.empty(run.start.shape)
+        for index in np.ndindex(*run.shape[: len(run.shape) - len(sites)]):
+            kernel.put(now.m[index])
+            kernel.run(taken, taken + steps, float(run.span[0]), size, self.step.workers)
+            made[index] = kernel.get()
+        if not np.isfinite(made).all():
+            self.stopped = True  # from here on the run makes the steps one by one, and finds the one that fails
+            return False
+        spent = (wall.perf_counter() - begin) / steps
+        self._per_call = max(1, int(SECONDS_PER_CALL / max(spent, 1e-7)))
+        now.m, now.taken = made, now.taken + steps
+        now.t = np.full(run.shape, run.span[0] + (taken + steps) * size)
+        now.calls += steps * self.step.calls
+        if run.keeps:
+            moved = np.ones(run.shape, dtype=bool)
+            now.path.add(now.t, now.m, np.full(run.shape, size), moved)
+        return True
+
+
+def lattice_step(problem: Problem, workers: int) -> LatticeStep:
+    """The step of a problem on a lattice in machine code.
+
+    Raises
+    ------
+    InputError
+        If the problem has something that is not compiled.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> chain, m = lh.LandauLifshitz((3,), exchange=1.0), np.eye(3)
+    >>> problem = lh.Propagator(chain.field, lh.Euler()).problem((0, 1), m, dt=0.1)
+    >>> lattice_step(problem, 1)
+    Euler()
+    """
+    start: Any = problem.start
+    if start.dtype != np.float64:
+        raise InputError(f"engine='llvm' computes in float64, the start is of type {start.dtype}: take engine='numpy'")
+    dimension = int(np.max(problem.orbit_dimension))
+    return LatticeStep(problem.step, problem.field, problem.action, dimension, workers=workers)
