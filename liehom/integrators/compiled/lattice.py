@@ -7,6 +7,7 @@ shifted sites; the step is cut where it calls psi, because psi needs the points 
 from __future__ import annotations
 
 import time as wall
+from dataclasses import replace
 from typing import Any, final
 
 import numpy as np
@@ -14,9 +15,11 @@ import numpy as np
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError, LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.integrators.engine import Problem
+from liehom.integrators.compiled.lanes import cores
+from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.run import Run
+from liehom.integrators.run.solution import Solution
 from liehom.series.jet import Jet
 from liehom.tracing import Expr, Tape, Traced, needed
 from liehom.tracing.lattice import LatticeKernel, LatticeTraced, SiteInputs, Stage
@@ -86,8 +89,8 @@ class LatticeStep(Step):
             return self.step.at(action, psi, m, t, error_terms=error_terms)
         if error_terms and self.estimate_order is None:
             raise InputError(
-                f"{self.step!r} has no estimate of its error in machine code on a lattice: give dt, take a pair such as "
-                "RKMK('rk45'), or engine='numpy'"
+                f"{self.step!r} has no estimate of its error in machine code on a lattice: give dt, take a pair such "
+                "as RKMK('rk45'), or engine='numpy'"
             )
         return _LatticeLocal(self, action, m, t) if self.estimate_order is None else _Estimated(self, action, m, t)
 
@@ -260,8 +263,8 @@ class LatticePath:
         return True
 
 
-def lattice_step(problem: Problem, workers: int) -> LatticeStep:
-    """The step of a problem on a lattice in machine code.
+def solved_on_lattice(problem: Problem) -> Solution:
+    """The solution of a problem whose trajectories are the sites of lattices.
 
     Raises
     ------
@@ -272,12 +275,12 @@ def lattice_step(problem: Problem, workers: int) -> LatticeStep:
     --------
     >>> import liehom as lh
     >>> chain, m = lh.LandauLifshitz((3,), exchange=1.0), np.eye(3)
-    >>> problem = lh.Propagator(chain.field, lh.Euler()).problem((0, 1), m, dt=0.1)
-    >>> lattice_step(problem, 1)
-    Euler()
+    >>> solved_on_lattice(lh.Propagator(chain.field, lh.Euler()).problem((0, 1), m, dt=0.1)).status
+    0
     """
     start: Any = problem.start
     if start.dtype != np.float64:
         raise InputError(f"engine='llvm' computes in float64, the start is of type {start.dtype}: take engine='numpy'")
     dimension = int(np.max(problem.orbit_dimension))
-    return LatticeStep(problem.step, problem.field, problem.action, dimension, workers=workers)
+    step = LatticeStep(problem.step, problem.field, problem.action, dimension, workers=cores())
+    return executed(replace(problem, step=step), lambda run: LatticePath(step))

@@ -1,8 +1,8 @@
 """LatticeTraced: values at one site of a lattice, on which numpy code for the whole lattice runs.
 
-Its shape is (n_1, ..., n_L, ...) as for arrays of values at all sites, but it holds one site only. Functions of the last
-axes run on that site; np.roll along an axis of the lattice shifts the sites at which numbers are loaded; arrays of
-numbers over the lattice become loads too.
+Its shape is (n_1, ..., n_L, ...) as for arrays of values at all sites, but it holds one site only. Functions of the
+last axes run on that site. np.roll along an axis of the lattice shifts the sites at which numbers are loaded, and
+arrays of numbers over the lattice become loads too.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ class LatticeTraced(NDArrayOperatorsMixin):
     def __len__(self) -> int:
         return self.shape[0]
 
-    def reshape(self, *shape: Any) -> LatticeTraced:
+    def reshape(self, *shape: Operand) -> LatticeTraced:
         """Array with other last axes."""
         wanted = tuple(shape[0]) if len(shape) == 1 and not isinstance(shape[0], int) else shape
         lattice = len(self.inputs.sites)
@@ -174,9 +174,11 @@ class LatticeTraced(NDArrayOperatorsMixin):
 
     # -- numpy's protocols -------------------------------------------------------------------------------
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
-        raise TraceError("psi makes an array of numbers of values on the lattice, which compiled code does not know yet")
+        raise TraceError(
+            "psi makes an array of numbers of values on the lattice, which compiled code does not know yet"
+        )
 
-    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: Any) -> Any:
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: object, **options: Operand) -> Operand:
         if any(type(x).__name__ == "Jet" for x in inputs):
             return NotImplemented
         out = options.pop("out", None)
@@ -192,8 +194,12 @@ class LatticeTraced(NDArrayOperatorsMixin):
         return out[0]
 
     def __array_function__(
-        self, function: Callable[..., Any], types: Iterable[type], args: tuple[Any, ...], options: dict[str, Any]
-    ) -> Any:
+        self,
+        function: Callable[..., Any],
+        types: Iterable[type],
+        args: tuple[Operand, ...],
+        options: dict[str, Operand],
+    ) -> Operand:
         name, sites = function.__name__, self.inputs.sites
         first = args[0] if args else None
         if name == "roll":
@@ -202,33 +208,37 @@ class LatticeTraced(NDArrayOperatorsMixin):
             return getattr(first, name)
         if name == "broadcast_to" and isinstance(first, LatticeTraced):
             shape = tuple(args[1])
-            return LatticeTraced(self.inputs, np.broadcast_to(first.inner, (1,) * len(sites) + shape[len(sites) :]))
+            inner_shape = (1,) * len(sites) + shape[len(sites) :]
+            spread: Operand = np.broadcast_to(first.inner.entries, inner_shape)
+            return LatticeTraced(self.inputs, Traced(self.inputs.tape, spread))
         if name in REDUCTIONS and isinstance(first, LatticeTraced):
             axis = args[1] if len(args) > 1 and name != "norm" else options.get("axis")
             axes = (axis,) if isinstance(axis, int) else tuple(axis or ())
             if not axes or any(a % first.ndim < len(sites) for a in axes):
-                raise TraceError(f"np.{name} over the sites of the lattice is not compiled: sum over the last axes only")
+                raise TraceError(
+                    f"np.{name} over the sites of the lattice is not compiled: sum over the last axes only"
+                )
         inner = max(_dimensions(args), _dimensions(tuple(options.values())))
         made = function(*self._at_sites(args, inner), **{k: self._at_sites(v, inner) for k, v in options.items()})
         if isinstance(made, list | tuple):
             return type(made)(LatticeTraced(self.inputs, x) for x in made)
         return LatticeTraced(self.inputs, made) if isinstance(made, Traced) else made
 
-    def _rolled(self, x: Any, shift: Any, axis: Any = None) -> LatticeTraced:
+    def _rolled(self, x: Operand, shift: Operand, axis: Operand = None) -> LatticeTraced:
         lattice = len(self.inputs.sites)
         if axis is None or not isinstance(x, LatticeTraced):
             raise TraceError("np.roll without an axis is not compiled on a lattice")
         pairs = np.broadcast(shift, axis)
-        made, offset = x.inner, [0] * lattice
+        made, offset = x.inner.entries, [0] * lattice
         for number, place in pairs:
             if int(place) % x.ndim < lattice:
                 offset[int(place) % x.ndim] -= int(number)
             else:
                 made = np.roll(made, int(number), axis=int(place))
         entries = np.empty(made.shape, dtype=object)
-        for index, entry in np.ndenumerate(made.entries):
+        for index, entry in np.ndenumerate(made):
             entries[index] = self.inputs.shifted(entry, tuple(offset))
-        return LatticeTraced(self.inputs, Traced(made.tape, entries))
+        return LatticeTraced(self.inputs, Traced(self.inputs.tape, entries))
 
     def _at_sites(self, x: Operand, inner: int) -> Operand:
         if isinstance(x, list | tuple) and any(isinstance(e, LatticeTraced | np.ndarray | list | tuple) for e in x):

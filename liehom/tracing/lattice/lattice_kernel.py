@@ -26,8 +26,8 @@ from liehom.typing import Array, IntegerArray
 Plane: TypeAlias = tuple[str, int, int]
 """Name of a plane: "m" the point, "y" points of stages, "f" values of psi, "e" the error, "array" given numbers."""
 
-REGISTERS = 2
-"""Vector registers for a number: as many as hide latencies and do not run out."""
+PAGE, SKEW = 512, 80
+"""Planes begin 80 numbers beyond a multiple of 512: planes that begin alike compete for the same cache lines."""
 SITES_FOR_THREADS = 20_000
 """Sites from which on threads share the rows of a stage."""
 ARGUMENTS = "ptr %planes, ptr %rows, i64 %first, i64 %last, i64 %columns, double %time, double %size"
@@ -79,7 +79,7 @@ class Layout:
         row = left + max(columns, sites[-1] + reach[-1])
         self.shape = (*(n + 2 * r for n, r in zip(sites[:-1], reach[:-1], strict=True)), -(-row // width) * width)
         self.first = (*reach[:-1], left)
-        self.size = int(np.prod(self.shape)) + width
+        self.size = -(-(int(np.prod(self.shape)) + width) // PAGE) * PAGE + SKEW
         self.strides = tuple(int(np.prod(self.shape[k + 1 :])) for k in range(len(sites)))
         starts = [np.arange(n) + a for n, a in zip(sites[:-1], self.first[:-1], strict=True)]
         places = np.zeros((1,) * max(len(starts), 1), dtype=np.int64)
@@ -130,7 +130,7 @@ class LatticeKernel:
         self._store_values()
         reach = np.zeros((1, len(inputs.sites)), dtype=int)
         shifts = [offset for loads in self._loads for _, offset in loads.values()]
-        width = REGISTERS * lanes_per_register()
+        width = lanes_per_register()
         self.layout = Layout(
             inputs.sites, tuple(int(r) for r in np.abs(np.concatenate([reach, np.array(shifts)])).max(axis=0)), width
         )
@@ -200,7 +200,9 @@ class LatticeKernel:
             declared |= w.declared
             functions |= w.functions
             stages.append("\n".join(w.lines))
-        attributes = 'attributes #0 = { nounwind "prefer-vector-width"="512" }\n!0 = !{!"branch_weights", i32 1, i32 1000}\n'
+        attributes = (
+            'attributes #0 = { nounwind "prefer-vector-width"="512" }\n!0 = !{!"branch_weights", i32 1, i32 1000}\n'
+        )
         parts = ["\n".join(dict.fromkeys(declared.values())), *functions.values(), *stages, _MARGINS, self._loop()]
         return "\n\n".join([*parts, attributes])
 
@@ -280,7 +282,7 @@ class LatticeKernel:
     # -- steps -------------------------------------------------------------------------------------------
     def _signatures(self) -> dict[str, list[type]]:
         p, i, d = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-        stages = {f"stage{k}": [p, p, i, i, i, d, d] for k in range(len(self.stages))}
+        stages: dict[str, list[type]] = {f"stage{k}": [p, p, i, i, i, d, d] for k in range(len(self.stages))}
         return {**stages, "margins": [p, p, p, i], "run": [p, p, i, i, p, p, i, i, i, d, d]}
 
     def put(self, m: Array) -> None:
