@@ -178,14 +178,17 @@ if TYPE_CHECKING:
     from liehom.integrators import Composition as Composition
     from liehom.integrators import CrouchGrossman3 as CrouchGrossman3
     from liehom.integrators import Euler as Euler
+    from liehom.integrators import ExponentialRosenbrock as ExponentialRosenbrock
     from liehom.integrators import Heun as Heun
     from liehom.integrators import IsospectralMidpoint as IsospectralMidpoint
     from liehom.integrators import LieTaylor as LieTaylor
     from liehom.integrators import MoserVeselov as MoserVeselov
     from liehom.integrators import Propagator as Propagator
+    from liehom.integrators import Rosenbrock as Rosenbrock
     from liehom.integrators import Solution as Solution
     from liehom.integrators import SphericalMidpoint as SphericalMidpoint
     from liehom.integrators import Splitting as Splitting
+    from liehom.integrators import StiffRKMK as StiffRKMK
     from liehom.integrators import Tableau as Tableau
     from liehom.integrators import Taylor as Taylor
     from liehom.integrators import VariationalMidpoint as VariationalMidpoint
@@ -301,7 +304,7 @@ _NAMES = {
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK Solution Tableau "
         "Taylor integrate integrate_ensemble observed_order tableau Composition IsospectralMidpoint "
-        "MoserVeselov SphericalMidpoint Splitting VariationalMidpoint "
+        "MoserVeselov SphericalMidpoint Splitting VariationalMidpoint ExponentialRosenbrock Rosenbrock StiffRKMK "
     ),
     "liehom.instances": "AttitudeBody HeavyTop LandauLifshitz RigidBody SE3Body Sphere SymmetricMatrices",
     "liehom.io": (

@@ -16,6 +16,9 @@ from liehom.integrators.ensembles import EnsemblePart as EnsemblePart
 from liehom.integrators.ensembles import ensemble_parts as ensemble_parts
 from liehom.integrators.ensembles import integrate_ensemble as integrate_ensemble
 from liehom.integrators.ensembles import stored_parts as stored_parts
+from liehom.integrators.implicit import ExponentialRosenbrock as ExponentialRosenbrock
+from liehom.integrators.implicit import Rosenbrock as Rosenbrock
+from liehom.integrators.implicit import StiffRKMK as StiffRKMK
 from liehom.integrators.integration import integrate as integrate
 from liehom.integrators.methods import RKMK as RKMK
 from liehom.integrators.methods import BackwardEuler as BackwardEuler
@@ -28,8 +31,8 @@ from liehom.integrators.methods import LieTaylor as LieTaylor
 from liehom.integrators.methods import ProductStep as ProductStep
 from liehom.integrators.methods import Scheme as Scheme
 from liehom.integrators.methods import Taylor as Taylor
-from liehom.integrators.methods import step_named as step_named
-from liehom.integrators.methods import step_names as step_names
+from liehom.integrators.named import step_named as step_named
+from liehom.integrators.named import step_names as step_names
 from liehom.integrators.propagator import Propagator as Propagator
 from liehom.integrators.run import ConservationReport as ConservationReport
 from liehom.integrators.run import DenseSolution as DenseSolution
@@ -47,6 +50,7 @@ from liehom.integrators.tableaux import Violation as Violation
 from liehom.integrators.tableaux import collocation as collocation
 from liehom.integrators.tableaux import elementary_weight as elementary_weight
 from liehom.integrators.tableaux import gauss as gauss
+from liehom.integrators.tableaux import radau as radau
 from liehom.integrators.tableaux import rooted_trees as rooted_trees
 from liehom.integrators.tableaux import tableau as tableau
 from liehom.integrators.tableaux import tableau_names as tableau_names

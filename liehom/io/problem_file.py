@@ -113,7 +113,7 @@ class Problem:
         >>> problem.step(), problem.step("heun"), problem.step(order=1)
         (Corrected(Euler(), order=3), Corrected(Heun(), order=3), Euler())
         """
-        from liehom.integrators.methods.named import step_named
+        from liehom.integrators.named import step_named
 
         named = self.options.get("base", BASE) if base is None else base
         return step_named(named, self.options.get("order") if order is None else order)

@@ -4,6 +4,7 @@
 """
 
 from liehom.correctors.implicit.equation import SparseRow as SparseRow
+from liehom.correctors.implicit.equation import Stage as Stage
 from liehom.correctors.implicit.equation import combined as combined
 from liehom.correctors.implicit.solve import reach_of as reach_of
 from liehom.correctors.implicit.solve import solve_implicitly as solve_implicitly

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 
 from liehom.errors import LiehomError
-from liehom.series.arrays import namespace
+from liehom.series.arrays import is_lazy, namespace
 from liehom.series.jet import Jet
 from liehom.series.node import Node
 from liehom.typing import Array, Values
@@ -117,6 +117,8 @@ class Equation:
             jets = [None if v is None else _in_directions(v, e) for v in y]
             found = [_parts(k) for k in self.function(jets)]
             values = self.function(y)
+            if any(is_lazy(k) for k in values):
+                return None
         except NOT_ON_JETS:
             self._at_once = False
             return None

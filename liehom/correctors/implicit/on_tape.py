@@ -17,7 +17,7 @@ Tracer: TypeAlias = Any
 FIXED_POINT_ITERATIONS = 200
 NEWTON_ITERATIONS = 30
 JAX_ITERATIONS = 60
-MAX_TRACED = 24
+MAX_TRACED = 12
 """Largest number of unknowns for which the elimination is traced; larger systems iterate the fixed point only."""
 EPS = float(np.finfo(np.float64).eps)
 

@@ -36,6 +36,8 @@ DIFFERENCE = 2.0**-26
 """Size of a difference that replaces a derivative, the root of the round-off of float64."""
 DEXP_TERMS = 14
 """Terms of the series of dexp in `TrueExponential.tangent`."""
+TRACED_DEXP_TERMS = 5
+"""Terms in compiled code, where Newton's method makes another iteration rather than the code longer."""
 MAX_DEXP = 2.0
 """Coordinates of x up to which that series is summed."""
 
@@ -183,12 +185,14 @@ class TrueExponential(Exponential, ABC):
         return total
 
     def tangent(self, x: Values, v: Values, m: Values) -> Values:
-        """The vector d/dt exp(x + t v) m = rho(dexp_x v) exp(x) m, to 7 digits where the norm of ad x is at most 3."""
+        """The vector d/dt exp(x + t v) m = rho(dexp_x v) exp(x) m, to 7 digits where the norm of ad x is at most 3; in
+        compiled code to 3 digits where it is at most 1."""
         if is_exact(x) or is_exact(m):
             raise FieldError("the derivative of exp is computed in floats, got exact numbers")
         if type(x) is np.ndarray and not bool(np.abs(x).max(initial=0.0) <= MAX_DEXP):
             return super().tangent(x, v, m)
-        return self.infinitesimal(dexp(self.bracket, x, v, DEXP_TERMS), self.act(x, m))
+        terms = TRACED_DEXP_TERMS if type(x) is Traced else DEXP_TERMS
+        return self.infinitesimal(dexp(self.bracket, x, v, terms), self.act(x, m))
 
     def differential_inverse(self, x: Values, y: Values, terms: int) -> Values:
         made: Values = dexp_inverse(self.bracket, x, y, terms)

@@ -4,8 +4,6 @@ Each method is a `Step` of `liehom.correctors`. `step_named` finds methods by na
 docs/extending.md explains how to write a custom one.
 """
 
-from liehom.integrators.methods.named import step_named as step_named
-from liehom.integrators.methods.named import step_names as step_names
 from liehom.integrators.methods.products import CommutatorFree4 as CommutatorFree4
 from liehom.integrators.methods.products import CrouchGrossman3 as CrouchGrossman3
 from liehom.integrators.methods.products import ProductStep as ProductStep

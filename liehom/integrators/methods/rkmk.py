@@ -127,13 +127,13 @@ class RKMK(OneExponential):
         return self._floating[kind]
 
     def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
-        stages = _Stages(self, action, psi, m, t)
+        stages = Stages(self, action, psi, m, t)
         return stages.combined(stages.numbers.b, h)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if self.tableau.embedded_b is None:
             return super().at(action, psi, m, t, error_terms=error_terms)
-        return EmbeddedStep(_Stages(self, action, psi, m, t))
+        return EmbeddedStep(Stages(self, action, psi, m, t))
 
     def __repr__(self) -> str:
         return f"RKMK({self.tableau.name!r})"
@@ -178,7 +178,7 @@ class EmbeddedStep(LocalStep):
 
     estimate_order: int
 
-    def __init__(self, stages: _Stages) -> None:
+    def __init__(self, stages: Stages) -> None:
         super().__init__(stages.action, stages.m)
         tableau = stages.method.tableau
         self.estimate_order = min(tableau.order, tableau.embedded_order or tableau.order) + 1
@@ -195,7 +195,7 @@ class EmbeddedStep(LocalStep):
 
 
 @final
-class _Stages:
+class Stages:
     """Stages k_i of a method at one point, computed on demand for the last h."""
 
     method: RKMK
@@ -214,6 +214,11 @@ class _Stages:
         self._h: Values | None = None
         self._copy: Values | None = None
         self._known: list[Values] = []
+
+    @property
+    def known(self) -> Sequence[Values]:
+        """The stages that have been computed for the last h."""
+        return self._known
 
     def combined(self, weights: SparseRow, h: Values) -> Values:
         """sum_i weights[i] k_i."""

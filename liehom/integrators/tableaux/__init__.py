@@ -6,6 +6,7 @@ computes a method from its nodes. `liehom.integrators.methods` uses them; see do
 
 from liehom.integrators.tableaux.collocation import collocation as collocation
 from liehom.integrators.tableaux.collocation import gauss as gauss
+from liehom.integrators.tableaux.collocation import radau as radau
 from liehom.integrators.tableaux.order_conditions import Violation as Violation
 from liehom.integrators.tableaux.rooted_trees import RootedTree as RootedTree
 from liehom.integrators.tableaux.rooted_trees import elementary_weight as elementary_weight

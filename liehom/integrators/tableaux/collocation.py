@@ -13,6 +13,7 @@ from fractions import Fraction
 from math import comb
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError
 from liehom.integrators.tableaux.rooted_trees import MAX_ORDER
@@ -102,19 +103,58 @@ def gauss(stages: int) -> Tableau:
     name = f"gauss{stages}"
     if stages in exact:
         return collocation(name, exact[stages], 2 * stages)
-    c = _legendre_zeros(stages)
+    return _in_floats(name, _legendre_zeros(stages), 2 * stages)
+
+
+def radau(stages: int) -> Tableau:
+    """The Radau IIA method with s stages, of order 2 s - 1, in float64; it is L-stable.
+
+    Parameters
+    ----------
+    stages : int
+        From 2 to 7.
+
+    Raises
+    ------
+    InputError
+        If the number of stages is not an integer from 2 to 7.
+
+    Examples
+    --------
+    >>> radau(5).order, radau(5).residual < 1e-13, radau(5).c[-1]
+    (9, True, 1.0)
+    """
+    if isinstance(stages, bool) or not isinstance(stages, int) or not 2 <= stages <= MAX_ORDER // 2:
+        raise InputError(f"a Radau IIA method has 2 to {MAX_ORDER // 2} stages here, got {stages!r}")
+    # the nodes are 1 and the zeros of P_s - P_(s-1), divided by x - 1
+    high, low = _legendre(stages), [*_legendre(stages - 1), 0]
+    difference = [a - b for a, b in zip(high, low, strict=True)]
+    starts = np.sort(np.polynomial.polynomial.polyroots([float(c) for c in difference]).real)[:-1]
+    return _in_floats(f"radau{2 * stages - 1}", [*_refined(difference, starts), QQ.one], 2 * stages - 1)
+
+
+def _in_floats(name: str, c: list[Scalar], order: int) -> Tableau:
     *a, b = [[QQ.to_float(x) for x in row] for row in _coefficients(c, QQ)]
-    return Tableau(name, a, b, 2 * stages, c=[QQ.to_float(x) for x in c], field=RR)
+    return Tableau(name, a, b, order, c=[QQ.to_float(x) for x in c], field=RR)
+
+
+def _legendre(n: int) -> list[int]:
+    """Coefficients of the Legendre polynomial on [0, 1], with value 1 at 1, from the constant one on."""
+    return [(-1) ** (n - k) * comb(n, k) * comb(n + k, k) for k in range(n + 1)]
 
 
 def _legendre_zeros(n: int) -> list[Scalar]:
     """The zeros of the Legendre polynomial on [0, 1], as rational numbers with `GAUSS_DIGITS` correct digits."""
-    ascending = [(-1) ** k * comb(n, k) * comb(n + k, k) for k in range(n + 1)]
+    return _refined(_legendre(n), (1 + np.polynomial.legendre.leggauss(n)[0]) / 2)
+
+
+def _refined(ascending: list[int], starts: npt.NDArray[np.float64]) -> list[Scalar]:
+    """Zeros of a polynomial near the starts, as rational numbers with `GAUSS_DIGITS` correct digits."""
     scale = 10 ** (GAUSS_DIGITS + 5)
     zeros: list[Scalar] = []
-    for start in np.polynomial.legendre.leggauss(n)[0]:
-        x = (1 + Fraction(float(start))) / 2
-        for _ in range(3):  # Newton: 15 digits become 30, 60, 120
+    for start in starts:
+        x = Fraction(float(start))
+        for _ in range(4):  # Newton: 15 digits become 30, 60, 120; a start may have 8
             value = sum(c * x**k for k, c in enumerate(ascending))
             slope = sum(k * c * x ** (k - 1) for k, c in enumerate(ascending) if k)
             x = Fraction(round((x - value / slope) * scale), scale)

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from functools import cache
 
 from liehom.errors import InputError, displayed
-from liehom.integrators.tableaux.collocation import collocation, gauss
+from liehom.integrators.tableaux.collocation import collocation, gauss, radau
 from liehom.integrators.tableaux.tableau import Tableau
 from liehom.integrators.tableaux.tableaux_data import COLLOCATION, EXPLICIT, IMPLICIT, ButcherData
 
@@ -28,6 +28,9 @@ _ALIASES = {
     "fehlberg": "rkf45",
     "dverk": "verner65",
     "radau2a2": "radau2a",
+    "radau3": "radau2a",
+    "radau5": "radau2a3",
+    "radau2a5": "radau9",
 }
 _GAUSS = re.compile(r"gauss([0-9]+)", re.ASCII)
 
@@ -35,8 +38,8 @@ _GAUSS = re.compile(r"gauss([0-9]+)", re.ASCII)
 def tableau(name: str | Tableau) -> Tableau:
     """A classical Runge-Kutta method by name; a `Tableau` is returned as it is.
 
-    Case, spaces, hyphens and underscores do not matter. ``gauss4`` to ``gauss7`` and ``dop853`` are in float64; all
-    others are exact.
+    Case, spaces, hyphens and underscores do not matter. ``gauss4`` to ``gauss7``, ``radau9`` and ``dop853`` are in
+    float64; all others are exact. ``radau3`` and ``radau5`` are other names of ``radau2a`` and ``radau2a3``.
 
     Parameters
     ----------
@@ -85,7 +88,7 @@ def tableau_names() -> tuple[str, ...]:
     >>> tableau_names()[:4]
     ('euler', 'midpoint', 'heun', 'ralston')
     """
-    return (*EXPLICIT, "dop853", *COLLOCATION, *(f"gauss{s}" for s in range(2, 8)), *IMPLICIT)
+    return (*EXPLICIT, "dop853", *COLLOCATION, *(f"gauss{s}" for s in range(2, 8)), "radau9", *IMPLICIT)
 
 
 def _key(name: str) -> str:
@@ -96,6 +99,8 @@ def _key(name: str) -> str:
 def _made(name: str) -> Tableau:
     if name == "dop853":
         return _dop853()
+    if name == "radau9":
+        return radau(5)
     if found := _GAUSS.fullmatch(name):
         return gauss(int(found[1]))
     if name in COLLOCATION:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
+from liehom.errors import TraceError
 from liehom.integrators import step_named, step_names
 from tests.integrators import spaces
 
@@ -94,6 +95,10 @@ def slope(manifold: str, step: lh.Step, engine: str) -> tuple[float, list[float]
 @pytest.mark.parametrize("name", step_names())
 def test_every_named_step_has_its_order(name: str, manifold: str, engine: str) -> None:
     step = step_named(name)
+    if engine == "llvm" and isinstance(step, lh.integrators.ExponentialRosenbrock):
+        with pytest.raises(TraceError, match="exponentials of matrices"):
+            run(manifold, step, engine, 1)
+        return
     if engine == "llvm" and step.order >= HIGH:
         ends = [run(manifold, step, engine, 2) for engine in ("numpy", "llvm")]
         assert np.abs(ends[0] - ends[1]).max() < 1e-11 * np.abs(ends[0]).max()

@@ -12,6 +12,8 @@ import numpy as np
 
 from liehom.correctors import Corrected, Step
 from liehom.errors import InputError, displayed
+from liehom.integrators.implicit import ExponentialRosenbrock, Rosenbrock, StiffRKMK
+from liehom.integrators.implicit.rosenbrock import METHODS as ROSENBROCK
 from liehom.integrators.methods.products import CommutatorFree4, CrouchGrossman3
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import BackwardEuler, Euler, Heun, LieTaylor
@@ -21,6 +23,7 @@ from liehom.integrators.tableaux.tableaux import tableau, tableau_names
 DEFAULT_ORDER = 6
 _OWN = ("euler", "backward euler", "heun", "taylor", "lietaylor", "cg3", "cf4")
 _SERIES: dict[str, type[Taylor | LieTaylor]] = {"taylor": Taylor, "lietaylor": LieTaylor}
+_STIFF = ("radau3", "radau5", "radau9", "sdirk4", *ROSENBROCK, "exprb2", "exprb3", "exprb4")
 _OF_ORDER = re.compile(r"(taylor|lietaylor)([0-9]{1,3})", re.ASCII)
 _ALIASES = {"impliciteuler": "backwardeuler", "expliciteuler": "euler", "forwardeuler": "euler"}
 
@@ -33,7 +36,8 @@ def step_named(base: str, order: int | None = None) -> Step:
     base : str
         One of `step_names`; case, spaces, hyphens and underscores do not matter. "taylor" and
         "lietaylor" take any order themselves, 6 by default. "lietaylor4" is `LieTaylor(4)`, which a higher order
-        corrects. The name of a tableau gives the Runge-Kutta-Munthe-Kaas step with that tableau.
+        corrects. Names of stiff methods ("radau5", "sdirk4", "rodas4", "exprb4") give the steps of docs/stiff.md. The
+        name of another tableau gives the Runge-Kutta-Munthe-Kaas step with that tableau.
     order : int, optional
         The order to reach. Above that of the base it gives `Corrected(step, order)`, else the base itself.
 
@@ -72,7 +76,11 @@ def step_names() -> tuple[str, ...]:
     >>> "rk4" in step_names()
     True
     """
-    return (*_OWN, *(name for name in tableau_names() if _key(name) not in {*map(_key, _OWN), *_ALIASES}))
+    return (
+        *_OWN,
+        *_STIFF,
+        *(name for name in tableau_names() if _key(name) not in {*map(_key, _OWN), *_STIFF, *_ALIASES}),
+    )
 
 
 def _key(name: str) -> str:
@@ -90,6 +98,12 @@ def _plain(key: str, base: str) -> Step:
     }
     if key in own:
         return own[key]()
+    if key in ROSENBROCK:
+        return Rosenbrock(key)
+    if key.startswith("exprb") and key in _STIFF:
+        return ExponentialRosenbrock(int(key[5:]))
+    if key in _STIFF:
+        return StiffRKMK(key)
     if found := _OF_ORDER.fullmatch(key):
         return _SERIES[found[1]](int(found[2]))
     try:

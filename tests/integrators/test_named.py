@@ -12,15 +12,16 @@ from hypothesis import strategies as st
 import liehom as lh
 from liehom.errors import InputError
 from liehom.integrators import LieTaylor, tableau, tableau_names
-from liehom.integrators.methods.named import step_named, step_names
+from liehom.integrators.named import step_named, step_names
 
 ORDERS = {"euler": 1, "backward euler": 1, "heun": 2, "taylor": 6, "lietaylor": 6, "cg3": 3, "cf4": 4}
+ORDERS |= {"ros2": 2, "rodas3": 3, "rodas4": 4, "exprb2": 2, "exprb3": 3, "exprb4": 4}
 
 
 @pytest.mark.parametrize("name", step_names())
 def test_every_name_is_a_step_that_steps(name: str) -> None:
     step = step_named(name)
-    assert step.order == ORDERS.get(name) or step.order == tableau(name).order
+    assert step.order == (ORDERS[name] if name in ORDERS else tableau(name).order)
     field = lh.GeneratorField(lh.defining(lh.so(3)), ["m0", "2*m1", "1 + m2"])
     action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 2)
     m, h = np.array([0.6, 0.0, 0.8]), np.array([0.01])

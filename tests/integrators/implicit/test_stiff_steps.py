@@ -1,0 +1,158 @@
+"""Steps for stiff fields: orders, estimates, L-stability, step sizes that stiffness does not limit."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import liehom as lh
+from liehom.errors import InputError
+from liehom.integrators import ExponentialRosenbrock, Rosenbrock, StiffRKMK, radau, step_named
+from liehom.integrators.implicit.rosenbrock import METHODS
+
+RHO = lh.adjoint(lh.so(3))
+W = np.array([1.0, 0.5, 0.2])
+START = np.array([0.6, 0.48, 0.64])
+STEPS: list[lh.Step] = [
+    StiffRKMK("radau3"), StiffRKMK("radau5"), StiffRKMK("radau9"), StiffRKMK("sdirk4"), StiffRKMK("gauss2"),
+    StiffRKMK("gauss3"), Rosenbrock("ros2"), Rosenbrock("rodas3"), Rosenbrock("rodas4"), ExponentialRosenbrock(3),
+    ExponentialRosenbrock(4),
+]  # fmt: skip
+IDS = [repr(step) for step in STEPS]
+
+
+def body() -> lh.GeneratorField:
+    """A rigid body with a torque that depends on time."""
+    return lh.GeneratorField(RHO, lambda m, t: -m * W * (1 + 0.3 * np.sin(2 * t)[..., None]))
+
+
+def chasing(rate: float) -> lh.GeneratorField:
+    """Relaxation with a rate to a point that moves on the equator, at unit speed."""
+
+    def psi(m: Any, t: Any) -> Any:
+        return rate * np.cross(m, np.stack([np.cos(t), np.sin(t), 0 * t], axis=-1))
+
+    return lh.GeneratorField(RHO, psi)
+
+
+# -- orders --------------------------------------------------------------------------------------------------
+def errors(step: lh.Step, counts: list[int]) -> Any:
+    field = body()
+    end = lh.integrate(field, (0, 1), START, step=lh.LieTaylor(14), dt=0.05).y[:, -1]
+    return np.array(
+        [np.abs(lh.integrate(field, (0, 1), START, step=step, dt=1 / n).y[:, -1] - end).max() for n in counts]
+    )
+
+
+@pytest.mark.parametrize("step", [s for s in STEPS if s.order < 7] + [ExponentialRosenbrock(2)], ids=repr)
+def test_time_dependent_fields_are_integrated_with_the_order_of_the_step(step: lh.Step) -> None:
+    e = errors(step, [8, 16] if step.order > 4 else [16, 32])
+    assert abs(np.log2(e[0] / e[1]) - step.order) < 0.35
+
+
+def test_a_rosenbrock_step_without_the_derivative_by_time_loses_its_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = METHODS["rodas4"]
+    monkeypatch.setitem(METHODS, "rodas4", data._replace(gammas=(0.0,) * 6))
+    e = errors(Rosenbrock("rodas4"), [16, 32])
+    assert np.log2(e[0] / e[1]) < 2.5
+
+
+@pytest.mark.parametrize("step", STEPS, ids=IDS)
+def test_estimates_have_their_order(step: lh.Step) -> None:
+    field = body()
+    action, psi = lh.Action(RHO), lh.correctors.Generator(field, 2)
+    local: Any = step.at(action, psi, START, np.array([0.3]))
+    sizes = [0.4, 0.2] if step.order > 6 else [0.05, 0.025]
+    found = [np.linalg.norm(local.estimate(np.array([h]))) for h in sizes]
+    assert abs(np.log2(found[0] / found[1]) - local.estimate_order) < 0.3
+
+
+def test_radau_nodes_and_weights_integrate_polynomials() -> None:
+    for stages in (2, 3, 5, 7):
+        t = radau(stages)
+        assert t.first_violation(2 * stages - 1) is None
+        assert t.first_violation(2 * stages) is not None
+        _, b, c, _ = t.to_numpy()
+        np.testing.assert_allclose(b @ c ** (2 * stages - 2), 1 / (2 * stages - 1), rtol=1e-13)
+    np.testing.assert_allclose(radau(3).to_numpy()[0], lh.tableau("radau5").to_numpy()[0], rtol=0, atol=1e-14)
+
+
+# -- stiffness -----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("rate", [1e3, 1e6])
+@pytest.mark.parametrize("step", [s for s in STEPS if "gauss" not in repr(s)], ids=repr)
+def test_one_step_of_a_linear_relaxation_is_damped(step: lh.Step, rate: float) -> None:
+    field = lh.GeneratorField(RHO, lambda m: rate * np.cross(m, [0.0, 0.0, 1.0]))
+    near = np.array([1e-3, 0.0, np.sqrt(1 - 1e-6)])
+    made = lh.integrate(field, (0, 1), near, step=step, dt=1.0).y[:, -1]
+    assert np.hypot(made[0], made[1]) < 1e-3 * (30 / rate) + 1e-8
+
+
+@cache
+def explicit_steps() -> float:
+    """Steps of an explicit pair for the same time, from those for a twentieth of it."""
+    sol = lh.integrate(chasing(1e4), (0, 0.1), [1.0, 0.0, 0.0], step=lh.RKMK("rk45"), rtol=1e-4, engine="llvm")
+    return 20.0 * int(sol.n_steps)
+
+
+@pytest.mark.parametrize("step", STEPS, ids=IDS)
+def test_the_number_of_steps_does_not_grow_with_the_rate(step: lh.Step) -> None:
+    limit = 1e-4 if step.order < 3 else 1e-6
+    counts = []
+    for rate in (1e2, 1e4):
+        sol = lh.integrate(chasing(rate), (0, 2), [1.0, 0.0, 0.0], step=step, rtol=limit, atol=limit)
+        assert sol.success
+        counts.append(sol.n_steps)
+        behind = np.arctan(1 / rate) if rate > 1e3 else np.arcsin(1 / rate)
+        end = np.array([np.cos(2 - behind), np.sin(2 - behind), 0.0])
+        assert np.abs(sol.y[:, -1] - end).max() < 30 * limit
+        np.testing.assert_allclose(np.linalg.norm(sol.y, axis=0), 1, rtol=0, atol=1e-12)
+    assert counts[1] < 2.5 * counts[0]
+    assert explicit_steps() > 100 * counts[1] or step.order == 2
+
+
+@pytest.mark.parametrize("name", ["radau5", "rodas4", "exprb4"])
+def test_a_stiff_run_agrees_with_radau_of_scipy(name: str) -> None:
+    field = chasing(300.0)
+
+    def right(t: float, y: Any) -> Any:
+        return field.vector(y, t)
+
+    wanted = solve_ivp(right, (0, 3), START, method="Radau", rtol=1e-10, atol=1e-12).y[:, -1]
+    made = lh.integrate(field, (0, 3), START, step=step_named(name), rtol=1e-8, atol=1e-10).y[:, -1]
+    np.testing.assert_allclose(made, wanted, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["radau3", "rodas4"])
+def test_compiled_code_agrees_with_arrays_on_a_stiff_field(name: str) -> None:
+    starts = np.random.default_rng(0).normal(size=(5, 3))
+    starts /= np.linalg.norm(starts, axis=-1, keepdims=True)
+    for how, bound in (({"dt": 0.05}, 1e-12), ({"rtol": 1e-5}, 1e-6)):
+        given: dict[str, Any] = {"step": step_named(name), "t_eval": [0.5, 1.0]} | how
+        plain = lh.integrate(chasing(100.0), (0, 1), starts, **given)
+        made = lh.integrate(chasing(100.0), (0, 1), starts, engine="llvm", **given)
+        np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=bound)
+
+
+def test_correction_raises_the_order_of_stiff_steps() -> None:
+    field = lh.GeneratorField(RHO, lambda m: -m * W)
+    end = lh.integrate(field, (0, 1), START, step=lh.LieTaylor(14), dt=0.05).y[:, -1]
+    for base in (Rosenbrock("ros2"), ExponentialRosenbrock(2), StiffRKMK("radau3")):
+        step = lh.Corrected(base, base.order + 1)
+        e = [np.abs(lh.integrate(field, (0, 1), START, step=step, dt=h).y[:, -1] - end).max() for h in (1 / 8, 1 / 16)]
+        assert np.log2(e[0] / e[1]) > base.order + 0.7
+
+
+# -- errors --------------------------------------------------------------------------------------------------
+def test_explicit_tableaux_and_unknown_names_are_rejected() -> None:
+    with pytest.raises(InputError, match="explicit"):
+        StiffRKMK("rk4")
+    with pytest.raises(InputError, match="nodes"):
+        StiffRKMK("lobatto3c")
+    with pytest.raises(InputError, match="rodas4"):
+        Rosenbrock("rodas5")
+    with pytest.raises(InputError, match="2, 3 or 4"):
+        ExponentialRosenbrock(5)
