@@ -93,11 +93,13 @@ def _point(coordinates: MatrixCoordinates, psi: Generator, m: Values, t: Values,
         left = b @ p
         return left - p @ b, left @ b / 4
 
+    flat = (*w.shape[:-2], w.shape[-1] ** 2)
+
     def middle(x: Values) -> Values:
-        turned, square = moved(w + x)
-        found: Values = turned / 2 + square
+        turned, square = moved(w + x.reshape(w.shape))
+        found: Values = (turned / 2 + square).reshape(flat)
         return found
 
-    x = solve_implicitly(middle, zeros_of(m, w.shape), h, stacked=True)
+    x = solve_implicitly(middle, zeros_of(m, flat), h).reshape(w.shape)
     found: Values = m + coordinates.point(moved(w + x)[0])
     return found

@@ -91,12 +91,15 @@ def _point(coordinates: MatrixCoordinates, inertia: Inertia, m: Values, h: Value
     sums = moments[:, None] + moments
     fixed = half @ half
 
-    def deviation(y: Values) -> Values:  # X = J + Y
+    flat = (*form.shape[:-2], form.shape[-1] ** 2)
+
+    def deviation(x: Values) -> Values:  # X = J + Y
+        y = x.reshape(form.shape)
         turned = half * moments - moments[:, None] * half + half @ y - y @ half
-        found: Values = (turned + fixed - y @ y) / sums
+        found: Values = ((turned + fixed - y @ y) / sums).reshape(flat)
         return found
 
-    y = solve_implicitly(deviation, zeros_of(m, form.shape), h, stacked=True)
+    y = solve_implicitly(deviation, zeros_of(m, flat), h).reshape(form.shape)
     # u = w - 1, without the rounding of 1 + u, which would let the spectrum drift
     u = axes @ ((y - half) / moments[:, None]) @ axes.T
     defect = u + _transposed(u) + _transposed(u) @ u

@@ -15,7 +15,7 @@ from typing import final
 
 import numpy as np
 
-from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.implicit import reach_of, solve_implicitly
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action
@@ -62,10 +62,10 @@ class SphericalMidpoint(Step):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         _require_spheres(action.representation)
-        return LocalStep(action, m, point=lambda h: _point(psi, m, t, h))
+        return LocalStep(action, m, point=lambda h: _point(psi, m, t, h, reach_of(action)))
 
 
-def _point(psi: Generator, m: Values, t: Values, h: Values) -> Values:
+def _point(psi: Generator, m: Values, t: Values, h: Values, reach: float) -> Values:
     """The point after a step of size h (..., 1)."""
     whole = m.shape
     spins = m.reshape((*whole[:-1], whole[-1] // 3, 3))
@@ -78,7 +78,7 @@ def _point(psi: Generator, m: Values, t: Values, h: Values) -> Values:
         found: Values = h * (2 * over * velocity.reshape(spins.shape)).reshape(whole)
         return found
 
-    x = solve_implicitly(rotation, zeros_of(m, whole), h)
+    x = solve_implicitly(rotation, zeros_of(m, whole), h, reach=reach)
     found: Values = _rotated(x.reshape(spins.shape), spins).reshape(whole)
     return found
 

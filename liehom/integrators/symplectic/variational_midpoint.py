@@ -14,16 +14,19 @@ from typing import final
 
 import numpy as np
 
-from liehom.correctors.implicit import solve_implicitly
+from liehom.correctors.implicit import reach_of, solve_implicitly
 from liehom.correctors.step import Generator, OneExponential
-from liehom.errors import InputError
+from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import Action, TrueExponential
-from liehom.series.arrays import zeros
+from liehom.series.arrays import is_jax, zeros
 from liehom.series.jet import Jet
+from liehom.tracing import Traced
 from liehom.typing import Values
 
 SERIES_TERMS = 24
-"""Terms of the series of the mean; its rest is below round-off for |rho(x)| up to 2."""
+"""Terms of the series of the mean."""
+MAX_NORM = 4.0
+"""Largest Frobenius norm of rho(x): the rest of the series is then below round-off, in so(3) up to 2.8 radian."""
 
 
 @final
@@ -44,7 +47,7 @@ class VariationalMidpoint(OneExponential):
     InputError
         In a step, if the exponential is not the exponential map.
     ConvergenceError
-        In a step, if the iteration does not converge because the step size is too large.
+        In a step, if the step size is too large: the equation is not solved, or |rho(x)| is above 4.
 
     Examples
     --------
@@ -71,7 +74,25 @@ class VariationalMidpoint(OneExponential):
         require_exponential(action, "VariationalMidpoint")
         start = zeros_of(m, (*np.shape(m)[:-1], action.dimension))
         terms = h.order if isinstance(h, Jet) else SERIES_TERMS
-        return solve_implicitly(lambda x: h * psi(mean_of_arc(action, x, m, terms), t + h / 2), start, h)
+        x = solve_implicitly(
+            lambda x: h * psi(mean_of_arc(action, x, m, terms), t + h / 2), start, h, reach=reach_of(action)
+        )
+        _check_size(action, x)
+        return x
+
+
+def _check_size(action: Action, x: Values) -> None:
+    """Require that the series of the mean has converged; compiled code leaves other steps to numpy."""
+    if isinstance(x, Jet) or is_jax(x):
+        return
+    matrix = action.infinitesimal.left(x)
+    small = np.sum(matrix * matrix, axis=(-2, -1)) <= MAX_NORM**2
+    if type(small) is Traced:
+        small.tape.required.append(small.entry)
+    elif not np.all(small):
+        raise ConvergenceError(
+            f"VariationalMidpoint moves a point by exp(x) with |rho(x)| up to {MAX_NORM:g}: take a smaller step size"
+        )
 
 
 def mean_of_arc(action: Action, x: Values, m: Values, terms: int = SERIES_TERMS) -> Values:

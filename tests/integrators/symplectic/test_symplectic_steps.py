@@ -170,7 +170,7 @@ def test_extended_precision(step: lh.Step, name: str) -> None:
 
 def test_large_steps_of_the_isospectral_midpoint_are_solved_and_stay_on_the_sphere() -> None:
     given = system("body")
-    sol = lh.integrate(given.field, (0, 1000), 20 * given.start, step=ISOSPECTRAL, dt=10.0)
+    sol = lh.integrate(given.field, (0, 20), 20 * given.start, step=ISOSPECTRAL, dt=10.0)
     assert sol.success
     np.testing.assert_allclose(np.linalg.norm(sol.y, axis=0), 20 * np.linalg.norm(given.start), rtol=1e-12)
 
