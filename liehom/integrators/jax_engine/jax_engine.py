@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import nullcontext, suppress
+from dataclasses import replace
 from math import ceil
 from typing import Any, final
 
@@ -32,6 +33,7 @@ from liehom.integrators.jax_engine.local_steps import ArrayStep, GraphStep, Step
 from liehom.integrators.jax_engine.loops import At, bound_step, with_adaptive_sizes, with_given_sizes
 from liehom.integrators.jax_engine.programs import Leaves, Program, is_float
 from liehom.integrators.jax_engine.solutions import Found, solution_of
+from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.control import ERROR_TERMS
 from liehom.integrators.run.solution import Solution
 from liehom.pytrees import PerTrajectory
@@ -71,6 +73,8 @@ class JaxEngine:
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem, with JAX arrays if the start is one."""
         if not is_jax(problem.start):
+            if problem.field.sites:
+                return _lattice_of_numpy(self, problem)
             return executed(problem, lambda run: compiled_steps(run, self.name))
         start: Any = problem.start
         double = start.dtype == np.float64
@@ -105,6 +109,27 @@ class JaxEngine:
         if not any(is_traced(x) for x in made.constants):
             self._programs[whole] = made
         return made
+
+
+def _lattice_of_numpy(engine: JaxEngine, problem: Problem) -> Solution:
+    """The solution for lattices given as numpy arrays, by array code for whole lattices; all steps without t_eval."""
+    from jax import numpy as jnp
+
+    o, start = problem.options, np.asarray(problem.start)
+    times: Any = o.t_eval
+    if times is None:
+        if o.dt is None:
+            raise InputError("engine='jax' on a lattice gives points at given times: give t_eval, or a dt")
+        size, length = float(np.max(o.dt)), float(problem.span[1] - problem.span[0])
+        steps = max(int(np.ceil(abs(length) / size - SLACK)), 1)
+        times = problem.span[0] + np.sign(length) * size * np.arange(steps + 1)
+        times[-1] = problem.span[1]
+    with enabled_x64():
+        found = engine.solve(replace(problem, start=jnp.asarray(start), options=replace(o, t_eval=times)))
+    t = times if o.t_eval is not None else np.broadcast_to(times, (*start.shape[:-1], len(times)))
+    return replace(
+        found, t=t, y=np.asarray(found.y), n_steps=np.asarray(found.n_steps), statuses=np.asarray(found.statuses)
+    )
 
 
 @final

@@ -194,3 +194,31 @@ def test_values_at_one_site_have_the_shape_of_the_lattice() -> None:
     varied = m + np.arange(20.0).reshape(4, 5, 1)
     assert varied.shape == (4, 5, 3)
     assert len(inputs.arrays) == 1
+
+
+@pytest.mark.slow
+def test_jax_takes_lattices_of_numpy_and_of_jax_arrays() -> None:
+    jax = pytest.importorskip("jax")
+    lattice, m = model((4, 3)), unit(10, 2, 4, 3)
+    for step in (lh.Heun(), lh.LieTaylor(3)):
+        plain = lattice.integrate((0, 1), m, step=step, dt=0.15)
+        made = lattice.integrate((0, 1), m, step=step, dt=0.15, engine="jax")
+        np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(made.t, plain.t, rtol=0, atol=1e-15)
+        assert isinstance(made.y, np.ndarray)
+    adapted = lattice.integrate((0, 1), m, step=lh.RKMK("rk45"), t_eval=[1.0], rtol=1e-8, engine="jax")
+    wanted = lattice.integrate((0, 1), m, step=lh.RKMK("rk45"), t_eval=[1.0], rtol=1e-8)
+    np.testing.assert_allclose(adapted.y, wanted.y, rtol=0, atol=1e-9)
+    with pytest.raises(lh.errors.InputError, match="give t_eval"):
+        lattice.integrate((0, 1), m, step=lh.RKMK("rk45"), engine="jax")
+    with jax.enable_x64(True) if hasattr(jax, "enable_x64") else jax.experimental.enable_x64():
+
+        def energy(x: Any) -> Any:
+            sol = lh.integrate(lattice.field, (0, 0.3), x, step=lh.Heun(), dt=0.1, t_eval=[0.3], engine="jax")
+            return sol.y[0, 0, 0, 0, -1]
+
+        slope = np.asarray(jax.grad(energy)(jax.numpy.asarray(m)))
+    h = 1e-6 * np.eye(2 * 4 * 3 * 3)[4].reshape(m.shape)
+    options: dict[str, Any] = {"step": lh.Heun(), "dt": 0.1, "t_eval": [0.3]}
+    ends = [lh.integrate(lattice.field, (0, 0.3), m + s * h, **options).y[0, 0, 0, 0, -1] for s in (1, -1)]
+    assert abs(slope.flat[4] - (ends[0] - ends[1]) / 2e-6) < 1e-8
