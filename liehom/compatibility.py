@@ -6,8 +6,9 @@ Python's import system asks last. For an old name it gives an `OldModule`, whose
 the new place, so that old pickles load. It is asked for no name that exists, and so costs nothing.
 
 Something is looked for by its name: in modules of the same name in the wings of the folder, in the folder, in its
-wings. Changes of four kinds need an entry below. Classes with another name are in `CLASSES`, attributes with another
-name in `ATTRIBUTES`, and attributes that old pickles lack and the class fills in are in `GROWN`. Classes whose objects
+wings. Changes of five kinds need an entry below. Classes with another name are in `CLASSES`, attributes with another
+name in `ATTRIBUTES`, attributes that old pickles lack and the class fills in are in `GROWN`,
+and attributes that the class leaves out are in `SHRUNK`. Classes whose objects
 hold something else than in 0.1.0 are in `CHANGED` and refused.
 """
 
@@ -117,9 +118,14 @@ GROWN: dict[str, tuple[str, ...]] = {
     "liehom.scalars.floating:RankDecision": ("error",),
     "liehom.homogeneous.field:GeneratorField": ("_sites",),
     "liehom.homogeneous.rodrigues:Rodrigues": ("_power",),
-    "liehom.integrators.solution:Report": ("near_steps", "unkept_from", "stopped_at"),
+    "liehom.integrators.solution:Report": ("near_steps", "unkept_from", "stopped_at", "diagnostics"),
 }
 """Attributes since 0.1.0 that `__setstate__` of the class fills in, 'old module:old name' -> names."""
+
+SHRUNK: dict[str, tuple[str, ...]] = {
+    "liehom.correctors.step:Generator": ("prepared",),
+}
+"""Attributes of 0.1.0 that `__setstate__` of the class leaves out, 'old module:old name' -> names."""
 
 CHANGED: frozenset[str] = frozenset()
 """Classes whose objects hold something else than in 0.1.0, 'old module:old name'."""

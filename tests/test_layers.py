@@ -68,6 +68,8 @@ WINGS: dict[str, tuple[str, ...]] = {
     ),
     "correctors": (
         "implicit",
+        "step_size",
+        "local_step",
         "step",
         "expansion",
         "points",

@@ -8,10 +8,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable
-from typing import Any, TypeAlias, final
+from copy import copy
+from typing import TYPE_CHECKING, Any, TypeAlias, final
 
 import numpy as np
 
+from liehom.correctors.local_step import Diagnostics as Diagnostics
+from liehom.correctors.local_step import Factors as Factors
+from liehom.correctors.local_step import LocalStep as LocalStep
+from liehom.correctors.local_step import apply_factors as apply_factors
+from liehom.correctors.local_step import moved_by_isotropy as moved_by_isotropy
+from liehom.correctors.local_step import with_correction as with_correction
 from liehom.errors import InputError
 from liehom.homogeneous import Action, Exponential, GeneratorField
 from liehom.series.arrays import zeros
@@ -19,8 +26,8 @@ from liehom.series.jet import Jet
 from liehom.series.node import Node
 from liehom.typing import IntegerArray, Values
 
-Factors: TypeAlias = tuple[Values, ...]
-"""Generators x_1, ..., x_s of shape (..., dim g); their step is m -> Exp(x_s) ... Exp(x_1) m."""
+if TYPE_CHECKING:
+    from typing import Self
 
 ExponentialLike: TypeAlias = str | Exponential | Callable[..., Any]
 """A name such as "exp" or "cayley", an `Exponential`, or a function that `Action` takes as one."""
@@ -30,8 +37,6 @@ ExponentialLike: TypeAlias = str | Exponential | Callable[..., Any]
 class Generator:
     """The generator as steps call it, (m, t) -> (..., dim g) with t of shape (..., 1).
 
-    It also carries data of the run.
-
     Parameters
     ----------
     field : GeneratorField
@@ -39,11 +44,6 @@ class Generator:
         Dimension of the orbit of each trajectory, which is constant along it.
     start : array of shape (..., N), optional
         Initial points of the run.
-
-    Attributes
-    ----------
-    prepared : dict
-        Results that steps derived from field and initial points, by step; only the step itself uses its entry.
 
     Examples
     --------
@@ -54,13 +54,16 @@ class Generator:
     [[1.0], [2.0], [3.0]]
     """
 
-    __slots__ = ("field", "orbit_dimension", "prepared", "start")
+    __slots__ = ("field", "orbit_dimension", "start")
 
     def __init__(self, field: GeneratorField, orbit_dimension: int | IntegerArray, start: Values | None = None) -> None:
         self.field: GeneratorField = field
         self.orbit_dimension: int | IntegerArray = orbit_dimension
         self.start: Values | None = start
-        self.prepared: dict[Hashable, Any] = {}
+
+    def __setstate__(self, state: tuple[object, dict[str, Any]]) -> None:
+        for name in self.__slots__:  # pickles of 0.1.0 have further ones
+            setattr(self, name, state[1][name])
 
     def __call__(self, m: Values, t: Values) -> Values:
         found: Values = self.field.psi(m, t[..., 0] if np.ndim(t) else t)
@@ -101,6 +104,43 @@ class Step(ABC):
     def one_exponential(self) -> bool:
         """Whether `factors` is always a single generator."""
         return False
+
+    @property
+    def base_order(self) -> int:
+        """Order of the step that this one raises, an int; `order` for a step that raises none."""
+        return self.order
+
+    @property
+    def uses_isotropy(self) -> bool:
+        """Whether the step asks for isotropy frames, so that a run prepares the action for them."""
+        return False
+
+    @property
+    def trace_key(self) -> Hashable:
+        """What a trace of the prepared step depends on, besides orbits and options; traces of equal keys are equal."""
+        return None
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Step:
+        """The step for a run from the points m (..., N) at times t (...,), with all that it derives from them.
+
+        A run asks once for it, before its first step. By default the step itself; a step that contains another one
+        prepares it too.
+        """
+        return self
+
+    def with_prepared(self, **data: object) -> Self:
+        """A copy of the step with further attributes, for `prepare`; also of frozen steps.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.Euler().with_prepared(table=(1, 2)).table
+        (1, 2)
+        """
+        made = copy(self)
+        for name, value in data.items():
+            object.__setattr__(made, name, value)
+        return made
 
     def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         """Tuple of generators x_1, ..., x_s (..., dim g); the step is m -> Exp(x_s) ... Exp(x_1) m.
@@ -154,150 +194,6 @@ class OneExponential(Step, ABC):
 
     def factors(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Factors:
         return (self.generator(action, psi, m, t, h),)
-
-
-class LocalStep:
-    """A step at one point and time, as a function of its size h.
-
-    A product of exponentials gives `factors`; any other step (a projection, a symplectic map) gives `point`. Both are
-    written for arrays, and also for Jets if the step is to be expanded: to correct it, or to adapt its size without
-    an estimate of its error. A class derived from this one overrides the methods of these names.
-
-    Parameters
-    ----------
-    action : Action
-    m : array of shape (..., N)
-        The point before the step.
-    factors : callable, optional
-        h (..., 1) -> tuple of generators x_1, ..., x_s; the step is Exp(x_s) ... Exp(x_1) m.
-    point : callable, optional
-        h (..., 1) -> point after the step, shape (..., N).
-    clock : tuple of (int, array of shape (...,))
-        (k, c_k) for k > 1: the time tau(h) = h + c_2 h^2 + c_3 h^3 + ... passes in a step of size h. Empty: the
-        time h. Whether it is empty does not depend on m, t.
-
-    Attributes
-    ----------
-    defects : tuple of (int, array), or None
-        (k, |[t^k] (flow - step)|), for the k for which it has been computed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0])
-    >>> local = LocalStep(action, m, lambda h: (h * np.array([2.0]),), clock=((2, -0.5),))
-    >>> local.point(np.array([np.pi / 4])).round(12).tolist(), local.time(0.5)
-    ([0.0, 1.0], 0.375)
-
-    A rotation that is not written as an exponential:
-
-    >>> rotated = LocalStep(action, m, point=lambda h: np.concatenate([np.cos(2 * h), np.sin(2 * h)], axis=-1))
-    >>> rotated.point(np.array([np.pi / 4])).round(12).tolist(), rotated.has_factors
-    ([0.0, 1.0], False)
-    """
-
-    defects: tuple[tuple[int, Values], ...] | None = None
-    clock: tuple[tuple[int, Values], ...] = ()
-
-    def __init__(
-        self,
-        action: Action,
-        m: Values,
-        factors: Callable[[Any], Factors] | None = None,
-        *,
-        point: Callable[[Any], Values] | None = None,
-        clock: tuple[tuple[int, Values], ...] = (),
-    ) -> None:
-        self.action, self.m, self.clock = action, m, clock
-        self._factors, self._point = factors, point
-
-    @property
-    def has_factors(self) -> bool:
-        """Whether the step is a product of exponentials, so that `factors` is defined."""
-        return self._factors is not None or type(self).factors is not LocalStep.factors
-
-    def factors(self, h: Values) -> Factors:
-        """Tuple of the generators of the step of size h (..., 1).
-
-        Raises
-        ------
-        InputError
-            If the step is not a product of exponentials.
-        """
-        if self._factors is None:
-            raise InputError("the step is not a product of exponentials: it has a `point`, and no `factors`")
-        return self._factors(h)
-
-    def point(self, h: Values) -> Values:
-        """Point after the step of size h (..., 1), shape (..., N)."""
-        if self._point is not None:
-            return self._point(h)
-        return apply_factors(self.action, self.factors(h), self.m)
-
-    def time(self, h: Values) -> Values:
-        """Time tau(h) that passes in the step of size h (...,); h without a clock."""
-        if not self.clock:
-            return h
-        coefficients, total = dict(self.clock), None
-        for k in range(max(coefficients), 1, -1):
-            total = total * h if total is not None else None
-            if k in coefficients:
-                total = coefficients[k] if total is None else total + coefficients[k]
-        found: Values = (total * h + 1) * h
-        return found
-
-
-def moved_by_isotropy(local: LocalStep, h: Values, zeta: Values | None, one_exponential: bool) -> Values:
-    """Point after a step of size h (..., 1) with the isotropy zeta (..., dim g), as `with_correction` adds it.
-
-    For a step that is not a product of exponentials it is Exp(zeta) of the point after the step.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> action, m = lh.Action(lh.defining(lh.so(2))), np.array([1.0, 0.0])
-    >>> local = LocalStep(action, m, point=lambda h: m)
-    >>> moved_by_isotropy(local, np.array([0.1]), np.array([np.pi / 2]), False).round(12).tolist()
-    [0.0, 1.0]
-    """
-    if zeta is None:
-        return local.point(h)
-    if not local.has_factors:
-        return local.action.act(zeta, local.point(h))
-    return apply_factors(local.action, with_correction(local.factors(h), zeta, one_exponential), local.m)
-
-
-def apply_factors(action: Action, factors: Factors, m: Values) -> Values:
-    """The point Exp(x_s) ... Exp(x_1) m, shape (..., N).
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import liehom as lh
-    >>> action = lh.Action(lh.defining(lh.so(2)))
-    >>> np.round(apply_factors(action, (np.array([0.5]), np.array([-0.5])), np.array([1.0, 0.0])), 12).tolist()
-    [1.0, 0.0]
-    """
-    for x in factors:
-        m = action.act(x, m)
-    return m
-
-
-def with_correction(factors: Factors, zeta: Values | None, one_exponential: bool) -> Factors:
-    """Factors of a corrected step: zeta is added to the single generator, or is an additional, outermost factor.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> x, zeta = Jet([[0.0], [1.0]]), Jet([[0.0], [2.0]])
-    >>> len(with_correction((x,), zeta, True)), len(with_correction((x, x), zeta, False))
-    (1, 3)
-    """
-    if zeta is None:
-        return factors
-    return (factors[0] + zeta,) if one_exponential else (*factors, zeta)
 
 
 def step_variable(order: int, like: Values) -> Jet:

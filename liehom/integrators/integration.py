@@ -58,8 +58,9 @@ def integrate(
     events : callable or list of callables, optional
         Functions g(t, y) whose zeros are recorded, with the attributes `terminal` and `direction` of solve_ivp. For
         an ensemble they return one number per trajectory. A change of sign between the ends of a step is located on
-        the dense output to round-off. Two zeros within one step are not noticed: see `max_step` (with events, an
-        adaptive step moves a point by at most half of |m|). A zero at the initial time is recorded, but does not end
+        the dense output to round-off, and so are two zeros next to an extremum of g within a step. All zeros are found
+        if g has at most one extremum in each step; for others see `max_step` (with events, an adaptive step moves a
+        point by at most half of |m|). A zero at the initial time is recorded, but does not end
         the run.
     exponential : str, Exponential or callable
         "exp", "cayley", ...: see `liehom.homogeneous.exponential_of`.

@@ -46,7 +46,8 @@ class StepGraph:
         Boolean: whether the step is certainly an ordinary one, that is, its clock is increasing at an admissible rate
         and its equations were solved. None if it always is.
     largest, summed : dict of str to Expr
-        Numbers by name; the run records their largest value, or their sum, over the steps taken.
+        Numbers by name; the run records their largest value, which is -inf before the first step, or their sum, over
+        the steps taken. The name "-x" stands for the negative of a number x of which the smallest value is recorded.
     constant_functions : tuple of callable
         Inputs -1, -2, ...: numbers that are constant along a trajectory, as functions of the initial points (L, N).
     clock : tuple of (int, Expr)

@@ -8,6 +8,7 @@ linearization solves chi_m(sigma) = -E_n.  See section 7 of the paper.
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Any, final
 
 import numpy as np
@@ -81,6 +82,7 @@ class Conserving(Step):
 
     step: Step
     linear: bool
+    _begun: _Begun | None = None  # of `prepare`
 
     def __init__(
         self,
@@ -115,30 +117,57 @@ class Conserving(Step):
     def one_exponential(self) -> bool:
         return self.step.one_exponential
 
+    @property
+    def base_order(self) -> int:
+        """`base_order` of the base, an int."""
+        return self.step.base_order
+
+    @property
+    def uses_isotropy(self) -> bool:
+        """Whether the step asks for isotropy frames: True."""
+        return True
+
+    @property
+    def kept_order(self) -> int | None:
+        """The n of (7.2), after `prepare`; None if all E_n computed vanish."""
+        return None if self._begun is None else self._begun.n
+
+    @property
+    def trace_key(self) -> Hashable:
+        return self.kept_order, self.step.trace_key
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Conserving:
+        """The step with the checked first integrals, their target values, and n, for a run from m at times t."""
+        if self._begun is not None:
+            return self
+        made = self.with_prepared(step=self.step.prepare(action, psi, m, t))
+        return made.with_prepared(_begun=_Begun(made, action, psi, m, t))
+
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> ConservingStep:
         if is_jax(m) or is_exact(m):
             raise InputError("a conserving step iterates to round-off, on numpy arrays of floats only")
         time = t[..., 0] if np.ndim(t) else t
         if self.linear and type(m) is Traced:
             raise TraceError("linear=True measures the order to which F is kept, which is not compiled: leave it out")
-        known = self._begun(action, psi, m, time)
+        if self._begun is None:
+            return self.prepare(action, psi, m, time).at(action, psi, m, t, error_terms=error_terms)
+        known = self._begun
         local = self.step.at(action, psi, m, t, error_terms=error_terms)
         frame = action.isotropy_frame(m, psi.orbit_dimension)
         factor = 0.5 if self.one_exponential else 1.0
         found = Conservation(action, known.integral, frame, m, psi.field.psi(m, time), factor)
-        return ConservingStep(
-            local, found, known.target, known.n, one_exponential=self.one_exponential, linear=self.linear
-        )
+        target = self._traced_target(known.integral, m) if type(m) is Traced else known.target
+        return ConservingStep(local, found, target, known.n, one_exponential=self.one_exponential, linear=self.linear)
 
-    def kept_order(self, action: Action, psi: Generator, m: Values, t: Values) -> int | None:
-        """The n of (7.2) at the initial points of a run, with t (...,); None if all E_n computed vanish."""
-        return self._begun(action, psi, m, t).n
-
-    def _begun(self, action: Action, psi: Generator, m: Values, t: Values) -> _Begun:
-        known: _Begun | None = psi.prepared.get((self, action))
-        if known is None:
-            known = psi.prepared[self, action] = _Begun(self, action, psi, m, t)
-        return known
+    def _traced_target(self, integral: FirstIntegral, m: Traced) -> Values | None:
+        """Target of a traced step, a number of each trajectory; None for F(m)."""
+        if self.aim == "previous":
+            return None
+        if self._value is not None:
+            if self._value.size > 1:
+                raise TraceError("a value of F for each trajectory is not compiled: give one, or leave it to the start")
+            return _aimed_at(self._value.reshape(()), integral(m))
+        return Traced(m.tape, [m.tape.trajectory_constant(lambda points: integral(points)[..., 0])])
 
     def __repr__(self) -> str:
         given = repr(self._source) if isinstance(self._source, str) else _shown(self._source)
@@ -164,8 +193,7 @@ class _Begun:
         self.integral = FirstIntegral(step._source, action.representation.size)
         self.n: int | None = None
         self.target: Any = None
-        if type(m) is Traced:
-            self.target, self.n = self._given(step, m), psi.prepared.get(step)
+        if type(m) is Traced:  # without a run: n stays None
             return
         bound = step.order + 1
         self.integral.check(flow_series(psi.field, start, bound, t), bound)
@@ -173,16 +201,6 @@ class _Begun:
             value = self.integral(start)
             self.target = value if step._value is None else _aimed_at(step._value, value)
         self._explore(step, action, psi, start, t)
-
-    def _given(self, step: Conserving, m: Traced) -> Values | None:
-        """Target of a traced step, a number of each trajectory; None for F(m)."""
-        if step.aim == "previous":
-            return None
-        if step._value is not None:
-            if step._value.size > 1:
-                raise TraceError("a value of F for each trajectory is not compiled: give one, or leave it to the start")
-            return _aimed_at(step._value.reshape(()), self.integral(m))
-        return Traced(m.tape, [m.tape.trajectory_constant(lambda points: self.integral(points)[..., 0])])
 
     def _explore(self, step: Conserving, action: Action, psi: Generator, start: Values, t: Values) -> None:
         """Find n, and check that chi is onto, at the initial points and near them, as symmetric points may mislead."""

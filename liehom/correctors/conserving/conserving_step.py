@@ -6,19 +6,29 @@ For each h the isotropy t^(n-1) sigma is found by Newton's method (`level_newton
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, NamedTuple, final
 
 import numpy as np
 
 from liehom.correctors.conserving.conservation import Conservation
 from liehom.correctors.conserving.level_newton import solve_levels
 from liehom.correctors.expansion import ROUND_OFF_UNITS
-from liehom.correctors.step import Factors, LocalStep, moved_by_isotropy, step_variable, with_correction
+from liehom.correctors.step import (
+    Diagnostics,
+    Factors,
+    LocalStep,
+    moved_by_isotropy,
+    step_variable,
+    with_correction,
+)
+from liehom.correctors.step_size import StepLimits
 from liehom.series.arrays import zeros
 from liehom.series.jet import Jet
 from liehom.tracing import Traced
-from liehom.typing import Values
+from liehom.typing import Array, BooleanArray, Values
 
+CONSERVED_ROUNDOFFS = 32.0
+"""F counts as conserved up to this many units of its round-off."""
 TOLERATED_UNITS = 0.5
 """Residuals of F within this many units of round-off, eps times `Conservation.scale`, count as 0."""
 
@@ -48,6 +58,15 @@ class Conserved:
     rank: Values
     wanted: Values
     left: Values
+
+
+class _Made(NamedTuple):
+    """The step of size h: its isotropy, its point and the report."""
+
+    h: Values
+    zeta: Values | None
+    point: Values
+    record: Conserved
 
 
 @final
@@ -83,7 +102,6 @@ class ConservingStep(LocalStep):
     base: LocalStep
     found: Conservation
     n: int | None
-    defects: tuple[tuple[int, Values], ...] | None
 
     def __init__(
         self,
@@ -97,13 +115,11 @@ class ConservingStep(LocalStep):
     ) -> None:
         super().__init__(base.action, base.m, clock=base.clock)
         self.base, self.found, self.n = base, found, n
-        self.defects = base.defects
-        self.estimate: Values | None = getattr(base, "estimate", None)
-        self.estimate_order: int | None = getattr(base, "estimate_order", None)
+        self.estimate_order = base.estimate_order
         self._target = found.value if target is None else target
         self._one, self._linear = one_exponential, linear
         self._unit = TOLERATED_UNITS * float(np.finfo(found.m.dtype).eps) * found.scale
-        self._last: tuple[Values, Values | None, Conserved] | None = None
+        self._last: _Made | None = None
         self._sigma: Any = None
 
     @property
@@ -115,19 +131,58 @@ class ConservingStep(LocalStep):
         return with_correction(self.base.factors(h), self._isotropy(h), self._one)
 
     def point(self, h: Values) -> Values:
-        return moved_by_isotropy(self.base, h, self._isotropy(h), self._one)
+        if isinstance(h, Jet):
+            return moved_by_isotropy(self.base, h, self._series(h), self._one)
+        return self._made(h).point
+
+    def size(self, limits: StepLimits) -> Values | None:
+        return self.base.size(limits)
+
+    def estimate(self, h: Values) -> Values:
+        return self.base.estimate(h)
+
+    def valid(self, h: Values) -> Values | bool:
+        return self.base.valid(h)
+
+    def diagnostics(self, h: Values) -> Diagnostics:
+        """Numbers of the base, and of `conserved` with the prefix "conservation_".
+
+        "missed": F differs from its target by more than round-off; "left": the step has no correction; "short": chi_m
+        is not onto. Compiled code makes no step at which it is not.
+        """
+        made = self.conserved(h)
+        usual: Any = ~made.left
+        found: Diagnostics = {
+            "iterations": (made.iterations, "max"),
+            "defect": (made.defect, "max"),
+            "missed": (made.units > CONSERVED_ROUNDOFFS, "sum"),
+            "left": (made.left, "sum"),
+            "rank": (np.where(usual, made.rank, np.inf), "min"),
+            "wanted": (np.where(usual, made.wanted, 0), "max"),
+            "linear": (np.full(np.shape(made.defect), float(self._linear)), "max"),
+        }
+        if type(h) is not Traced:
+            found["short"] = usual & (made.rank < made.wanted), "sum"
+        return {**self.base.diagnostics(h), **{f"conservation_{name}": x for name, x in found.items()}}
+
+    def detail(self, name: str, index: tuple[int, ...]) -> Array | None:
+        """For "conservation_short", the combinations of integrals that isotropy does not reach, shape (j, k)."""
+        return self.found.unreachable(index) if name == "conservation_short" else self.base.detail(name, index)
+
+    def is_near_cone(self, h: Values) -> BooleanArray:
+        return self.base.is_near_cone(h)
 
     def conserved(self, h: Values) -> Conserved:
         """`Conserved`, the report on F for the step of size h (..., 1)."""
-        return self._made(h)[2]
+        return self._made(h).record
 
     def isotropy(self, h: Values) -> Values:
         """The isotropy t^(n-1) sigma of the step of size h (..., 1), shape (..., dim g)."""
-        x, m = self._made(h)[1], self.found.m
+        x, m = self._made(h).zeta, self.found.m
         return zeros(m, (*m.shape[:-1], self.found.dimension)) if x is None else x
 
     def _isotropy(self, h: Values) -> Values | None:
-        return self._series(h) if isinstance(h, Jet) else self._made(h)[1]
+        return self._series(h) if isinstance(h, Jet) else self._made(h).zeta
 
     def sigma(self) -> Values:
         """Solution of chi_m(sigma) = -E_n in V_m, shape (..., dim g); 0 where E_n is round-off."""
@@ -143,24 +198,28 @@ class ConservingStep(LocalStep):
         return found
 
     # -- private -----------------------------------------------------------------------------------------
-    def _made(self, h: Values) -> tuple[Values, Values | None, Conserved]:
+    def _made(self, h: Values) -> _Made:
         if isinstance(h, Traced):
-            if self._last is None or self._last[0] is not h:
-                self._last = (h, *self._corrected(h))
+            if self._last is None or self._last.h is not h:
+                made = self._last = self._corrected(h)
+                onto: Any = made.record.left | (made.record.rank >= made.record.wanted)
+                h.tape.required.append(Traced(h.tape, onto).entry)
             return self._last
         last, h = self._last, np.asarray(h)
-        if last is None or h.shape != last[0].shape or h.dtype != last[0].dtype or not (h == last[0]).all():
-            last = self._last = (h.copy(), *self._corrected(h))
+        if last is None or h.shape != last.h.shape or h.dtype != last.h.dtype or not (h == last.h).all():
+            last = self._last = self._corrected(h.copy())
         return last
 
-    def _corrected(self, h: Values) -> tuple[Values | None, Conserved]:
+    def _corrected(self, h: Values) -> _Made:
         found, action, m = self.found, self.found.action, self.found.m
         xi = self.base.factors(h)[0] if self._one else None
         z = self.base.point(h) if xi is None else action.act(xi, m)
 
+        def moved(x: Values) -> Values:
+            return action.act(x, z) if xi is None else action.act(xi + x, m)
+
         def residual(x: Values) -> Values:
-            point = action.act(x, z) if xi is None else action.act(xi + x, m)
-            return found.integral(point) - self._target
+            return found.integral(moved(x)) - self._target
 
         first = found.integral(z) - self._target
         if self._linear:
@@ -183,7 +242,7 @@ class ConservingStep(LocalStep):
         rank, wanted = found.rank, found.wanted
         alone = (resolved < rank) | ~found.moving | (wanted == 0)
         record = Conserved(iterations, defect.max(axis=-1), units, rank, wanted, alone)
-        return x, record
+        return _Made(h, x, z if x is None else moved(x), record)
 
     def _removing(self, along: Jet, z: Jet, k: int) -> Values:
         """The zeta in V_m with chi_m(zeta) = -[t^k] F along the step z."""

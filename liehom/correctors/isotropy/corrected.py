@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from typing import final
+from collections.abc import Hashable
+from typing import Any, final
 
 import numpy as np
 
 from liehom.correctors.isotropy.isotropy_corrector import Correction, correct
-from liehom.correctors.step import Factors, Generator, LocalStep, Step, moved_by_isotropy, with_correction
+from liehom.correctors.step import (
+    Diagnostics,
+    Factors,
+    Generator,
+    LocalStep,
+    Step,
+    moved_by_isotropy,
+    with_correction,
+)
 from liehom.errors import InputError
 from liehom.homogeneous import Action
-from liehom.series.arrays import zeros
-from liehom.typing import Values
+from liehom.series.arrays import is_lazy, namespace, zeros
+from liehom.typing import BooleanArray, Values
 
 
 @final
@@ -79,6 +88,24 @@ class Corrected(Step):
     def one_exponential(self) -> bool:
         return self.step.one_exponential
 
+    @property
+    def base_order(self) -> int:
+        """Order of the base, an int."""
+        return self.step.order
+
+    @property
+    def uses_isotropy(self) -> bool:
+        """Whether the step asks for isotropy frames: True."""
+        return True
+
+    @property
+    def trace_key(self) -> Hashable:
+        return self.step.trace_key
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Corrected:
+        base = self.step.prepare(action, psi, m, t)
+        return self if base is self.step else Corrected(base, self._order, weight=self.weight)
+
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> CorrectedStep:
         local = self.step.at(action, psi, m, t)
         found = correct(
@@ -94,7 +121,7 @@ class Corrected(Step):
             one_exponential=self.step.one_exponential,
             error_terms=error_terms,
         )
-        return CorrectedStep(local, found, self.step.one_exponential)
+        return CorrectedStep(local, found, self)
 
     def __repr__(self) -> str:
         weight = "" if self.weight is None else f", weight={self.weight!r}"
@@ -109,7 +136,7 @@ class CorrectedStep(LocalStep):
     ----------
     base : LocalStep
     correction : Correction
-    one_exponential : bool
+    step : Corrected
 
     Examples
     --------
@@ -124,12 +151,12 @@ class CorrectedStep(LocalStep):
 
     defects: tuple[tuple[int, Values], ...]
 
-    def __init__(self, base: LocalStep, correction: Correction, one_exponential: bool) -> None:
+    def __init__(self, base: LocalStep, correction: Correction, step: Corrected) -> None:
         super().__init__(base.action, base.m, clock=_clock_of(correction))
         self.base = base
         self.correction = correction
         self.defects = correction.defects
-        self._one_exponential = one_exponential
+        self._one_exponential, self._orders = step.one_exponential, (step.base_order, step.order)
 
     @property
     def has_factors(self) -> bool:
@@ -141,6 +168,41 @@ class CorrectedStep(LocalStep):
 
     def point(self, h: Values) -> Values:
         return moved_by_isotropy(self.base, h, self.correction.generator(h), self._one_exponential)
+
+    def valid(self, h: Values) -> Values | bool:
+        return self.base.valid(h)
+
+    def diagnostics(self, h: Values) -> Diagnostics:
+        """Numbers of the correction, and of the base.
+
+        * "equilibria": whether the point is an equilibrium, "failed": whether a linear system had no solution, "near":
+          `is_near_cone`, "lost": whether one of the latter two holds;
+        * "short": the number of orders that were missed; "residual": the largest relative residual;
+        * "singular", "rank" (not in compiled code): see `Correction`.
+
+        Where every linear system has a solution, only "equilibria", "singular" and "rank" are there.
+        """
+        found, (base, order), xp = self.correction, self._orders, namespace(self.m)
+        rest: Any = found.leading == 0
+        made: Diagnostics = {**self.base.diagnostics(h), "equilibria": (rest, "sum")}
+        if not is_lazy(self.m):
+            made["singular"] = xp.where(rest, np.inf, found.singular_value), "min"
+            made["rank"] = xp.where(rest, np.inf, found.rank), "min"
+        if not found.always_solvable:
+            short: Any = xp.where(rest, 0, order - found.reached)
+            failed, near = short > 0, self.is_near_cone(h[..., 0])
+            made |= {
+                "failed": (failed, "sum"),
+                "near": (near, "sum"),
+                "lost": (failed | near, "sum"),
+                "short": (xp.where(near, order - base, short), "max"),
+                "residual": (found.residual, "max"),
+            }
+        return made
+
+    def is_near_cone(self, h: Values) -> BooleanArray:
+        """`Correction.near_cone`."""
+        return self.correction.near_cone(h)
 
 
 def _clock_of(correction: Correction) -> tuple[tuple[int, Values], ...]:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from liehom.correctors.isotropy.order_by_order import OrderRecursion, Part, norm
-from liehom.correctors.isotropy.range_solver import RangeSolver
+from liehom.correctors.isotropy.range_solver import RangeSolver, TightFrameSolver
 from liehom.correctors.step import ExponentialLike, Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
@@ -80,6 +80,11 @@ class Correction:
     def rank(self) -> Values:
         """Rank that must be the dimension of the orbit for (6.2) to hold, shape (...,); 0 at an equilibrium."""
         return self._of_parts("rank", 0)
+
+    @property
+    def always_solvable(self) -> bool:
+        """Whether every linear system has a solution, because the orbits have a tight frame."""
+        return all(isinstance(part.solver, TightFrameSolver) for part in self.parts)
 
     def near_cone(self, h: Values) -> BooleanArray:
         """Whether the cone on which the range condition fails is within two steps of size h, bool (...,); cf. Notes.

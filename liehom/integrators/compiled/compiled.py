@@ -1,4 +1,4 @@
-"""The fast path of a run by JAX: ordinary steps by compiled code, between the steps that `Run.advance` makes.
+"""The fast path of a run by JAX: ordinary steps by compiled code, between the steps that the automaton makes.
 
 The trajectories are the lanes of a kernel, one kernel for all orbits of one dimension. A lane is masked out before its
 last step, before a time of t_eval, and before a step that fails in any way. Adaptive step sizes are those of each lane.
@@ -11,12 +11,11 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.conserving import Conserving
 from liehom.errors import InputError
 from liehom.integrators.compiled.jax_kernel import JaxKernel
 from liehom.integrators.compiled.parameters import args_of_lanes
 from liehom.integrators.compiled.traced_size import SizeLimits
-from liehom.integrators.compiled.traced_step import traced_step
+from liehom.integrators.compiled.traced_step import totals_of, traced_step
 from liehom.integrators.compiled.widths import operations
 from liehom.integrators.run.clock import SLACK
 from liehom.integrators.run.run import Run
@@ -46,7 +45,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
     TraceError
         If the step cannot be compiled.
     """
-    if run.events is not None:
+    if run.stops.events is not None:
         raise InputError(f"engine={backend!r} does not look for events: take engine='numpy'")
     if run.dtype != np.float64:
         raise InputError(
@@ -54,9 +53,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
         )
     dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
     points = run.start.reshape(-1, run.start.shape[-1])
-    groups, kept_order = [], None
-    if isinstance(run.step, Conserving) and run.options.dt is None and not run.step.linear:
-        kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
+    groups = []
     for d in np.unique(dimensions):
         lanes = np.flatnonzero(dimensions == d)
         graph = traced_step(
@@ -68,7 +65,6 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
             ends=(float(run.span[0]), float(run.span[1])),
             nominal=run.options.nominal,
             limits=_size_limits(run) if run.options.dt is None else None,
-            kept_order=kept_order,
             args=args_of_lanes(run.field.args, run.shape, lanes),
         )
         groups.append(LaneGroup(graph, lanes, points[lanes]))
@@ -77,7 +73,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
 
 def _size_limits(run: Run) -> SizeLimits:
     o = run.options
-    return SizeLimits(o.rtol, o.atol, o.max_step, float(run.end), float(run.direction), float(run.tiny))
+    return SizeLimits(o.rtol, o.atol, o.max_step, float(run.stops.end), float(run.direction), float(run.tiny))
 
 
 @final
@@ -163,7 +159,7 @@ class _Lanes:
             self.h = np.array(run.state.h, dtype=np.float64).reshape(-1)
         else:
             self.h = (run.direction * np.broadcast_to(dt, run.shape)).reshape(-1)
-        self.limit = np.full(self.t.shape, float(run.end))
+        self.limit = np.full(self.t.shape, float(run.stops.end))
         if run.state.samples is not None and len(run.state.samples.times):
             done, times = run.state.samples.done.reshape(-1), run.state.samples.times
             ahead = times[np.minimum(done, len(times) - 1)]
@@ -175,7 +171,7 @@ class _Lanes:
         self.count = self.before.copy()
         self.tries = np.zeros(self.t.shape)
         self.paths: list[tuple[IntegerArray, Array, Array, Array | None]] = []
-        self.totals: list[tuple[IntegerArray, dict[str, Array]]] = []
+        self.totals: list[tuple[IntegerArray, dict[str, tuple[Array, str]]]] = []
         self.calls = np.zeros(self.t.shape)
 
     def step(self, group: LaneGroup, steps: int) -> None:
@@ -185,11 +181,12 @@ class _Lanes:
         limit = self.limit
         if graph.elapsed is None:  # the limit as a number of steps that end before it
             whole = np.abs(limit - float(run.span[0])) / np.abs(self.h)
-            total: Any = run.total  # a rest below the round-off of times is not a step
+            total: Any = run.stops.total  # a rest below the round-off of times is not a step
             limit = np.minimum(np.ceil(whole - SLACK), np.broadcast_to(total, run.shape).reshape(-1)) - 1
         h, limit = group.packed(self.h), group.packed(limit)
         alive, tries = group.packed(self.alive.astype(np.float64)), group.packed(self.tries)
         extra = np.zeros((max(1, len(graph.largest) + len(graph.summed)), m.shape[-1]))
+        extra[: len(graph.largest)] = -np.inf
         path = path_t = path_h = None
         if run.keeps:
             path, path_t = np.empty((steps, *m.shape)), np.empty((steps, m.shape[-1]))
@@ -210,12 +207,10 @@ class _Lanes:
             made = slice(0, int(self.tries[lanes].max(initial=0)))
             sizes = None if path_h is None else path_h[made, used]
             self.paths.append((lanes, path[made, :, used], path_t[made, used], sizes))
-        rows: dict[str, Any] = {}
-        if graph.summed:
-            rows = dict(zip((*graph.largest, *graph.summed), extra[:, used], strict=False))
-            self.totals.append((lanes, rows))
+        self.totals.append((lanes, totals_of(graph, list(extra[:, used]))))
         # where steps iterate, each trajectory has its own number
-        self.calls[lanes] = self.tries[lanes] * graph.calls if graph.calls is not None else rows["calls"]
+        here = 0 if graph.calls is not None else len(graph.largest) + list(graph.summed).index("calls")
+        self.calls[lanes] = extra[here, used] if graph.calls is None else self.tries[lanes] * graph.calls
 
     def hand_back(self) -> None:
         """Write the new times, points, sizes and records to the state of the run."""

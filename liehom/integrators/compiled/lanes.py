@@ -9,10 +9,12 @@ from itertools import pairwise
 from typing import Any, NamedTuple, final
 
 import numpy as np
+import numpy.typing as npt
 
+from liehom.integrators.compiled.traced_step import totals_of
 from liehom.integrators.run.options import END
 from liehom.integrators.run.run import Run
-from liehom.tracing import Kernel
+from liehom.tracing import Kernel, StepGraph
 from liehom.typing import Array, BooleanArray, IntegerArray
 
 LANE_STEPS_FOR_THREADS = 50_000
@@ -33,8 +35,8 @@ class Made(NamedTuple):
         Which lanes have steps left to be made by the kernel, and which are at the end.
     calls : array of shape (L,)
         Calls of psi.
-    records : dict of arrays of shape (L,)
-        Largest and summed numbers of the steps.
+    records : dict of (array of shape (L,), kind)
+        Totals of the diagnostics of the steps.
     outputs : array of int of shape (k,)
         Indices of output times, which are contiguous.
     points : array of shape (k, N, L)
@@ -53,7 +55,7 @@ class Made(NamedTuple):
     going: BooleanArray
     done: BooleanArray
     calls: Array
-    records: Mapping[str, Array]
+    records: Mapping[str, tuple[Array, str]]
     outputs: IntegerArray
     points: Array
     until: IntegerArray
@@ -166,7 +168,7 @@ class HandBack:
         now.taken = self.taken.reshape(shape)
         done = self.done.reshape(shape)
         if bool(done.any()):
-            run._stop(done, END)
+            run.stop(now, done, END)
         return bool(self.going.any()) or not bool(now.active.any())
 
     def _record(self) -> None:
@@ -190,3 +192,27 @@ class HandBack:
                 sizes.reshape(most, *shape),
                 (sizes != 0).reshape(most, *shape),
             )
+
+
+def records_of(kernel: Kernel, row: dict[str, Array]) -> dict[str, tuple[Array, str]]:
+    """The totals of the steps, by name."""
+    return totals_of(kernel.graph, [row[name] for name in _recorded(kernel.graph)])
+
+
+def _recorded(graph: StepGraph) -> list[str]:
+    """Names of the rows of the largest and the summed numbers."""
+    return [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+
+
+def lowest_numbers(graph: StepGraph) -> dict[str, float]:
+    """What the largest numbers are before the first step."""
+    return dict.fromkeys(_recorded(graph)[: len(graph.largest)], -np.inf)
+
+
+def calls_of(kernel: Kernel, row: dict[str, Array], steps: npt.NDArray[Any]) -> Array:
+    """Calls of psi in so many steps of each lane."""
+    graph = kernel.graph
+    if graph.calls is not None:
+        made: Array = np.multiply(steps, graph.calls, dtype=np.float64)
+        return made
+    return row[f"e{len(graph.largest) + list(graph.summed).index('calls')}"]

@@ -92,7 +92,7 @@ class LatticeStep(Step):
                 f"{self.step!r} has no estimate of its error in machine code on a lattice: give dt, take a pair such "
                 "as RKMK('rk45'), or engine='numpy'"
             )
-        return _LatticeLocal(self, action, m, t) if self.estimate_order is None else _Estimated(self, action, m, t)
+        return _LatticeLocal(self, action, m, t)
 
     def made(self, m: Array, t: Array, h: Array) -> tuple[Array, Array | None]:
         """Points after steps of sizes h from (m, t), and estimates of the error, lattice by lattice."""
@@ -119,11 +119,13 @@ class LatticeStep(Step):
         return repr(self.step)
 
 
+@final
 class _LatticeLocal(LocalStep):
     """A step from one state of the lattices, by machine code."""
 
     def __init__(self, step: LatticeStep, action: Action, m: Array, t: Values) -> None:
         super().__init__(action, m, point=self._moved)
+        self.estimate_order = step.estimate_order
         self.step, self.t = step, np.broadcast_to(np.asarray(t)[..., 0], m.shape[:-1])
         self._last: tuple[Array, tuple[Array, Array | None]] | None = None
 
@@ -136,16 +138,6 @@ class _LatticeLocal(LocalStep):
 
     def _moved(self, h: Values) -> Values:
         return self._made(h)[0]
-
-
-@final
-class _Estimated(_LatticeLocal):
-    """The same with the estimate of an embedded pair."""
-
-    @property
-    def estimate_order(self) -> int:
-        """The estimate is of this order in h."""
-        return int(self.step.estimate_order or 0)
 
     def estimate(self, h: Values) -> Values:
         """Estimate of the error as a vector in V, shape (..., N)."""
@@ -169,10 +161,9 @@ class _Recorded:
         h: Values = Traced(tape, self.size)[..., None]
         local = step.at(action, psi, Traced(tape, self.start), Traced(tape, self.time)[..., None])
         made: list[tuple[str, Any]] = [("m", local.point(h))]
-        estimate: Any = getattr(local, "estimate", None)
-        self.estimate_order: int | None = getattr(local, "estimate_order", None) if estimate is not None else None
-        if estimate is not None:
-            made.append(("e", estimate(h)))
+        self.estimate_order: int | None = local.estimate_order
+        if local.estimate_order is not None:
+            made.append(("e", local.estimate(h)))
         if tape.required:
             raise TraceError("an implicit step is solved at all sites together: take an explicit one")
         for name, values in made:
@@ -230,8 +221,8 @@ class LatticePath:
 
     def __call__(self, run: Run) -> bool:
         """Make steps until the next one is not ordinary or a call is full; whether any was made."""
-        now, dt, total = run.state, run.options.dt, run.total
-        if self.stopped or dt is None or total is None or run.events is not None or not now.active.all():
+        now, dt, total = run.state, run.options.dt, run.stops.total
+        if self.stopped or dt is None or total is None or run.stops.events is not None or not now.active.all():
             return False
         taken, size = int(np.max(now.taken)), float(run.direction) * float(np.max(dt))
         limit = min(int(np.max(total)) - 1, run.options.max_steps - 1)

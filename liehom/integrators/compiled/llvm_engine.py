@@ -2,7 +2,7 @@
 
 The engine keeps machine code, the traces behind it and schedules from call to call. What compiled code does not
 decide (a point that is not finite, a clock that is not admissible, equations that were not solved) ends the compiled
-part of a trajectory before that step, which `Run.advance` then makes or diagnoses.
+part of a trajectory before that step, which the automaton then makes or diagnoses.
 """
 
 from __future__ import annotations
@@ -14,13 +14,11 @@ from typing import Any, final
 
 import numpy as np
 
-from liehom.correctors.conserving import Conserving, ConservingStep
-from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
 from liehom.correctors.step import Generator
 from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import Action
 from liehom.homogeneous.fields.field import check_point
-from liehom.integrators.compiled.lanes import HandBack, Made, run_blocks
+from liehom.integrators.compiled.lanes import HandBack, Made, calls_of, lowest_numbers, records_of, run_blocks
 from liehom.integrators.compiled.lattice import solved_on_lattice
 from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
 from liehom.integrators.compiled.plan import Plan, plan_key
@@ -30,9 +28,9 @@ from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.compiled.widths import block_width, operations
 from liehom.integrators.engine import Problem, executed
 from liehom.integrators.run.options import END
-from liehom.integrators.run.records import bounds_of
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
+from liehom.integrators.run.statistics import bounds_of
 from liehom.tracing import Kernel, LaneConstant, StepGraph, Traced
 from liehom.typing import Array, IntegerArray, Values
 
@@ -139,25 +137,23 @@ class CodeStore:
 
     def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
         """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
-        o, tight, kept_order = run.options, run.action.tight_frame, None
-        if isinstance(run.step, Conserving) and o.dt is None and not run.step.linear:
-            kept_order = run.step.kept_order(run.action, run.psi, run.state.m, run.state.t)
+        o, tight = run.options, run.action.tight_frame
         frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
         uniform = o.dt is not None and _uniform(o.dt)
         args, lead = run.field.args, len(run.shape)
-        key = (dimension, uniform, o.dt is None, o.nominal, kept_order, frame, args_form(args, lead))
+        key = (dimension, uniform, o.dt is None, o.nominal, run.step.trace_key, frame, args_form(args, lead))
         if key not in self.graphs:
             limits = SizeLimits(*_limits(run).values()) if o.dt is None else None
 
             def traced(*, stops: bool) -> StepGraph:
                 return traced_step(
                     run.action, run.field, run.step, points, dimension, nominal=o.nominal, limits=limits,
-                    ends=(float(run.span[0]), float(run.span[1])), kept_order=kept_order, stops=stops,
+                    ends=(float(run.span[0]), float(run.span[1])), stops=stops,
                     args=args, lead=lead,
                 )  # fmt: skip
 
-            own_clock = isinstance(run.step, Corrected) and not o.nominal
-            made = traced(stops=not uniform or own_clock)
+            raised = run.step.order > run.step.base_order and not o.nominal  # such steps have a clock
+            made = traced(stops=not uniform or raised)
             if made.reached is None and made.elapsed is not None:
                 made = traced(stops=True)
             self.graphs[key] = with_guard(made, run.action, dimension) if made.reached is None else made
@@ -178,7 +174,7 @@ class CodeStore:
         if key not in self.schedules:
             if len(self.schedules) >= MAX_SCHEDULES:
                 self.schedules.pop(next(iter(self.schedules)))
-            self.schedules[key] = schedule(span, dt, int(np.max(run.total)), times, keeps=run.keeps)
+            self.schedules[key] = schedule(span, dt, int(np.max(run.stops.total)), times, keeps=run.keeps)
         return self.schedules[key]
 
 
@@ -190,7 +186,7 @@ def _limits(run: Run) -> dict[str, float]:
     o = run.options
     return {
         "rtol": o.rtol, "atol": o.atol, "max_step": o.max_step,
-        "end": float(run.end), "direction": float(run.direction), "tiny": float(run.tiny),
+        "end": float(run.stops.end), "direction": float(run.direction), "tiny": float(run.tiny),
     }  # fmt: skip
 
 
@@ -237,7 +233,7 @@ def compiled_run(run: Run, store: CodeStore) -> _CompiledRun:
     TraceError
         If the step cannot be compiled.
     """
-    if run.events is not None:
+    if run.stops.events is not None:
         raise InputError("engine='llvm' does not look for events: take engine='numpy'")
     if run.dtype != np.float64:
         raise InputError(f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'")
@@ -264,22 +260,20 @@ class _CompiledRun:
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **_limits(run), "latest": latest}
 
-        if not run.state.taken.any() and isinstance(run.step, Corrected | Conserving):
+        if not run.state.taken.any() and run.step.uses_isotropy:
             self._note_ranks(run)
 
     def _note_ranks(self, run: Run) -> None:
         """Record the ranks of the range condition at some of the initial points; compiled steps know of none."""
         some = np.unique(np.linspace(0, len(self.start) - 1, min(len(self.start), RANKED)).astype(int))
-        points, times = self.start[some], np.full(len(some), run.span[0])
+        points, times = self.start[some], np.full(len(some), float(run.span[0]))
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         args = run.field.args
         field = run.field if args is None else run.field.with_args(args_of_lanes(args, run.shape, some))
         psi = Generator(field, dimensions[some], points)
         with contextlib.suppress(np.linalg.LinAlgError, ConvergenceError):  # the first step will end with it
             local = run.step.at(run.action, psi, points, times[:, None])
-            inner = local.base if isinstance(local, ConservingStep) else local
-            if isinstance(inner, CorrectedStep):
-                run.state.statistics.note_ranks(inner.correction, some, times, points)
+            run.state.statistics.take_lowest(local.diagnostics(np.zeros((len(some), 1))), some, times, points)
 
     def __call__(self, run: Run) -> bool:
         """Make steps until every lane is at the end or has a step that is not made here, or a call is full."""
@@ -332,7 +326,9 @@ class _CompiledRun:
         plan, n, count = self.schedule, self.start.shape[-1], len(lanes)
         last = min(taken + steps, plan.steps)
         begin, end = int(plan.first[taken]), int(plan.first[last])
-        state = kernel.packed(count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end)})
+        state = kernel.packed(
+            count, {"x": back.m[lanes].T, "alive": 1.0, "count": float(end), **lowest_numbers(kernel.graph)}
+        )
         low, high = int(plan.rows[begin]), int(plan.rows[end])
         out = np.empty((high - low, n, state.shape[1]))
         run_blocks(
@@ -362,10 +358,8 @@ class _CompiledRun:
             taken=made,
             going=alive & (last < plan.steps),
             done=alive & (last == plan.steps),
-            calls=(made - taken) * kernel.graph.calls
-            if kernel.graph.calls is not None
-            else _records(kernel, row)["calls"],
-            records=_records(kernel, row),
+            calls=calls_of(kernel, row, made - taken),
+            records=records_of(kernel, row),
             outputs=outputs[outputs >= 0],
             points=out[outputs >= 0],
             until=_until(run, reached),
@@ -376,13 +370,13 @@ class _CompiledRun:
         """Steps of lanes with their own sizes and times."""
         n, count, graph, samples = self.start.shape[-1], len(lanes), kernel.graph, run.state.samples
         times = np.zeros(0) if samples is None else samples.times
-        at_end = len(times) > 0 and times[-1] == run.end
-        stops = np.concatenate([times[: len(times) - at_end], [run.end, run.end]]).astype(np.float64)
+        at_end = len(times) > 0 and times[-1] == run.stops.end
+        stops = np.concatenate([times[: len(times) - at_end], [run.stops.end, run.stops.end]]).astype(np.float64)
         done = np.zeros(count) if samples is None else samples.done.reshape(-1)[lanes]
         dt = run.options.dt
         sizes = back.h[lanes] if dt is None else run.direction * np.broadcast_to(dt, run.shape).reshape(-1)[lanes]
         given = {"x": back.m[lanes].T, "alive": 1.0, "count": back.taken[lanes], "t": back.t[lanes], "stop": done,
-                 "h": sizes}  # fmt: skip
+                 "h": sizes, **lowest_numbers(graph)}  # fmt: skip
         state = kernel.packed(count, given if graph.sizes is None else {**given, "kept": done})
         out = np.empty((len(stops) + 1, n, state.shape[1]))
         path = np.zeros((steps, n + 2, state.shape[1])) if run.keeps else None
@@ -400,7 +394,6 @@ class _CompiledRun:
         taken, reached, alive = row["count"].astype(int), row["t"], row["alive"]
         tries = row.get("tries", taken - back.taken[lanes])
         until = np.where(alive < 0, len(times), row["stop" if graph.sizes is None else "kept"].astype(int))
-        records = _records(kernel, row)
         first = int(done.min()) if count else 0
         return Made(
             m=state[:n, :count],
@@ -408,8 +401,8 @@ class _CompiledRun:
             taken=taken,
             going=alive > 0,
             done=alive < 0,
-            calls=tries * graph.calls if graph.calls is not None else records["calls"],
-            records=records,
+            calls=calls_of(kernel, row, tries),
+            records=records_of(kernel, row),
             outputs=np.arange(first, int(until.max(initial=first))),
             points=out[first : int(until.max(initial=first)), :, :count],
             until=until,
@@ -431,9 +424,3 @@ def _until(run: Run, t: Array) -> IntegerArray:
         return np.zeros(t.shape, dtype=int)
     found: IntegerArray = np.searchsorted(run.direction * run.state.samples.times, run.direction * t, side="right")
     return found
-
-
-def _records(kernel: Kernel, row: dict[str, Array]) -> dict[str, Array]:
-    """The numbers that the steps recorded, by name."""
-    names = (*kernel.graph.largest, *kernel.graph.summed)
-    return {name: row[f"e{i}"] for i, name in enumerate(names)} if kernel.graph.summed else {}

@@ -7,21 +7,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.correctors.step_size import StepLimits, over_sites
 from liehom.homogeneous import Action
+from liehom.integrators.run.automaton import FIRST_STEP_FRACTION
 from liehom.integrators.run.clock import MAX_RATE, MIN_RATE, NEWTON_ITERATIONS, SLACK
 from liehom.integrators.run.control import (
     MAX_GROWTH,
     Tolerance,
-    defects_of,
     is_large_enough,
     judged,
+    known_size,
     largest_size,
     length,
-    over_sites,
-    size_from_defects,
     time_scale,
 )
-from liehom.integrators.run.run import FIRST_STEP_FRACTION
 from liehom.series.arrays import namespace
 from liehom.tracing import while_loop
 from liehom.typing import Real, Values
@@ -90,11 +89,11 @@ def tried_size(
     xp = namespace(m, t)
     left = xp.abs(limits.end - t)
     h: Any = xp.minimum(proposal, largest_size(limits.max_step, left))
-    if getattr(local, "estimate", None) is None:
+    if local.estimate_order is None:
         axes = len(psi.field.sites)
         speed = over_sites(length(m), axes) / time_scale(psi.field, m, t)
-        defects = tuple((k, over_sites(d, axes)) for k, d in defects_of(action, psi, local, m, t, step.order))
-        h = size_from_defects(defects, Tolerance(limits.rtol, limits.atol, axes).norm(m), speed, h)
+        own = StepLimits(Tolerance(limits.rtol, limits.atol, axes).norm(m), speed, h, axes)
+        h = known_size(action, psi, local, m, t, step.order, own)
     return limits.direction * h, is_large_enough(h, limits.tiny, left)
 
 
@@ -113,11 +112,10 @@ def judgement(
     (True, 2.0)
     """
     h: Values = size[..., 0]
-    estimate = getattr(local, "estimate", None)
-    if estimate is None:
+    if local.estimate_order is None:
         return True, MAX_GROWTH * abs(h)
     allowed = Tolerance(limits.rtol, limits.atol, axes).norm(m)
-    return judged(estimate(size), allowed, h, local.estimate_order, axes)  # type: ignore[attr-defined]
+    return judged(local.estimate(size), allowed, h, local.estimate_order, axes)
 
 
 def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
@@ -129,7 +127,7 @@ def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, 
     >>> psi = Generator(lh.GeneratorField(lh.defining(lh.so(2)), [4]), 1)
     >>> first_size(SizeLimits(1e-3, 1e-3, 1.0, 1.0, 1.0, 1e-15), LocalStep(psi, 1), psi, np.array([1.0, 0.0]), 0.0)
     """
-    if getattr(local, "estimate", None) is None:
+    if local.estimate_order is None:
         return None
     xp = namespace(m, t)
     bound = largest_size(limits.max_step, xp.abs(limits.end - t))
@@ -158,7 +156,8 @@ def size_to_stop(
     if local is None:
         reached = direction * (left - h) <= SLACK * np.abs(h) + tiny
         return np.where(reached, left, h), reached, True
-    tape: Any = h.tape  # type: ignore[union-attr]
+    size: Any = h
+    tape = size.tape
     passed = local.time(h)
     reached = direction * (left - passed) <= SLACK * np.abs(h)
 

@@ -8,19 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from liehom.correctors.conserving import Conserving, ConservingStep
-from liehom.correctors.isotropy.corrected import Corrected, CorrectedStep
-from liehom.correctors.isotropy.range_solver import TightFrameSolver
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.compiled.parameters import traced_args
 from liehom.integrators.compiled.traced_size import SizeLimits, first_size, judgement, size_to_stop, tried_size
-from liehom.integrators.run.clock import clock_at, has_clock
-from liehom.integrators.run.conservation_statistics import CONSERVED_ROUNDOFFS
+from liehom.integrators.run.clock import clock_at
 from liehom.integrators.run.control import ERROR_TERMS
-from liehom.integrators.run.records import bounds_of, earliness
+from liehom.integrators.run.statistics import LOST, bounds_of, earliness
 from liehom.tracing import Expr, Sizes, StepGraph, Tape, Traced
 from liehom.typing import Array, Pytree, Real, Values
 
@@ -30,7 +26,7 @@ MAX_CLOCK_DEVIATION = 0.8
 
 def traced_step(
     action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
-    ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None, kept_order: int | None = None,
+    ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None,
     stops: bool = False, args: Pytree = None, lead: int = 1,
 ) -> StepGraph:  # fmt: skip
     """The graph of a step on orbits of one dimension.
@@ -40,6 +36,7 @@ def traced_step(
     action : Action
     field : GeneratorField
     step : Step
+        As `Step.prepare` returned it, if sizes are adaptive.
     points : array of shape (L, N)
         Points on the orbits of the run; special properties of these orbits may be used.
     orbit_dimension : int
@@ -49,8 +46,6 @@ def traced_step(
         Initial and final time, which show the order of times in the report.
     limits : SizeLimits, optional
         Tolerances for an adaptive step size; without them the size is an input of the graph.
-    kept_order : int, optional
-        ``Conserving.kept_order``, on which the sizes of a conserving step depend.
     stops : bool
         Whether the graph goes no further than to a stop, whose time is an input.
     args : pytree, optional
@@ -74,7 +69,7 @@ def traced_step(
     try:
         tape = Tape()
         field = field if args is None else field.with_args(traced_args(tape, args, lead))
-        return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, kept_order, stops)
+        return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, stops)
     except TraceError as error:
         raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
     except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
@@ -86,11 +81,11 @@ def traced_step(
 
 def _traced(
     tape: Tape, action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
-    ends: tuple[float, float], limits: SizeLimits | None, kept_order: int | None, stops: bool,
+    ends: tuple[float, float], limits: SizeLimits | None, stops: bool,
 ) -> StepGraph:  # fmt: skip
     n = field.representation.size
     tight = action.tight_frame
-    if tight is None and isinstance(step, Corrected | Conserving):  # others ask for no isotropy
+    if tight is None and step.uses_isotropy:
         tight = tight_frame(action, points, orbit_dimension)
     if tight is not None and action.inner_product.invariant:
         form = tight.trace
@@ -100,19 +95,18 @@ def _traced(
     m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
     h: Any = Traced(tape, tape.input(n + 1))
     psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
-    psi.prepared[step] = kept_order
     local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
     given_limits: SizeLimits | None = None
     certain: Any = True
     if limits is not None:
         given_limits = SizeLimits._make(Traced(tape, tape.run_constant(*x)) for x in limits._asdict().items())
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
-    own_clock, first, reached = has_clock(local) and not nominal, None, None
+    own_clock, first, reached = bool(local.clock) and not nominal, None, None
     passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
     if stops:
-        calls = tape.calls
+        before = tape.calls
         first = first_size(given_limits, local, psi, m, t) if given_limits is not None else None
-        tape.calls = calls
+        tape.calls = before
         stop, directed = Traced(tape, tape.input(n + 2)), Traced(tape, tape.run_constant("direction", 1.0))
         bounds = directed, Traced(tape, tape.run_constant("tiny", 0.0))
         h, reached, found = size_to_stop(local if own_clock else None, h, stop - t, bounds)
@@ -129,8 +123,10 @@ def _traced(
     sizes = None
     if given_limits is not None:
         sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(given_limits, local, m, size)])
-    worst, summed = _statistics(tape, local, step, t, size, ends)
-    solved = reduce(tape.both, tape.required) if tape.required else None
+    worst, summed = _statistics(tape, local, t, size, ends)
+    tape.required.append(_number(tape, local.valid(size)))
+    required = [x for x in tape.required if x is not tape.true]
+    solved = reduce(tape.both, required) if required else None
     plain = [x for x in (runs, solved, _number(tape, certain)) if x is not None and x is not tape.true]
     runs = reduce(tape.both, plain) if plain else None
     point = [_number(tape, made[i]) for i in range(n)]
@@ -179,33 +175,43 @@ def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values
 
 
 def _statistics(
-    tape: Tape, local: LocalStep, step: Step, t: Values, size: Values, ends: tuple[float, float]
+    tape: Tape, local: LocalStep, t: Values, size: Values, ends: tuple[float, float]
 ) -> tuple[dict[str, Expr], dict[str, Expr]]:
-    """Numbers of a step for the report: those of which the largest is stored, and those that are summed up."""
+    """`StepGraph.largest` and `StepGraph.summed`, from the diagnostics of the step."""
     largest: dict[str, Any] = {}
     summed: dict[str, Any] = {}
-    if isinstance(local, ConservingStep):
-        made = local.conserved(size)
-        tape.required.append(_number(tape, made.left | (made.rank >= made.wanted)))
-        largest |= {"iterations": made.iterations, "defect": made.defect}
-        summed |= {
-            "missed": np.where(made.units > CONSERVED_ROUNDOFFS, 1.0, 0.0),
-            "left": np.where(made.left, 1.0, 0.0),
-            "usual": np.where(made.left, 0.0, 1.0),
-        }
-        local = local.base
-    if isinstance(local, CorrectedStep):
-        found = local.correction
-        rest = Traced(tape, found.leading) == 0
-        summed["equilibria"] = np.where(rest, 1.0, 0.0)
-        if not all(isinstance(part.solver, TightFrameSolver) for part in found.parts):
-            short = step.order - np.where(rest, step.order, Traced(tape, found.reached))
-            near = found.near_cone(size[..., 0])
-            failed = np.where(short > 0, 1.0, 0.0)
-            direction, limit = [
-                Traced(tape, tape.run_constant(*x)) for x in zip(("direction", "latest"), bounds_of(ends), strict=True)
-            ]
-            now = np.where((short > 0) | near, earliness(t, (direction, limit)), 0.0)
-            largest |= {"residual": found.residual, "short": short, "unkept": now}
-            summed |= {"failed": failed, "near": np.where(near, 1.0, 0.0)}
-    return ({k: _number(tape, x) for k, x in largest.items()}, {k: _number(tape, x) for k, x in summed.items()})
+    for name, (value, kind) in local.diagnostics(size).items():
+        if name == LOST:
+            names = zip(("direction", "latest"), bounds_of(ends), strict=True)
+            direction, limit = [Traced(tape, tape.run_constant(*x)) for x in names]
+            largest["unkept"] = np.where(value, earliness(t, (direction, limit)), 0.0)
+        elif kind == "sum":
+            summed[name] = value
+        else:
+            largest[name if kind == "max" else f"-{name}"] = value if kind == "max" else -value
+    return ({k: _amount(tape, x) for k, x in largest.items()}, {k: _amount(tape, x) for k, x in summed.items()})
+
+
+def totals_of(graph: StepGraph, rows: Sequence[Array]) -> dict[str, tuple[Array, str]]:
+    """Totals of compiled steps by name, with their kind, from the rows of `graph.largest` and `graph.summed`.
+
+    The calls of psi are not among them.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["1", "m0", "0"])
+    >>> action, step = lh.Action(field.representation), lh.Corrected(lh.Euler(), 2)
+    >>> graph = traced_step(action, field, step, np.eye(3), 2, nominal=True)
+    >>> graph.largest, totals_of(graph, [np.array([3.0])])
+    ({}, {'equilibria': (array([3.]), 'sum')})
+    """
+    kinds = ["max"] * len(graph.largest) + ["sum"] * len(graph.summed)
+    found = zip((*graph.largest, *graph.summed), rows[: len(kinds)], kinds, strict=True)
+    kept = [(name, x, kind) for name, x, kind in found if name != "calls"]
+    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in kept}
+
+
+def _amount(tape: Tape, x: object) -> Expr:
+    """A number, or 0 or 1 for a boolean."""
+    return tape.number(_number(tape, x))

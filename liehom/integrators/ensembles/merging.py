@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import FormatError
-from liehom.integrators.run.conservation_statistics import ConservationReport
 from liehom.integrators.run.options import LOST, TRAJECTORY_MARK, also_lost, among, overall_status
-from liehom.integrators.run.solution import Report, Solution
+from liehom.integrators.run.solution import ConservationReport, Report, Solution
 from liehom.typing import Array, IntegerArray
 
 
@@ -91,6 +90,7 @@ def merged_report(reports: Sequence[Report], direction: float = 1.0) -> Report:
         unkept_from=_earliest([report.unkept_from for report in reports], direction),
         stopped_at=_earliest([report.stopped_at for report in reports], direction),
         conservation=_conserved(conserved) if conserved else None,
+        diagnostics=_totals([report.diagnostics for report in reports]),
     )
 
 
@@ -178,7 +178,8 @@ def _report(facts: Mapping[str, Any]) -> Report:
         short = None if short is None else (short[0], tuple(short[1]), short[2])
         conservation = ConservationReport(**{**conservation, "short_at": short})
     at = None if at is None else (at[0], tuple(at[1]))
-    return Report(**{**facts, "singular_at": at, "conservation": conservation})
+    others = tuple((name, kind, value) for name, kind, value in facts.get("diagnostics", ()))
+    return Report(**{**facts, "singular_at": at, "conservation": conservation, "diagnostics": others})
 
 
 def _objects(found: Sequence[object], shape: tuple[int, ...]) -> npt.NDArray[Any]:
@@ -224,6 +225,17 @@ def _earliest(times: Sequence[float | None], direction: float) -> float | None:
 def _least_rank(ranks: Sequence[int]) -> int:
     """The smallest rank that was met; 0 stands for no rank, in `ranks` and as the result."""
     return min((rank for rank in ranks if rank), default=0)
+
+
+def _totals(parts: Sequence[tuple[tuple[str, str, float], ...]]) -> tuple[tuple[str, str, float], ...]:
+    """Totals of the diagnostics of several runs."""
+    found: dict[tuple[str, str], list[float]] = {}
+    for name, kind, value in (entry for part in parts for entry in part):
+        found.setdefault((name, kind), []).append(value)
+    return tuple(
+        (name, kind, max(x) if kind == "max" else min(x) if kind == "min" else sum(x))
+        for (name, kind), x in found.items()
+    )
 
 
 def _conserved(reports: Sequence[ConservationReport]) -> ConservationReport:

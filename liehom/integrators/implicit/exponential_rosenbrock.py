@@ -74,16 +74,17 @@ class ExponentialRosenbrock(OneExponential):
         if is_lazy(m):
             raise TraceError("exponential Rosenbrock steps need exponentials of matrices: take Rosenbrock('rodas4')")
         linear = Linearization(action, psi, m, t, max(self.order - 1, 1))
-        kind = _ExponentialStep if self.order == 2 else _EmbeddedExponentialStep
-        return kind(self.order, linear)
+        return _ExponentialStep(self.order, linear)
 
 
+@final
 class _ExponentialStep(LocalStep):
-    """An exponential Rosenbrock step at one point."""
+    """An exponential Rosenbrock step at one point; from order 3 on with an estimate of its error."""
 
     def __init__(self, order: int, linear: Linearization) -> None:
         super().__init__(linear.action, linear.m)
         self.order, self._linear = order, linear
+        self.estimate_order = None if order == 2 else order
         self._last = LastSize[tuple[Any, Any]]()
 
     def factors(self, h: Values) -> Factors:
@@ -119,16 +120,6 @@ class _ExponentialStep(LocalStep):
         e = rest(v + h * _times(phi[0], d), h)
         extra = h * _times(phi[3], 12 * e - 48 * d)
         return v + h * _times(phi[2], 16 * d - 2 * e) + extra, extra
-
-
-@final
-class _EmbeddedExponentialStep(_ExponentialStep):
-    """An exponential Rosenbrock step with an estimate of its error."""
-
-    @property
-    def estimate_order(self) -> int:
-        """The estimate is O(h^estimate_order)."""
-        return self.order
 
     def estimate(self, h: Values) -> Values:
         """rho(x) m with x the difference of the methods of two orders, for h (..., 1); shape (..., N)."""

@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from liehom.correctors.conserving import Conserving
-from liehom.correctors.isotropy.corrected import Corrected
 from liehom.errors import InputError, TraceError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
@@ -88,7 +87,7 @@ class JaxEngine:
         if o.dt is None or problem.args is not None:
             return array
         points: Any = representative_points(problem.start, problem.field.representation.size)
-        tight = tight_frame(action, points, dimension) if isinstance(step, Corrected | Conserving) else None
+        tight = tight_frame(action, points, dimension) if step.uses_isotropy else None
         key = dimension, None if tight is None else repr([np.asarray(x).tolist() for x in tight[:4]])
         if key not in self._steps:
             try:
@@ -152,7 +151,7 @@ class _Call:
                 "from a numpy array for these"
             )
         dimensions = np.unique(problem.orbit_dimension)
-        if len(dimensions) > 1 and isinstance(problem.step, Corrected | Conserving):  # others ask for no isotropy
+        if len(dimensions) > 1 and problem.step.uses_isotropy:  # others ask for no isotropy
             raise InputError(
                 "trajectories on orbits of several dimensions: integrate them one by one, or from numpy arrays"
             )
@@ -255,7 +254,7 @@ class _Call:
         return int(min(ceil(ratio * STEPS_PER_NOMINAL_STEP if self._has_clock() else ratio) + 2, most))
 
     def _has_clock(self) -> bool:
-        return not self.problem.options.nominal and isinstance(self.problem.step, Corrected | Conserving)
+        return not self.problem.options.nominal and self.problem.step.uses_isotropy
 
     # -- loops -------------------------------------------------------------------------------------------
     def _bound(self, start: JaxArray, args: Sequence[JaxArray]) -> tuple[GeneratorField, At]:

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple, Protocol, final
 
 import numpy as np
 
-from liehom.correctors.isotropy.corrected import CorrectedStep
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators.run.clock import MAX_RATE, MIN_RATE, RATE_SAMPLES
@@ -132,23 +131,21 @@ class ArrayStep:
         psi = Generator(field, self.orbit_dimension, start)
         local = self.step.at(self.action, psi, m, t[..., None], error_terms=self.error_terms)
         clock: Any = () if self.nominal else local.clock
-        return LocalOnJax(partial(_moved, local, self.step, m, t), clock, local)
+        return LocalOnJax(partial(_moved, local, m, t), clock, local)
 
 
-def _moved(local: LocalStep, step: Step, m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
+def _moved(local: LocalStep, m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
     import jax.numpy as jnp
 
     made: Any = local.point(s[..., None])
     point = jnp.broadcast_to(made, m.shape).astype(m.dtype)
     zero = jnp.zeros(t.shape, t.dtype)
     failed, near = zero, zero
-    if isinstance(local, CorrectedStep):
-        found: Any = local.correction
-        if found.zeta is not None:
-            short = (found.leading != 0) & (found.reached < step.order)
-            failed = jnp.where(short, 1.0, zero)
-            near = jnp.where(found.near_cone(s), 1.0, zero)
-    return Moved(point, _code(point), failed, near)
+    found: Any = local.diagnostics(s[..., None])
+    if "failed" in found:
+        failed, near = (jnp.where(found[name][0], 1.0, zero) for name in ("failed", "near"))
+    code, valid = _code(point), local.valid(s[..., None])
+    return Moved(point, code if valid is True else jnp.where(valid, code, np.int32(IMPLICIT)), failed, near)
 
 
 @final

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple, final
 
 import numpy as np
 
-from liehom.correctors.isotropy.corrected import Corrected
 from liehom.integrators.engine import Problem
 from liehom.integrators.run.options import END, ORDER_NOT_KEPT, outcome
 from liehom.integrators.run.solution import Report, Solution, loss_of_order
@@ -83,7 +82,7 @@ def _report(problem: Problem, dimension: int) -> Report:
         step=repr(step),
         exponential=problem.action.exponential.name,
         clock=problem.options.clock,
-        base_order=step.step.order if isinstance(step, Corrected) else step.order,
+        base_order=step.base_order,
         order=step.order,
         wanted_order=step.order,
         worst_residual=float("nan"),

@@ -8,10 +8,10 @@ docs/theory/taylor.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 
@@ -76,6 +76,7 @@ class Taylor(Step):
     """
 
     n: int
+    _orbits: ClassVar[tuple[Quadrics | None] | None] = None  # of `prepare`
 
     def __post_init__(self) -> None:
         if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
@@ -86,19 +87,24 @@ class Taylor(Step):
         return int(self.n)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        if self._orbits is None:
+            return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
         flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
-        quadrics = self._quadrics(action, psi, m)
+        quadrics = self._orbits[0]
         if quadrics is None:
             return LandedSeries(action, m, flow, self.order, psi.orbit_dimension)
         return ProjectedSeries(action, m, flow, self.order, quadrics, psi.start)
 
-    def _quadrics(self, action: Action, psi: Generator, m: Values) -> Quadrics | None:
-        if ("quadrics", self) not in psi.prepared:
-            start: Any = psi.start if psi.start is not None else m
-            points = np.zeros((0, m.shape[-1])) if is_traced(start) else start
-            psi.prepared["quadrics", self] = quadric_orbits(action.representation, psi.orbit_dimension, points)
-        found: Quadrics | None = psi.prepared["quadrics", self]
-        return found
+    @property
+    def trace_key(self) -> Hashable:
+        """Whether the points are projected."""
+        return self._orbits is not None and self._orbits[0] is not None
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
+        """The step with the quadratic forms of the orbits of a run."""
+        start: Any = psi.start if psi.start is not None else m
+        points = np.zeros((0, m.shape[-1])) if is_traced(start) else start
+        return self.with_prepared(_orbits=(quadric_orbits(action.representation, psi.orbit_dimension, points),))
 
 
 class TaylorSeries(LocalStep):

@@ -5,7 +5,7 @@ path, samples, events and statistics, `solution` the object that users get. `lie
 and compiled runs use it; see docs/tutorials/integrating.md.
 """
 
-from liehom.integrators.run.conservation_statistics import ConservationReport as ConservationReport
 from liehom.integrators.run.dense import DenseSolution as DenseSolution
+from liehom.integrators.run.solution import ConservationReport as ConservationReport
 from liehom.integrators.run.solution import Report as Report
 from liehom.integrators.run.solution import Solution as Solution

@@ -1,8 +1,7 @@
-"""Step sizes from the Taylor coefficients of the error, or from an embedded pair.
+"""Step sizes by the tolerance: from what a step knows of its error, or from an embedded pair.
 
-For a step with defects d_k = |[t^k](F - step)|, F the flow, the step size is the largest h with d_k h^k within the
-tolerance and below a fraction of |X| h, the length of the step; the second bound keeps h where the series converges,
-also next to equilibria. For an embedded pair the step is taken, judged, and repeated if it was too large.
+For an embedded pair the step is taken, judged, and repeated if it was too large; see `liehom.correctors.step_size` for
+the sizes that are known in advance.
 
 The rules run on arrays, and on the tracers of compiled steps (`Values`); results are of the same kind.
 """
@@ -10,27 +9,24 @@ The rules run on arrays, and on the tracers of compiled steps (`Values`); result
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, TypeAlias, final
+from typing import Any, final
 
 import numpy as np
 
 from liehom.correctors.expansion import flow_series, step_series
 from liehom.correctors.step import Generator, LocalStep
+from liehom.correctors.step_size import SAFETY, Defects, StepLimits, floats, over_sites, size_from_defects
 from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
-from liehom.series.arrays import is_jax, namespace
+from liehom.series.arrays import namespace
 from liehom.typing import Array, BooleanArray, Real, Values
 
-SAFETY = 0.9
-"""Fraction of the step size at which the estimated error equals the tolerance."""
 MAX_PAIR_GROWTH = 5.0
 """With an embedded pair, the largest ratio of the next step size to the last one."""
 MAX_SHRINK = 0.2
 """The smallest ratio of the next step size to the last one."""
 ERROR_TERMS = 2
 """Number of Taylor coefficients of the error that are computed."""
-SERIES_FRACTION = 0.1
-"""The largest length of a term of the error, in units of the length |X| h of the step."""
 MAX_GROWTH = 8.0
 """Without an embedded pair, the largest ratio of the next step size to the last one."""
 NONFINITE_RATIO = 1e10
@@ -39,9 +35,6 @@ MAX_TRIALS = 200
 """Number of attempts to find out which trajectories a step cannot be solved for."""
 MIN_ROUNDOFFS = 10.0
 """The smallest relative tolerance, in units of round-off."""
-
-Defects: TypeAlias = tuple[tuple[int, Values], ...]
-"""(k, |[t^k] (flow - step)|) for the orders k above the order of a step; arrays of shape (...,)."""
 
 
 @final
@@ -80,24 +73,9 @@ def length(x: Values) -> Array:
     >>> float(length(np.array([3.0, 4.0])))
     5.0
     """
-    values = _floats(x)
+    values = floats(x)
     found: Array = namespace(values).sqrt((values * values).sum(axis=-1))
     return found
-
-
-def over_sites(x: Values, axes: int) -> Array:
-    """Root of the sum of squares over the last axes, the sites of a lattice, repeated for each site.
-
-    Examples
-    --------
-    >>> over_sites(np.array([[3.0, 4.0], [0.0, 1.0]]), 1).tolist()
-    [[5.0, 5.0], [1.0, 1.0]]
-    """
-    if not axes:
-        return x  # type: ignore[return-value]
-    xp = namespace(x)
-    found: Array = xp.sqrt(xp.sum(x * x, axis=tuple(range(-axes, 0)), keepdims=True))
-    return xp.broadcast_to(found, x.shape)
 
 
 def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
@@ -113,13 +91,6 @@ def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
     xp = namespace(where)
     some: BooleanArray = xp.any(where, axis=tuple(range(-axes, 0)), keepdims=True)
     return xp.broadcast_to(some, where.shape)
-
-
-def _floats(x: Values) -> Any:
-    """x in float64; tracers and JAX arrays as they are."""
-    if is_jax(x):
-        return x
-    return x.astype(np.float64, copy=False) if hasattr(x, "astype") else np.asarray(x, dtype=np.float64)
 
 
 def largest_size(max_step: Real, left: Values) -> Array:
@@ -160,38 +131,23 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     return over_sites(length(m), axes) / over_sites(length(field.vector(m, t)), axes)
 
 
-def size_from_defects(defects: Defects, allowed: Values, speed: Values, largest: Values) -> Array:
-    """The largest step size whose error is within the tolerance, by its Taylor coefficients; shape (...,).
-
-    Parameters
-    ----------
-    defects : tuple of (int, array of shape (...,))
-    allowed : array of shape (...,)
-        The error allowed.
-    speed : array of shape (...,)
-        |X|, or 0 to disregard the length of the step.
-    largest : array of shape (...,)
-        A bound for the size.
+def known_size(
+    action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int, limits: StepLimits
+) -> Values:
+    """The size that the step knows in advance (`LocalStep.size`), else from the Taylor coefficients of its error.
 
     Examples
     --------
-    >>> import numpy as np
-    >>> float(size_from_defects(((2, np.array(1.0)),), np.array(1e-4), np.array(1.0), np.array(1.0)))
-    0.009000000000000001
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(3)), ["m0", "0", "0"])
+    >>> action, psi, m = lh.Action(field.representation), Generator(field, 2), np.array([0.6, 0.0, 0.8])
+    >>> limits = StepLimits(np.array(1e-3), np.array(0.36), np.array(1.0))
+    >>> local = lh.Euler().at(action, psi, m, np.zeros(1))
+    >>> float(known_size(action, psi, local, m, np.array(0.0), 1, limits).round(6))
+    0.323165
     """
-    xp = namespace(largest, speed)
-    h: Array = _floats(largest)
-    way: Any = speed
-    for k, defect in defects:
-        size = _floats(defect)
-        some = size > 0
-        safe = xp.where(some, size, 1.0)
-        found: Any = (allowed / safe) ** (1 / k)
-        if k > 2:  # not for k = 2: next to a time at which X vanishes steps would shrink with X
-            series = (SERIES_FRACTION * way / safe) ** (1 / (k - 1))
-            found = xp.where(way > 0, xp.minimum(found, series), found)
-        h = xp.minimum(h, xp.where(some, SAFETY * found, xp.where(xp.isnan(size), np.nan, np.inf)))
-    return h
+    found = local.size(limits)
+    return size_from_defects(defects_of(action, psi, local, m, t, order), *limits) if found is None else found
 
 
 def defects_of(action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> Defects:

@@ -1,23 +1,61 @@
 """Events: zeros of functions g(t, y) along trajectories, located on the dense output of a step.
 
-An event is a change of the sign of g, or a change to 0, between the ends of a step. Chandrupatla's method (inverse
-quadratic interpolation if it is safe, else bisection) locates it to round-off.
+A zero of g is a change of its sign, or a change to 0, between the ends of a step; or one of the two zeros next to an
+extremum of g within the step. There is such an extremum if g has the same sign at both ends of a step, and approaches 0
+at its first end and leaves it at its last one. It is found by interpolation with parabolas, until g has the other sign
+or the parabolas stay clear of 0. Chandrupatla's method (inverse quadratic interpolation if it is safe, else bisection)
+locates the zeros to round-off.
+
+If g has at most one extremum within each step, all of its zeros are found, except those at which it only touches 0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeAlias, final
+from typing import Any, NamedTuple, TypeAlias, final
 
 import numpy as np
 
 from liehom.errors import InputError, displayed
+from liehom.integrators.run.records import EventLog
 from liehom.typing import Array, BooleanArray
 
 ITERATIONS = 200
+EXTREMUM_ITERATIONS = 60
+CLEAR_OF_ZERO = 0.5
+"""An extremum is clear of 0 if two parabolas in turn leave at least this fraction of the value that is known."""
+EXTREMUM_RTOL = 1e-9
+"""The smallest bracket of an extremum, in units of the step."""
 
 EventFunction: TypeAlias = Callable[[Any, Any], Any]
 """g(t, y): times (...,) and points (..., N) to real numbers (...,)."""
+
+
+class Look(NamedTuple):
+    """A step as events see it.
+
+    Attributes
+    ----------
+    position : callable
+        s (...,) -> (t, y), at the size s within the step.
+    slope : callable
+        (i, place, value, inwards, here) -> the derivative of event function i in the direction of integration, for the
+        trajectories `here`, at a place (t, y) where its value is known; `inwards` is 1 at the start of a step and -1
+        at its end.
+    h : array of shape (...,)
+        The size of the step.
+    before, after : (t, y)
+        At its ends.
+    moves : bool array of shape (...,)
+        The trajectories that make it.
+    """
+
+    position: Callable[[Array], tuple[Array, Array]]
+    slope: Callable[[int, tuple[Array, Array], Array, int, BooleanArray], Array]
+    h: Array
+    before: tuple[Array, Array]
+    after: tuple[Array, Array]
+    moves: BooleanArray
 
 
 @final
@@ -40,8 +78,9 @@ class Events:
     Notes
     -----
     A zero at the initial time is recorded, as by solve_ivp, if g leaves it in the right direction. It is not counted
-    towards `terminal`, so that a run may start where another one has ended. Two zeros within one step are not noticed:
-    see `max_step`.
+    towards `terminal`, so that a run may start where another one has ended. All zeros of g are found if g has at most
+    one extremum within each step; with more of them, as for a g that oscillates faster than the solution, see
+    `max_step`. A zero at which g keeps its sign is not an event.
 
     Examples
     --------
@@ -98,32 +137,156 @@ class Events:
             return rises
         return falls if self.directions[i] < 0 else rises | falls
 
-    def locate(
-        self,
-        i: int,
-        at: Callable[[Array], tuple[Array, Array]],
-        h: Array,
-        ends: tuple[Array, Array],
-        here: BooleanArray,
-    ) -> Array:
-        """Step sizes s in (0, h] at which event i occurs, on the far side of the zero, for the trajectories `here`.
+    def record(
+        self, log: EventLog, look: Look, before: list[Array], after: list[Array], fresh: BooleanArray
+    ) -> tuple[Array, BooleanArray]:
+        """Record the events in a step; returns the size up to the first terminal one, and for which trajectories.
+
+        Parameters
+        ----------
+        log : EventLog
+        look : Look
+        before, after : list of arrays of shape (...,)
+            The event functions at the ends of the step.
+        fresh : bool array of shape (...,)
+            Trajectories that are at the start of the run.
+        """
+        halted, stop = np.zeros(np.shape(look.h), dtype=bool), look.h
+        found: list[tuple[int, BooleanArray, Array]] = []
+        for i, (start, end) in enumerate(zip(before, after, strict=True)):
+            at_start = look.moves & fresh & self.left(i, start, end)
+            if at_start.any():
+                log.add(i, at_start, *look.before, counted=False)
+            count = log.occurrences[i]
+            for here, s in self.zeros(i, look, start, end):
+                count = count + here
+                ends = here & (count >= self.terminal[i])
+                stop = np.where(ends & (np.abs(s) <= np.abs(stop)), s, stop)
+                halted = halted | ends
+                found.append((i, here, s))
+        for i, here, s in found:
+            kept = here & (np.abs(s) <= np.abs(stop))
+            if kept.any():
+                log.add(i, kept, *look.position(np.where(kept, s, 0)))
+        return stop, halted
+
+    def zeros(self, i: int, look: Look, start: Array, end: Array) -> list[tuple[BooleanArray, Array]]:
+        """The zeros of g_i within a step, in the order of time: for which trajectories, and their sizes s in (0, h].
 
         Parameters
         ----------
         i : int
-        at : callable
-            s (...,) -> (t, y).
-        h : array of shape (...,)
-        ends : (array, array)
+        look : Look
+        start, end : arrays of shape (...,)
             g_i at s = 0 and at s = h.
-        here : bool array of shape (...,)
         """
+        h = look.h
 
         def g(s: Array) -> Array:
-            return self.value(i, *at(s)).astype(s.dtype)
+            return self.value(i, *look.position(s)).astype(s.dtype)
 
-        start, end = (np.asarray(x, dtype=h.dtype) for x in ends)
-        return bracketed_zero(g, np.where(here, h, 0), start, end, here)
+        start, end = (np.asarray(x, dtype=h.dtype) for x in (start, end))
+        turns, turn, value = self._extremum(i, g, look, start, end)
+        made = []
+        here = look.moves & self.crossed(i, start, end)
+        first = turns & self.crossed(i, start, value)
+        if (here | first).any():
+            far, there = np.where(first, turn, h), np.where(first, value, end)
+            here = here | first
+            made.append((here, bracketed_zero(g, np.where(here, far, 0), start, there, here)))
+        second = turns & self.crossed(i, value, end)
+        if second.any():
+            rest = bracketed_zero(lambda s: g(turn + s), np.where(second, h - turn, 0), value, end, second)
+            made.append((second, turn + rest))
+        return made
+
+    def _extremum(
+        self, i: int, g: Callable[[Array], Array], look: Look, start: Array, end: Array
+    ) -> tuple[BooleanArray, Array, Array]:
+        """Where g_i has the other sign at an extremum within the step: for which trajectories, s, and g_i there."""
+        h, sign = look.h, np.sign(start)
+        nowhere = np.zeros(np.shape(h), dtype=bool), h, end
+        here = look.moves & (sign * end > 0)
+        if not here.any():
+            return nowhere
+        leaves = sign * look.slope(i, look.after, end, -1, here)
+        here = here & (leaves > 0)
+        if not here.any():
+            return nowhere
+        approaches = -sign * look.slope(i, look.before, start, 1, here)
+        here = here & (approaches > 0)
+        if not here.any():
+            return nowhere
+        guess = h * np.where(here, approaches / (approaches + leaves), 0.5)
+        s, value = lowest(lambda s: sign * g(s), h, guess, (sign * start, sign * end), here)
+        return here & (value < 0), s, sign * value
+
+
+def lowest(
+    f: Callable[[Array], Array], h: Array, guess: Array, ends: tuple[Array, Array], here: BooleanArray
+) -> tuple[Array, Array]:
+    """Points s between 0 and h at which f > 0 is lowest, and f(s); the search ends where f < 0, or f stays clear of 0.
+
+    Parameters
+    ----------
+    f : callable
+        s (...,) -> f(s) (...,).
+    h, guess : arrays of shape (...,)
+        The far end, and a first point between 0 and h.
+    ends : (array, array)
+        f(0) and f(h); f decreases at 0 and increases at h.
+    here : bool array of shape (...,)
+        For which trajectories.
+
+    Examples
+    --------
+    >>> s, value = lowest(lambda s: (s - 0.3) ** 2 - 1e-6, np.array(1.0), np.array(0.5), (0.09, 0.49), np.array(True))
+    >>> bool(value < 0), bool(abs(s - 0.3) < 1e-3)
+    (True, True)
+    """
+    a, b, c = np.zeros_like(h), guess, h
+    fa, fc = (np.broadcast_to(np.asarray(x, dtype=h.dtype), np.shape(h)) for x in ends)
+    fb, busy, clear = f(b), here, np.zeros(np.shape(h), dtype=bool)
+    for _ in range(EXTREMUM_ITERATIONS):
+        busy = busy & (fb > 0) & (np.abs(c - a) > EXTREMUM_RTOL * np.abs(h))
+        if not busy.any():
+            break
+        x, least = _vertex((a, b, c), (fa, fb, fc))
+        bracketed = (fb <= fa) & (fb <= fc)
+        far = bracketed & (least > CLEAR_OF_ZERO * fb)
+        busy, clear = busy & ~(far & clear), far
+        # without a bracket, the extremum is beyond the lower end: f decreases at 0 and increases at h
+        x = np.where(bracketed, x, np.where(fb > fc, (b + c) / 2, (a + b) / 2))
+        x = np.where(busy, x, b)
+        fx = np.where(busy, f(x), fb)
+        left, lower = np.abs(x) < np.abs(b), (fx < fb) | ~bracketed
+        moved = busy & (x != b)
+        a, fa, b, fb, c, fc = (
+            np.where(moved & (left != lower), np.where(lower, b, x), a),
+            np.where(moved & (left != lower), np.where(lower, fb, fx), fa),
+            np.where(moved & lower, x, b),
+            np.where(moved & lower, fx, fb),
+            np.where(moved & (left == lower), np.where(lower, b, x), c),
+            np.where(moved & (left == lower), np.where(lower, fb, fx), fc),
+        )
+        busy = busy & moved
+    return b, fb
+
+
+def _vertex(points: tuple[Array, Array, Array], values: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+    """The lowest point of the parabola through three points, kept a little away from them, and its value there."""
+    (a, b, c), (fa, fb, fc) = points, values
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        left, right = (fb - fa) / (b - a), (fc - fb) / (c - b)
+        bend = (right - left) / (c - a)
+        x = (a + b) / 2 - left / (2 * bend)
+        least = fa + left * (x - a) + bend * (x - a) * (x - b)
+    gap = np.minimum(np.abs(b - a), np.abs(c - b)) / 8
+    wider = np.where(np.abs(b - a) > np.abs(c - b), a, c)
+    inside = np.isfinite(x) & (np.abs(x) > np.abs(a)) & (np.abs(x) < np.abs(c))
+    x = np.where(inside, x, (b + wider) / 2)
+    close = np.abs(x - b) < EXTREMUM_RTOL / 8 * np.abs(c - a)
+    return np.where(close, b + np.sign(wider - b) * gap, x), np.where(np.isfinite(least), least, fb)
 
 
 def bracketed_zero(g: Callable[[Array], Array], h: Array, start: Array, end: Array, here: BooleanArray) -> Array:

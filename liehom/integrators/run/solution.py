@@ -12,9 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.errors import OrderWarning
-from liehom.integrators.run.conservation_statistics import ConservationReport, shown_point
 from liehom.integrators.run.dense import DenseSolution
 from liehom.typing import Array, IntegerArray
+
+TOTALS = {"max": "largest", "min": "smallest", "sum": "sum over steps"}
+"""Words for what is recorded of a diagnostic."""
 
 
 def loss_of_order(failed: int, near: int, order: int) -> str:
@@ -35,6 +37,82 @@ def loss_of_order(failed: int, near: int, order: int) -> str:
     if failed:
         return f"the linear systems of the corrections have no solution, and the order stays {order}"
     return "the path comes within two steps of the cone on which the range condition fails" if near else ""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class ConservationReport:
+    """How well first integrals F were conserved along the trajectories.
+
+    Attributes
+    ----------
+    rank, wanted : int
+        The smallest rank of chi_m that was met, and the number of integrals that are independent on the orbits.
+    iterations : int
+        The largest number of iterations of Newton's method in a step; 0 for the linear correction.
+    defect : float
+        The largest |F(step) - target|, over all integrals.
+    missed_steps : int
+        Number of steps after which F differed from its target by more than round-off.
+    left_steps : int
+        Number of steps without a correction: at equilibria, or where F does not resolve the orbits.
+    short_steps : int
+        Number of steps at which chi_m was not onto.
+    short_at : tuple or None
+        (t, point, the combination of the integrals that is not reached) of the first such step.
+    linear : bool
+        Whether each step was corrected by one linear solve instead of Newton's method.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> from liehom.correctors import Conserving
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
+    >>> step = Conserving(lh.Heun(), "m0**2 + m1**2/2 + m2**2/4")
+    >>> report = lh.integrate(field, (0, 1), [0.6, 0.48, 0.64], step=step, dt=0.1).report.conservation
+    >>> report.rank, report.missed_steps, bool(report.defect < 1e-15)
+    (1, 0, True)
+    """
+
+    rank: int
+    wanted: int
+    iterations: int
+    defect: float
+    missed_steps: int
+    left_steps: int
+    short_steps: int
+    short_at: tuple[float, tuple[float, ...], str] | None
+    linear: bool
+
+    def __str__(self) -> str:
+        if self.linear:
+            how = "one linear solve per step"
+        else:
+            how = f"Newton, at most {self.iterations} iteration" + "s" * (self.iterations != 1)
+        text = f"first integrals kept to {self.defect:.2g} ({how}; least rank of chi {self.rank} of {self.wanted})"
+        if self.missed_steps and not self.linear:
+            text += f"\n    NOT to round-off after {self.missed_steps} steps"
+        if self.short_at is not None:
+            time, point, names = self.short_at
+            text += (
+                f"\n    chi is NOT onto at {self.short_steps} steps, first at t = {time:.6g}, m = "
+                f"({shown_point(point)}): isotropy does not reach {names}"
+            )
+        if self.left_steps:
+            text += f"\n    left alone at {self.left_steps} steps, at or next to equilibria"
+        return text
+
+
+def shown_point(point: Sequence[float]) -> str:
+    """Up to 8 coordinates of a point with 4 digits, for reports.
+
+    Examples
+    --------
+    >>> shown_point([0.6, 0.0, 0.8])
+    '0.6, 0, 0.8'
+    """
+    return ", ".join(f"{x:.4g}" for x in point[:8]) + (", ..." if len(point) > 8 else "")
 
 
 @final
@@ -74,6 +152,9 @@ class Report:
         Time of the first step that did not keep the order asked for; None if all kept it.
     stopped_at : float or None
         The earliest time at which a trajectory failed: up to it the path was checked. None if none failed.
+    diagnostics : tuple of (str, str, float)
+        (name, "max", "min" or "sum", total) of the other numbers that steps report (`LocalStep.diagnostics`), over all
+        steps of all trajectories.
     range_condition : bool or None
         Whether every correction could be solved and no step came near the cone; None for steps without correction.
 
@@ -108,6 +189,7 @@ class Report:
     near_steps: int = 0
     unkept_from: float | None = None
     stopped_at: float | None = None
+    diagnostics: tuple[tuple[str, str, float], ...] = ()
 
     def __setstate__(self, state: Sequence[object]) -> None:
         later = [entry.default for entry in fields(self)[len(state) :]]  # entries that pickles of 0.1.0 lack
@@ -130,7 +212,7 @@ class Report:
             lines.append(f"order {self.order}, no correction")
             if self.conservation is not None:
                 lines.append(str(self.conservation))
-            return "\n".join(lines)
+            return "\n".join([*lines, *self._others])
         if self.range_condition:
             every = "every step" if self.stopped_at is None else f"every step up to t = {self.stopped_at:.6g}"
             lines.append(f"orbits captured to order {self.order} at {every} (base order {self.base_order})")
@@ -159,7 +241,11 @@ class Report:
         if self.conservation is not None:
             lines.append(str(self.conservation))
         lines.append(f"least corrections in {self.inner_product}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *self._others])
+
+    @property
+    def _others(self) -> list[str]:
+        return [f"{name}, {TOTALS[kind]}: {value:.6g}" for name, kind, value in self.diagnostics]
 
 
 @final

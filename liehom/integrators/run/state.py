@@ -12,7 +12,8 @@ from typing import Any, NamedTuple, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.integrators.run.records import CorrectionStatistics, EventLog, Path, Samples
+from liehom.integrators.run.records import EventLog, Path, Samples
+from liehom.integrators.run.statistics import StepStatistics
 from liehom.typing import Array, BooleanArray, IntegerArray
 
 ARRAYS = ("t", "m", "active", "code", "ended_at", "h", "taken")
@@ -61,7 +62,7 @@ class RunState:
     >>> import liehom as lh
     >>> t, m, zero = np.zeros(()), np.zeros(3), np.zeros((), dtype=int)
     >>> state = RunState(
-    ...     t, m, zero == 0, zero, t, t + np.inf, zero, 0, [], Path(t, m), CorrectionStatistics(lh.Euler(), ()),
+    ...     t, m, zero == 0, zero, t, t + np.inf, zero, 0, [], Path(t, m), StepStatistics(lh.Euler(), ()),
     ...     EventLog(0, (), 3), None,
     ... )
     >>> before = state.snapshot()
@@ -82,7 +83,7 @@ class RunState:
     calls: int
     event_values: list[Array]
     path: Path
-    statistics: CorrectionStatistics
+    statistics: StepStatistics
     event_log: EventLog
     samples: Samples | None
 
@@ -124,8 +125,8 @@ class RunState:
             start = f"{part}_"
             record.restore({name[len(start) :]: x for name, x in made.items() if name.startswith(start)})
 
-    def _records(self) -> dict[str, Path | CorrectionStatistics | EventLog | Samples]:
+    def _records(self) -> dict[str, Path | StepStatistics | EventLog | Samples]:
         """The records by the names that they have in checkpoints since version 0.1.0."""
-        found: dict[str, Path | CorrectionStatistics | EventLog | Samples]
+        found: dict[str, Path | StepStatistics | EventLog | Samples]
         found = {"path": self.path, "account": self.statistics, "found": self.event_log}
         return found if self.samples is None else {**found, "samples": self.samples}

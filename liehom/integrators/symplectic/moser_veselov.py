@@ -9,8 +9,9 @@ solution X near J of (X - h M/2)(X + h M/2) = J^2, the factorization of a matrix
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import Any, NamedTuple, final
+from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
 
@@ -65,6 +66,8 @@ class MoserVeselov(Step):
     (True, True)
     """
 
+    _inertia: ClassVar[Inertia | None] = None  # of `prepare`
+
     @property
     def order(self) -> int:
         return 2
@@ -74,11 +77,18 @@ class MoserVeselov(Step):
         """Whether a step of size -h is the inverse of a step of size h: True."""
         return True
 
+    @property
+    def trace_key(self) -> Hashable:
+        """The inertia of a prepared step."""
+        return None if self._inertia is None else repr(self._inertia)
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> MoserVeselov:
+        """The step with the inertia of the body."""
+        return self.with_prepared(_inertia=inertia_of(coordinates_on_dual(action, None, "MoserVeselov"), psi))
+
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         coordinates = coordinates_on_dual(action, None, "MoserVeselov")
-        inertia = psi.prepared.get((self, Inertia))
-        if inertia is None:
-            inertia = psi.prepared[self, Inertia] = inertia_of(coordinates, psi)
+        inertia = inertia_of(coordinates, psi) if self._inertia is None else self._inertia
         return LocalStep(action, m, point=lambda h: _point(coordinates, inertia, m, h))
 
 

@@ -19,7 +19,7 @@ from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.homogeneous.fields.components import Components, GeneratorLike
 from liehom.integrators.symplectic.variational_midpoint import require_exponential
-from liehom.typing import Array, Values
+from liehom.typing import Values
 
 Part: TypeAlias = Callable[[Values, Values], Values]
 """(m, t) -> psi_i of shape (..., dim g)."""
@@ -65,6 +65,8 @@ class Splitting(Step):
     (True, True)
     """
 
+    _checked = False  # by `prepare`
+
     def __init__(self, parts: Sequence[GeneratorLike] | None = None) -> None:
         if parts is not None and (isinstance(parts, str) or not np.iterable(parts) or not len(parts)):
             raise InputError(f"the parts are a sequence of generators, got {parts!r}")
@@ -81,12 +83,15 @@ class Splitting(Step):
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         require_exponential(action, "Splitting")
-        parts: list[Part] | None = psi.prepared.get((self, action))
-        if parts is None:
-            parts = psi.prepared[self, action] = self._functions(action, psi)
-            if type(m) is np.ndarray:
-                _check(action, parts, psi, m, t)
-        return _SplitStep(action, parts, m, t)
+        if not self._checked and type(m) is np.ndarray:
+            self.prepare(action, psi, m, t[..., 0])
+        return _SplitStep(action, self._functions(action, psi), m, t)
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Splitting:
+        """The step, after a check of its parts at the points m (..., N)."""
+        require_exponential(action, "Splitting")
+        _check(action, self._functions(action, psi), psi, m, np.asarray(t)[..., None])
+        return self.with_prepared(_checked=True)
 
     def _functions(self, action: Action, psi: Generator) -> list[Part]:
         dimension = action.dimension
@@ -135,7 +140,7 @@ def _untimed(part: Components) -> Part:
     return lambda m, t: part(m, t[..., 0] if np.ndim(t) else t)
 
 
-def _check(action: Action, parts: Sequence[Part], psi: Generator, m: Array, t: Values) -> None:
+def _check(action: Action, parts: Sequence[Part], psi: Generator, m: Values, t: Values) -> None:
     """Check at points that the parts add up to psi, and that each is constant along its flow."""
     whole = psi(m, t)
     scale = float(np.abs(whole).max(initial=0.0))

@@ -503,5 +503,6 @@ def test_many_trajectories_at_symmetric_points_do_not_mislead(step: Any, point: 
         for m in (np.array(point), np.tile(point, (20, 1))):
             conserving = Conserving(step, lambda m: np.sum(m * m * w, axis=-1) / 2)
             generator = lh.correctors.Generator(field, 2, m)
-            found.append(conserving.kept_order(lh.Action(field.representation), generator, m, np.zeros(m.shape[:-1])))
+            made = conserving.prepare(lh.Action(field.representation), generator, m, np.zeros(m.shape[:-1]))
+            found.append(made.kept_order)
         assert found[0] is not None and found[0] == found[1]

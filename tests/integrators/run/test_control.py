@@ -9,6 +9,7 @@ import pytest
 
 import liehom as lh
 from liehom.correctors.step import LocalStep
+from liehom.correctors.step_size import SERIES_FRACTION, size_from_defects
 from liehom.errors import ConvergenceError
 from liehom.integrators.run import control
 from liehom.integrators.run.control import (
@@ -18,7 +19,6 @@ from liehom.integrators.run.control import (
     largest_size,
     length,
     next_size,
-    size_from_defects,
     unsolvable,
 )
 
@@ -80,7 +80,7 @@ def test_the_length_of_the_step_bounds_the_terms_above_the_second() -> None:
     """d_k h^k <= SERIES_FRACTION |X| h, except for k = 2, and not if |X| is disregarded."""
     defect, allowed, largest, slow = np.array(4.0), np.array(1e3), np.array(1e3), np.array(1e-6)
     found = float(size_from_defects(((3, defect),), allowed, slow, largest))
-    assert 4 * found**3 == pytest.approx(control.SAFETY**2 * control.SERIES_FRACTION * 1e-6 * found)
+    assert 4 * found**3 == pytest.approx(control.SAFETY**2 * SERIES_FRACTION * 1e-6 * found)
     free = float(size_from_defects(((3, defect),), allowed, np.array(0.0), largest))
     assert free == pytest.approx(control.SAFETY * (1e3 / 4) ** (1 / 3))
     second = float(size_from_defects(((2, defect),), allowed, slow, largest))

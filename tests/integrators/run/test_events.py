@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import liehom as lh
 from liehom.errors import InputError
-from liehom.integrators.run.events import bracketed_zero
+from liehom.integrators.run.events import Events, bracketed_zero, lowest
 from tests.sampling import examples
 
 CIRCLE = lh.GeneratorField(lh.defining(lh.so(2)), [1])
@@ -250,6 +250,78 @@ def test_g_is_evaluated_on_the_path_only() -> None:
     lh.integrate(CIRCLE, (0, 1), starts, dt=0.25, events=g)
     passed = (np.array(seen) - angles + 1) % (2 * np.pi) - 1
     assert passed.min() > -1e-14 and passed.max() < 1 + 1e-14 and len(seen) > 5
+
+
+# -- two zeros within a step ---------------------------------------------------------------------------------
+def peaks(level: float, step: Any, kind: Any, start: Any = E1, **options: Any) -> Any:
+    """Zeros of y_1 - (1 - level) on circles: each maximum of y_1 has one before it and one after it."""
+    return lh.integrate(CIRCLE, (0, 20), start, step=step, events=height(1 - level, **options), **kind)
+
+
+@pytest.mark.parametrize("step", [*STEPS[:3], lh.RKMK("dop853")], ids=repr)
+@pytest.mark.parametrize("kind", [{"dt": 0.4}, {"rtol": 1e-9}, {"rtol": 1e-3, "max_step": 0.5}], ids=str)
+@pytest.mark.parametrize("level", [1e-2, 1e-4, 1e-7, 1e-10])
+def test_both_zeros_next_to_a_maximum_are_found(step: Any, kind: Any, level: float) -> None:
+    half = np.arccos(1 - level)
+    wanted = np.add.outer(np.pi / 2 + 2 * np.pi * np.arange(3), [-half, half]).ravel()
+    found = peaks(level, step, kind).t_events[0]
+    assert len(found) == 6 and np.abs(found - wanted).max() < 1e-15 / half + 1e-13
+    assert len(peaks(-level, step, kind).t_events[0]) == 0  # above the maximum
+
+
+def test_without_the_search_for_extrema_they_are_missed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Events, "_extremum", lambda *given: (np.zeros((), dtype=bool), given[3].h, given[5]))
+    assert len(peaks(1e-4, lh.LieTaylor(6), {"dt": 0.4}).t_events[0]) < 6
+
+
+@pytest.mark.parametrize(("direction", "side"), [(1, -1), (-1, 1)])
+def test_two_zeros_in_a_step_have_directions(direction: int, side: int) -> None:
+    found = peaks(1e-4, lh.LieTaylor(6), {"dt": 0.4}, direction=direction).t_events[0]
+    wanted = np.pi / 2 + 2 * np.pi * np.arange(3) + side * np.arccos(1 - 1e-4)
+    assert len(found) == 3 and np.abs(found - wanted).max() < 1e-12
+
+
+@pytest.mark.parametrize(("terminal", "count"), [(1, 1), (2, 2), (3, 3), (7, 6)])
+def test_two_zeros_in_a_step_end_the_run_at_the_one_asked_for(terminal: int, count: int) -> None:
+    sol = peaks(1e-4, lh.LieTaylor(6), {"dt": 0.4}, terminal=terminal)
+    every = peaks(1e-4, lh.LieTaylor(6), {"dt": 0.4}).t_events[0]
+    assert np.allclose(sol.t_events[0], every[:count], rtol=0, atol=1e-13)
+    assert sol.status == (1 if terminal < 7 else 0)
+    assert np.isclose(sol.t[-1], every[count - 1] if terminal < 7 else 20, rtol=0, atol=1e-13)
+
+
+def test_two_zeros_in_a_step_of_some_trajectories() -> None:
+    angles, levels = np.array([0.0, 0.1, -2.0, 3.0]), np.array([1e-4, -1e-4, 1e-8, 0.5])
+    starts = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    g = event(lambda t, y: y[..., 1] - (1 - levels))
+    every = lh.integrate(CIRCLE, (0, 7), starts, dt=0.35, events=g).t_events[0]
+    for k, (angle, level) in enumerate(zip(angles, levels, strict=True)):
+        half = np.arccos(min(1 - level, 1.0))
+        wanted = np.add.outer(np.pi / 2 - angle + 2 * np.pi * np.arange(-1, 3), [-half, half]).ravel()
+        wanted = wanted[(wanted > 0) & (wanted < 7)] if level > 0 else []
+        assert np.allclose(every[k], wanted, rtol=0, atol=1e-11)
+        alone = event(lambda t, y, level=level: y[..., 1] - (1 - level))
+        found = lh.integrate(CIRCLE, (0, 7), starts[k], dt=0.35, events=alone).t_events[0]
+        assert np.allclose(found, every[k], rtol=0, atol=1e-11)
+
+
+def test_an_extremum_at_zero_is_not_an_event() -> None:
+    touching = event(lambda t, y: (y[..., 1] - 0.5) ** 2)
+    assert len(lh.integrate(CIRCLE, (0, 20), E1, dt=0.3, events=touching).t_events[0]) == 0
+
+
+@given(st.floats(0.01, 0.99), st.floats(0.02, 0.98), st.sampled_from([1.0, -2.0, 1e-6]), st.floats(-12, -1))
+@settings(max_examples=examples(150))
+def test_a_minimum_below_zero_is_found(where: float, guess: float, h: float, depth: float) -> None:
+    def f(s: Any) -> Any:
+        u = np.abs(s / h) - where
+        return u * u * (1 + u / 3) - 10**depth
+
+    assume(f(0.0) > 0 and f(h) > 0)
+    _, value = lowest(f, np.array(h), np.array(guess * h), (f(0.0), f(h)), np.array(True))
+    assert value <= 0
+    above = lowest(lambda s: f(s) + 2 * 10**depth, np.array(h), np.array(guess * h), (1.0, 1.0), np.array(True))
+    assert above[1] > 0 and 0 < abs(above[0]) < abs(h)
 
 
 # -- the search ----------------------------------------------------------------------------------------------

@@ -9,7 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import liehom as lh
-from liehom.integrators.run.control import Tolerance, next_size, size_from_defects
+from liehom.correctors.step_size import size_from_defects
+from liehom.integrators.run.control import Tolerance, next_size
 
 BODY = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m * [1.0, 2.0, 3.0] + 0.3)
 M0 = np.array([0.6, 0.0, 0.8])

@@ -165,7 +165,7 @@ def test_steps_and_failures_are_logged_at_level_debug(caplog: pytest.LogCaptureF
 def test_linear_algebra_that_fails_blames_psi_only_if_a_derivative_is_not_finite(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def failing(run: Any) -> Any:
+    def failing(*given: Any) -> Any:
         raise np.linalg.LinAlgError("SVD did not converge")
 
     monkeypatch.setattr(Run, "_proposed", failing)

@@ -18,7 +18,7 @@ from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 import liehom as lh
-from liehom.integrators.run.records import bounds_of, earliness, time_of
+from liehom.integrators.run.statistics import bounds_of, earliness, time_of
 from tests.homogeneous.frames.test_branch_free_frames import points_on_two_spheres, two_spheres
 from tests.sampling import examples
 
