@@ -1,11 +1,13 @@
 """Steps by name, for files and the command line: "euler", "heun", "taylor", "lietaylor", "rk4", "cg3", ...
 
-A name with an order above that of the method gives the corrected step, Corrected(step, order).
+A name with an order above that of the method gives the corrected step, Corrected(step, order). For symplectic steps it
+gives their composition, Composition(step, order).
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from difflib import get_close_matches
 
 import numpy as np
@@ -18,12 +20,27 @@ from liehom.integrators.methods.products import CommutatorFree4, CrouchGrossman3
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import BackwardEuler, Euler, Heun, LieTaylor
 from liehom.integrators.methods.taylor import Taylor
+from liehom.integrators.symplectic import (
+    Composition,
+    IsospectralMidpoint,
+    MoserVeselov,
+    SphericalMidpoint,
+    Splitting,
+    VariationalMidpoint,
+)
 from liehom.integrators.tableaux.tableaux import tableau, tableau_names
 
 DEFAULT_ORDER = 6
 _OWN = ("euler", "backward euler", "heun", "taylor", "lietaylor", "cg3", "cf4")
 _SERIES: dict[str, type[Taylor | LieTaylor]] = {"taylor": Taylor, "lietaylor": LieTaylor}
 _STIFF = ("radau3", "radau5", "radau9", "sdirk4", *ROSENBROCK, "exprb2", "exprb3", "exprb4")
+_SYMPLECTIC: dict[str, Callable[[], Step]] = {
+    "spherical midpoint": SphericalMidpoint,
+    "isospectral midpoint": IsospectralMidpoint,
+    "variational midpoint": VariationalMidpoint,
+    "moser-veselov": MoserVeselov,
+    "splitting": Splitting,
+}
 _OF_ORDER = re.compile(r"(taylor|lietaylor)([0-9]{1,3})", re.ASCII)
 _ALIASES = {"impliciteuler": "backwardeuler", "expliciteuler": "euler", "forwardeuler": "euler"}
 
@@ -36,10 +53,12 @@ def step_named(base: str, order: int | None = None) -> Step:
     base : str
         One of `step_names`; case, spaces, hyphens and underscores do not matter. "taylor" and
         "lietaylor" take any order themselves, 6 by default. "lietaylor4" is `LieTaylor(4)`, which a higher order
-        corrects. Names of stiff methods ("radau5", "sdirk4", "rodas4", "exprb4") give the steps of docs/stiff.md. The
-        name of another tableau gives the Runge-Kutta-Munthe-Kaas step with that tableau.
+        corrects. Names of stiff methods ("radau5", "sdirk4", "rodas4", "exprb4") give the steps of docs/stiff.md, those
+        of symplectic steps ("spherical midpoint", "splitting") the steps of docs/lie-poisson.md. The name of another
+        tableau gives the Runge-Kutta-Munthe-Kaas step with that tableau.
     order : int, optional
-        The order to reach. Above that of the base it gives `Corrected(step, order)`, else the base itself.
+        The order to reach. Above that of the base it gives `Corrected(step, order)`, for a symplectic step
+        `Composition(step, order)`, else the base itself.
 
     Raises
     ------
@@ -50,8 +69,8 @@ def step_named(base: str, order: int | None = None) -> Step:
     --------
     >>> step_named("euler", 4), step_named("Heun"), step_named("lietaylor", 8)
     (Corrected(Euler(), order=4), Heun(), LieTaylor(n=8))
-    >>> step_named("backward euler", 1)
-    BackwardEuler()
+    >>> step_named("backward euler", 1), step_named("splitting", 4)
+    (BackwardEuler(), Composition(step=Splitting(), order=4, scheme='suzuki'))
     """
     if not isinstance(base, str):
         raise InputError(
@@ -63,7 +82,9 @@ def step_named(base: str, order: int | None = None) -> Step:
     if key in _SERIES:
         return _SERIES[key](DEFAULT_ORDER if order is None else int(order))
     step = _plain(_ALIASES.get(key, key), base)
-    return step if order is None or order <= step.order else Corrected(step, int(order))
+    if order is None or order <= step.order:
+        return step
+    return Composition(step, int(order)) if key in map(_key, _SYMPLECTIC) else Corrected(step, int(order))
 
 
 def step_names() -> tuple[str, ...]:
@@ -79,6 +100,7 @@ def step_names() -> tuple[str, ...]:
     return (
         *_OWN,
         *_STIFF,
+        *_SYMPLECTIC,
         *(name for name in tableau_names() if _key(name) not in {*map(_key, _OWN), *_STIFF, *_ALIASES}),
     )
 
@@ -89,12 +111,13 @@ def _key(name: str) -> str:
 
 def _plain(key: str, base: str) -> Step:
     """The uncorrected step of a name without spaces."""
-    own: dict[str, type[Step]] = {
+    own: dict[str, Callable[[], Step]] = {
         "euler": Euler,
         "backwardeuler": BackwardEuler,
         "heun": Heun,
         "cg3": CrouchGrossman3,
         "cf4": CommutatorFree4,
+        **{_key(name): step for name, step in _SYMPLECTIC.items()},
     }
     if key in own:
         return own[key]()

@@ -15,7 +15,8 @@ from liehom.integrators import LieTaylor, tableau, tableau_names
 from liehom.integrators.named import step_named, step_names
 
 ORDERS = {"euler": 1, "backward euler": 1, "heun": 2, "taylor": 6, "lietaylor": 6, "cg3": 3, "cf4": 4}
-ORDERS |= {"ros2": 2, "rodas3": 3, "rodas4": 4, "exprb2": 2, "exprb3": 3, "exprb4": 4}
+SYMPLECTIC = ["spherical midpoint", "isospectral midpoint", "variational midpoint", "moser-veselov", "splitting"]
+ORDERS |= dict.fromkeys(SYMPLECTIC, 2) | {"ros2": 2, "rodas3": 3, "rodas4": 4, "exprb2": 2, "exprb3": 3, "exprb4": 4}
 
 
 @pytest.mark.parametrize("name", step_names())
@@ -23,6 +24,8 @@ def test_every_name_is_a_step_that_steps(name: str) -> None:
     step = step_named(name)
     assert step.order == (ORDERS[name] if name in ORDERS else tableau(name).order)
     field = lh.GeneratorField(lh.defining(lh.so(3)), ["m0", "2*m1", "1 + m2"])
+    if name in SYMPLECTIC:  # on the dual of the algebra
+        field = lh.hamiltonian_field(lh.so(3), "m0**2/4 + m1**2/6 + m2**2/8", sign=-1)
     action, psi = lh.Action(field.representation), lh.correctors.Generator(field, 2)
     m, h = np.array([0.6, 0.0, 0.8]), np.array([0.01])
     made = step.at(action, psi, m, np.array([0.0])).point(h)
@@ -48,6 +51,8 @@ def test_every_tableau_has_a_step(name: str) -> None:
         ("taylor16", None, "Taylor(n=16)"),
         ("lietaylor", None, "LieTaylor(n=6)"),
         ("Lie Taylor", 3, "LieTaylor(n=3)"),
+        ("Spherical_Midpoint", None, "SphericalMidpoint()"),
+        ("moser veselov", 6, "Composition(step=MoserVeselov(), order=6, scheme='suzuki')"),
         ("lietaylor2", None, "LieTaylor(n=2)"),
         ("lietaylor2", 5, "Corrected(LieTaylor(n=2), order=5)"),
         ("rk4", 4, "RKMK('rk4')"),
