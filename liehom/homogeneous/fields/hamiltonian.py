@@ -17,14 +17,14 @@ from liehom.algebra import LieAlgebra
 from liehom.errors import InputError, LiehomError, ShapeError, displayed
 from liehom.homogeneous.fields.components import Components, GeneratorLike, joined
 from liehom.homogeneous.fields.field import GeneratorField
-from liehom.homogeneous.fields.signature import takes_time
+from liehom.homogeneous.fields.signature import checked_form
 from liehom.representations import coadjoint
 from liehom.series.arrays import as_values
 from liehom.series.jet import Jet
 from liehom.tracing import Expr, Tape, Traced
 from liehom.tracing.gradient import evaluated
 from liehom.tracing.gradient import gradient as partial_derivatives
-from liehom.typing import Array, Real, ScalarLike, Values, ValuesLike
+from liehom.typing import Array, Pytree, Real, ScalarLike, Values, ValuesLike
 
 Hamiltonian: TypeAlias = Callable[..., Any] | ScalarLike
 """H(m) or H(m, t) written with numpy functions, or a string or sympy expression in m0, m1, ..., t."""
@@ -42,8 +42,8 @@ def hamiltonian_field(
     H : callable, string or sympy expression
         H(m) or H(m, t), written with numpy functions over leading axes, or an expression in m0, m1, ..., t.
     gradient : callable, array or sequence, optional
-        dH in one of the forms that the psi of a `GeneratorField` may have. By default H is run once on tracers, and
-        the graph is differentiated.
+        dH in one of the forms that the psi of a `GeneratorField` may have, with args too. By default H is run once on
+        tracers, and the graph is differentiated.
     sign : 1 or -1
         The sign of the Lie-Poisson bracket. Reduction of a left-invariant system, such as a rigid body in its body
         frame, gives -1; a right-invariant system, such as an ideal fluid, gives +1.
@@ -81,9 +81,24 @@ def hamiltonian_field(
     else:
         given = Components(gradient, n, (n,), "the gradient of H")
         slope, timed = given, given.time_dependent
+        if given.takes_args:
+            return GeneratorField(coadjoint(algebra), _with_args(given, sign), time_dependent=timed)
     if timed:
         return GeneratorField(coadjoint(algebra), lambda m, t: sign * slope(m, t), time_dependent=True)
     return GeneratorField(coadjoint(algebra), lambda m: sign * slope(m, 0.0), time_dependent=False)
+
+
+def _with_args(given: Components, sign: int) -> Callable[..., Values]:
+    """The generator +-dH as a function of (m, t, args), or of (m, args) if the gradient does not depend on time."""
+
+    def timed(m: Values, t: Real, args: Pytree) -> Values:
+        found: Values = sign * given.with_args(args)(m, t)
+        return found
+
+    def timeless(m: Values, *, args: Pytree) -> Values:
+        return timed(m, 0.0, args)
+
+    return timed if given.time_dependent else timeless
 
 
 def lie_poisson_tensor(algebra: LieAlgebra, m: ValuesLike, *, sign: int = 1) -> Array:
@@ -117,7 +132,9 @@ def _differentiated(H: Hamiltonian, n: int) -> tuple[Callable[[Any, Any], Values
     """The function (m, t) -> dH(m, t), and whether it depends on t."""
     if callable(H) and not hasattr(H, "free_symbols"):
         function: Callable[..., Any] = H
-        timed = takes_time(H)
+        form, timed = checked_form(H, "H", None)
+        if form.args is not None:
+            raise InputError("H takes args: give gradient=, a function (m, t, args), as H is differentiated only once")
     else:
         parts = Components([H], n, (1,), "H")
         timed = parts.time_dependent

@@ -102,6 +102,23 @@ def test_what_is_not_a_hamiltonian_is_refused(H: Any, options: Any, error: type[
         lh.hamiltonian_field(lh.so(3), H, **options)
 
 
+@pytest.mark.parametrize(
+    "gradient", [lambda m, t, args: m / args["inertia"] * (1 + 0 * t), lambda m, *, args: m / args["inertia"]]
+)
+def test_gradients_with_args(gradient: Any) -> None:
+    """Moments of inertia as arguments of each run, in numpy and compiled."""
+    field = lh.hamiltonian_field(lh.so(3), "not used", gradient=gradient, sign=-1)
+    m = np.array([0.6, 0.48, 0.64])
+    for moments in ([1.0, 2.0, 3.0], [2.0, 3.0, 4.0]):
+        for engine in ("numpy", "llvm"):
+            args = {"inertia": np.array(moments)}
+            sol = lh.integrate(field, (0, 2), m, step=lh.VariationalMidpoint(), dt=0.1, args=args, engine=engine)
+            plain = lh.integrate(lh.RigidBody(moments).field("b"), (0, 2), m, step=lh.VariationalMidpoint(), dt=0.1)
+            assert np.abs(sol.y[:, -1] - plain.y[:, -1]).max() < 1e-14
+    with pytest.raises(InputError, match="gradient="):
+        lh.hamiltonian_field(lh.so(3), lambda m, t, args: args * np.sum(m, axis=-1))
+
+
 def test_what_is_not_an_algebra_or_a_point_is_refused() -> None:
     with pytest.raises(InputError, match="LieAlgebra"):
         lh.hamiltonian_field(lh.defining(lh.so(3)), "m0")  # type: ignore[arg-type]
