@@ -19,7 +19,7 @@ from liehom.series.jet import Jet
 from liehom.tracing.array import Traced
 from liehom.typing import Array, IntegerArray, Values
 
-MAX_BLOCK = 16
+MAX_BLOCK = 24
 """Largest block of which forms other than the scalar product are sought: their equations are n^2 by n (n + 1) / 2."""
 FORM_RTOL = 1e-11
 """Largest defect of an invariant form, relative to its size and that of the matrices."""
@@ -169,12 +169,25 @@ def _with_form(matrices: Array, indices: list[int]) -> Block | None:
     size = float(np.abs(inside).max(initial=0.0))
     if np.abs(inside + np.swapaxes(inside, 1, 2)).max(initial=0.0) <= FORM_RTOL * size:
         return Block(tuple(indices), None)
-    form = _invariant_form(inside / size) if len(indices) <= MAX_BLOCK else None
+    form = invariant_form(inside / size) if len(indices) <= MAX_BLOCK else None
     return None if form is None else Block(tuple(indices), form)
 
 
-def _invariant_form(matrices: Array) -> Array | None:
-    """An invariant symmetric form, of largest entry 1, by the kernel of Q -> A^T Q + Q A; None if there is none."""
+def invariant_form(matrices: Array) -> Array | None:
+    """An invariant symmetric form Q, of largest entry 1, by the kernel of Q -> A^T Q + Q A; None if there is none.
+
+    Of several forms it is the one nearest to the scalar product.
+
+    Parameters
+    ----------
+    matrices : array of shape (r, n, n)
+        Their largest entry is about 1.
+
+    Examples
+    --------
+    >>> invariant_form(np.array([[[0.0, -1.0], [0.25, 0.0]]])).tolist()  # rotations of the ellipse x^2 + 4 y^2 = 1
+    [[0.25, 0.0], [0.0, 1.0]]
+    """
     n = matrices.shape[-1]
     rows, columns = np.triu_indices(n)
     basis = np.zeros((len(rows), n, n))
@@ -185,7 +198,6 @@ def _invariant_form(matrices: Array) -> Array | None:
     kernel = vectors[:, values <= FORM_RTOL * max(float(values[-1]), 1.0)]
     if not kernel.shape[1]:
         return None
-    # of several forms, the one nearest to the scalar product
     trace = (rows == columns).astype(float)
     found = kernel @ (kernel.T @ trace)
     if np.abs(found).max() <= GRADIENT_RTOL:
