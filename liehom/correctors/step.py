@@ -128,6 +128,14 @@ class Step(ABC):
         """
         return self
 
+    def with_exponential_of(self, action: Action) -> Step:
+        """The step, of the order that it has with the exponential of an action, as a base that `Corrected` raises.
+
+        By default the step itself. A step that is of lower order with some exponentials refuses these if it is not
+        corrected.
+        """
+        return self
+
     def with_prepared(self, **data: object) -> Self:
         """A copy of the step with further attributes, for `prepare`; also of frozen steps.
 

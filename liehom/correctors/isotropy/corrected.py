@@ -103,18 +103,19 @@ class Corrected(Step):
         return self.step.trace_key
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Corrected:
-        base = self.step.prepare(action, psi, m, t)
+        base = self.step.with_exponential_of(action).prepare(action, psi, m, t)
         return self if base is self.step else Corrected(base, self._order, weight=self.weight)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> CorrectedStep:
-        local = self.step.at(action, psi, m, t)
+        base = self.step.with_exponential_of(action)
+        local = base.at(action, psi, m, t)
         found = correct(
             action,
             psi.field,
             local,
             m,
             t[..., 0] if np.ndim(t) else t,
-            base_order=self.step.order,
+            base_order=base.order,
             order=self._order,
             orbit_dimension=psi.orbit_dimension,
             weight=self.weight,

@@ -47,7 +47,7 @@ class TightInverse(NamedTuple):
     constant: bool
 
     def over(self, m: Values) -> Values:
-        """1 / lambda at points m (..., N), shape (...,); for a tracer m, which is an input, a number of the trajectory."""
+        """1 / lambda at points m (..., N), shape (...,); for a tracer a constant of the trajectory if it is one."""
         trace = self.trace
 
         def inverse(points: Values) -> Values:

@@ -138,6 +138,30 @@ class ProductStep(Step, ABC):
             velocities.append(h * psi(points[-1], t + h * _number(c, m) if c else t))
         return _combined(scheme.result.rows, velocities, m)
 
+    def with_exponential_of(self, action: Action) -> Step:
+        """The step, of the order that it has with the exponential of an action."""
+        order = order_with(action, self.order)
+        return self if order == self.order else _OfLowerOrder(self, order)
+
+
+@final
+class _OfLowerOrder(ProductStep):
+    """A step with an exponential that differs from exp at a power of h that the order of the step counts."""
+
+    def __init__(self, step: ProductStep, order: int) -> None:
+        self._step, self._order = step, order
+
+    @property
+    def order(self) -> int:
+        return self._order
+
+    @property
+    def scheme(self) -> Scheme:
+        return self._step.scheme
+
+    def __repr__(self) -> str:
+        return repr(self._step)
+
 
 @final
 @dataclass(frozen=True)
@@ -201,9 +225,8 @@ COMMUTATOR_FREE_4 = Scheme(
 )
 
 
-@lru_cache(maxsize=64)
 def check_exponential(action: Action, order: int) -> None:
-    """Raise InputError unless an exponential equals exp through a given order, tested by a series at a generic point.
+    """Raise InputError unless an exponential equals exp through a given order.
 
     Raises
     ------
@@ -218,11 +241,29 @@ def check_exponential(action: Action, order: int) -> None:
     Traceback (most recent call last):
     ...
     liehom.errors.InputError: Cayley differs from exp at h^3, so a product of exponentials cannot have order 3 with \
-it: take exponential='exp', or an RKMK or LieTaylor step
+it: take exponential='exp', an RKMK or LieTaylor step, or Corrected(step, 3), which raises the order 2 that it has
     """
-    exponential = action.exponential
-    if order <= 2 or isinstance(exponential, TrueExponential):
-        return
+    found = order_with(action, order)
+    if found < order:
+        raise InputError(
+            f"{action.exponential.name} differs from exp at h^{found + 1}, so a product of exponentials cannot have "
+            f"order {order} with it: take exponential='exp', an RKMK or LieTaylor step, or Corrected(step, {order}), "
+            f"which raises the order {found} that it has"
+        )
+
+
+@lru_cache(maxsize=64)
+def order_with(action: Action, order: int) -> int:
+    """The order, at most `order`, through which an exponential equals exp, tested by a series at a generic point.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> order_with(lh.Action(lh.defining(lh.so(3)), "cayley"), 4)
+    2
+    """
+    if order <= 2 or isinstance(action.exponential, TrueExponential):
+        return order
     rng = np.random.default_rng(0)
     x, m = rng.normal(size=action.dimension), rng.normal(size=action.representation.size)
     made: Any = action.act(x * step_variable(order, x), m)
@@ -230,10 +271,8 @@ it: take exponential='exp', or an RKMK or LieTaylor step
     for k in range(1, order + 1):
         term = action.infinitesimal(x, term) / k
         if float(np.abs(made.coefficient(k) - term).max()) > RTOL * (1 + float(np.abs(term).max())):
-            raise InputError(
-                f"{exponential.name} differs from exp at h^{k}, so a product of exponentials cannot have order {order} "
-                "with it: take exponential='exp', or an RKMK or LieTaylor step"
-            )
+            return k - 1
+    return order
 
 
 # -- private helpers -------------------------------------------------------------------------------------

@@ -11,16 +11,18 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
 
 from liehom.correctors.expansion import Flow, flow_series
 from liehom.correctors.step import Generator, LocalStep, Step
+from liehom.correctors.step_size import SERIES_FRACTION, StepLimits, over_sites
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.homogeneous.exponentials import TrueExponential
 from liehom.homogeneous.orbits.quadrics import Quadrics, quadric_orbits
+from liehom.homogeneous.orbits.tight_inverse import TightInverse, tight_inverse
 from liehom.integrators.run.control import length
 from liehom.series.arrays import is_traced, namespace
 from liehom.series.jet import Jet
@@ -31,6 +33,21 @@ MAGNUS_ORDER = 4
 """Order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential."""
 SECOND_ORDER = 2
 """The same for any other Exp, which agrees with the true one through order 2."""
+
+
+class Landing(NamedTuple):
+    """What the landing on the orbits of a run uses.
+
+    Attributes
+    ----------
+    quadrics : Quadrics or None
+        The forms onto whose level sets points are projected; without them points are landed by exponentials.
+    inverse : TightInverse or None
+        The inverse of x -> rho(x) m in closed form; without it an orthogonal decomposition is computed.
+    """
+
+    quadrics: Quadrics | None
+    inverse: TightInverse | None
 
 
 @final
@@ -60,10 +77,10 @@ class Taylor(Step):
       is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
 
     An adaptive step size follows from the last two coefficients, without rejection: the terms m_(n-1) h^(n-1) and
-    m_n h^n are at most 0.9^(n-1) times the tolerance. These coefficients are those at the initial point of the step.
-    If psi has a jump or a kink within the step, they do not show it. The points stay on the orbit, but order and
-    tolerance are not kept in that step. End the run at such a time and start it again, give `max_step`, or take `RKMK`
-    with an embedded pair.
+    m_n h^n are at most the tolerance, which is then far above what is left out. These coefficients are those at the
+    initial point of the step. If psi has a jump or a kink within the step, they do not show it. The points stay on the
+    orbit, but order and tolerance are not kept in that step. End the run at such a time and start it again, give
+    `max_step`, or take `RKMK` with an embedded pair.
 
     Examples
     --------
@@ -76,7 +93,7 @@ class Taylor(Step):
     """
 
     n: int
-    _orbits: ClassVar[tuple[Quadrics | None] | None] = None  # of `prepare`
+    _landing: ClassVar[Landing | None] = None  # of `prepare`
 
     def __post_init__(self) -> None:
         if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
@@ -87,24 +104,28 @@ class Taylor(Step):
         return int(self.n)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        if self._orbits is None:
+        if self._landing is None:
             return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
         flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
-        quadrics = self._orbits[0]
+        quadrics, inverse = self._landing
         if quadrics is None:
-            return LandedSeries(action, m, flow, self.order, psi.orbit_dimension)
+            return LandedSeries(action, m, flow, self.order, psi.orbit_dimension, inverse)
         return ProjectedSeries(action, m, flow, self.order, quadrics, psi.start)
 
     @property
     def trace_key(self) -> Hashable:
-        """Whether the points are projected."""
-        return self._orbits is not None and self._orbits[0] is not None
+        """How points are landed."""
+        return None if self._landing is None else tuple(part is None for part in self._landing)
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
-        """The step with the quadratic forms of the orbits of a run."""
+        """The step with the quadratic forms of the orbits of a run, or with the inverse of x -> rho(x) m on them."""
         start: Any = psi.start if psi.start is not None else m
-        points = np.zeros((0, m.shape[-1])) if is_traced(start) else start
-        return self.with_prepared(_orbits=(quadric_orbits(action.representation, psi.orbit_dimension, points),))
+        points = np.zeros((0, m.shape[-1])) if is_traced(start) else np.asarray(start)
+        inverse, quadrics = None, quadric_orbits(action.representation, psi.orbit_dimension, points)
+        dimensions = np.unique(psi.orbit_dimension)
+        if quadrics is None and len(dimensions) == 1 and points.dtype == np.float64:
+            inverse = tight_inverse(action, points, int(dimensions[0]))
+        return self.with_prepared(_landing=Landing(quadrics, inverse))
 
 
 class TaylorSeries(LocalStep):
@@ -121,8 +142,27 @@ class TaylorSeries(LocalStep):
     def __init__(self, action: Action, m: Values, flow: Flow, order: int) -> None:
         super().__init__(action, m)
         self.coefficients: list[Values] = [flow.point(k) for k in range(1, order + 1)]
-        last = range(max(order - 1, 1), order + 1)
-        self.defects: tuple[tuple[int, Values], ...] = tuple((k, length(self.coefficients[k - 1])) for k in last)
+
+    def size(self, limits: StepLimits) -> Array:
+        """Largest step size (...,) at which the last two terms of the series are within the error that is allowed.
+
+        They are also at most a tenth of the length |X| h of the step, so that the series converges.
+        """
+        n, xp = len(self.coefficients), namespace(limits.largest, limits.speed)
+        last = [over_sites(length(x), limits.axes) for x in self.coefficients[-2:]]
+        way: Any = xp.where(limits.speed > 0, SERIES_FRACTION * limits.speed, np.inf)
+        bounds = [(limits.allowed / last[-1], n)]  # h^k is at most this
+        if n > 3:
+            bounds += [(xp.minimum(limits.allowed / last[0], way / last[1]), n - 1), (way / last[0], n - 2)]
+        # the smallest root is found by integer powers, as a root is the expensive operation
+        smallest, root = bounds[0][0], 1 / n
+        for i, (bound, k) in enumerate(bounds[1:], 1):
+            smaller = True
+            for other, j in bounds[:i]:
+                smaller = smaller & (bound**j < other**k)
+            smallest, root = xp.where(smaller, bound, smallest), xp.where(smaller, 1 / k, root)
+        size: Array = xp.minimum(limits.largest, smallest**root)
+        return size
 
     def series(self, h: Values) -> Values:
         """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
@@ -176,6 +216,7 @@ class LandedSeries(TaylorSeries):
     flow : Flow
     order : int
     orbit_dimension : int or array of shape (...,)
+    inverse : TightInverse, optional
 
     Attributes
     ----------
@@ -184,9 +225,17 @@ class LandedSeries(TaylorSeries):
         O(h^(q (j + 1))).
     """
 
-    def __init__(self, action: Action, m: Values, flow: Flow, order: int, orbit_dimension: int | IntegerArray) -> None:
+    def __init__(
+        self,
+        action: Action,
+        m: Values,
+        flow: Flow,
+        order: int,
+        orbit_dimension: int | IntegerArray,
+        inverse: TightInverse | None = None,
+    ) -> None:
         super().__init__(action, m, flow, order)
-        self._dimension = orbit_dimension
+        self._dimension, self._inverse = orbit_dimension, inverse
         self._velocity = [flow.psi(k) for k in range(order)]
         magnus = MAGNUS_ORDER if isinstance(action.exponential, TrueExponential) else SECOND_ORDER
         self.iterations: int = ceil((order + 1) / (magnus + 1)) - 1
@@ -209,15 +258,22 @@ class LandedSeries(TaylorSeries):
         near = self.action.act(self.generator(h), self.m)
         if not self.iterations:
             return near
-        wanted = self.series(h)
-        frame = self.action.isotropy_frame(near, self._dimension)
+        wanted, lifted = self.series(h), self._lift(near)
         eta, made = None, near
         for _ in range(self.iterations):
-            tangential = (namespace(near).swapaxes(frame.tangent, -1, -2) @ (wanted - made)[..., None])[..., 0]
-            change = (frame.lift @ tangential[..., None])[..., 0]
+            change = lifted(wanted - made)
             eta = change if eta is None else eta + change
             made = self.action.act(eta, near)
         return made
+
+    def _lift(self, point: Values) -> Callable[[Values], Values]:
+        """The map v -> x of smallest norm with rho(x) m the tangential part of v, at a point m."""
+        if self._inverse is not None:
+            inverse, over = self._inverse, self._inverse.over(self.m if isinstance(self.m, Traced) else point)
+            return lambda v: inverse.lifted(self.action, point, v, over)
+        frame = self.action.isotropy_frame(point, self._dimension)
+        projection = namespace(point).swapaxes(frame.tangent, -1, -2)
+        return lambda v: (frame.lift @ (projection @ v[..., None]))[..., 0]
 
 
 def _level(quadrics: Quadrics, index: int) -> Callable[[Array], Array]:

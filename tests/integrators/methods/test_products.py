@@ -126,9 +126,19 @@ def test_corrected_order(base: lh.Step, order: int) -> None:
 )
 @pytest.mark.parametrize(("base", "order"), CORRECTED, ids=name_of)
 def test_corrected_order_everywhere(base: lh.Step, order: int, space: str, exponential: str, timed: bool) -> None:
-    if exponential == "cayley" and base.order > 2 and not base.one_exponential:
-        pytest.skip("products of this order need the true exponential")
     assert abs(corrected_slope(base, order, 32, space, exponential, timed=timed) - order) < 0.15
+
+
+@pytest.mark.parametrize("order", [3, 4])
+def test_a_product_that_loses_its_order_to_the_exponential_is_raised_from_the_order_it_has(order: int) -> None:
+    """Crouch-Grossman with Cayley has order 2 on its own, and is refused; corrected it has any order."""
+    assert abs(corrected_slope(CrouchGrossman3(), order, 32, "S2", "cayley", timed=False) - order) < 0.15
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    step = lh.Corrected(CrouchGrossman3(), order)
+    sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=step, dt=0.1, exponential="cayley")
+    assert sol.report.order == order and sol.report.base_order == 2
+    with pytest.raises(InputError, match=r"or Corrected\(step, 3\), which raises the order 2"):
+        lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=CrouchGrossman3(), dt=0.1, exponential="cayley")
 
 
 def test_a_correction_of_a_product_is_one_more_factor() -> None:
