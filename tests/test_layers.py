@@ -89,6 +89,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "engine",
         "compiled",
         "jax_engine",
+        "sensitivity",
         "arguments",
         "propagator",
         "integration",

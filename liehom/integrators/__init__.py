@@ -38,6 +38,8 @@ from liehom.integrators.run import ConservationReport as ConservationReport
 from liehom.integrators.run import DenseSolution as DenseSolution
 from liehom.integrators.run import Report as Report
 from liehom.integrators.run import Solution as Solution
+from liehom.integrators.sensitivity import Gradient as Gradient
+from liehom.integrators.sensitivity import Sensitivity as Sensitivity
 from liehom.integrators.symplectic import Composition as Composition
 from liehom.integrators.symplectic import IsospectralMidpoint as IsospectralMidpoint
 from liehom.integrators.symplectic import MoserVeselov as MoserVeselov

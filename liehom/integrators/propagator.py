@@ -34,16 +34,20 @@ from liehom.integrators.compiled.llvm_engine import LlvmEngine
 from liehom.integrators.engine import Engine, NumpyEngine, Problem
 from liehom.integrators.jax_engine import JaxEngine
 from liehom.integrators.methods.steps import LieTaylor
+from liehom.integrators.methods.taylor import Taylor
 from liehom.integrators.run.checkpoint import checked_path
 from liehom.integrators.run.events import EventFunction
 from liehom.integrators.run.options import Options, Span
 from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.solution import Solution, warn_of_order
+from liehom.integrators.sensitivity import Sensitivity
 from liehom.pytrees import check_numbers
 from liehom.series.arrays import is_jax
 from liehom.typing import IntegerArray, Pytree, Values
 
 ENGINES: dict[str, Callable[[], Engine]] = {"numpy": NumpyEngine, "llvm": LlvmEngine, "jax": JaxEngine}
+DEFAULT_ORDER = 6
+"""Order of the default step with fixed step sizes."""
 WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)
 """Whether an `OrderWarning` is issued."""
 
@@ -56,7 +60,8 @@ class Propagator:
     ----------
     field : GeneratorField
     step : Step, optional
-        The method (default ``LieTaylor(6)``).
+        The method (default: `Taylor` of an order that follows from the tolerances of the call,
+        ``Taylor.for_tolerance(rtol + atol)``, and ``LieTaylor(6)`` for fixed step sizes).
     args : pytree, optional
         The last argument of psi(m, t, args), where a call gives none.
     exponential, clock, engine
@@ -65,7 +70,8 @@ class Propagator:
     Attributes
     ----------
     field : GeneratorField
-    step : Step
+    step : Step or None
+        None for the default.
     engine : Engine
         It keeps what it has compiled from one call to the next.
 
@@ -111,17 +117,17 @@ class Propagator:
     ) -> None:
         if not isinstance(field, GeneratorField):
             raise InputError(f"expected a GeneratorField, got {displayed(field)}: call liehom.GeneratorField(rho, psi)")
-        step = LieTaylor(6) if step is None else step
-        if not isinstance(step, Step):
+        if not (step is None or isinstance(step, Step)):
             raise InputError(
                 f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)"
             )
         self.field: GeneratorField = field
         self.args: Pytree = args
-        self.step: Step = step
+        self.step: Step | None = step
         self.engine: Engine = engine_of(engine)
-        # engines may know calls that differ in the points only
-        self._again: Callable[..., Solution | None] | None = getattr(self.engine, "again", None)
+        # an engine is for one step: the default steps for several tolerances have one each
+        self._new_engine: str | None = engine if isinstance(engine, str) else None
+        self._engines: dict[Step, Engine] = {}
         self._nominal = checked_clock(clock)
         self._action = Action(field.representation, exponential)
 
@@ -134,10 +140,67 @@ class Propagator:
         **options: Unpack[CallOptions],
     ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
-        made = None if self._again is None or self.field.takes_args else self._again(t_span, y0, options)
+        engine = self._engine_for(self._step_for(**options))
+        # engines may know calls that differ in the points only
+        again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
+        made = None if again is None or self.field.takes_args else again(t_span, y0, options)
         if made is None:
-            made = self.engine.solve(self.problem(t_span, y0, args=args, **options))
+            made = engine.solve(self.problem(t_span, y0, args=args, **options))
         return warned(made, stacklevel=3)
+
+    def sensitivity(
+        self,
+        t_span: Iterable[float] | Span,
+        y0: npt.ArrayLike,
+        *,
+        args: Pytree = None,
+        **options: Unpack[CallOptions],
+    ) -> Sensitivity:
+        """The trajectories from y0 with the derivatives of their points by y0 and args, a `Sensitivity`.
+
+        Parameters and options are those of a call. The step must be one that can be compiled, without iterations.
+
+        Raises
+        ------
+        InputError
+            If y0 or args hold JAX arrays: differentiate with JAX.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> body = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args["inertia"])
+        >>> args = {"inertia": np.array([1.0, 2.0, 4.0])}
+        >>> found = lh.Propagator(body).sensitivity((0, 5), [0.6, 0.0, 0.8], args=args, t_eval=[5])
+        >>> found.solution.y.shape, found.y0.shape, found.args["inertia"].shape
+        ((3, 1), (3, 3, 1), (3, 3, 1))
+        """
+        if is_jax(y0) or has_jax(args):
+            raise InputError("sensitivity is for numpy arrays: jax.grad, jax.jvp and jax.vjp differentiate JAX arrays")
+        options["dense_output"] = True
+        problem = self.problem(t_span, y0, args=args, **options)
+        solution = warned(self._engine_for(problem.step).solve(problem), stacklevel=3)
+        return Sensitivity(problem, solution)
+
+    def _step_for(
+        self, *, dt: npt.ArrayLike | None = None, rtol: float = 1e-6, atol: float = 1e-9, **_: object
+    ) -> Step:
+        """The step of a call with these options."""
+        if self.step is not None:
+            return self.step
+        if self._new_engine is None and self._engines:
+            return next(iter(self._engines))
+        if dt is not None:
+            return LieTaylor(DEFAULT_ORDER)
+        return Taylor.for_tolerance(positive("rtol", rtol, zero=True) + positive("atol", atol, zero=True))
+
+    def _engine_for(self, step: Step) -> Engine:
+        """The engine for a step."""
+        if self.step is not None:
+            return self.engine
+        if step not in self._engines:
+            first = self._new_engine is None or not self._engines
+            self._engines[step] = self.engine if first else engine_of(str(self._new_engine))
+        return self._engines[step]
 
     def problem(
         self,
@@ -162,7 +225,7 @@ class Propagator:
         args = next((x for x in (args, self.args, self.field.args) if x is not None), None)
         start: Values
         orbit_dimension: int | IntegerArray
-        rho, action = self.field.representation, self._action
+        rho, action, step = self.field.representation, self._action, self._step_for(dt=dt, rtol=rtol, atol=atol)
         on_jax = self.engine.name == "jax" and (is_jax(y0) or has_jax(args))
         if on_jax:
             given = y0 if is_jax(y0) else import_module("jax.numpy").asarray(points_of(y0))
@@ -171,7 +234,7 @@ class Propagator:
             args = without_jax(args)
             start = points_of(y0)
             orbit_dimension = check_point(rho, start)
-            action = with_tight_frame(action, self.step, start, orbit_dimension)
+            action = with_tight_frame(action, step, start, orbit_dimension)
         check_numbers(args, start.shape[:-1])
         span = span_of(t_span, np.dtype(np.float64) if on_jax else start.dtype)
         bound = self.field if args is None else self.field.with_args(args)
@@ -194,10 +257,11 @@ class Propagator:
         )
         if options.dt is None and options.rtol == 0 and options.atol == 0:
             raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
-        return Problem(action, self.field, self.step, span, start, orbit_dimension, options, bound, args)
+        return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
 
     def __repr__(self) -> str:
-        return f"Propagator({self.field!r}, {self.step!r}, engine={self.engine.name!r})"
+        step = "default step" if self.step is None else repr(self.step)
+        return f"Propagator({self.field!r}, {step}, engine={self.engine.name!r})"
 
 
 def engine_of(engine: str | Engine) -> Engine:

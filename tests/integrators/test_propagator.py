@@ -45,13 +45,24 @@ def test_a_call_is_integrate_bit_for_bit_and_so_is_the_next(engine: str, options
         assert (made.status, made.nfev, str(made.report)) == (once.status, once.nfev, str(once.report))
 
 
-def test_an_engine_gets_the_same_field_step_and_exponential_in_all_calls() -> None:
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+def test_the_default_step_follows_the_tolerance_of_the_call(engine: str) -> None:
+    propagator = lh.Propagator(FIELD, engine=engine)
+    steps = [propagator((0, 1), START, rtol=rtol, atol=0).report.step for rtol in (1e-3, 1e-6, 1e-10, 1e-6)]
+    assert steps == ["Taylor(n=5)", "Taylor(n=8)", "Taylor(n=13)", "Taylor(n=8)"]
+    assert propagator((0, 1), START, dt=0.1).report.step == "LieTaylor(n=6)"
+    ends = [propagator((0, 3), START, rtol=rtol, atol=0, t_eval=[3]).y[:, -1] for rtol in (1e-12, 1e-4, 1e-12)]
+    assert np.array_equal(ends[0], ends[2]) and 1e-12 < np.abs(ends[0] - ends[1]).max() < 1e-4
+
+
+@pytest.mark.parametrize("step", [lh.LieTaylor(4), None], ids=["given", "default"])
+def test_an_engine_gets_the_same_field_step_and_exponential_in_all_calls(step: lh.Step | None) -> None:
     engine = Recording()
-    propagator = lh.Propagator(FIELD, exponential="cayley", clock="nominal", engine=engine)
+    propagator = lh.Propagator(FIELD, step, exponential="cayley", clock="nominal", engine=engine)
     assert propagator((0, 1), START, dt=0.5).status == propagator((1, 0), [START, START], rtol=1e-3).status == 0
     first, second = engine.problems
     assert first.field is second.field is FIELD
-    assert first.step is second.step is propagator.step
+    assert first.step is second.step and (first.step is propagator.step) is (step is not None)
     assert first.action.exponential is second.action.exponential
     assert first.bound is FIELD and first.args is None
     assert first.options.nominal and second.options.nominal

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, log
 from typing import Any, ClassVar, NamedTuple, final
 
 import numpy as np
@@ -33,6 +33,8 @@ MAGNUS_ORDER = 4
 """Order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential."""
 SECOND_ORDER = 2
 """The same for any other Exp, which agrees with the true one through order 2."""
+MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24
+"""Bounds for the order that follows from a tolerance."""
 
 
 class Landing(NamedTuple):
@@ -98,6 +100,26 @@ class Taylor(Step):
     def __post_init__(self) -> None:
         if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
             raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+
+    @classmethod
+    def for_tolerance(cls, tolerance: float) -> Taylor:
+        """The step of the order 1 - ln(tolerance) / 2, rounded up: the cheapest one at this relative tolerance.
+
+        The size of a step is about the radius of convergence rho of the series times tolerance^(1/n), and its cost is
+        about n^2. The order minimizes n^2 / tolerance^(1/n), up to the rounding.
+
+        Parameters
+        ----------
+        tolerance : float
+            The order is between 4 and 24.
+
+        Examples
+        --------
+        >>> Taylor.for_tolerance(1e-6), Taylor.for_tolerance(1e-12)
+        (Taylor(n=8), Taylor(n=15))
+        """
+        n = ceil(1 - log(tolerance) / 2) if tolerance > 0 else MAX_DEFAULT_ORDER
+        return cls(min(max(n, MIN_DEFAULT_ORDER), MAX_DEFAULT_ORDER))
 
     @property
     def order(self) -> int:

@@ -62,6 +62,11 @@ class DenseSolution:
         self._prepared: tuple[IntegerArray, LocalStep] | None = None
 
     @property
+    def steps(self) -> tuple[Array, Array, Array]:
+        """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...) of the steps of each trajectory, filled up."""
+        return self._times, self._points, self._sizes
+
+    @property
     def t_min(self) -> Array:
         """The earliest time of each trajectory, shape (...,)."""
         earliest: Array = np.nanmin(self._times, axis=0)
