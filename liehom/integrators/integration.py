@@ -41,7 +41,8 @@ def integrate(
         The initial point, or the initial points of an ensemble, which is integrated at once (psi is always called on
         the whole ensemble). numpy.longdouble gives a solution in extended precision.
     step : Step, optional
-        The method (default ``LieTaylor(6)``): ``Corrected(Euler(), order=4)``, ``RKMK("rk45")``, ....
+        The method. By default `Taylor` of an order that follows from the tolerances (``Taylor(8)`` for the default
+        ones), and ``LieTaylor(6)`` for fixed step sizes. Others are ``Corrected(Euler(), order=4)``, ``RKMK("rk45")``, ....
     args : pytree, optional
         The last argument of psi(m, t, args): numbers and arrays in dicts, lists, tuples and dataclasses, for all
         trajectories; `liehom.PerTrajectory` marks an array with one slice per trajectory.

@@ -71,7 +71,8 @@ def test_an_engine_gets_the_same_field_step_and_exponential_in_all_calls(step: l
 
 
 def test_the_default_step_is_that_of_integrate() -> None:
-    assert repr(lh.Propagator(FIELD).step) == "LieTaylor(n=6)"
+    assert lh.Propagator(FIELD).step is None and "default step" in repr(lh.Propagator(FIELD))
+    assert lh.integrate(FIELD, (0, 1), START).report.step == "Taylor(n=8)"
     np.testing.assert_array_equal(lh.Propagator(FIELD)((0, 1), START).y, lh.integrate(FIELD, (0, 1), START).y)
 
 

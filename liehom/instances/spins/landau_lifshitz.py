@@ -227,7 +227,7 @@ class LandauLifshitz:
         m0 : (..., *shape, 3) array_like
             Unit vectors.
         step : Step, optional
-            Default `LieTaylor(6)`. Corrected steps are for spins without coupling only.
+            Default: that of `liehom.integrate`. Corrected steps are for spins without coupling only.
         dt : float, optional
             The step size. By default it is adaptive: one for all coupled spins of a lattice, by the error of all
             together, and one for each spin without coupling.

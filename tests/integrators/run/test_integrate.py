@@ -260,7 +260,7 @@ def test_entries_as_solve_ivp_has_them() -> None:
 def test_the_card() -> None:
     sol = lh.integrate(BODY, (0, 1), points((2,)), events=lambda t, y: y[..., 0], dense_output=True)
     text = repr(sol)
-    assert text == str(sol) and "message: The solver successfully" in text and "LieTaylor(n=6)" in text
+    assert text == str(sol) and "message: The solver successfully" in text and "Taylor(n=8)" in text
     assert max(map(len, text.splitlines())) <= 120 and len(text.splitlines()) < 40
     assert "1 event" in text and "statuses" in text
     assert "statuses" not in repr(lh.integrate(BODY, (0, 1), M0))
