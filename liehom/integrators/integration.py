@@ -42,7 +42,8 @@ def integrate(
         the whole ensemble). numpy.longdouble gives a solution in extended precision.
     step : Step, optional
         The method. By default `Taylor` of an order that follows from the tolerances (``Taylor(8)`` for the default
-        ones), and ``LieTaylor(6)`` for fixed step sizes. Others are ``Corrected(Euler(), order=4)``, ``RKMK("rk45")``, ....
+        ones), and ``LieTaylor(6)`` for fixed step sizes. Others are ``Corrected(Euler(), order=4)``,
+        ``RKMK("rk45")``, ....
     args : pytree, optional
         The last argument of psi(m, t, args): numbers and arrays in dicts, lists, tuples and dataclasses, for all
         trajectories; `liehom.PerTrajectory` marks an array with one slice per trajectory.
