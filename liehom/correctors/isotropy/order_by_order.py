@@ -173,6 +173,10 @@ class OrderRecursion:
     def level(self, n: int) -> None:
         """Make the step agree with F_tau at order n."""
         difference = self.difference(n)
+        if self.active is not None and not all(isinstance(part.solver, TightFrameSolver) for part in self.parts):
+            # where a lower order was not solved, what is left at this one is part of the error
+            left = norm(self.xp, difference)
+            self.defects.append((n, self.xp.where(self.active, 0.0, left)))
         changed: dict[int, Values] = {}
         for part in self.parts:
             here = _both(self.active, part.here)

@@ -11,13 +11,13 @@ the paper's xi_o^sy4.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
 from liehom.correctors.expansion import flow_series
 from liehom.correctors.isotropy.isotropy_corrector import correct
-from liehom.correctors.step import Factors, Generator, LocalStep, OneExponential
+from liehom.correctors.step import Diagnostics, Factors, Generator, LocalStep, OneExponential
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.typing import Values
@@ -68,7 +68,8 @@ class NominalTimeCorrected(OneExponential):
 
     Notes
     -----
-    For autonomous fields, at points at which the range condition (6.2) holds.
+    For autonomous fields, at points at which the range condition (6.2) holds. At others the order is not reached: the
+    run has status -2, and an `OrderWarning` says so.
 
     Examples
     --------
@@ -87,6 +88,16 @@ class NominalTimeCorrected(OneExponential):
     def order(self) -> int:
         return max(self._order, self.step.order)
 
+    @property
+    def base_order(self) -> int:
+        """Order of the base, an int."""
+        return self.step.order
+
+    @property
+    def uses_isotropy(self) -> bool:
+        """Whether the step asks for isotropy frames: True."""
+        return True
+
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         local = self.step.at(action, psi, m, t)
         velocity = psi(m, t)
@@ -97,7 +108,8 @@ class NominalTimeCorrected(OneExponential):
             )
             zeta, c = found.zeta[n - 1], found.clock[n]
             if zeta is not None and c is not None:  # they are None if no trajectory moves
-                local = _Raised(local, n, zeta, -c[..., None] * velocity)
+                short = np.where((found.leading != 0) & (found.reached < n), self.order - n + 1, 0)
+                local = _Raised(local, n, zeta, -c[..., None] * velocity, short)
         return local
 
     def __repr__(self) -> str:
@@ -108,9 +120,22 @@ class NominalTimeCorrected(OneExponential):
 class _Raised(LocalStep):
     """The generator xi + zeta h^(n-1) + x h^n."""
 
-    def __init__(self, base: LocalStep, n: int, zeta: Values, x: Values) -> None:
+    def __init__(self, base: LocalStep, n: int, zeta: Values, x: Values, short: Values) -> None:
         super().__init__(base.action, base.m)
-        self.base, self.n, self.zeta, self.x = base, n, zeta, x
+        self.base, self.n, self.zeta, self.x, self.short = base, n, zeta, x, short
+
+    def valid(self, h: Values) -> Values | bool:
+        return self.base.valid(h)
+
+    def diagnostics(self, h: Values) -> Diagnostics:
+        """Numbers of the base, and whether and by how many orders a linear system without a solution lowers the order.
+
+        See `CorrectedStep.diagnostics`.
+        """
+        found = self.base.diagnostics(h)
+        before, _ = found.get("short", (0 * self.short, "max"))
+        short: Any = np.maximum(before, self.short)
+        return {**found, "failed": (short > 0, "sum"), "lost": (short > 0, "sum"), "short": (short, "max")}
 
     def factors(self, h: Values) -> Factors:
         power = h

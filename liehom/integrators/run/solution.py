@@ -357,7 +357,9 @@ def warn_of_order(report: Report, stacklevel: int) -> None:
         f"{report.step} did not keep its order {report.wanted_order} from t = {report.unkept_from:.6g} on: "
         f"{report.loss}. LieTaylor({report.wanted_order}) needs no range condition."
     )
-    if not report.failed_steps:
+    if report.failed_steps:
+        text += f" Adaptive sizes are those of order {report.order}: the tolerance is kept with many more steps."
+    else:
         text += " A smaller dt or adaptive steps help if the path passes the cone without crossing it, and another psi "
         text += "may move the path away from it."
     warnings.warn(OrderWarning(text, report.wanted_order, report.unkept_from), stacklevel=stacklevel + 1)

@@ -253,3 +253,45 @@ def test_no_random_problem_fails_silently(seed: int, name: str) -> None:
     left, _ = suspicious(field(slice(None)), starts, SIZES)
     if left.any():
         assert not suspicious(field(left), starts[left], FINER)[0].any()
+
+
+# -- orbits on which isotropy does not reach the tangent space ------------------------------------------------
+TOP = lh.hamiltonian_field(
+    lh.euclidean(3), lambda m: m[..., 0] ** 2 / 2 + m[..., 1] ** 2 / 4 + m[..., 2] ** 2 / 6 + m[..., 5], sign=-1
+)
+UPRIGHT = np.array([0.5, 0.2, 1.0, 0.0, 0.6, 0.8])
+
+
+@pytest.mark.parametrize("how", [{"dt": 0.05}, {"rtol": 1e-4}], ids=["fixed", "adaptive"])
+@pytest.mark.parametrize("start", [UPRIGHT, np.array([UPRIGHT, UPRIGHT + 0.1])], ids=["one", "ensemble"])
+def test_the_heavy_top_says_without_a_printed_report_that_the_order_is_not_reached(how: Any, start: Any) -> None:
+    found = quietly(TOP, (0, 1), start, step=STEP, **how)
+    assert found.sol.status == LOST and len(found.caught) == 1
+    message = str(found.caught[0].message)
+    assert "did not keep its order 4 from t = 0" in message and "Adaptive sizes are those of order 1" in message
+    assert not quietly(TOP, (0, 1), start, step=lh.LieTaylor(4), **how).caught
+
+
+@pytest.mark.parametrize(("rtol", "base"), [(1e-2, 1), (1e-3, 1), (1e-4, 1), (1e-3, 2), (1e-5, 3)])
+def test_adaptive_sizes_are_those_of_the_order_that_is_reached(rtol: float, base: int) -> None:
+    """Each step makes nearly the error that is allowed; the order of the base needs so many steps."""
+    plain = lh.LieTaylor(base)
+    sol = quietly(TOP, (0, 1), UPRIGHT, step=lh.Corrected(plain, 4), rtol=rtol).sol
+    points, allowed = sol.y.T, 1e-9 * 6**0.5 + rtol * np.linalg.norm(sol.y, axis=0)
+    errors = []
+    for k in range(sol.n_steps - 1):
+        exact = lh.integrate(TOP, sol.t[k : k + 2], points[k], step=lh.LieTaylor(12), dt=0.1).y[:, -1]
+        errors.append(np.linalg.norm(points[k + 1] - exact) / allowed[k])
+    assert max(errors, default=1.0) < 1.3 and min(errors, default=1.0) > 0.3
+    assert sol.n_steps <= lh.integrate(TOP, (0, 1), UPRIGHT, step=plain, rtol=rtol).n_steps
+
+
+def test_a_step_at_nominal_time_says_that_its_order_is_not_reached() -> None:
+    from liehom.instances.rigid_body.nominal_time_corrected import NominalTimeCorrected
+
+    step = NominalTimeCorrected(lh.LieTaylor(2), 4)
+    found = quietly(TOP, (0, 1), UPRIGHT, step=step, dt=0.1)
+    assert found.sol.status == LOST and len(found.caught) == 1 and found.sol.report.order == 2
+    body = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    kept = quietly(body, (0, 1), UPRIGHT[3:], step=step, dt=0.1)
+    assert kept.sol.status == KEPT and not kept.caught and kept.sol.report.order == 4
