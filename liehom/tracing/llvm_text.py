@@ -216,7 +216,9 @@ class Body:
         if x.op == "get":
             return w.emit(f"extractvalue {_struct(w, x.args[0])} {args[0]}, {x.value}")
         if x.op == "expv":
-            return _call_series(w, x, args)
+            from liehom.tracing.series_text import call_exponential
+
+            return call_exponential(w, x, args)
         if x.op in LIBM:
             return w.library(LIBM[x.op], *args)
         raise TraceError(f"the operation {x.op} has no machine code here")

@@ -167,6 +167,5 @@ def size_to_stop(
         again = wanted & (np.abs(new - s) > 2 * EPS * np.abs(s))
         return [again, np.where(wanted, new, s)], again
 
-    _, s = while_loop(newton, [reached, h * left / passed], tape, NEWTON_ITERATIONS, guarded=True)
-    found = np.abs(local.time(s) - left) <= 64 * EPS * np.abs(left)
-    return np.where(reached, s, h), reached, found | ~reached
+    unsolved, size = while_loop(newton, [reached, h], tape, NEWTON_ITERATIONS, guarded=True)
+    return size, reached, ~unsolved
