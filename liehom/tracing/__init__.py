@@ -14,9 +14,9 @@ from liehom.tracing.expr import LaneConstant as LaneConstant
 from liehom.tracing.expr import RunConstant as RunConstant
 from liehom.tracing.graph import Tape as Tape
 from liehom.tracing.graph import needed as needed
-from liehom.tracing.kernel import Kernel as Kernel
-from liehom.tracing.kernel import padded as padded
 from liehom.tracing.loop import while_loop as while_loop
-from liehom.tracing.machine import lanes_per_register as lanes_per_register
+from liehom.tracing.machine_code.kernel import Kernel as Kernel
+from liehom.tracing.machine_code.kernel import padded as padded
+from liehom.tracing.machine_code.machine import lanes_per_register as lanes_per_register
 from liehom.tracing.step_graph import Sizes as Sizes
 from liehom.tracing.step_graph import StepGraph as StepGraph

@@ -1,6 +1,6 @@
 """Functions of the exponential that are one operation of the graph: sin(r)/r and cos(r) of r^2, and exp(A) m.
 
-They branch on the size of their arguments, which a graph cannot; the emitters (`llvm_text`, `jax_code`) write the
+They branch on the size of their arguments, which a graph cannot; the emitters (`machine_code`, `jax_code`) write the
 branches and loops.
 """
 

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from liehom.errors import TraceError
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import needed
-from liehom.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
+from liehom.tracing.machine_code.rotation import SHORT_SERIES_REACH, rotation_series
 
 JaxArray: TypeAlias = Any
 """A JAX array or tracer, a numpy array or a number."""

@@ -19,8 +19,9 @@ import numpy as np
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import needed
 from liehom.tracing.lattice.lattice_array import SiteInputs
-from liehom.tracing.llvm_text import Body, Writer
-from liehom.tracing.machine import engine_of, lanes_per_register
+from liehom.tracing.machine_code.body import Body
+from liehom.tracing.machine_code.machine import engine_of, lanes_per_register
+from liehom.tracing.machine_code.writer import Writer
 from liehom.typing import Array, IntegerArray
 
 Plane: TypeAlias = tuple[str, int, int]

@@ -243,7 +243,7 @@ def test_a_psi_that_looks_at_values_is_refused_with_the_reason(psi: Any) -> None
 
 # -- machine code ------------------------------------------------------------------------------------------
 def test_machine_code_is_kept_and_damage_is_noticed(cache: Path) -> None:
-    from liehom.tracing import machine
+    from liehom.tracing.machine_code import machine
 
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: m * [1.0, 0.123456, 0.25])
     graph = traced_step(lh.Action(field.representation), field, lh.Euler(), START[None], 2, nominal=True)

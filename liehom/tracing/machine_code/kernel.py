@@ -13,8 +13,8 @@ from liehom.errors import LiehomError
 from liehom.tracing.array import Traced
 from liehom.tracing.expr import Expr, LaneConstant, RunConstant
 from liehom.tracing.graph import TrajectoryConstant
-from liehom.tracing.machine import engine_of
-from liehom.tracing.run_text import FIELDS, Constant, run_module, state_names
+from liehom.tracing.machine_code.machine import engine_of
+from liehom.tracing.machine_code.run_text import FIELDS, Constant, run_module, state_names
 from liehom.tracing.step_graph import StepGraph
 
 PLACES = {name: place for place, name in enumerate(FIELDS)}

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 
 from liehom.disk import write_atomically
 from liehom.errors import TraceError
-from liehom.tracing.llvm_text import LIBM
+from liehom.tracing.machine_code.writer import LIBM
 
 Engine: TypeAlias = Any
 """An execution engine of llvmlite, which has no types."""

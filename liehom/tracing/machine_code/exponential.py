@@ -10,7 +10,7 @@ import math
 from typing import final
 
 from liehom.tracing.expr import Expr
-from liehom.tracing.llvm_text import Writer, number
+from liehom.tracing.machine_code.writer import Writer, number
 
 LEVELS = ((0.054, 8), (0.28, 12), (0.72, 16), (1.35, 20), (2.1, 24))
 """Norms up to which a polynomial of a degree leaves out less than 1e-17 of the result."""

@@ -17,7 +17,8 @@ from typing import Any, TypeAlias, final
 
 from liehom.tracing.expr import Expr
 from liehom.tracing.graph import needed
-from liehom.tracing.llvm_text import Body, Writer
+from liehom.tracing.machine_code.body import Body
+from liehom.tracing.machine_code.writer import Writer
 from liehom.tracing.step_graph import StepGraph
 
 FIELDS = (
