@@ -128,7 +128,8 @@ def test_a_stiff_run_agrees_with_radau_of_scipy(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["radau3", "rodas4"])
 def test_compiled_code_agrees_with_arrays_on_a_stiff_field(name: str) -> None:
-    starts = np.random.default_rng(0).normal(size=(5, 3))
+    # not opposite to the point of attraction, where a step of this size amplifies round-off
+    starts = np.array([1.0, 0.0, 0.0]) + 0.3 * np.random.default_rng(0).normal(size=(5, 3))
     starts /= np.linalg.norm(starts, axis=-1, keepdims=True)
     for how, bound in (({"dt": 0.05}, 1e-12), ({"rtol": 1e-5}, 1e-6)):
         given: dict[str, Any] = {"step": step_named(name), "t_eval": [0.5, 1.0]} | how
