@@ -138,6 +138,7 @@ if TYPE_CHECKING:
     from liehom.errors import RepresentationError as RepresentationError
     from liehom.errors import ShapeError as ShapeError
     from liehom.errors import SingularError as SingularError
+    from liehom.errors import StiffnessWarning as StiffnessWarning
     from liehom.errors import StructureError as StructureError
     from liehom.errors import TraceError as TraceError
     from liehom.errors import UndecidedError as UndecidedError
@@ -291,7 +292,7 @@ _NAMES = {
     "liehom.errors": (
         "CatalogError CertificateError ConvergenceError DamageWarning FieldError FormatError InputError JacobiError "
         "LiehomError LimitError NotASubalgebraError NotInSpanError OrderWarning ParseError RepresentationError "
-        "ShapeError SingularError StructureError TraceError UndecidedError"
+        "ShapeError SingularError StiffnessWarning StructureError TraceError UndecidedError"
     ),
     "liehom.fullness": (
         "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "

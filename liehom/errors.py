@@ -295,6 +295,26 @@ class ConformanceError(LiehomError):
         super().__init__(f"{check}: {message}")
 
 
+class StiffnessWarning(UserWarning):
+    """The step sizes of an adaptive run were limited by stability, so that a step for stiff fields takes fewer.
+
+    Attributes
+    ----------
+    rate : float
+        The rate with which deviations from the trajectory are damped.
+    time : float
+        Where it was first noticed.
+    """
+
+    def __init__(self, message: str, rate: float = float("nan"), time: float = float("nan")) -> None:
+        self.rate = rate
+        self.time = time
+        super().__init__(message)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (*self.args, self.rate, self.time)
+
+
 class OrderWarning(UserWarning):
     """A run did not keep the order of its `Corrected` step; `time` is where this was first noticed.
 

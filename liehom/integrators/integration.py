@@ -165,4 +165,5 @@ def integrate(
         clock=clock,
         engine=engine_option(engine, compile, stacklevel=3),
     )
-    return warned(propagator.engine.solve(propagator.problem(t_span, y0, **options)), stacklevel=3)
+    problem = propagator.problem(t_span, y0, **options)
+    return warned(propagator.engine.solve(problem), problem, stacklevel=3)

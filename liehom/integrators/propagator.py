@@ -32,6 +32,7 @@ from liehom.integrators.arguments import (
 )
 from liehom.integrators.compiled.llvm_engine import LlvmEngine
 from liehom.integrators.engine import Engine, NumpyEngine, Problem
+from liehom.integrators.implicit.stiffness import warn_of_stiffness
 from liehom.integrators.jax_engine import JaxEngine
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.methods.taylor import Taylor
@@ -145,7 +146,8 @@ class Propagator:
         again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
         made = None if again is None or self.field.takes_args else again(t_span, y0, options)
         if made is None:
-            made = engine.solve(self.problem(t_span, y0, args=args, **options))
+            problem = self.problem(t_span, y0, args=args, **options)
+            return warned(engine.solve(problem), problem, stacklevel=3)
         return warned(made, stacklevel=3)
 
     def sensitivity(
@@ -332,12 +334,14 @@ def without_order_warning() -> Iterator[None]:
         WARNS.reset(token)
 
 
-def warned(solution: Solution, stacklevel: int) -> Solution:
-    """The solution, after an `OrderWarning` if it did not keep its order.
+def warned(solution: Solution, problem: Problem | None = None, *, stacklevel: int) -> Solution:
+    """The solution, after an `OrderWarning` if it did not keep its order, and a `StiffnessWarning` if it was slow.
 
     Parameters
     ----------
     solution : Solution
+    problem : Problem, optional
+        The problem, to test an adaptive run for stiffness.
     stacklevel : int
         That of `warnings.warn`.
 
@@ -350,4 +354,7 @@ def warned(solution: Solution, stacklevel: int) -> Solution:
     """
     if WARNS.get():
         warn_of_order(solution.report, stacklevel)
+        if problem is not None and problem.options.dt is None and type(solution.y) is np.ndarray:
+            p = problem
+            warn_of_stiffness(p.action, p.bound, p.step, p.orbit_dimension, p.span, solution, stacklevel)
     return solution

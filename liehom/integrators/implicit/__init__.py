@@ -6,4 +6,6 @@ The equations of the implicit ones are solved in `liehom.correctors.implicit`. S
 
 from liehom.integrators.implicit.exponential_rosenbrock import ExponentialRosenbrock as ExponentialRosenbrock
 from liehom.integrators.implicit.rosenbrock import Rosenbrock as Rosenbrock
+from liehom.integrators.implicit.stability import amplification as amplification
+from liehom.integrators.implicit.stability import stability_limit as stability_limit
 from liehom.integrators.implicit.stiff_rkmk import StiffRKMK as StiffRKMK

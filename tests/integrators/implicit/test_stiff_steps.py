@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from functools import cache
 from typing import Any
 
@@ -11,7 +12,15 @@ from scipy.integrate import solve_ivp
 
 import liehom as lh
 from liehom.errors import InputError
-from liehom.integrators import ExponentialRosenbrock, Rosenbrock, StiffRKMK, radau, step_named
+from liehom.integrators import (
+    ExponentialRosenbrock,
+    Rosenbrock,
+    StiffRKMK,
+    amplification,
+    radau,
+    stability_limit,
+    step_named,
+)
 from liehom.integrators.implicit.rosenbrock import METHODS
 
 RHO = lh.adjoint(lh.so(3))
@@ -145,6 +154,76 @@ def test_correction_raises_the_order_of_stiff_steps() -> None:
         step = lh.Corrected(base, base.order + 1)
         e = [np.abs(lh.integrate(field, (0, 1), START, step=step, dt=h).y[:, -1] - end).max() for h in (1 / 8, 1 / 16)]
         assert np.log2(e[0] / e[1]) > base.order + 0.7
+
+
+# -- stability -----------------------------------------------------------------------------------------------
+LIMITS = {
+    "euler": 2.0,
+    "heun": 2.0,
+    "rk23": 2.5127,
+    "rk4": 2.7853,
+    "rk45": 3.3066,
+    "dop853": 6.39,
+    "lietaylor6": 3.5534,
+}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_stability_limits_are_those_of_the_stability_polynomials(name: str) -> None:
+    assert abs(stability_limit(step_named(name)) - LIMITS[name]) < 5e-3
+
+
+@pytest.mark.parametrize("name", ["rk4", "radau5", "sdirk4", "rodas4", "exprb4", "backward euler"])
+def test_amplification_without_isotropy_is_the_stability_function(name: str) -> None:
+    step = step_named(name)
+    x = np.array([0.1, 0.9, 2.0, 7.0])
+    if name == "exprb4":
+        wanted = np.exp(-x)
+    else:
+        a, b, _, _ = lh.tableau({"backward euler": "implicit euler", "rodas4": "rk4"}.get(name, name)).to_numpy()
+        wanted = np.array([abs(1 - v * b @ np.linalg.solve(np.eye(len(b)) + v * a, np.ones(len(b)))) for v in x])
+    found = amplification(step, -x)
+    if name == "rodas4":  # of order 4, and L-stable
+        assert abs(found[0] - np.exp(-0.1)) < 1e-6 and (found < 1).all()
+    else:
+        np.testing.assert_allclose(found, wanted, rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("s", [0.0, 0.5, 2.0])
+def test_isotropy_multiplies_the_increment_of_euler_by_phi(s: float) -> None:
+    """With isotropy sigma dt = s: |1 + z phi(i s)|, phi(x) = (e^x - 1)/x, so that it helps oscillation, not damping."""
+    z = np.array([-0.5, -1.9, -1.0 + 1.0j, 0.7j])
+    total = 1j * (s + z.imag)
+    phi = np.where(total == 0, 1.0, (np.exp(total) - 1) / np.where(total == 0, 1.0, total))
+    wanted = np.abs(1 + z * phi)
+    np.testing.assert_allclose(amplification(lh.Euler(), z, isotropy=s), wanted, rtol=0, atol=1e-8)
+
+
+def test_stiffness_is_noticed_and_named() -> None:
+    for engine in ("numpy", "llvm"):
+        with pytest.warns(lh.StiffnessWarning, match="Rosenbrock") as found:
+            lh.integrate(chasing(1000.0), (0, 1), [0.6, 0.64, 0.48], step=lh.RKMK("rk23"), engine=engine)
+        assert abs(found[0].message.rate - 1000) < 20
+    with pytest.warns(lh.StiffnessWarning):
+        starts = np.array([[0.6, 0.64, 0.48], [1.0, 0.0, 0.0]])
+        lh.integrate(chasing(1000.0), (0, 0.5), starts, step=lh.RKMK("rk45"), t_eval=[0.2, 0.3, 0.4, 0.5])
+
+
+@pytest.mark.parametrize("step", [None, lh.RKMK("rk23"), lh.RKMK("dop853")], ids=repr)
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-7])
+def test_fields_that_are_not_stiff_give_no_warning(step: Any, tolerance: float) -> None:
+    turning = lh.GeneratorField(RHO, lambda m: 50.0 * m[..., 2:] * np.array([0.0, 0.0, 1.0]) - m * W)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for field in (lh.GeneratorField(RHO, lambda m: -m * W), body(), turning, chasing(3.0)):
+            sol = lh.integrate(field, (0, 10), START, step=step, rtol=tolerance, atol=tolerance)
+            assert sol.success
+
+
+def test_a_stiff_step_gives_no_warning_on_a_stiff_field() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        lh.integrate(chasing(1e5), (0, 5), START, step=Rosenbrock("rodas3"), rtol=1e-7)
 
 
 # -- errors --------------------------------------------------------------------------------------------------
