@@ -109,8 +109,6 @@ if TYPE_CHECKING:
     from liehom.budget import current_limits as current_limits
     from liehom.budget import limits as limits
     from liehom.catalog import pair as pair
-    from liehom.correctors import Conserving as Conserving
-    from liehom.correctors import Corrected as Corrected
     from liehom.correctors import MomentumMap as MomentumMap
     from liehom.correctors import OneExponential as OneExponential
     from liehom.correctors import Step as Step
@@ -177,6 +175,8 @@ if TYPE_CHECKING:
     from liehom.integrators import BackwardEuler as BackwardEuler
     from liehom.integrators import CommutatorFree4 as CommutatorFree4
     from liehom.integrators import Composition as Composition
+    from liehom.integrators import Conserving as Conserving
+    from liehom.integrators import Corrected as Corrected
     from liehom.integrators import CrouchGrossman3 as CrouchGrossman3
     from liehom.integrators import Euler as Euler
     from liehom.integrators import ExponentialRosenbrock as ExponentialRosenbrock
@@ -286,7 +286,7 @@ _NAMES = {
     "liehom.budget": "Limits current_limits limits",
     "liehom.catalog": "pair",
     "liehom.correctors": (
-        "Conserving Corrected MomentumMap OneExponential Step chi closed_form correction flow_series "
+        "MomentumMap OneExponential Step chi closed_form correction flow_series "
         "moving_frame_field order_condition step_series"
     ),
     "liehom.errors": (
@@ -303,7 +303,8 @@ _NAMES = {
         "lie_poisson_tensor orbit_types range_condition relative_invariant structure_name symmetric_strata"
     ),
     "liehom.integrators": (
-        "BackwardEuler CommutatorFree4 CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK Solution Tableau "
+        "BackwardEuler CommutatorFree4 Conserving Corrected CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK "
+        "Solution Tableau "
         "Taylor integrate integrate_ensemble observed_order tableau Composition IsospectralMidpoint "
         "MoserVeselov SphericalMidpoint Splitting VariationalMidpoint ExponentialRosenbrock Rosenbrock StiffRKMK "
     ),

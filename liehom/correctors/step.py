@@ -19,7 +19,7 @@ from liehom.correctors.local_step import LocalStep as LocalStep
 from liehom.correctors.local_step import apply_factors as apply_factors
 from liehom.correctors.local_step import moved_by_isotropy as moved_by_isotropy
 from liehom.correctors.local_step import with_correction as with_correction
-from liehom.errors import InputError
+from liehom.errors import InputError, displayed
 from liehom.homogeneous import Action, Exponential, GeneratorField
 from liehom.series.arrays import zeros
 from liehom.series.jet import Jet
@@ -172,6 +172,54 @@ class Step(ABC):
     def __repr__(self) -> str:
         # without the address, as reports and the fingerprints of checkpoints contain the repr
         return f"{type(self).__name__}()"
+
+
+StepLike: TypeAlias = Step | str
+"""A step, or its name, such as "rk45"."""
+
+_NAMED: list[Callable[[str], Step]] = []
+
+
+def give_names(named: Callable[[str], Step]) -> None:
+    """Let `as_step` find steps by this function; the layer of methods, which is above this one, gives its own.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> give_names(lh.integrators.step_named)
+    """
+    _NAMED[:] = [named]
+
+
+def as_step(step: StepLike, what: str = "step") -> Step:
+    """A step by its name, or the step itself.
+
+    Parameters
+    ----------
+    step : Step or str
+    what : str
+        Its name in error messages.
+
+    Raises
+    ------
+    InputError
+        If no step has this name, or it is not a step.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> as_step(lh.Euler()), lh.Corrected("heun", 4)
+    (Euler(), Corrected(Heun(), order=4))
+    """
+    if isinstance(step, Step):
+        return step
+    if not isinstance(step, str):
+        raise InputError(
+            f"{what} is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4), or its name"
+        )
+    if not _NAMED:
+        raise InputError(f"{what} is {step!r}, but no step has a name yet: import liehom.integrators, or give a step")
+    return _NAMED[0](step)
 
 
 class OneExponential(Step, ABC):

@@ -6,6 +6,8 @@ has `Propagator`, `integration` has `integrate`, `ensembles` cuts ensembles into
 `convergence` measures orders. See docs/tutorials/integrating.md.
 """
 
+from liehom.correctors import Conserving as Conserving
+from liehom.correctors import Corrected as Corrected
 from liehom.integrators.convergence import ConvergenceTable as ConvergenceTable
 from liehom.integrators.convergence import Reference as Reference
 from liehom.integrators.convergence import observed_order as observed_order

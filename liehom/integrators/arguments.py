@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
 from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from liehom.correctors.isotropy.corrected import Corrected
-from liehom.correctors.step import ExponentialLike, Step
+from liehom.correctors.step import ExponentialLike, Step, StepLike
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
@@ -30,10 +31,11 @@ class SharedOptions(TypedDict, total=False):
     """Options of a call of a `Propagator` that make sense for every kind of run."""
 
     rtol: float
-    atol: float
+    atol: npt.ArrayLike
     t_eval: npt.ArrayLike | None
     events: EventFunction | Sequence[EventFunction] | None
     max_step: float
+    min_step: float
     first_step: float | None
     max_steps: int
 
@@ -66,7 +68,7 @@ class RunOptions(SharedOptions, total=False):
 class EnsembleOptions(RunOptions, total=False):
     """Keyword arguments of `integrate` that `integrate_ensemble` hands on to it."""
 
-    step: Step | None
+    step: StepLike | None
     dt: npt.ArrayLike | None
 
 
@@ -217,6 +219,60 @@ def step_sizes(dt: npt.ArrayLike, start: Values, span: Span) -> Array:
         return np.broadcast_to(sizes, start.shape[:-1]).copy()
     except ValueError:
         raise ShapeError(f"dt has shape {sizes.shape}, the ensemble {start.shape[:-1]}") from None
+
+
+OF_SOLVE_IVP = {
+    "method": "the method is step, such as step='rk45' or step=liehom.LieTaylor(6)",
+    "vectorized": "psi is called on whole ensembles always: m of shape (..., N), t of shape (...,)",
+    "jac": "derivatives of psi are computed, by series or by tracing it",
+    "jac_sparsity": "derivatives of psi are computed, by series or by tracing it",
+    "lband": "derivatives of psi are computed, by series or by tracing it",
+    "uband": "derivatives of psi are computed, by series or by tracing it",
+}
+"""Options of scipy's solve_ivp, and what there is in their place."""
+OPTIONS = tuple({**EnsembleOptions.__annotations__, **FileOptions.__annotations__})
+
+
+def check_option_names(unknown: Iterable[str]) -> None:
+    """Raise TypeError if there is an option that `integrate` does not have, with the one that was meant.
+
+    Examples
+    --------
+    >>> check_option_names({"method": "RK45"})
+    Traceback (most recent call last):
+    ...
+    TypeError: integrate has no option 'method': the method is step, such as step='rk45' or step=liehom.LieTaylor(6)
+    """
+    for name in unknown:
+        near = get_close_matches(name, OPTIONS, n=1)
+        hint = OF_SOLVE_IVP.get(name) or (f"did you mean {near[0]!r}?" if near else f"known: {', '.join(OPTIONS)}")
+        raise TypeError(f"integrate has no option {name!r}: {hint}")
+
+
+def least_atol(atol: npt.ArrayLike, size: int) -> float:
+    """The absolute tolerance as one number: the least, if there is one for each of the N coordinates.
+
+    Raises
+    ------
+    InputError, ShapeError
+        If it is not a number or an array of shape (N,), at least 0.
+
+    Examples
+    --------
+    >>> least_atol([1e-3, 1e-6], 2)
+    1e-06
+    """
+    if np.ndim(atol) == 0:  # type: ignore[arg-type]
+        return positive("atol", atol, zero=True)  # type: ignore[arg-type]
+    try:
+        values = np.asarray(atol, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"atol is {displayed(atol)}, expected a positive number or {size} of them") from None
+    if values.shape != (size,):
+        raise ShapeError(f"atol has shape {values.shape}, expected a number or an array of shape ({size},)")
+    if not bool(np.all(values >= 0)):
+        raise InputError(f"atol is {displayed(atol)}, expected positive numbers")
+    return float(values.min())
 
 
 def flag(name: str, value: object) -> bool:

@@ -6,7 +6,7 @@ This is all that `Propagator` knows of an engine, and all that an engine needs t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, final
 
 import numpy as np
@@ -130,4 +130,8 @@ def executed(problem: Problem, fast_path: Callable[[Run], Callable[[Run], bool]]
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         run = Run(p.action, Generator(p.bound, p.orbit_dimension), p.step, p.span, np.asarray(p.start), options)
         run.fast_path = None if fast_path is None else fast_path(run)
-        return run.execute(options.progress, options.checkpoint)
+        solution = run.execute(options.progress, options.checkpoint)
+    if options.least_step > 0:
+        below = f"below min_step, {options.min_step:g}"
+        return replace(solution, message=solution.message.replace("below round-off", below))
+    return solution

@@ -7,7 +7,7 @@ from typing import Unpack
 
 import numpy.typing as npt
 
-from liehom.correctors.step import ExponentialLike, Step
+from liehom.correctors.step import ExponentialLike, StepLike
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.arguments import CallOptions
 from liehom.integrators.engine import Engine
@@ -22,7 +22,7 @@ def integrate(
     t_span: Iterable[float] | Span,
     y0: npt.ArrayLike,
     *,
-    step: Step | None = None,
+    step: StepLike | None = None,
     args: Pytree = None,
     exponential: ExponentialLike = "exp",
     clock: str = "corrected",
@@ -39,11 +39,12 @@ def integrate(
         Initial and final time; the final time may be the smaller one.
     y0 : array_like of shape (N,) or (..., N)
         The initial point, or the initial points of an ensemble, which is integrated at once (psi is always called on
-        the whole ensemble). numpy.longdouble gives a solution in extended precision.
-    step : Step, optional
+        the whole ensemble). Integers are floats; numpy.longdouble gives a solution in extended precision. Other types
+        are refused rather than rounded.
+    step : Step or str, optional
         The method. By default `Taylor` of an order that follows from the tolerances (``Taylor(8)`` for the default
         ones), and ``LieTaylor(6)`` for fixed step sizes. Others are ``Corrected(Euler(), order=4)``,
-        ``RKMK("rk45")``, ....
+        ``RKMK("rk45")``, ..., or a name, one of `liehom.integrators.step_names`: "rk45", "euler", "lietaylor8", ....
     args : pytree, optional
         The last argument of psi(m, t, args): numbers and arrays in dicts, lists, tuples and dataclasses, for all
         trajectories; `liehom.PerTrajectory` marks an array with one slice per trajectory.
@@ -51,14 +52,16 @@ def integrate(
         A fixed step size. Without it the step size is adaptive, by `rtol` and `atol`, for every trajectory separately.
     rtol, atol : float
         The error of a step is at most atol + rtol |m|, as root mean squares over the coordinates. The tolerance is
-        never below 10 units of round-off.
+        never below 10 units of round-off. `atol` may be an array of shape (N,), of which the least number counts: the
+        group mixes the coordinates, so that none of them has a tolerance of its own.
     t_eval : array_like of shape (k,), optional
         Times at which to store the solution, in the direction of integration; by default every step. With ``t_eval``
         no other points are stored, so that ``t_eval=[end]`` saves memory.
     dense_output : bool
         Whether to return the solution as a function of time, in `sol`.
     events : callable or list of callables, optional
-        Functions g(t, y) whose zeros are recorded, with the attributes `terminal` and `direction` of solve_ivp. For
+        Functions g(t, y), g(t, y, args), or g(m, t) and g(m, t, args) with these names as psi has them, whose zeros are
+        recorded, with the attributes `terminal` and `direction` of solve_ivp. For
         an ensemble they return one number per trajectory. A change of sign between the ends of a step is located on
         the dense output to round-off, and so are two zeros next to an extremum of g within a step. All zeros are found
         if g has at most one extremum in each step; for others see `max_step` (with events, an adaptive step moves a
@@ -70,8 +73,9 @@ def integrate(
         The time that passes in a step of size h: "corrected" for the time reparametrization τ(h) of the step (its
         "clock"), with which a corrected step has its order as a trajectory; "nominal" for h, as in the paper, with
         which only the orbit has the order of the correction.
-    max_step, first_step : float, optional
-        Bound for adaptive step sizes, and the first size.
+    max_step, min_step, first_step : float, optional
+        Bounds for adaptive step sizes, and the first size. A trajectory that needs a smaller step than `min_step` ends
+        with status -1.
     max_steps : int
         The largest number of steps of a trajectory; at that number it ends with status -1.
     progress : bool or callable
@@ -95,6 +99,8 @@ def integrate(
     ------
     ShapeError, InputError
         If the initial point, psi at that point, or an option is not right.
+    TypeError
+        If there is no option of a name.
     TangencyError
         If a field X is not tangent to the orbit.
     SeriesError

@@ -13,6 +13,7 @@ from difflib import get_close_matches
 import numpy as np
 
 from liehom.correctors import Corrected, Step
+from liehom.correctors.step import give_names
 from liehom.errors import InputError, displayed
 from liehom.integrators.implicit import ExponentialRosenbrock, Rosenbrock, StiffRKMK
 from liehom.integrators.implicit.rosenbrock import METHODS as ROSENBROCK
@@ -141,3 +142,6 @@ def _unknown(base: str) -> InputError:
     hint = f"did you mean {displayed(near[0])}? " if near else ""
     shown = repr(base) if len(base) <= 60 else repr(base[:57] + "...")
     return InputError(f"no step is called {shown}; {hint}known: {', '.join(names)}")
+
+
+give_names(step_named)

@@ -13,17 +13,19 @@ from typing import Unpack, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.step import ExponentialLike, Step
+from liehom.correctors.step import ExponentialLike, Step, StepLike, as_step
 from liehom.errors import InputError, displayed
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.arguments import (
     CallOptions,
     check_generator,
+    check_option_names,
     checked_clock,
     flag,
     has_jax,
     jax_start,
+    least_atol,
     positive,
     step_sizes,
     times_of,
@@ -60,8 +62,8 @@ class Propagator:
     Parameters
     ----------
     field : GeneratorField
-    step : Step, optional
-        The method (default: `Taylor` of an order that follows from the tolerances of the call,
+    step : Step or str, optional
+        The method, or its name (default: `Taylor` of an order that follows from the tolerances of the call,
         ``Taylor.for_tolerance(rtol + atol)``, and ``LieTaylor(6)`` for fixed step sizes).
     args : pytree, optional
         The last argument of psi(m, t, args), where a call gives none.
@@ -109,7 +111,7 @@ class Propagator:
     def __init__(
         self,
         field: GeneratorField,
-        step: Step | None = None,
+        step: StepLike | None = None,
         *,
         args: Pytree = None,
         exponential: ExponentialLike = "exp",
@@ -118,13 +120,9 @@ class Propagator:
     ) -> None:
         if not isinstance(field, GeneratorField):
             raise InputError(f"expected a GeneratorField, got {displayed(field)}: call liehom.GeneratorField(rho, psi)")
-        if not (step is None or isinstance(step, Step)):
-            raise InputError(
-                f"step is {displayed(step)}, expected a step such as liehom.Euler() or liehom.LieTaylor(4)"
-            )
         self.field: GeneratorField = field
         self.args: Pytree = args
-        self.step: Step | None = step
+        self.step: Step | None = None if step is None else as_step(step)
         self.engine: Engine = engine_of(engine)
         # an engine is for one step: the default steps for several tolerances have one each
         self._new_engine: str | None = engine if isinstance(engine, str) else None
@@ -184,7 +182,7 @@ class Propagator:
         return Sensitivity(problem, solution)
 
     def _step_for(
-        self, *, dt: npt.ArrayLike | None = None, rtol: float = 1e-6, atol: float = 1e-9, **_: object
+        self, *, dt: npt.ArrayLike | None = None, rtol: float = 1e-6, atol: npt.ArrayLike = 1e-9, **_: object
     ) -> Step:
         """The step of a call with these options."""
         if self.step is not None:
@@ -193,7 +191,9 @@ class Propagator:
             return next(iter(self._engines))
         if dt is not None:
             return LieTaylor(DEFAULT_ORDER)
-        return Taylor.for_tolerance(positive("rtol", rtol, zero=True) + positive("atol", atol, zero=True))
+        return Taylor.for_tolerance(
+            positive("rtol", rtol, zero=True) + least_atol(atol, self.field.representation.size)
+        )
 
     def _engine_for(self, step: Step) -> Engine:
         """The engine for a step."""
@@ -212,22 +212,54 @@ class Propagator:
         args: Pytree = None,
         dt: npt.ArrayLike | None = None,
         rtol: float = 1e-6,
-        atol: float = 1e-9,
+        atol: npt.ArrayLike = 1e-9,
         t_eval: npt.ArrayLike | None = None,
         dense_output: bool = False,
         events: EventFunction | Sequence[EventFunction] | None = None,
         max_step: float = np.inf,
+        min_step: float = 0.0,
         first_step: float | None = None,
         max_steps: int = 10_000_000,
         progress: bool | Callable[[float], object] = False,
         checkpoint: str | os.PathLike[str] | None = None,
         checkpoint_every: float = 30.0,
+        **unknown: object,
     ) -> Problem:
         """The `Problem` of a call, with all arguments checked."""
+        check_option_names(unknown)
+        step = self._step_for(dt=dt, rtol=rtol, atol=atol)
+        start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step)
+        least = positive("min_step", min_step, zero=True)
+        options = Options(
+            dt=None if dt is None else step_sizes(dt, start, span),
+            rtol=positive("rtol", rtol, zero=True),
+            atol=least_atol(atol, start.shape[-1]),
+            t_eval=None if t_eval is None else times_of(t_eval, span),
+            dense_output=flag("dense_output", dense_output),
+            events=events,
+            nominal=self._nominal,
+            max_step=positive("max_step", max_step),
+            min_step=least,
+            first_step=(least or None) if first_step is None else positive("first_step", first_step),
+            max_steps=positive("max_steps", max_steps),
+            checkpoint_every=positive("checkpoint_every", checkpoint_every, zero=True),
+            progress=progress,
+            checkpoint=None if checkpoint is None else checked_path(checkpoint),
+        )
+        if options.min_step > options.max_step:
+            raise InputError(f"min_step is {options.min_step}, larger than max_step, {options.max_step}")
+        if options.dt is None and options.rtol == 0 and options.atol == 0:
+            raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
+        return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
+
+    def _started(
+        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, step: Step
+    ) -> tuple[Values, int | IntegerArray, Span, Action, GeneratorField, Pytree]:
+        """Start, orbit dimensions, span, action, field with args, and args, all checked."""
         args = next((x for x in (args, self.args, self.field.args) if x is not None), None)
         start: Values
         orbit_dimension: int | IntegerArray
-        rho, action, step = self.field.representation, self._action, self._step_for(dt=dt, rtol=rtol, atol=atol)
+        rho, action = self.field.representation, self._action
         on_jax = self.engine.name == "jax" and (is_jax(y0) or has_jax(args))
         if on_jax:
             given = y0 if is_jax(y0) else import_module("jax.numpy").asarray(points_of(y0))
@@ -242,24 +274,7 @@ class Propagator:
         bound = self.field if args is None else self.field.with_args(args)
         if not on_jax:
             check_generator(bound, np.asarray(start), span[0])
-        options = Options(
-            dt=None if dt is None else step_sizes(dt, start, span),
-            rtol=positive("rtol", rtol, zero=True),
-            atol=positive("atol", atol, zero=True),
-            t_eval=None if t_eval is None else times_of(t_eval, span),
-            dense_output=flag("dense_output", dense_output),
-            events=events,
-            nominal=self._nominal,
-            max_step=positive("max_step", max_step),
-            first_step=None if first_step is None else positive("first_step", first_step),
-            max_steps=positive("max_steps", max_steps),
-            checkpoint_every=positive("checkpoint_every", checkpoint_every, zero=True),
-            progress=progress,
-            checkpoint=None if checkpoint is None else checked_path(checkpoint),
-        )
-        if options.dt is None and options.rtol == 0 and options.atol == 0:
-            raise InputError("rtol and atol are both 0: no step size meets that; give one of them, or dt")
-        return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
+        return start, orbit_dimension, span, action, bound, args
 
     def __repr__(self) -> str:
         step = "default step" if self.step is None else repr(self.step)

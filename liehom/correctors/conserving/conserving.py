@@ -19,7 +19,7 @@ from liehom.correctors.conserving.conserved_order import EXTRA_ORDERS, agreement
 from liehom.correctors.conserving.conserving_step import ConservingStep
 from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralSource
 from liehom.correctors.expansion import flow_series
-from liehom.correctors.step import Generator, Step
+from liehom.correctors.step import Generator, Step, StepLike, as_step
 from liehom.errors import InputError, TraceError
 from liehom.homogeneous import Action
 from liehom.series.arrays import is_exact, is_jax
@@ -37,8 +37,8 @@ class Conserving(Step):
 
     Parameters
     ----------
-    step : Step
-        The base, of any kind.
+    step : Step or str
+        The base, of any kind, or its name.
     F : callable, string, sympy expression or list of these
         The first integral, or k of them: see `FirstIntegral`.
     aim : "start" or "previous"
@@ -86,7 +86,7 @@ class Conserving(Step):
 
     def __init__(
         self,
-        step: Step,
+        step: StepLike,
         F: IntegralSource,
         *,
         aim: str = "start",
@@ -94,8 +94,7 @@ class Conserving(Step):
         order: int | None = None,
         value: ArrayLike | None = None,
     ) -> None:
-        if not isinstance(step, Step):
-            raise InputError(f"expected a step such as liehom.Heun(), got {step!r}")
+        step = as_step(step)
         if isinstance(step, Conserving):
             raise InputError("the step conserves something already: give its base and a list of all integrals")
         if aim not in AIMS:

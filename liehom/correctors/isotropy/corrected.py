@@ -14,6 +14,8 @@ from liehom.correctors.step import (
     Generator,
     LocalStep,
     Step,
+    StepLike,
+    as_step,
     moved_by_isotropy,
     with_correction,
 )
@@ -29,8 +31,8 @@ class Corrected(Step):
 
     Parameters
     ----------
-    step : Step
-        The base, of any order p >= 1.
+    step : Step or str
+        The base, of any order p >= 1, or its name.
     order : int
         n. For n = p + 1 this is Theorem 5. For larger n it is applied for the orders p + 1, p + 2, ..., n in turn. For
         n <= p nothing is corrected.
@@ -67,9 +69,8 @@ class Corrected(Step):
     Corrected(Euler(), order=4)
     """
 
-    def __init__(self, step: Step, order: int, *, weight: float | None = None) -> None:
-        if not isinstance(step, Step):
-            raise InputError(f"expected a step such as liehom.Euler(), got {step!r}")
+    def __init__(self, step: StepLike, order: int, *, weight: float | None = None) -> None:
+        step = as_step(step)
         if isinstance(step, Corrected):
             raise InputError("the step is corrected already: give its base and the higher order")
         if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 1:

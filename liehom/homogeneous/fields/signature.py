@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 from liehom.errors import InputError
+from liehom.pytrees import unwrapped
 from liehom.typing import Pytree
 
 Evaluated: TypeAlias = Callable[[Any, Any], Any]
@@ -93,6 +94,48 @@ def call_form(function: Callable[..., Any], what: str) -> CallForm:
         time is not None and time.default is time.empty,
         tuple(more),
     )
+
+
+def called_as_event(function: Callable[..., Any], args: Pytree, what: str) -> Evaluated:
+    """An event function as a function of (t, y), in whichever order its parameters are.
+
+    The order is (t, y), as in scipy's solve_ivp. If the second parameter is named t, it is (m, t), as that of psi.
+    A third parameter without a default, or a parameter named args, is args.
+
+    Parameters
+    ----------
+    function : callable
+    args : pytree
+    what : str
+        Its name in error messages.
+
+    Raises
+    ------
+    InputError
+        If it takes args, and there are none.
+
+    Examples
+    --------
+    >>> [called_as_event(g, 3, "g")(1, 2) for g in (lambda t, y: t - y, lambda m, t: t - m, lambda t, y, args: args)]
+    [-1, -1, 3]
+    """
+    try:
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):
+        return function
+    positional = [p for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
+    keyword = any(p.name == "args" and p.kind is p.KEYWORD_ONLY for p in parameters)
+    takes_args = keyword or any(p.name == "args" or p.default is p.empty for p in positional[2:])
+    swapped = len(positional) > 1 and positional[1].name in TIMES and positional[0].name not in TIMES
+    if not takes_args:
+        return (lambda t, y: function(y, t)) if swapped else function
+    if args is None:
+        raise InputError(f"{what} takes args, but none were given: give args=...")
+    given: dict[str, Any] = {"args": unwrapped(args)} if keyword else {}
+    more = () if keyword else (unwrapped(args),)
+    if swapped:
+        return lambda t, y: function(y, t, *more, **given)
+    return lambda t, y: function(t, y, *more, **given)
 
 
 def takes_time(function: Callable[..., Any], what: str = "the function") -> bool:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from liehom.algebra import so
 from liehom.correctors import Conserving, Corrected, Step
+from liehom.correctors.step import StepLike, as_step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.components import joined
@@ -215,7 +216,7 @@ class LandauLifshitz:
         t_span: Iterable[float],
         m0: npt.ArrayLike,
         *,
-        step: Step | None = None,
+        step: StepLike | None = None,
         dt: npt.ArrayLike | None = None,
         **options: Unpack[SingleRunOptions],
     ) -> Solution:
@@ -226,7 +227,7 @@ class LandauLifshitz:
         t_span : (float, float)
         m0 : (..., *shape, 3) array_like
             Unit vectors.
-        step : Step, optional
+        step : Step or str, optional
             Default: that of `liehom.integrate`. Corrected steps are for spins without coupling only.
         dt : float, optional
             The step size. By default it is adaptive: one for all coupled spins of a lattice, by the error of all
@@ -257,7 +258,7 @@ class LandauLifshitz:
         if spins.dtype.kind not in "iuf" or not bool(np.all(np.abs(np.linalg.norm(spins, axis=-1) - 1) <= UNIT_RTOL)):
             raise InputError("the spins are not of length 1: divide them by their norms")
         if self.coupled:
-            self._check_together(step, dt, options)
+            self._check_together(None if step is None else as_step(step), dt, options)
         return integrate(self.field, t_span, spins, step=step, dt=dt, **options)
 
     def joint(self) -> JointSpins:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors.step import ExponentialLike, Step
+from liehom.correctors.step import ExponentialLike, StepLike, as_step
 from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.convergence.convergence_table import MARGIN, NAN, ConvergenceTable
@@ -33,7 +33,7 @@ from liehom.typing import Array
 def observed_order(
     field: GeneratorField,
     y0: npt.ArrayLike,
-    step: Step,
+    step: StepLike,
     dts: Iterable[float],
     *,
     t_span: Iterable[float] = (0.0, 1.0),
@@ -53,7 +53,7 @@ def observed_order(
     field : GeneratorField
     y0 : array_like of shape (N,) or (..., N)
         The initial point, or the initial points of an ensemble. numpy.longdouble shows errors below 1e-12.
-    step : Step
+    step : Step or str
     dts : sequence of float
         Step sizes; halvings are best.
     t_span : (float, float)
@@ -90,7 +90,7 @@ def observed_order(
     >>> abs(orbit - 3) < 0.1, abs(trajectory - 3) < 0.1
     (True, True)
     """
-    start = points_of(y0)
+    step, start = as_step(step), points_of(y0)
     sizes = _sizes(dts)
     first, last = span_of(t_span, start.dtype)
     if sizes[0] > abs(last - first):

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Unpack
 import numpy as np
 import numpy.typing as npt
 
+from liehom.correctors.step import as_step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.arguments import EnsembleOptions
@@ -238,8 +239,10 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
 
 
 def _renamed(options: EnsembleOptions, stacklevel: int) -> EnsembleOptions:
-    """The options with `engine` in place of its former name `compile`."""
+    """The options with `engine` in place of its former name `compile`, and a step in place of its name."""
     renamed = options.copy()
+    if isinstance(renamed.get("step"), str):
+        renamed["step"] = as_step(renamed["step"] or "")
     if "compile" in renamed:
         renamed["engine"] = engine_option(options.get("engine", "numpy"), renamed.pop("compile"), stacklevel=stacklevel)
     return renamed

@@ -206,7 +206,7 @@ class Automaton:
         self.direction = self.dtype.type(1 if span[1] >= span[0] else -1)
         self.tried: tuple[LocalStep, Array] | None = None
         self.tolerance: Tolerance = Tolerance(options.rtol, options.atol, self.axes)
-        self.tiny = 8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))
+        self.tiny = max(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])), options.least_step)
         self.keeps: bool = options.t_eval is None or options.dense_output
         self.logs = LOGGER.isEnabledFor(logging.DEBUG)  # asked once: a run without a log pays nothing for it
         self.step = step.prepare(action, self.psi, self.start, np.full(self.shape, span[0], dtype=self.dtype))

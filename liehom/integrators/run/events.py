@@ -17,8 +17,9 @@ from typing import Any, NamedTuple, TypeAlias, final
 import numpy as np
 
 from liehom.errors import InputError, displayed
+from liehom.homogeneous.fields.signature import called_as_event
 from liehom.integrators.run.records import EventLog
-from liehom.typing import Array, BooleanArray
+from liehom.typing import Array, BooleanArray, Pytree
 
 ITERATIONS = 200
 EXTREMUM_ITERATIONS = 60
@@ -65,10 +66,13 @@ class Events:
     Parameters
     ----------
     functions : callable or sequence of callables
-        g(t, y) with y (N,); for an ensemble y (..., N) and t (...,), result (...,). As in solve_ivp, a function may
+        g(t, y), or g(m, t) with these names, and with args as a third argument if they take it (`called_as_event`).
+        y is of shape (N,); for an ensemble y (..., N) and t (...,), result (...,). As in solve_ivp, a function may
         have the attributes `terminal` (bool, or the number of occurrences that ends the integration) and
         `direction` (positive: only zeros at which g increases in the direction of integration; negative: only those
         at which g decreases).
+    args : pytree, optional
+        What functions with args are called with.
 
     Raises
     ------
@@ -89,14 +93,16 @@ class Events:
     1
     """
 
-    def __init__(self, functions: EventFunction | Sequence[EventFunction]) -> None:
+    def __init__(self, functions: EventFunction | Sequence[EventFunction], args: Pytree = None) -> None:
         if not callable(functions) and not isinstance(functions, list | tuple):
             raise InputError(f"events is {displayed(functions)}, expected a function g(t, y) or a list of functions")
         listed = [functions] if callable(functions) else list(functions)
         for i, g in enumerate(listed):
             if not callable(g):
                 raise InputError(f"events[{i}] is {displayed(g)}, expected a function g(t, y)")
-        self.functions: Sequence[EventFunction] = listed
+        self.functions: Sequence[EventFunction] = [
+            called_as_event(g, args, f"events[{i}]") for i, g in enumerate(listed)
+        ]
         self.directions: list[float] = [_direction(getattr(g, "direction", 0), i) for i, g in enumerate(listed)]
         self.terminal: list[float] = [_limit(getattr(g, "terminal", False), i) for i, g in enumerate(listed)]
 

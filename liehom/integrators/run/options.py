@@ -67,6 +67,12 @@ class Options:
     checkpoint_every: float
     progress: bool | Callable[[float], object] = False
     checkpoint: Path | None = None
+    min_step: float = 0.0
+
+    @property
+    def least_step(self) -> float:
+        """`min_step` for adaptive step sizes, 0 for fixed ones."""
+        return self.min_step if self.dt is None else 0.0
 
     @property
     def clock(self) -> str:
@@ -84,7 +90,7 @@ class Options:
         return (
             f"{'adaptive' if self.dt is None else 'fixed'} {self.rtol} {self.atol} "
             f"{'steps' if self.t_eval is None else 't_eval'} {self.dense_output} "
-            f"{self.clock} {self.max_step} {self.first_step}"
+            f"{self.clock} {self.max_step} {self.first_step}" + (f" {self.min_step}" if self.min_step else "")
         )
 
 

@@ -55,7 +55,7 @@ class Run(Automaton):
 
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         super().__init__(action, psi, step, span, start, options)
-        events = None if options.events is None else Events(options.events)
+        events = None if options.events is None else Events(options.events, psi.field.args)
         total = None if options.dt is None else self._number_of_steps(options.dt)
         self.stops: Stops = Stops(span[1], total, events)
         self.fast_path: Callable[[Run], bool] | None = None

@@ -304,9 +304,10 @@ def test_extended_precision_from_end_to_end() -> None:
     assert np.abs(a - sol.y[:, -1]).max() < 1e-16
 
 
-def test_single_precision_and_integers_are_taken_as_double() -> None:
+def test_integers_and_fractions_are_taken_as_double_and_single_precision_is_refused() -> None:
     assert lh.integrate(CIRCLE, (0, 1), np.array([1, 0]), dt=0.5).y.dtype == np.float64
-    assert lh.integrate(CIRCLE, (0, 1), np.array([1, 0], dtype=np.float32), dt=0.5).y.dtype == np.float64
+    with pytest.raises(InputError, match=r"float32, expected float64: y0\.astype"):
+        lh.integrate(CIRCLE, (0, 1), np.array([1, 0], dtype=np.float32), dt=0.5)
     half = lh.QQ.convert("1/2")
     assert np.array_equal(lh.integrate(CIRCLE, (0, 1), [half, half], dt=0.5).y[:, 0], [0.5, 0.5])
 
@@ -330,7 +331,8 @@ RHO = lh.defining(lh.so(3))
     ("error", "text", "change"),
     [
         (InputError, "GeneratorField", {"field": "m0"}),
-        (InputError, "step", {"step": "euler"}),
+        (InputError, "step", {"step": "eulr"}),
+        (InputError, "step", {"step": 4}),
         (ShapeError, "3 coordinates", {"y0": [1.0, 0.0]}),
         (ShapeError, "3 coordinates", {"y0": 1.0}),
         (InputError, "not finite", {"y0": [np.nan, 0, 1.0]}),
