@@ -124,6 +124,8 @@ def integrate(
     An adaptive step size follows from the estimate of an embedded pair, or from the Taylor coefficients of the error at
     the initial point of a step. The latter cannot foresee a jump of psi: take a pair, or `max_step`.
 
+    Points that the group fixes, such as 0 in a linear representation, stay where they are for every psi.
+
     A trajectory ends with status -1, and with the points computed so far, if one of the following occurs; the other
     trajectories of an ensemble go on, and `statuses` and `message` say which ended and when.
 
@@ -172,4 +174,4 @@ def integrate(
         engine=engine_option(engine, compile, stacklevel=3),
     )
     problem = propagator.problem(t_span, y0, **options)
-    return warned(propagator.engine.solve(problem), problem, stacklevel=3)
+    return warned(propagator.solve(problem), problem, stacklevel=3)

@@ -106,6 +106,8 @@ class Propagator:
     >>> for third in (3.0, 4.0):
     ...     end = propagator((0, 5), [0.6, 0.0, 0.8], dt=0.1, args={"inertia": np.array([1.0, 2.0, third])}).y[:, -1]
     ...     print(end.round(4))
+    [0.3879 0.9154 0.1072]
+    [0.2432 0.9501 0.1956]
     """
 
     def __init__(
@@ -145,8 +147,13 @@ class Propagator:
         made = None if again is None or self.field.takes_args else again(t_span, y0, options)
         if made is None:
             problem = self.problem(t_span, y0, args=args, **options)
-            return warned(engine.solve(problem), problem, stacklevel=3)
+            return warned(self.solve(problem), problem, stacklevel=3)
         return warned(made, stacklevel=3)
+
+    def solve(self, problem: Problem) -> Solution:
+        """The solution of a `problem` of this propagator, by its engine; by numpy if the group fixes a point."""
+        engine = NumpyEngine() if has_fixed_points(problem) else self._engine_for(problem.step)
+        return engine.solve(problem)
 
     def sensitivity(
         self,
@@ -163,7 +170,7 @@ class Propagator:
         Raises
         ------
         InputError
-            If y0 or args hold JAX arrays: differentiate with JAX.
+            If y0 or args hold JAX arrays: differentiate with JAX. If the group fixes an initial point.
 
         Examples
         --------
@@ -178,7 +185,9 @@ class Propagator:
             raise InputError("sensitivity is for numpy arrays: jax.grad, jax.jvp and jax.vjp differentiate JAX arrays")
         options["dense_output"] = True
         problem = self.problem(t_span, y0, args=args, **options)
-        solution = warned(self._engine_for(problem.step).solve(problem), stacklevel=3)
+        if has_fixed_points(problem):
+            raise InputError("the group fixes an initial point, so that its trajectory is constant: leave it out")
+        solution = warned(self.solve(problem), problem, stacklevel=3)
         return Sensitivity(problem, solution)
 
     def _step_for(
@@ -267,7 +276,7 @@ class Propagator:
         else:
             args = without_jax(args)
             start = points_of(y0)
-            orbit_dimension = check_point(rho, start)
+            orbit_dimension = check_point(rho, start, fixed=True)
             action = with_tight_frame(action, step, start, orbit_dimension)
         check_numbers(args, start.shape[:-1])
         span = span_of(t_span, np.dtype(np.float64) if on_jax else start.dtype)
@@ -279,6 +288,19 @@ class Propagator:
     def __repr__(self) -> str:
         step = "default step" if self.step is None else repr(self.step)
         return f"Propagator({self.field!r}, {step}, engine={self.engine.name!r})"
+
+
+def has_fixed_points(problem: Problem) -> bool:
+    """Whether the group fixes an initial point. Such trajectories are constant, and stepped by numpy.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> propagator = lh.Propagator(lh.GeneratorField(lh.defining(lh.so(3)), [1, 2, 3]))
+    >>> [has_fixed_points(propagator.problem((0, 1), y0)) for y0 in ([0.6, 0.0, 0.8], [0.0, 0.0, 0.0])]
+    [False, True]
+    """
+    return not bool(np.all(problem.orbit_dimension))
 
 
 def engine_of(engine: str | Engine) -> Engine:

@@ -88,7 +88,7 @@ class Sensitivity:
     >>> exact = [-np.sin(0.5), np.cos(0.5)]  # y = (cos 0.5 t, sin 0.5 t)
     >>> bool(np.allclose(found.args["rate"][:, 0], exact)), found.y0.shape
     (True, (2, 2, 1))
-    >>> round(float(found.vjp([[1.0], [0.0]]).args["rate"]), 6) == round(exact[0], 6)
+    >>> bool(np.allclose(found.vjp([[1.0], [0.0]]).args["rate"], exact[0]))
     True
     """
 

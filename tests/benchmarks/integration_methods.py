@@ -43,7 +43,7 @@ EXPLAINED = {
     "RK4": '`RKMK("rk4")`',
     "C2": "`Conserving(LieTaylor(2), energy)`",
     "C4": "`Conserving(LieTaylor(4), energy)`",
-    "adaptive": "`LieTaylor(6)` with an adaptive step size, the default",
+    "adaptive": "`LieTaylor(6)` with an adaptive step size",
     "DOP853": '`RKMK("dop853")` with an adaptive step size',
     "exact orbit": "`ExactOrbit`, the step of the rigid body that stays on the orbit, with the Cayley transform",
 }

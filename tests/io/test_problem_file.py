@@ -164,7 +164,6 @@ def test_equal_ends_are_the_start() -> None:
         ({"base": "eulr"}, ("eulr", "did you mean 'euler'", "rk4")),
         ({"exponential": "log"}, ("log", "cayley")),
         ({"clock": "wall"}, ("wall", "nominal")),
-        ({"point": [0, 0, 0]}, ("orbit", "dimension 0")),
         ({"t_eval": [0, 2]}, ("t_eval", "t_span")),
         ({"t_eval": [1, 0]}, ("t_eval", "sorted")),
     ],

@@ -254,15 +254,22 @@ class GeneratorField(Immutable):
         return f"<{kind}generator field of {displayed(self.representation)}>"
 
 
-def check_point(representation: Representation, m: ValuesLike) -> IntegerArray:
+def check_point(representation: Representation, m: ValuesLike, *, fixed: bool = False) -> IntegerArray:
     """Dimensions of the orbits of points, shape (...), after a check of the points.
+
+    Parameters
+    ----------
+    representation : Representation
+    m : array_like of shape (..., N)
+    fixed : bool
+        Whether points that the group fixes are admissible; the dimension of their orbits is 0.
 
     Raises
     ------
     ShapeError
         If m does not have N coordinates.
     InputError
-        If a point is not finite, or the group fixes it.
+        If a point is not finite, or the group fixes it and `fixed` is false.
 
     Examples
     --------
@@ -284,7 +291,7 @@ def check_point(representation: Representation, m: ValuesLike) -> IntegerArray:
     scale = max((float(np.abs(a.to_numpy()).max(initial=0.0)) for a in matrices), default=0.0)
     bound = RANK_RTOL * scale * np.linalg.norm(point, axis=-1)
     ranks: IntegerArray = batched_ranks(action_map(representation).right(point), bound)
-    if bool(np.any(ranks == 0)):
+    if not fixed and bool(np.any(ranks == 0)):
         index = tuple(int(i) for i in np.argwhere(ranks == 0)[0])
         where = f" (trajectory {index[0] if len(index) == 1 else index})" if index else ""
         raise InputError(f"the group leaves the point {given[index]}{where} fixed: its orbit has dimension 0")

@@ -201,6 +201,9 @@ class Automaton:
         self.action, self.options, self.span = action, options, span
         self.calls, self.psi_raised, self.axes = 0, False, len(psi.field.sites)
         self.field: GeneratorField = psi.field
+        # the generator is 0 at points that the group fixes, so that round-off does not move them
+        moving = np.asarray(psi.orbit_dimension) > 0
+        self._moving: Array | None = None if moving.all() else np.where(moving, 1.0, 0.0).astype(start.dtype)[..., None]
         self.psi: Generator = Generator(self._counted(psi.field), psi.orbit_dimension, start)
         self.start, self.shape, self.dtype = in_lanes(start), start.shape[:-1], start.dtype
         self.direction = self.dtype.type(1 if span[1] >= span[0] else -1)
@@ -218,6 +221,8 @@ class Automaton:
             self.calls += 1
             try:
                 made: Values = in_lanes(field.psi(m, t))
+                if self._moving is not None:
+                    made = made * self._moving
             except np.linalg.LinAlgError:
                 self.psi_raised = bool(np.isfinite(m.value if isinstance(m, Jet) else m).all())
                 raise

@@ -128,7 +128,10 @@ def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
     0.25
     """
     axes = len(field.sites)
-    return over_sites(length(m), axes) / over_sites(length(field.vector(m, t)), axes)
+    size, speed = over_sites(length(m), axes), over_sites(length(field.vector(m, t)), axes)
+    if isinstance(size, np.ndarray | np.floating) and not size.all():  # the point 0 does not move
+        return np.where(size == 0, np.inf, size / speed)
+    return size / speed
 
 
 def known_size(

@@ -337,7 +337,6 @@ RHO = lh.defining(lh.so(3))
         (ShapeError, "3 coordinates", {"y0": 1.0}),
         (InputError, "not finite", {"y0": [np.nan, 0, 1.0]}),
         (InputError, "not finite", {"y0": [np.inf, 0, 1.0]}),
-        (InputError, "dimension 0", {"y0": [0.0, 0, 0]}),
         (InputError, "real", {"y0": [1j, 0, 1.0]}),
         (InputError, "start", {"y0": ["a", 0, 1.0]}),
         (InputError, "start", {"y0": [[1.0, 0], [1.0]]}),

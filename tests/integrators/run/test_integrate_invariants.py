@@ -164,3 +164,39 @@ def test_a_method_of_vector_spaces_would_not_pass() -> None:
         half = m + 0.025 * case.field.vector(m)
         m = m + 0.05 * case.field.vector(half)
     assert abs(m @ m - 1) > 1e-6
+
+
+# -- points that the group fixes -----------------------------------------------------------------------------
+FIXED_STEPS = [
+    None, lh.Euler(), lh.BackwardEuler(), lh.LieTaylor(5), lh.Taylor(6), lh.RKMK("rk45"), lh.CrouchGrossman3(),
+    lh.Corrected(lh.Euler(), 3),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}], ids=["fixed", "adaptive"])
+@pytest.mark.parametrize("step", FIXED_STEPS, ids=repr)
+def test_points_that_the_group_fixes_are_constant_and_leave_the_others_alone(
+    step: lh.Step | None, options: dict[str, float]
+) -> None:
+    field = lh.GeneratorField(lh.sym_conjugation(3), lambda m: 1 + m[..., :3] * [1.0, 0.5, 0.25])
+    starts = np.array([[1.0, 0, 0, 1, 0, 2], [1.0, 0, 0, 1, 0, 1], [0.0] * 6, [2.0, 0, 0, 1, 0, 1]])
+    whole = lh.integrate(field, (0, 1), starts, step=step, t_eval=[0.5, 1.0], **options)
+    others = lh.integrate(field, (0, 1), starts[[0, 3]], step=step, t_eval=[0.5, 1.0], **options)
+    assert whole.success and others.success
+    for i in (1, 2):
+        assert np.array_equal(whole.y[i].T, [starts[i]] * 2)
+    # without the fixed points Taylor steps land by a closed formula, and the landing converges only to the order
+    landed = step is None or isinstance(step, lh.Taylor)
+    assert np.abs(whole.y[[0, 3]] - others.y).max() < (1e-4 if landed else 1e-9)
+    assert np.abs(others.y[..., 1] - starts[[0, 3]]).max() > 0.1
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+def test_a_trajectory_at_a_fixed_point_is_integrated(engine: str) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t: 1 + 0 * m)
+    sol = lh.integrate(
+        field, (0, 2), [0.0, 0.0, 0.0], engine=engine, dense_output=True, events=lambda t, y: t - 0.7 + y[..., 0]
+    )
+    assert sol.success and sol.t[-1] == 2 and not sol.y.any() and not sol.sol(1.3).any()
+    assert abs(sol.t_events[0][0] - 0.7) < 1e-12
+    assert lh.integrate(field, (0, 2), [0.0, 0.0, 0.0], engine=engine, dt=0.25).n_steps == 8
