@@ -75,9 +75,9 @@ class Step(ABC):
 
     A new method needs `order` and one of
 
-    * `factors(action, psi, m, t, h)`, for a product of exponentials (`OneExponential`: `generator`, for one);
-    * `at(action, psi, m, t)`, for a step that projects, is a symplectic map, has its own clock or an estimate of its
-      error: it returns a `LocalStep`.
+    * `factors(action, psi, m, t, h)`, for a product of exponentials. (`OneExponential` has `generator` in its place.)
+    * `at(action, psi, m, t)`, which returns a `LocalStep`, for a step that projects, is a symplectic map, has its own
+      clock or an estimate of its error.
 
     The arguments of `factors` are
 
@@ -117,7 +117,7 @@ class Step(ABC):
 
     @property
     def trace_key(self) -> Hashable:
-        """What a trace of the prepared step depends on, besides orbits and options; traces of equal keys are equal."""
+        """Data of the prepared step on which its trace depends, besides orbits and options, hashable."""
         return None
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Step:

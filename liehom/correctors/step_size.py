@@ -26,7 +26,7 @@ Defects: TypeAlias = tuple[tuple[int, Values], ...]
 
 
 class StepLimits(NamedTuple):
-    """What a step size may be at most: the arguments of `LocalStep.size`, arrays of shape (...,).
+    """Bounds of a step size, the argument of `LocalStep.size`; arrays of shape (...,).
 
     Attributes
     ----------

@@ -147,8 +147,8 @@ class ConservingStep(LocalStep):
     def diagnostics(self, h: Values) -> Diagnostics:
         """Numbers of the base, and of `conserved` with the prefix "conservation_".
 
-        "missed": F differs from its target by more than round-off; "left": the step has no correction; "short": chi_m
-        is not onto. Compiled code makes no step at which it is not.
+        "missed" says whether F differs from its target by more than round-off, "left" whether the step has no
+        correction, and "short" whether chi_m is not onto. Compiled code makes no step at which it is not.
         """
         made = self.conserved(h)
         usual: Any = ~made.left

@@ -177,10 +177,13 @@ class CorrectedStep(LocalStep):
     def diagnostics(self, h: Values) -> Diagnostics:
         """Numbers of the correction, and of the base.
 
-        * "equilibria": whether the point is an equilibrium, "failed": whether a linear system had no solution, "near":
-          `is_near_cone`, "lost": whether one of the latter two holds;
-        * "short": the number of orders that were missed; "residual": the largest relative residual;
-        * "singular", "rank" (not in compiled code): see `Correction`.
+        * "equilibria": whether the point is an equilibrium.
+        * "failed": whether a linear system had no solution.
+        * "near": `is_near_cone`.
+        * "lost": whether one of the latter two holds.
+        * "short": the number of orders that were missed.
+        * "residual": the largest relative residual.
+        * "singular", "rank": see `Correction`. They are not computed in compiled code.
 
         Where every linear system has a solution, only "equilibria", "singular" and "rank" are there.
         """

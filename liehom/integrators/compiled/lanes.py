@@ -205,12 +205,12 @@ def _recorded(graph: StepGraph) -> list[str]:
 
 
 def lowest_numbers(graph: StepGraph) -> dict[str, float]:
-    """What the largest numbers are before the first step."""
+    """Initial values of the rows of the largest numbers."""
     return dict.fromkeys(_recorded(graph)[: len(graph.largest)], -np.inf)
 
 
 def calls_of(kernel: Kernel, row: dict[str, Array], steps: npt.NDArray[Any]) -> Array:
-    """Calls of psi in so many steps of each lane."""
+    """Calls of psi in a given number of steps of each lane."""
     graph = kernel.graph
     if graph.calls is not None:
         made: Array = np.multiply(steps, graph.calls, dtype=np.float64)

@@ -1,12 +1,12 @@
 """The automaton of a run: the transitions that every trajectory (lane) makes, written once.
 
-propose    the step at (t, m), as a function of its size                     `Step.at`
-size       from the tolerance: `LocalStep.size`, or the size that an estimate left
-fit        shortened so that it ends at the end of the time span
-judge      its point, `LocalStep.estimate`, `LocalStep.valid`; a lane that rejects its step tries a smaller one
-look       events in it; a terminal one shortens it
-commit     time, point, path, samples, diagnostics
-end        at the end, at a terminal event, or by a failure, with its code
+1. Propose: the step at (t, m), as a function of its size (`Step.at`).
+2. Size: by the tolerance, `LocalStep.size` or the size that the last estimate left.
+3. Fit: shortened so that it ends at the end of the time span.
+4. Judge: by its point, `LocalStep.estimate` and `LocalStep.valid`. A lane that rejects its step tries a smaller one.
+5. Look: events in it are recorded, and a terminal one shortens it.
+6. Commit: time, point, path, samples, diagnostics.
+7. End: at the end, at a terminal event, or by a failure, with its code.
 
 All lanes make them together, each with its own time, step size and time reparametrization τ (its "clock": a step of
 size h takes the time τ(h)). A lane that has ended takes steps of size 0 from its initial point, where psi is known to

@@ -54,7 +54,7 @@ class StepStatistics:
         # arrays are replaced, never written into: older states stay whole
         self._totals: dict[str, Array] = {}  # "max.name", "min.name", "sum.name"
         self._unkept_from: Array = np.full(shape, np.nan)
-        self._places: dict[str, npt.NDArray[Any]] = {}  # "place.name": (t, m); "detail.name"
+        self._places: dict[str, npt.NDArray[Any]] = {}  # (t, m) by "place.name", and "detail.name"
 
     def take(self, found: Diagnostics, local: LocalStep, t: Array, m: Array, active: BooleanArray) -> None:
         """Record the diagnostics of a step at (t, m), for the active trajectories."""
