@@ -109,6 +109,15 @@ ATTRIBUTES: dict[str, dict[str, str]] = {
 """Attributes with another name, 'old module:old name' -> {old: new}."""
 
 GROWN: dict[str, tuple[str, ...]] = {
+    "liehom.instances.landau_lifshitz:LandauLifshitz": (
+        "_bonds",
+        "cubic",
+        "cubic_axes",
+        "dmi",
+        "polarization",
+        "spin_torque",
+        "temperature",
+    ),
     "liehom.representations.symbolic:SymbolicIsotropy": ("exact_dimension", "sharp"),
     "liehom.fullness.failure:FailureReport": ("searched", "not_searched"),
     "liehom.homogeneous.orbit_types:OrbitType": ("invariants", "groups", "proofs"),

@@ -17,7 +17,7 @@ from typing import Any, Unpack, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.correctors import Step
+from liehom.correctors.step import StepLike
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.exponentials.quaternions import matrix_to_quaternion
@@ -112,7 +112,7 @@ class Body(ABC):
         t_span: Iterable[float],
         y0: npt.ArrayLike,
         *,
-        step: Step | None = None,
+        step: StepLike | None = None,
         dt: npt.ArrayLike | None = None,
         **options: Unpack[SingleRunOptions],
     ) -> Solution:

@@ -86,17 +86,35 @@ class SpinLattice:
     def neighbour_sum(self, m: Values) -> Any:
         """Sum of the neighbours of every spin, for m (..., *shape, 3), an array or a Jet of this shape."""
         total: Any = 0 * m
-        closed = self.periodic if isinstance(self.periodic, tuple) else ()
-        for i, (n, p) in enumerate(zip(self.shape, closed, strict=True)):
-            axis = i - len(self.shape) - 1
-            if p:
-                total = total + np.roll(m, 1, axis=axis) + np.roll(m, -1, axis=axis)
-            elif n > 1:
-                left = np.ones(n, dtype=int).reshape(-1, *[1] * -(axis + 1))
-                right = left.copy()
-                left[0], right[-1] = 0, 0
-                total = total + np.roll(m, 1, axis=axis) * left + np.roll(m, -1, axis=axis) * right
+        for axis, n in enumerate(self.shape):
+            if n > 1:
+                before, after = self._neighbours(m, axis)
+                total = total + before + after
         return total
+
+    def difference(self, m: Values, axis: int) -> Any:
+        """m_{i + 1} - m_{i - 1} along an axis of the lattice; beyond an open end a spin is 0.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> m = np.array([1.0, 2.0, 4.0])[:, None] * [0.0, 0.0, 1.0]
+        >>> SpinLattice((3,), False).difference(m, 0)[:, 2].tolist()
+        [2.0, 3.0, -2.0]
+        """
+        before, after = self._neighbours(m, axis)
+        return after - before
+
+    def _neighbours(self, m: Values, axis: int) -> tuple[Any, Any]:
+        """m_{i - 1} and m_{i + 1} along an axis of the lattice."""
+        n, place = self.shape[axis], axis - len(self.shape) - 1
+        before, after = np.roll(m, 1, axis=place), np.roll(m, -1, axis=place)
+        if isinstance(self.periodic, tuple) and self.periodic[axis]:
+            return before, after
+        first = np.ones(n, dtype=int).reshape(-1, *[1] * -(place + 1))
+        last = first.copy()
+        first[0], last[-1] = 0, 0
+        return before * first, after * last
 
     def total(self, x: Values) -> Any:
         """Sum of x (..., *shape) over all spins, shape (...,)."""

@@ -124,7 +124,8 @@ def _lattice_of_numpy(engine: JaxEngine, problem: Problem) -> Solution:
         times = problem.span[0] + np.sign(length) * size * np.arange(steps + 1)
         times[-1] = problem.span[1]
     with enabled_x64():
-        found = engine.solve(replace(problem, start=jnp.asarray(start), options=replace(o, t_eval=times)))
+        whole: Any = jnp.asarray(start)
+        found = engine.solve(replace(problem, start=whole, options=replace(o, t_eval=times)))
     t = times if o.t_eval is not None else np.broadcast_to(times, (*start.shape[:-1], len(times)))
     return replace(
         found, t=t, y=np.asarray(found.y), n_steps=np.asarray(found.n_steps), statuses=np.asarray(found.statuses)

@@ -23,6 +23,7 @@ from liehom.typing import Array, Key
 Offset = tuple[int, ...]
 """A shift of sites, one integer for each axis of the lattice."""
 
+MATRIX_PRODUCTS = frozenset(["matmul", "matvec", "vecmat"])
 REDUCTIONS = frozenset(["sum", "max", "min", "amax", "amin", "prod", "mean", "all", "any", "norm", "cumsum"])
 
 
@@ -185,7 +186,10 @@ class LatticeTraced(NDArrayOperatorsMixin):
         if method != "__call__":
             raise TraceError(f"np.{ufunc.__name__}.{method} cannot be compiled on a lattice")
         inner = max(x.ndim for x in inputs if isinstance(x, LatticeTraced))
-        made = LatticeTraced(self.inputs, ufunc(*[self._at_site(x, inner) for x in inputs], **options))
+        # a matrix has two axes of its own
+        matrices = ufunc.__name__ in MATRIX_PRODUCTS
+        values = [x if matrices and _is_matrix(x) else self._at_site(x, inner) for x in inputs]
+        made = LatticeTraced(self.inputs, ufunc(*values, **options))
         if out is None:
             return made
         if not isinstance(out[0], LatticeTraced):
@@ -262,6 +266,10 @@ class LatticeTraced(NDArrayOperatorsMixin):
             found = self.inputs.array(whole[(slice(None),) * lattice + index])
             entries[index] = self.inputs.tape.truth(found) if x.dtype.kind == "b" else found
         return Traced(self.inputs.tape, expr_array(self.inputs.tape, entries.reshape((1,) * lattice + entries.shape)))
+
+
+def _is_matrix(x: object) -> bool:
+    return isinstance(x, np.ndarray) and x.ndim == 2
 
 
 def _dimensions(x: Operand) -> int:
