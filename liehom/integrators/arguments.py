@@ -14,13 +14,11 @@ from liehom.correctors.isotropy.corrected import Corrected
 from liehom.correctors.step import ExponentialLike, Step, StepLike
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.homogeneous import Action, GeneratorField
-from liehom.homogeneous.fields.field import check_point
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.engine import Engine
 from liehom.integrators.run.events import EventFunction
 from liehom.integrators.run.options import Span
 from liehom.pytrees import Leaf, PerTrajectory, leaves, mapped, unwrapped
-from liehom.representations import Representation
 from liehom.series.arrays import is_jax, is_traced
 from liehom.typing import Array, IntegerArray, Pytree, Values
 
@@ -103,37 +101,6 @@ def with_tight_frame(action: Action, step: Step, start: Array, orbit_dimension: 
     if len(dimensions) != 1 or start.dtype != np.float64 or not isinstance(step, Corrected):
         return action
     return action.with_tight_frame(tight_frame(action, start.reshape(-1, start.shape[-1]), int(dimensions[0])))
-
-
-def jax_start(representation: Representation, y0: Values) -> tuple[Values, int | IntegerArray]:
-    """Initial points that are a JAX array, and the dimensions of their orbits; the largest one if JAX traces them.
-
-    Raises
-    ------
-    InputError
-        If they are not of type float64, or do not have N coordinates.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> jax_start(lh.defining(lh.so(2)), np.ones(2, dtype=np.float32))
-    Traceback (most recent call last):
-    ...
-    liehom.errors.InputError: engine='jax' computes in float64, the start is of type float32: ...
-    """
-    start: Any = y0
-    if start.dtype != np.float64:
-        raise InputError(
-            f"engine='jax' computes in float64, the start is of type {start.dtype}: "
-            'jax.config.update("jax_enable_x64", True)'
-        )
-    n = representation.size
-    if start.ndim == 0 or start.shape[-1] != n:
-        raise InputError(f"a point has {n} coordinates (on its last axis), got shape {start.shape}")
-    if is_traced(start):
-        points = np.random.default_rng(0).normal(size=(16, n))
-        return start, int(check_point(representation, points).max())
-    return start, check_point(representation, np.asarray(start))
 
 
 def has_jax(args: Pytree) -> bool:

@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from importlib import import_module
 from typing import Unpack, final
 
 import numpy as np
@@ -24,7 +23,6 @@ from liehom.integrators.arguments import (
     checked_clock,
     flag,
     has_jax,
-    jax_start,
     least_atol,
     positive,
     step_sizes,
@@ -36,6 +34,7 @@ from liehom.integrators.compiled.llvm_engine import LlvmEngine
 from liehom.integrators.engine import Engine, NumpyEngine, Problem
 from liehom.integrators.implicit.stiffness import warn_of_stiffness
 from liehom.integrators.jax_engine import JaxEngine
+from liehom.integrators.jax_engine.jax_arguments import jax_span, jax_start, jax_times, traces_times
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.methods.taylor import Taylor
 from liehom.integrators.run.checkpoint import checked_path
@@ -237,13 +236,20 @@ class Propagator:
         """The `Problem` of a call, with all arguments checked."""
         check_option_names(unknown)
         step = self._step_for(dt=dt, rtol=rtol, atol=atol)
-        start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step)
+        timed = self.engine.name == "jax" and traces_times(t_span, (dt, t_eval))
+        start, orbit_dimension, span, action, bound, args = self._started(t_span, y0, args, step, timed=timed)
         least = positive("min_step", min_step, zero=True)
+        sizes, times = None, None
+        if timed:
+            sizes, times = jax_times(dt, t_eval, start)
+        else:
+            sizes = None if dt is None else step_sizes(dt, start, span)
+            times = None if t_eval is None else times_of(t_eval, span)
         options = Options(
-            dt=None if dt is None else step_sizes(dt, start, span),
+            dt=sizes,
             rtol=positive("rtol", rtol, zero=True),
             atol=least_atol(atol, start.shape[-1]),
-            t_eval=None if t_eval is None else times_of(t_eval, span),
+            t_eval=times,
             dense_output=flag("dense_output", dense_output),
             events=events,
             nominal=self._nominal,
@@ -262,24 +268,23 @@ class Propagator:
         return Problem(action, self.field, step, span, start, orbit_dimension, options, bound, args)
 
     def _started(
-        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, step: Step
+        self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, step: Step, *, timed: bool
     ) -> tuple[Values, int | IntegerArray, Span, Action, GeneratorField, Pytree]:
-        """Start, orbit dimensions, span, action, field with args, and args, all checked."""
+        """Start, orbit dimensions, span, action, field with args, and args, checked; `timed` if JAX traces times."""
         args = next((x for x in (args, self.args, self.field.args) if x is not None), None)
         start: Values
         orbit_dimension: int | IntegerArray
         rho, action = self.field.representation, self._action
-        on_jax = self.engine.name == "jax" and (is_jax(y0) or has_jax(args))
+        on_jax = self.engine.name == "jax" and (is_jax(y0) or has_jax(args) or timed)
         if on_jax:
-            given = y0 if is_jax(y0) else import_module("jax.numpy").asarray(points_of(y0))
-            start, orbit_dimension = jax_start(rho, given)
+            start, orbit_dimension = jax_start(rho, y0)
         else:
             args = without_jax(args)
             start = points_of(y0)
             orbit_dimension = check_point(rho, start, fixed=True)
             action = with_tight_frame(action, step, start, orbit_dimension)
         check_numbers(args, start.shape[:-1])
-        span = span_of(t_span, np.dtype(np.float64) if on_jax else start.dtype)
+        span = jax_span(t_span) if timed else span_of(t_span, np.dtype(np.float64) if on_jax else start.dtype)
         bound = self.field if args is None else self.field.with_args(args)
         if not on_jax:
             check_generator(bound, np.asarray(start), span[0])

@@ -10,9 +10,11 @@ A call on JAX arrays is one of three.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
+from functools import partial
 from math import ceil
 from typing import Any, final
 
@@ -84,7 +86,7 @@ class JaxEngine:
         """The step in the form that is compiled: as a graph if it is short, else as array code."""
         o, action, step = problem.options, problem.action, problem.step
         array = ArrayStep(action, step, dimension, o.nominal, ERROR_TERMS if o.dt is None else 0)
-        if o.dt is None or problem.args is not None:
+        if o.dt is None or problem.args is not None or _closes_over_jax(problem.field.source):
             return array
         points: Any = representative_points(problem.start, problem.field.representation.size)
         tight = tight_frame(action, points, dimension) if step.uses_isotropy else None
@@ -188,8 +190,9 @@ class _Call:
     @staticmethod
     def _is_reverse(values: Leaves) -> bool:
         """Whether JAX differentiates some of these numbers in reverse, and does nothing else with any of them."""
+        # within another derivative, the numbers of the inner one are traced too
         traced = [x for x in values if is_traced(x)]
-        return bool(traced) and all(type(x).__name__ == "LinearizeTracer" and _known(x) is not None for x in traced)
+        return bool(traced) and all(_is_linear(x) and not is_traced(getattr(x, "primal", x)) for x in traced)
 
     # -- programs ----------------------------------------------------------------------------------------
     def _program(self, *, traced: bool, recorded: int = 1) -> Program:
@@ -345,6 +348,18 @@ class _Call:
 
 
 # -- private helpers -------------------------------------------------------------------------------------
+def _closes_over_jax(source: object) -> bool:
+    """Whether a function uses JAX arrays of its surroundings; a graph would have their numbers in its operations."""
+    while isinstance(source, partial):
+        if any(is_jax(x) for x in (*source.args, *source.keywords.values())):
+            return True
+        source = source.func
+    if not inspect.isfunction(source):
+        return False
+    found = inspect.getclosurevars(source)
+    return any(is_jax(x) for x in (*found.nonlocals.values(), *found.globals.values()))
+
+
 def _is_short(graph: StepGraph) -> bool:
     """Whether a graph is compiled as such: array code differentiates loops by the implicit function theorem."""
     operations = needed([*graph.point, *graph.summed.values()])

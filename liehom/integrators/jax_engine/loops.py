@@ -82,10 +82,10 @@ class State(NamedTuple):
         lossy = took & ((moved.failed > 0) | (moved.near > 0))
         return self._replace(
             m=jnp.where(commits[..., None], moved.point, self.m),
-            t=jnp.where(commits, t, self.t),
+            t=jnp.where(commits, t, self.t).astype(self.t.dtype),
             count=self.count + commits,
-            failed=self.failed + jnp.where(took, moved.failed, 0.0),
-            near=self.near + jnp.where(took, moved.near, 0.0),
+            failed=self.failed + jnp.where(took, moved.failed, 0.0).astype(self.t.dtype),
+            near=self.near + jnp.where(took, moved.near, 0.0).astype(self.t.dtype),
             lost=jnp.where(lossy, direction * jnp.minimum(direction * self.lost, direction * self.t), self.lost),
             landed=self.landed | lands,
             found=jnp.where(lands[..., None], moved.point, self.found),
@@ -219,9 +219,9 @@ def with_adaptive_sizes(
         index = jnp.minimum(state.count.reshape(-1), recorded - 1)
         before = sizes[index, places]
         kept = jnp.where(took.reshape(-1) & (state.count.reshape(-1) < recorded), h.reshape(-1), before)
-        sizes = sizes.at[index, places].set(kept)
+        sizes = sizes.at[index, places].set(kept.astype(m.dtype))
         shrunk = jnp.where(good, proposal_after, MAX_SHRINK * jnp.abs(h))
-        proposal = jnp.where(moving & ~(took & over), shrunk, proposal)
+        proposal = jnp.where(moving & ~(took & over), shrunk, proposal).astype(m.dtype)
         made = state.after(moved, after, took & ~over, took & over, direction)
         made = made.failing(moving & ~certain, TOO_SMALL)
         return made.failing(moving & (state.count + 1 > most) & ~over, TOO_MANY), proposal, sizes, tries + 1

@@ -77,10 +77,10 @@ def test_vmap_is_an_ensemble() -> None:
     np.testing.assert_allclose(np.asarray(whole), plain, rtol=0, atol=64 * EPS)
 
 
-def test_single_precision_and_what_needs_values_are_refused() -> None:
-    single = jax.numpy.asarray(START, dtype="float32")
+def test_half_precision_and_what_needs_values_are_refused() -> None:
+    half = jax.numpy.asarray(START, dtype="float16")
     with pytest.raises(InputError, match="jax_enable_x64"):
-        lh.integrate(BODY, (0, 1), single, step=lh.Euler(), dt=0.1, engine="jax")
+        lh.integrate(BODY, (0, 1), half, step=lh.Euler(), dt=0.1, engine="jax")
     with jax.enable_x64(True), pytest.raises(InputError, match="no events"):
         double = jax.numpy.asarray(START)
         lh.integrate(BODY, (0, 1), double, step=lh.Euler(), dt=0.1, events=lambda t, y: y[0], engine="jax")
