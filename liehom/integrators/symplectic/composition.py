@@ -8,6 +8,7 @@ with k = 1 (H. Yoshida, Construction of higher order symplectic integrators, Phy
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 from typing import final
 
@@ -81,6 +82,14 @@ class Composition(Step):
     def symmetric(self) -> bool:
         """Whether a step of size -h is the inverse of a step of size h: True."""
         return True
+
+    @property
+    def trace_key(self) -> Hashable:
+        return self.step.trace_key
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Composition:
+        """The composition of the prepared step."""
+        return self.with_prepared(step=self.step.prepare(action, psi, m, t))
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         def point(h: Values) -> Values:

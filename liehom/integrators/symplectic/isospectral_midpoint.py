@@ -10,7 +10,7 @@ the exponential map, and the midpoint rule on T* GL(n), reduced by the momentum 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from liehom.correctors.implicit import solve_implicitly
 from liehom.correctors.step import Generator, LocalStep, Step
@@ -60,6 +60,7 @@ class IsospectralMidpoint(Step):
     """
 
     matrices: Representation | None = None
+    _coordinates: ClassVar[MatrixCoordinates | None] = None  # of `prepare`
 
     def __post_init__(self) -> None:
         if self.matrices is not None and not isinstance(self.matrices, Representation):
@@ -74,8 +75,12 @@ class IsospectralMidpoint(Step):
         """Whether a step of size -h is the inverse of a step of size h: True."""
         return True
 
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> IsospectralMidpoint:
+        """The step with the matrices of the algebra."""
+        return self.with_prepared(_coordinates=coordinates_on_dual(action, self.matrices, "IsospectralMidpoint"))
+
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        coordinates = coordinates_on_dual(action, self.matrices, "IsospectralMidpoint")
+        coordinates = self._coordinates or coordinates_on_dual(action, self.matrices, "IsospectralMidpoint")
         return LocalStep(action, m, point=lambda h: _point(coordinates, psi, m, t, h))
 
     def __repr__(self) -> str:

@@ -66,7 +66,8 @@ class MoserVeselov(Step):
     (True, True)
     """
 
-    _inertia: ClassVar[Inertia | None] = None  # of `prepare`
+    _coordinates: ClassVar[MatrixCoordinates | None] = None  # of `prepare`, as is the next one
+    _inertia: ClassVar[Inertia | None] = None
 
     @property
     def order(self) -> int:
@@ -84,10 +85,11 @@ class MoserVeselov(Step):
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> MoserVeselov:
         """The step with the inertia of the body."""
-        return self.with_prepared(_inertia=inertia_of(coordinates_on_dual(action, None, "MoserVeselov"), psi))
+        coordinates = coordinates_on_dual(action, None, "MoserVeselov")
+        return self.with_prepared(_coordinates=coordinates, _inertia=inertia_of(coordinates, psi))
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        coordinates = coordinates_on_dual(action, None, "MoserVeselov")
+        coordinates = self._coordinates or coordinates_on_dual(action, None, "MoserVeselov")
         inertia = inertia_of(coordinates, psi) if self._inertia is None else self._inertia
         return LocalStep(action, m, point=lambda h: _point(coordinates, inertia, m, h))
 

@@ -10,17 +10,18 @@ from the spheres constantly along rays.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import final
+from typing import ClassVar, final
 
 import numpy as np
 
+from liehom.algebra import so
 from liehom.correctors.implicit import reach_of, solve_implicitly
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.errors import InputError
 from liehom.homogeneous import Action
 from liehom.integrators.symplectic.variational_midpoint import zeros_of
-from liehom.representations import Representation
+from liehom.representations import Representation, adjoint
+from liehom.representations.core.copies import copies_of
 from liehom.typing import Values
 
 
@@ -51,6 +52,8 @@ class SphericalMidpoint(Step):
     (True, True)
     """
 
+    _checked: ClassVar[bool] = False  # by `prepare`
+
     @property
     def order(self) -> int:
         return 2
@@ -60,8 +63,14 @@ class SphericalMidpoint(Step):
         """Whether a step of size -h is the inverse of a step of size h: True."""
         return True
 
-    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> SphericalMidpoint:
+        """The step, after a check of the representation."""
         _require_spheres(action.representation)
+        return self.with_prepared(_checked=True)
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        if not self._checked:
+            _require_spheres(action.representation)
         return LocalStep(action, m, point=lambda h: _point(psi, m, t, h, reach_of(action)))
 
 
@@ -95,8 +104,10 @@ def _length(m: Values) -> Values:
     return found
 
 
-@lru_cache(maxsize=32)
 def _require_spheres(representation: Representation) -> None:
+    copies = copies_of(representation)
+    if copies is not None and copies.single == adjoint(so(3)):
+        return
     n, r = representation.size, representation.algebra.dimension
     cross = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(0, 2, 1)  # cross[a] m = e_a x m
     fits = n == r and n % 3 == 0

@@ -57,6 +57,18 @@ def test_energy_is_conserved_to_round_off(name: str) -> None:
     assert spans[1] > 1e-5  # a control
 
 
+@pytest.mark.parametrize("step", [STEP, pytest.param(lh.Composition(STEP, 4), marks=pytest.mark.slow)], ids=str)
+def test_each_call_of_a_propagator_has_the_inertia_of_its_args(step: lh.Step) -> None:
+    """The inertia is a constant of compiled code, which is not used for other args."""
+    field = lh.hamiltonian_field(lh.so(3), "0", gradient=lambda m, *, args: m / args, sign=-1)
+    start = np.array([0.6, 0.48, 0.64])
+    propagator = lh.Propagator(field, step, args=np.array([2.0, 3.0, 4.0]), engine="llvm")
+    for moments in ([2.0, 3.0, 4.0], [3.0, 3.5, 4.0], [2.0, 3.0, 4.0]):
+        found = propagator((0, 2), start, dt=0.1, args=np.array(moments)).y[:, -1]
+        plain = lh.integrate(lh.RigidBody(moments).field("b"), (0, 2), start, step=step, dt=0.1).y[:, -1]
+        assert np.abs(found - plain).max() < 1e-14
+
+
 @pytest.mark.parametrize("kind", [1, -1])
 def test_inertia_of_a_turned_body(kind: int) -> None:
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]

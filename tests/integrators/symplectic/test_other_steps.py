@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,26 @@ def test_spherical_midpoint_is_the_step_of_joint_spins() -> None:
     start = spins.point(np.eye(3))
     sol = lh.integrate(spins.field, (0, 1), start, step=lh.SphericalMidpoint(), dt=0.1)
     assert np.abs(np.sum(spins.spins(sol.y.T) ** 2, axis=-1) - 1).max() < 1e-14
+
+
+def test_lattices_of_spins_take_no_time_to_recognize() -> None:
+    """100 spins: one step costs a few evaluations of psi, and no look at the 300 matrices of the representation."""
+    spins = lh.LandauLifshitz((10, 10), exchange=1.0, damping=0.0).joint()
+    start = spins.point(np.random.default_rng(0).normal(size=(10, 10, 3)))
+    begin = time.process_time()
+    sol = lh.integrate(spins.field, (0, 0.1), start, step=lh.SphericalMidpoint(), dt=0.02)
+    assert time.process_time() - begin < 10
+    assert np.allclose(np.linalg.norm(spins.spins(sol.y[:, -1]), axis=-1), np.linalg.norm(spins.spins(start), axis=-1))
+
+
+def test_heavy_tops_keep_their_energy_by_the_variational_midpoint() -> None:
+    """`HeavyTop` is on the dual of se(3): the error of the energy does not grow, that of Heun's step does."""
+    top = lh.HeavyTop([1, 1.5, 2], centre=[0, 0, 1], weight=1.0)
+    start = top.start(momentum=[0.3, 0.1, 4.0], vertical=[0.6, 0, 0.8])
+    for step, grows in ((lh.VariationalMidpoint(), False), (lh.Splitting(), False), (lh.Heun(), True)):
+        energy = top.energy(top.integrate((0, 300), start, step=step, dt=0.05, engine="llvm"))
+        error = np.abs(energy - energy[0])
+        assert bool(error.max() > 2 * error[:600].max()) is grows
 
 
 def test_isospectral_midpoint_satisfies_its_equations() -> None:
