@@ -42,6 +42,21 @@ INTENDED = (
         )
         for key in ("status", "statuses", "message")
     }
+    | {
+        f"integrations: [{name}] [nfev] ": "events ask for the slope of g at the ends of a step"
+        for name in (
+            "solved: forced, RK45, 0 to 3, rtol=1e-07, dense_output=True, events=[height stop]",
+            "solved: forced, Taylor 3, 0 to 3, rtol=1e-05, t_eval=7 values, events=height",
+            "solved: many forced, RK45, 0 to 3, rtol=1e-07, dense_output=True, events=[height stop]",
+            "solved: many forced, Euler to 3, 0 to 3, dt=0.1, t_eval=7 values, events=height",
+            "resumed: forced, RK45, 0 to 3, rtol=1e-07, dense_output=True, events=height",
+        )
+    }
+    | {
+        "integrations: [resumed: body, Heun with energy, 0 to 5, dt=0.1] [nfev] ": (
+            "the preparation of a step is counted once, also if a run is resumed"
+        )
+    }
 )
 """Values that differ from those of 0.1.0 on purpose, and why."""
 

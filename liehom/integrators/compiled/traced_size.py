@@ -107,7 +107,9 @@ def judgement(
     Examples
     --------
     >>> limits = SizeLimits(1e-3, 1e-3, 0.5, 0.0, -1.0, 1e-15)
-    >>> accepted, proposal = judgement(limits, LocalStep(None, np.zeros(2)), np.zeros(3), np.array([-0.25]))
+    >>> import liehom as lh
+    >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros(2))
+    >>> accepted, proposal = judgement(limits, local, np.zeros(2), np.array([-0.25]))
     >>> bool(accepted), float(proposal)
     (True, 2.0)
     """
@@ -124,8 +126,9 @@ def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, 
     Examples
     --------
     >>> import liehom as lh
-    >>> psi = Generator(lh.GeneratorField(lh.defining(lh.so(2)), [4]), 1)
-    >>> first_size(SizeLimits(1e-3, 1e-3, 1.0, 1.0, 1.0, 1e-15), LocalStep(psi, 1), psi, np.array([1.0, 0.0]), 0.0)
+    >>> field, m = lh.GeneratorField(lh.defining(lh.so(2)), [4]), np.array([1.0, 0.0])
+    >>> psi, local = Generator(field, 1), LocalStep(lh.Action(field.representation), m)
+    >>> first_size(SizeLimits(1e-3, 1e-3, 1.0, 1.0, 1.0, 1e-15), local, psi, m, np.array(0.0))
     """
     if local.estimate_order is None:
         return None

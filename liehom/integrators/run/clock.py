@@ -25,29 +25,20 @@ SLACK = 1e-9
 """A step that ends this close to the end of the integration, in units of the step, ends there."""
 
 
-def has_clock(local: LocalStep) -> bool:
-    """Whether the step has a time reparametrization of its own, so that τ(h) is not h.
-
-    Examples
-    --------
-    >>> has_clock(LocalStep(None, np.zeros(2)))
-    False
-    """
-    return bool(local.clock)
-
-
 def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
     """Whether the clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,).
 
     Examples
     --------
     >>> import numpy as np
-    >>> runs, passed = clock_at(LocalStep(None, np.zeros(2)), np.array(0.1))
+    >>> import liehom as lh
+    >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros(2))
+    >>> runs, passed = clock_at(local, np.array(0.1))
     >>> bool(runs), float(passed)
     (True, 0.1)
     """
     size: Any = h
-    if not has_clock(local):
+    if not local.clock:
         return np.ones(np.shape(size), dtype=bool), size
     parts = np.arange(RATE_SAMPLES + 1).reshape(-1, *[1] * np.ndim(size)) / RATE_SAMPLES * size
     times: Any = local.time(parts)
@@ -70,10 +61,12 @@ def size_for(local: LocalStep, time: Array, guess: Array) -> Array:
     Examples
     --------
     >>> import numpy as np
-    >>> size_for(LocalStep(None, np.zeros(2)), np.array([0.5]), np.array([1.0])).tolist()
+    >>> import liehom as lh
+    >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros(2))
+    >>> size_for(local, np.array([0.5]), np.array([1.0])).tolist()
     [0.5]
     """
-    if not has_clock(local):
+    if not local.clock:
         return time + 0 * guess
     reached: Any = local.time(guess)
     fraction = np.divide(time, reached, out=np.ones_like(time), where=reached != 0)
@@ -122,7 +115,9 @@ def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Arr
     Examples
     --------
     >>> import numpy as np
-    >>> [float(x) for x in fitted(LocalStep(None, np.zeros(2)), np.array(0.5), np.array(0.25), halve=False)]
+    >>> import liehom as lh
+    >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros(2))
+    >>> [float(x) for x in fitted(local, np.array(0.5), np.array(0.25), halve=False)]
     [0.25, 0.25, 1.0, 1.0]
     """
     runs, passed = clock_at(local, h)
