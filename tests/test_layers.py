@@ -82,6 +82,7 @@ WINGS: dict[str, tuple[str, ...]] = {
     "integrators": (
         "tableaux",
         "run",
+        "points",
         "methods",
         "implicit",
         "symplectic",

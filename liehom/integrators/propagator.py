@@ -37,10 +37,10 @@ from liehom.integrators.jax_engine import JaxEngine
 from liehom.integrators.jax_engine.jax_arguments import jax_span, jax_start, jax_times, traces_times
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.methods.taylor import Taylor
+from liehom.integrators.points import points_of, span_of
 from liehom.integrators.run.checkpoint import checked_path
 from liehom.integrators.run.events import EventFunction
 from liehom.integrators.run.options import Options, Span
-from liehom.integrators.run.points import points_of, span_of
 from liehom.integrators.run.solution import Solution, warn_of_order
 from liehom.integrators.sensitivity import Sensitivity
 from liehom.pytrees import check_numbers

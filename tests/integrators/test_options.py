@@ -13,7 +13,7 @@ import sympy
 
 import liehom as lh
 from liehom.errors import InputError, ShapeError
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 
 RHO = lh.adjoint(lh.so(3))
 FIELD = lh.GeneratorField(RHO, lambda m: -m * [1.0, 0.5, 0.25])

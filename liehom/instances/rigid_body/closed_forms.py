@@ -20,7 +20,7 @@ from liehom.homogeneous import Action
 from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.updates import checked_name, scheme, step_sizes
 from liehom.instances.spheres.sphere import dot
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.typing import Array, Values
 
 

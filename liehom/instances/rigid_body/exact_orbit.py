@@ -23,7 +23,7 @@ from liehom.instances.rigid_body.closed_forms import Ingredients
 from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.updates import step_sizes
 from liehom.instances.spheres.sphere import dot
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.series.jet import Jet
 from liehom.tracing import Traced
 from liehom.typing import Array, BooleanArray, Values

@@ -28,7 +28,7 @@ from liehom.instances.rigid_body.exact_orbit import ExactOrbit, ExactOrbitUpdate
 from liehom.instances.rigid_body.free_body import FloatType
 from liehom.instances.rigid_body.free_motion import free_motion
 from liehom.instances.rigid_body.updates import Update
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.representations import Representation, adjoint
 from liehom.scalars import QQ, Scalar
 from liehom.typing import Array, ScalarLike, Values

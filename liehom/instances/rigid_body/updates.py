@@ -21,7 +21,7 @@ from liehom.instances.rigid_body.free_body import FreeBody
 from liehom.instances.rigid_body.nominal_time_corrected import GeneratorTaylor, NominalTimeCorrected
 from liehom.integrators.methods.rkmk import RKMK
 from liehom.integrators.methods.steps import Euler, Heun, LieTaylor
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.typing import Array
 
 

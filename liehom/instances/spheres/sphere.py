@@ -24,7 +24,7 @@ from liehom.errors import InputError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.fields.components import Components
 from liehom.homogeneous.maps import FieldMap
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.representations import Representation, adjoint, defining
 from liehom.series.jet import Jet
 from liehom.typing import Array, Real, Values

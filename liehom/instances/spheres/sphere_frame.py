@@ -21,7 +21,7 @@ from liehom.correctors.step import ExponentialLike, Generator, OneExponential, s
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.instances.spheres.sphere import Sphere
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.typing import Array, Values
 
 ORDER = 4

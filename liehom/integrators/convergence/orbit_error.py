@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from liehom.errors import ConvergenceError, InputError, ShapeError
 from liehom.integrators.convergence.reference import Reference
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.typing import Array
 
 ITERATIONS = 100

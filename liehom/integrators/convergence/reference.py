@@ -16,7 +16,7 @@ from liehom.correctors.expansion import flow_series
 from liehom.errors import ConvergenceError, InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
-from liehom.integrators.run.points import points_of
+from liehom.integrators.points import points_of
 from liehom.typing import Array, IntegerArray
 
 ORDERS: dict[np.dtype[Any], int] = {np.dtype(np.float64): 20, np.dtype(np.longdouble): 24}

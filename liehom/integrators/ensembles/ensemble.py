@@ -20,11 +20,11 @@ from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.arguments import EnsembleOptions
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, Fields, solved
-from liehom.integrators.ensembles.merging import from_shard, merged, to_shard
+from liehom.integrators.ensembles.merging import merged
+from liehom.integrators.points import points_of
 from liehom.integrators.propagator import engine_option
-from liehom.integrators.run.points import points_of
 from liehom.integrators.run.progress import Progress
-from liehom.integrators.run.solution import Solution, warn_of_order
+from liehom.integrators.run.solution import Solution, as_arrays, from_arrays, warn_of_order
 from liehom.parallel import ExecutorLike, completed, open_store
 
 CHUNK = 1024
@@ -196,7 +196,7 @@ def ensemble_parts(
     def parts() -> Iterator[EnsemblePart]:
         for rows in bounds:
             if kept is not None and _name(rows) in done:
-                stored = kept.restored(_name(rows), from_shard)
+                stored = kept.restored(_name(rows), from_arrays)
                 if stored is None:
                     todo.append(rows)
                 else:
@@ -204,7 +204,7 @@ def ensemble_parts(
         for number, solution in completed(solved, [problem.task(rows) for rows in todo], executor, retries=retries):
             rows = todo[number]
             if kept is not None:
-                kept.save(_name(rows), *to_shard(solution))
+                kept.save(_name(rows), *as_arrays(solution))
             yield EnsemblePart(*rows, solution)
 
     return parts()
@@ -235,7 +235,7 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
     """
     kept = open_store(store)
     rows = [(int(m[1]), int(m[2])) for m in (re.fullmatch(r"part-(\d+)-(\d+)", name) for name in kept.names()) if m]
-    return (EnsemblePart(*r, from_shard(*kept.load(_name(r)))) for r in sorted(rows))
+    return (EnsemblePart(*r, from_arrays(*kept.load(_name(r)))) for r in sorted(rows))
 
 
 def _renamed(options: EnsembleOptions, stacklevel: int) -> EnsembleOptions:

@@ -13,12 +13,11 @@ from liehom.disk import digest
 from liehom.errors import InputError, LiehomError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
-from liehom.integrators.ensembles.merging import from_shard, to_shard
 from liehom.integrators.integration import integrate
 from liehom.integrators.propagator import without_order_warning
 from liehom.integrators.run.checkpoint import stable_repr
 from liehom.integrators.run.options import Span
-from liehom.integrators.run.solution import Solution
+from liehom.integrators.run.solution import Solution, as_arrays, from_arrays
 from liehom.parallel import ExecutorLike, completed, open_store
 from liehom.pytrees import Leaf, PerTrajectory, check_numbers, mapped, numbers_of
 from liehom.typing import Array, Pytree
@@ -149,12 +148,12 @@ def all_solved(
         marks = [problem.fingerprint(problem.made(), []) for problem in problems]
         kept = open_store(store, digest(repr(marks)))
     done = frozenset() if kept is None else kept.names()
-    read = {i: kept.restored(names[i], from_shard) for i in range(len(names)) if kept is not None and names[i] in done}
+    read = {i: kept.restored(names[i], from_arrays) for i in range(len(names)) if kept is not None and names[i] in done}
     found = {i: solution for i, solution in read.items() if solution is not None}
     todo = [i for i in range(len(problems)) if i not in found]
     for number, solution in completed(solved, [problems[i] for i in todo], executor, retries=retries):
         if kept is not None:
-            kept.save(names[todo[number]], *to_shard(solution))
+            kept.save(names[todo[number]], *as_arrays(solution))
         found[todo[number]] = solution
     return [found[i] for i in range(len(problems))]
 

@@ -1,15 +1,14 @@
-"""Solutions of the parts of an ensemble merged into one, and a Solution as arrays and facts, for a store."""
+"""Solutions of the parts of an ensemble merged into one."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from liehom.errors import FormatError
 from liehom.integrators.run.options import LOST, TRAJECTORY_MARK, also_lost, among, overall_status
 from liehom.integrators.run.solution import ConservationReport, Report, Solution
 from liehom.typing import Array, IntegerArray
@@ -94,102 +93,7 @@ def merged_report(reports: Sequence[Report], direction: float = 1.0) -> Report:
     )
 
 
-def to_shard(solution: Solution) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]:
-    """A solution of an ensemble as (arrays, facts), facts in types that JSON has.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
-    >>> arrays, facts = to_shard(lh.integrate(field, (0, 1), [[1.0, 0.0]], dt=0.25))
-    >>> sorted(arrays), sorted(facts)
-    (['n_steps', 'statuses', 't', 'y'], ['events', 'message', 'nfev', 'report', 'status'])
-    """
-    arrays = {name: np.asarray(getattr(solution, name)) for name in ("t", "y", "n_steps", "statuses")}
-    count = 0 if solution.t_events is None or solution.y_events is None else len(solution.t_events)
-    for i in range(count):
-        times, points = solution.t_events[i].reshape(-1), solution.y_events[i].reshape(-1)  # type: ignore[index]
-        arrays[f"events_{i}_counts"] = np.array([len(t) for t in times], dtype=int)
-        arrays[f"events_{i}_t"] = np.concatenate([*times, np.zeros(0)])
-        arrays[f"events_{i}_y"] = np.concatenate([*points, np.zeros((0, solution.y.shape[-2]))])
-    facts = {
-        "status": int(solution.status),
-        "message": solution.message,
-        "nfev": int(solution.nfev),
-        "events": None if solution.t_events is None else count,
-        "report": dataclasses.asdict(solution.report),
-    }
-    return arrays, facts
-
-
-def from_shard(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any]) -> Solution:
-    """The solution that `to_shard` turned into arrays and facts.
-
-    Raises
-    ------
-    FormatError
-        If they are not a solution of this version.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
-    >>> sol = lh.integrate(field, (0, 1), [[1.0, 0.0]], dt=0.25)
-    >>> again = from_shard(*to_shard(sol))
-    >>> np.array_equal(again.y, sol.y), again.report == sol.report
-    (True, True)
-    """
-    try:
-        return _from_shard(arrays, facts)
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise FormatError(f"a shard holds no solution of this version ({type(error).__name__}: {error})") from None
-
-
 # -- private helpers -------------------------------------------------------------------------------------
-def _from_shard(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any]) -> Solution:
-    shape = arrays["statuses"].shape
-    t_events: list[npt.NDArray[Any]] | None = None
-    y_events: list[npt.NDArray[Any]] | None = None
-    if facts["events"] is not None:
-        t_events, y_events = [], []
-        for i in range(facts["events"]):
-            ends = np.cumsum(arrays[f"events_{i}_counts"])[:-1]
-            t_events.append(_objects(np.split(arrays[f"events_{i}_t"], ends), shape))
-            y_events.append(_objects(np.split(arrays[f"events_{i}_y"], ends), shape))
-    return Solution(
-        t=arrays["t"],
-        y=arrays["y"],
-        sol=None,
-        t_events=t_events,
-        y_events=y_events,
-        nfev=facts["nfev"],
-        status=facts["status"],
-        message=facts["message"],
-        n_steps=arrays["n_steps"] if shape else int(arrays["n_steps"]),
-        report=_report(facts["report"]),
-        statuses=arrays["statuses"] if shape else int(arrays["statuses"]),
-    )
-
-
-def _report(facts: Mapping[str, Any]) -> Report:
-    at, conservation = facts["singular_at"], facts["conservation"]
-    if conservation is not None:
-        short = conservation["short_at"]
-        short = None if short is None else (short[0], tuple(short[1]), short[2])
-        conservation = ConservationReport(**{**conservation, "short_at": short})
-    at = None if at is None else (at[0], tuple(at[1]))
-    others = tuple((name, kind, value) for name, kind, value in facts.get("diagnostics", ()))
-    return Report(**{**facts, "singular_at": at, "conservation": conservation, "diagnostics": others})
-
-
-def _objects(found: Sequence[object], shape: tuple[int, ...]) -> npt.NDArray[Any]:
-    """An array of objects with some entries; `np.array` would join entries of equal shapes."""
-    made = np.empty(len(found), dtype=object)
-    for i, entry in enumerate(found):
-        made[i] = entry
-    return made.reshape(shape)
-
-
 def _filled(array: Array, count: int) -> Array:
     """The array with its last axis filled up with NaN to length `count`."""
     missing = count - array.shape[-1]

@@ -6,6 +6,7 @@ for, so only points and step sizes are stored.
 
 from __future__ import annotations
 
+import pickle
 from typing import Any, final
 
 import numpy as np
@@ -65,6 +66,16 @@ class DenseSolution:
     def steps(self) -> tuple[Array, Array, Array]:
         """Times (n + 1, ...), points (n + 1, ..., N) and sizes (n, ...) of the steps of each trajectory, filled up."""
         return self._times, self._points, self._sizes
+
+    def __getstate__(self) -> dict[str, Any]:
+        try:
+            pickle.dumps(self._psi.field)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            raise pickle.PicklingError(
+                f"the dense output calls psi, which cannot be pickled ({error}): define psi as a function of a module, "
+                "or write the rest of the solution by sol.save(path)"
+            ) from None
+        return self.__dict__
 
     @property
     def t_min(self) -> Array:
