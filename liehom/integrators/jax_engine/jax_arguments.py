@@ -15,8 +15,8 @@ import numpy.typing as npt
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.fields.field import check_point
 from liehom.integrators.arguments import step_sizes
+from liehom.integrators.points import points_of
 from liehom.integrators.run.options import Span
-from liehom.integrators.run.points import points_of
 from liehom.representations import Representation
 from liehom.series.arrays import is_jax, is_traced
 from liehom.typing import Array, IntegerArray, Values
