@@ -141,9 +141,9 @@ class Propagator:
     ) -> Solution:
         """The trajectories from y0, a `Solution`; parameters and options are those of `integrate`."""
         engine = self._engine_for(self._step_for(**options))
-        # engines may know calls that differ in the points only
+        # engines may know calls that differ in points and args only
         again: Callable[..., Solution | None] | None = getattr(engine, "again", None)
-        made = None if again is None or self.field.takes_args else again(t_span, y0, options)
+        made = None if again is None else again(t_span, y0, options, self._args_for(args))
         if made is None:
             problem = self.problem(t_span, y0, args=args, **options)
             return warned(self.solve(problem), problem, stacklevel=3)
@@ -188,6 +188,10 @@ class Propagator:
             raise InputError("the group fixes an initial point, so that its trajectory is constant: leave it out")
         solution = warned(self.solve(problem), problem, stacklevel=3)
         return Sensitivity(problem, solution)
+
+    def _args_for(self, args: Pytree) -> Pytree:
+        """The args of a call: its own, or those of the propagator, or those of the field."""
+        return next((x for x in (args, self.args, self.field.args) if x is not None), None)
 
     def _step_for(
         self, *, dt: npt.ArrayLike | None = None, rtol: float = 1e-6, atol: npt.ArrayLike = 1e-9, **_: object
@@ -271,7 +275,7 @@ class Propagator:
         self, t_span: Iterable[float] | Span, y0: npt.ArrayLike, args: Pytree, step: Step, *, timed: bool
     ) -> tuple[Values, int | IntegerArray, Span, Action, GeneratorField, Pytree]:
         """Start, orbit dimensions, span, action, field with args, and args, checked; `timed` if JAX traces times."""
-        args = next((x for x in (args, self.args, self.field.args) if x is not None), None)
+        args = self._args_for(args)
         start: Values
         orbit_dimension: int | IntegerArray
         rho, action = self.field.representation, self._action

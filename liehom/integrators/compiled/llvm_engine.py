@@ -9,19 +9,17 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import replace
 from typing import Any, final
 
 import numpy as np
 
 from liehom.correctors.step import Generator
 from liehom.errors import ConvergenceError, InputError
-from liehom.homogeneous import Action
-from liehom.homogeneous.fields.field import check_point
+from liehom.integrators.compiled.guard import with_guard
 from liehom.integrators.compiled.lanes import HandBack, Made, calls_of, lowest_numbers, records_of, run_blocks
 from liehom.integrators.compiled.lattice import solved_on_lattice
 from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
-from liehom.integrators.compiled.plan import Plan, plan_key
+from liehom.integrators.compiled.plan import Plan, plan_key, plan_names
 from liehom.integrators.compiled.schedule import Schedule, schedule
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
@@ -31,8 +29,8 @@ from liehom.integrators.run.options import END
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
 from liehom.integrators.run.statistics import bounds_of
-from liehom.tracing import Kernel, LaneConstant, StepGraph, Traced
-from liehom.typing import Array, IntegerArray, Values
+from liehom.tracing import Kernel, LaneConstant, StepGraph
+from liehom.typing import Array, IntegerArray, Pytree
 
 PATH_BYTES_PER_CALL = 64_000_000
 """Bytes of points, times and sizes that a kernel call records at most."""
@@ -40,14 +38,12 @@ OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
+PLANNED_STEPS = 4
+"""A plan makes at most so many times the steps of the first call."""
 RANKED = 64
 """Number of initial points, at most, at which the rank of the range condition is found."""
 MAX_SCHEDULES = MAX_PLANS = 16
 """Numbers of schedules and of plans that are kept."""
-GUARD_RTOL = 1e-10
-"""A pivot above this fraction of the trace is certainly not 0."""
-GUARD_PROJECTIONS = 2
-"""Number of random projections, one of which shows the rank."""
 
 
 @final
@@ -80,44 +76,41 @@ class LlvmEngine:
         self._keep_plan(problem, made[0], solution)
         return solution
 
-    def again(self, t_span: object, y0: object, options: Mapping[str, Any]) -> Solution | None:
-        """The solution of a call like one before, for other points; None if there was none, or it needs a closer look.
+    def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
+        """The solution of a call like one before, for other points and args; None if it needs a closer look.
 
         Parameters
         ----------
-        t_span, y0, options
+        t_span, y0, options, args
             Arguments of `Propagator`, not checked.
         """
         if not self._plans:
             return None
-        key = plan_key(t_span, y0, options)
+        key = plan_key(t_span, y0, options, args)
         try:
             plan = self._plans.get(key)
         except TypeError:  # not hashable
             return None
-        return None if plan is None else plan(y0)  # type: ignore[arg-type]
+        return None if plan is None else plan(y0, args)  # type: ignore[arg-type]
 
     def _keep_plan(self, problem: Problem, run: _CompiledRun, solution: Solution) -> None:
-        """Keep the plan of a call, if it was one that needs nothing but points."""
+        """Keep the plan of a call, if it was one that needs nothing but points and args."""
         o, (_, key, graph) = problem.options, run.groups[0]
-        if (
-            problem.args is not None or len(run.groups) > 1 or graph.guard is None or solution.status != END
-            or o.dt is None or not _uniform(o.dt) or o.checkpoint is not None or o.progress or o.dense_output
-            or o.max_steps < np.max(solution.n_steps) or run.work * np.sum(solution.n_steps) > OPERATIONS_PER_CALL
-        ):  # fmt: skip
+        work = run.work * np.sum(solution.n_steps)
+        if len(run.groups) > 1 or graph.guard is None or solution.status != END or work > OPERATIONS_PER_CALL:
             return
-        start = np.asarray(problem.start)
-        lanes = int(np.prod(start.shape[:-1], dtype=int))
-        plan = Plan(
-            self._store.kernel(key, graph, lanes), run.schedule, start.shape, o.t_eval, run.values, solution.report
-        )
-        span = (float(problem.span[0]), float(problem.span[1]))
-        given = {"dt": float(np.max(o.dt))} | ({} if o.t_eval is None else {"t_eval": o.t_eval})
+        if o.checkpoint is not None or o.progress or o.dense_output or (run.schedule is None and o.t_eval is None):
+            return
+        shape = np.asarray(problem.start).shape
+        kernel = self._store.kernel(key, graph, int(np.prod(shape[:-1], dtype=int)))
+        if not all(isinstance(number, LaneConstant) for number in kernel.lane_constants):
+            return
+        most = PLANNED_STEPS * (int(np.max(solution.n_steps)) + (0 if o.t_eval is None else len(o.t_eval)) + 1)
+        plan = Plan(kernel, run.schedule, problem, run.values, solution.report, most)
         if len(self._plans) >= MAX_PLANS:
             self._plans.pop(next(iter(self._plans)))
-        times = {} if o.t_eval is None else {"t_eval": tuple(o.t_eval.tolist())}
-        for options in (given, given | times):
-            self._plans[plan_key(span, np.asarray(start, dtype=np.float64), options)] = plan
+        for name in plan_names(problem):
+            self._plans[name] = plan
 
 
 @final
@@ -156,7 +149,7 @@ class CodeStore:
             made = traced(stops=not uniform or raised)
             if made.reached is None and made.elapsed is not None:
                 made = traced(stops=True)
-            self.graphs[key] = with_guard(made, run.action, dimension) if made.reached is None else made
+            self.graphs[key] = with_guard(made, run.action, dimension)
         return key, self.graphs[key]
 
     def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
@@ -188,39 +181,6 @@ def _limits(run: Run) -> dict[str, float]:
         "rtol": o.rtol, "atol": o.atol, "max_step": o.max_step,
         "end": float(run.stops.end), "direction": float(run.direction), "tiny": float(run.tiny),
     }  # fmt: skip
-
-
-def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
-    """The graph with a `guard`: whether a point is finite and its orbit is certainly of a dimension, the largest.
-
-    It is in force where the number "checks" of the run is 1. Orbits are of dimension d if a random projection of
-    g onto d coordinates, followed by the action on the point, is injective. Graphs
-    whose steps record numbers, and orbits that are not of the largest dimension, have no guard.
-    """
-    rng = np.random.default_rng((0, dimension))
-    generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
-    if graph.largest or graph.summed or graph.calls is None or dimension != int(generic.max()):
-        return graph
-    tape: Any = graph.point[0].tape
-    m: Any = Traced.inputs(tape, 0, graph.size)
-    frame: Any = action.infinitesimal.right(m)
-    certain: Any = False
-    for _ in range(GUARD_PROJECTIONS):
-        certain = certain | _is_injective(frame @ rng.normal(size=(action.dimension, dimension)), (m * m).sum())
-    unchecked = Traced(tape, tape.run_constant("checks", 0.0)) == 0
-    guard = Traced(tape, unchecked | certain).entry
-    return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
-
-
-def _is_injective(matrix: Values, scale: Values) -> Values:
-    """Whether a traced matrix (N, d) is certainly of rank d, by elimination in its Gram matrix; of entries ~ scale."""
-    gram: Any = np.swapaxes(matrix, -1, -2) @ matrix
-    total = np.trace(gram)
-    certain: Any = total > GUARD_RTOL * scale
-    for i in range(len(gram)):
-        certain = certain & (gram[i, i] > GUARD_RTOL * total)
-        gram = gram - gram[i][:, None] * gram[i][None] / gram[i, i]
-    return certain
 
 
 def compiled_run(run: Run, store: CodeStore) -> _CompiledRun:

@@ -98,3 +98,54 @@ def test_points_on_smaller_orbits_are_looked_at_closely() -> None:
     assert made(SPAN, small, dt=0.1).report.orbit_dimension == 2 and engine.solved == 2
     made(SPAN, np.array([1.0, 0.1, 0.3, 2.0, 0.3, 4.0]), dt=0.1)
     assert engine.solved == 2
+
+
+@pytest.mark.parametrize("options", [{}, {"rtol": 1e-9}, {"rtol": 1e-4, "atol": 1e-7}], ids=str)
+@pytest.mark.parametrize("step", [lh.RKMK("rk45"), lh.Taylor(8)], ids=repr)
+@pytest.mark.parametrize("count", [1, 7, 100])
+def test_a_second_call_with_adapted_steps_is_that_of_numpy(count: int, step: Any, options: dict[str, Any]) -> None:
+    made, engine = propagator(step=step)
+    times = np.array([0.0, 0.55, 3.0])
+    starts = sphere(2 * count).reshape(2, count, 3)
+    for y0 in starts if count > 1 else starts[:, 0]:
+        sol = made(SPAN, y0, t_eval=times, **options)
+        plain = lh.integrate(BODY, SPAN, y0, step=step, t_eval=times, **options)
+        np.testing.assert_allclose(sol.y, plain.y, rtol=0, atol=1e-9)
+        np.testing.assert_array_equal(sol.n_steps, plain.n_steps)
+        assert (sol.status, sol.message, sol.report) == (0, plain.message, plain.report)
+    assert engine.solved == 1
+
+
+def test_a_second_call_with_other_args_is_that_of_numpy() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args["inertia"] + args["torque"])
+    made, engine = propagator(field, lh.LieTaylor(4))
+    for inertia, torque in (([1.0, 2.0, 3.0], 0.1), ([2.0, 2.5, 1.0], -0.3)):
+        args = {"inertia": np.array(inertia), "torque": torque}
+        sol, plain = (
+            go(SPAN, START, dt=0.1, args=args) for go in (made, lh.Propagator(field, made.step, engine="numpy"))
+        )
+        np.testing.assert_allclose(sol.y, plain.y, rtol=0, atol=1e-14)
+    assert engine.solved == 1
+    made(SPAN, START, dt=0.1, args={"inertia": np.array(2.0), "torque": 0.1})
+    assert engine.solved == 2
+
+
+def test_a_second_call_with_args_of_each_trajectory_is_that_of_numpy() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args["rate"][..., None])
+    made, engine = propagator(field, lh.LieTaylor(4))
+    points = sphere(5)
+    for scale in (1.0, 2.0):
+        args = {"rate": lh.PerTrajectory(scale * np.arange(1.0, 6.0))}
+        sol, plain = (
+            go(SPAN, points, dt=0.1, args=args) for go in (made, lh.Propagator(field, made.step, engine="numpy"))
+        )
+        np.testing.assert_allclose(sol.y, plain.y, rtol=0, atol=1e-13)
+    assert engine.solved == 1
+
+
+def test_sizes_of_each_trajectory_are_not_taken_for_one_size() -> None:
+    made, _ = propagator(step=lh.RKMK("rk4"))
+    points = sphere(2)
+    made(SPAN, points, dt=np.array([0.1, 0.2]), t_eval=[3.0])
+    sol = made(SPAN, points, dt=0.2, t_eval=[3.0])
+    assert sol.n_steps.tolist() == [15, 15]
