@@ -169,7 +169,7 @@ def draw(found: Sequence[tuple[System, Sequence[Row]]], folder: Path) -> None:
             figure.patch.set_alpha(0.0)
             for axes, (system, rows) in zip(figure.subplots(1, len(found), sharey=True), found, strict=True):
                 scale = abs(float(system.energy(system.start)))
-                for colour, row in zip(colours, rows, strict=True):
+                for colour, row in zip(colours, rows, strict=False):
                     worst = np.maximum.accumulate(np.maximum(row.energy / scale, HAIRLINE))
                     dashes = "-" if any(word in row.name for word in SYMPLECTIC) else "--"
                     axes.loglog(row.times, worst, dashes, color=colour, label=row.name)
