@@ -101,7 +101,7 @@ def rodrigues_action(infinitesimal: FieldMap, identity: PowerIdentity, x: Values
     q: Any = form(x, x)
     if power == 2:
         twice = infinitesimal(x, once)
-        c, d = _high_quotients(q)
+        _, c, d = rotation_quotients(q)
         return m + (once + (c * twice + d * infinitesimal(x, twice)))
     if type(q) is Traced:  # S(q) = S(q/4) C(q/4): no branches
         sine: Values = entire_function("sinq", q / 4)
@@ -154,10 +154,15 @@ def _far(xp: Any, q: Values, r: Values, sine: str, cosine: str) -> tuple[Values,
     return 2.0 * half * getattr(xp, cosine)(0.5 * r), 2.0 * half * half
 
 
-def _high_quotients(q: Any) -> tuple[Values, Values]:
-    """Arrays or traced values of C and D.
+def rotation_quotients(q: Any) -> tuple[Values, Values, Values]:
+    """Arrays or traced values of S, C and D.
 
     D is (1 - S)/q except near 0: its error relative to 1/q is round-off, which is below that of A in D A^3.
+
+    Examples
+    --------
+    >>> [round(float(x), 6) for x in rotation_quotients(np.array(np.pi**2))]
+    [0.0, 0.202642, 0.101321]
     """
     if type(q) is Traced:
         sine: Values = entire_function("sinq", q / 4)
@@ -167,7 +172,7 @@ def _high_quotients(q: Any) -> tuple[Values, Values]:
     xp = namespace(q)
     small = xp.abs(q) < NEAR
     near = (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110)))) / 6
-    return c, xp.where(small, near, (1 - s) / xp.where(small, 1.0, q))
+    return s, c, xp.where(small, near, (1 - s) / xp.where(small, 1.0, q))
 
 
 def power_identity(matrices: Sequence[Matrix], field: Field) -> PowerIdentity | None:
@@ -182,10 +187,8 @@ def power_identity(matrices: Sequence[Matrix], field: Field) -> PowerIdentity | 
     Examples
     --------
     >>> import liehom as lh
-    >>> turn, shift = np.zeros((2, 3, 3), dtype=int)
-    >>> turn[0, 1], turn[1, 0], shift[0, 2] = -1, 1, 1
-    >>> plane = lh.Representation.from_matrices([turn, shift])
-    >>> power_identity(plane.matrices, plane.field).power
+    >>> nilpotent = lh.Representation(lh.abelian(1), [np.eye(4, k=1, dtype=int)])
+    >>> power_identity(nilpotent.matrices, nilpotent.field).power
     2
     """
     n = len(matrices)
