@@ -23,6 +23,7 @@ from liehom.integrators.implicit import Rosenbrock as Rosenbrock
 from liehom.integrators.implicit import StiffRKMK as StiffRKMK
 from liehom.integrators.implicit import amplification as amplification
 from liehom.integrators.implicit import stability_limit as stability_limit
+from liehom.integrators.inspection import Inspection as Inspection
 from liehom.integrators.integration import integrate as integrate
 from liehom.integrators.methods import RKMK as RKMK
 from liehom.integrators.methods import BackwardEuler as BackwardEuler

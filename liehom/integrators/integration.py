@@ -11,7 +11,8 @@ from liehom.correctors.step import ExponentialLike, StepLike
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.arguments import CallOptions
 from liehom.integrators.engine import Engine
-from liehom.integrators.propagator import Propagator, engine_option, warned
+from liehom.integrators.engines import engine_option
+from liehom.integrators.propagator import Propagator, warned
 from liehom.integrators.run.options import Span
 from liehom.integrators.run.solution import Solution
 from liehom.typing import Pytree

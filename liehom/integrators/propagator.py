@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Unpack, final
+from typing import Any, Unpack, final
 
 import numpy as np
 import numpy.typing as npt
@@ -30,10 +29,11 @@ from liehom.integrators.arguments import (
     with_tight_frame,
     without_jax,
 )
-from liehom.integrators.compiled.llvm_engine import LlvmEngine
+from liehom.integrators.bound_call import BoundCall
 from liehom.integrators.engine import Engine, NumpyEngine, Problem
+from liehom.integrators.engines import engine_of
 from liehom.integrators.implicit.stiffness import warn_of_stiffness
-from liehom.integrators.jax_engine import JaxEngine
+from liehom.integrators.inspection import Inspection, inspected
 from liehom.integrators.jax_engine.jax_arguments import jax_span, jax_start, jax_times, traces_times
 from liehom.integrators.methods.steps import LieTaylor
 from liehom.integrators.methods.taylor import Taylor
@@ -47,7 +47,6 @@ from liehom.pytrees import check_numbers
 from liehom.series.arrays import is_jax
 from liehom.typing import IntegerArray, Pytree, Values
 
-ENGINES: dict[str, Callable[[], Engine]] = {"numpy": NumpyEngine, "llvm": LlvmEngine, "jax": JaxEngine}
 DEFAULT_ORDER = 6
 """Order of the default step with fixed step sizes."""
 WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)
@@ -153,6 +152,49 @@ class Propagator:
         """The solution of a `problem` of this propagator, by its engine; by numpy if the group fixes a point."""
         engine = NumpyEngine() if has_fixed_points(problem) else self._engine_for(problem.step)
         return engine.solve(problem)
+
+    def bind(self, y0: npt.ArrayLike, *, args: Pytree = None, **options: Unpack[CallOptions]) -> BoundCall:
+        """The call from y0 as a function of time span and args, for inner loops: the points are checked once.
+
+        Parameters and options are those of a call.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> body = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m / args)
+        >>> go = lh.Propagator(body, "rk4").bind([0.6, 0.0, 0.8], dt=0.1)
+        >>> [go((0, 1), np.array([1.0, 2.0, third])).status for third in (3.0, 4.0)]
+        [0, 0]
+        """
+        check_option_names(set(options) - set(CallOptions.__annotations__))
+        points, given = y0 if is_jax(y0) else points_of(y0), args
+
+        def problem(t_span: Iterable[float] | Span, args: Pytree) -> Problem:
+            return self.problem(t_span, points, args=given if args is None else args, **options)
+
+        known: Any = getattr(self._engine_for(self._step_for(**options)), "again", None)
+        again = None if known is None or self.field.takes_args else (lambda t_span: known(t_span, points, options))
+        return BoundCall(problem, lambda found: warned(self.solve(found), found, stacklevel=4), options, again)
+
+    def inspect(self, y0: npt.ArrayLike, t: float = 0.0, *, args: Pytree = None) -> Inspection:
+        """Orders, ranks and singular values of the step at points, an `Inspection`; no step is made.
+
+        Parameters
+        ----------
+        y0 : array_like of shape (..., N)
+        t : float
+        args : pytree, optional
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> field = lh.GeneratorField(lh.defining(lh.so(3)), lambda m: m * [1.0, 2.0, 3.0])
+        >>> print(lh.Propagator(field, lh.Corrected("euler", 3)).inspect([0.6, 0.0, 0.8]))
+        Corrected(Euler(), order=3) at 1 point
+        order 3
+        smallest singular value 0.354, rank 2 of 2
+        """
+        return inspected(self.problem((t, t), y0, args=args))
 
     def sensitivity(
         self,
@@ -310,57 +352,6 @@ def has_fixed_points(problem: Problem) -> bool:
     [False, True]
     """
     return not bool(np.all(problem.orbit_dimension))
-
-
-def engine_of(engine: str | Engine) -> Engine:
-    """A new engine by its name, or the engine itself.
-
-    Raises
-    ------
-    InputError
-        If the name is unknown.
-
-    Examples
-    --------
-    >>> engine_of("numpy").name
-    'numpy'
-    """
-    hint = ""
-    if isinstance(engine, str):
-        if engine in ENGINES:
-            return ENGINES[engine]()
-        hint = '; what was called "numba" is "llvm" (it needs llvmlite only)' if engine == "numba" else ""
-    elif callable(getattr(engine, "solve", None)) and isinstance(getattr(engine, "name", None), str):
-        return engine
-    raise InputError(f"engine is {displayed(engine)}, expected one of {', '.join(map(repr, ENGINES))}{hint}")
-
-
-def engine_option(engine: str | Engine, compile: str | None, *, stacklevel: int) -> str | Engine:
-    """The option `engine`, by its former name `compile` if that was given, which is deprecated.
-
-    Parameters
-    ----------
-    engine, compile
-        As for `integrate`.
-    stacklevel : int
-        That of `warnings.warn`.
-
-    Examples
-    --------
-    >>> engine_option("llvm", None, stacklevel=2)
-    'llvm'
-    """
-    if compile is None:
-        return engine
-    if engine != "numpy":
-        raise InputError(
-            f"engine={displayed(engine)} and compile={displayed(compile)} are one option: leave out compile"
-        )
-    engine_of(compile)
-    warnings.warn(
-        f"compile= is called engine= now: write engine={compile!r}", DeprecationWarning, stacklevel=stacklevel
-    )
-    return compile
 
 
 @contextmanager

@@ -121,3 +121,65 @@ def test_compile_does_not_contradict_engine() -> None:
         lh.integrate(FIELD, (0, 1), START, engine="jax", compile="llvm")
     with pytest.raises(InputError, match='is "llvm"'):
         lh.integrate(FIELD, (0, 1), START, compile="numba")
+
+
+# -- inner loops and inspections ---------------------------------------------------------------------------
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+@pytest.mark.parametrize("options", [{"dt": 0.1}, {"rtol": 1e-6}, {"dt": 0.1, "t_eval": [0.5, 1.0]}])
+def test_a_bound_call_is_the_call(engine: str, options: dict[str, Any]) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args)
+    propagator = lh.Propagator(field, "rk45", engine=engine)
+    go = propagator.bind(START, **options)
+    for end, rates in ((1.0, [1.0, 0.5, 0.25]), (1.5, [1.0, 0.5, 0.75]), (1.5, None)):
+        args = None if rates is None else np.array(rates)
+        wanted = propagator((0, end), START, args=np.array([1.0, 0.5, 0.25]) if args is None else args, **options)
+        np.testing.assert_array_equal(go((0, end), args).y, wanted.y)
+
+
+def test_a_bound_call_checks_what_changes() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args)
+    go = lh.Propagator(field, "rk4").bind(START, dt=0.1, t_eval=[0.5])
+    go((0, 1), 2.0)
+    for span, args, message in (
+        ((0, 0.25), 2.0, "within t_span"),
+        ((0, np.inf), 2.0, "finite"),
+        ((0, 1), "x", "args is"),
+    ):
+        with pytest.raises(InputError, match=message):
+            go(span, args)
+    with pytest.raises(InputError, match="float32"):
+        lh.Propagator(field, "rk4").bind(START.astype(np.float32), dt=0.1)
+    with pytest.raises(TypeError, match="step='rk45'"):
+        lh.Propagator(field, "rk4").bind(START, method="rk4")  # type: ignore[call-arg]
+
+
+def test_points_are_checked_once_in_an_inner_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    from liehom.integrators import propagator as module
+
+    counts: list[int] = []
+    check = module.check_point
+    monkeypatch.setattr(module, "check_point", lambda *given, **more: counts.append(1) or check(*given, **more))
+    go = lh.Propagator(FIELD, "rk4").bind(START, dt=0.5)
+    for _ in range(3):
+        go((0, 1))
+    assert len(counts) == 1
+    lh.Propagator(FIELD, "rk4")((0, 1), START, dt=0.5)  # a control
+    assert len(counts) == 2
+
+
+def test_an_inspection_finds_what_the_report_of_a_run_finds() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["3/4 + 3*m0/4", "1/2", "-3*m1/4 - m2/4"])
+    points = np.array([[0.6, 0.8, 0.0], [-1.0, 0.0, 0.0]])
+    propagator = lh.Propagator(field, lh.Corrected("euler", 4))
+    found = propagator.inspect(points)
+    assert found.order.tolist() == [4, 4] and found.rank.tolist() == found.orbit_dimension.tolist() == [2, 2]
+    for i in range(2):
+        report = propagator((0, 1e-6), points[i], dt=1e-6).report
+        assert abs(report.singular_value - found.singular_value[i]) < 1e-12
+    # the velocity at this point is a null vector: the range condition fails
+    null = lh.GeneratorField(lh.defining(lh.so(2, 1)), ["1", "1", "m0"])
+    failed = lh.Propagator(null, lh.Corrected("euler", 3)).inspect([1.0, 0.0, 0.0])
+    assert failed.order < 3 or failed.singular_value < 1e-12
+    plain = lh.Propagator(FIELD, "rk4").inspect([START, START])
+    assert plain.order.tolist() == [4, 4] and np.isinf(plain.singular_value).all()
+    assert str(plain) == "RKMK('rk4') at 2 points\norder 4"

@@ -22,9 +22,9 @@ from liehom.integrators.convergence.convergence_table import MARGIN, NAN, Conver
 from liehom.integrators.convergence.orbit_error import orbit_distance
 from liehom.integrators.convergence.reference import Reference
 from liehom.integrators.engine import Engine
+from liehom.integrators.engines import engine_option
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, all_solved
 from liehom.integrators.points import points_of, span_of
-from liehom.integrators.propagator import engine_option
 from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike
 from liehom.typing import Array

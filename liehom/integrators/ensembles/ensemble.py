@@ -19,10 +19,10 @@ from liehom.correctors.step import as_step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
 from liehom.integrators.arguments import EnsembleOptions
+from liehom.integrators.engines import engine_option
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, Fields, solved
 from liehom.integrators.ensembles.merging import merged
 from liehom.integrators.points import points_of
-from liehom.integrators.propagator import engine_option
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.solution import Solution, as_arrays, from_arrays, warn_of_order
 from liehom.parallel import ExecutorLike, completed, open_store
