@@ -14,7 +14,7 @@ from liehom.scalars import Field, Matrix, Scalar
 
 
 class Single(Protocol):
-    """What is copied: a `Representation`, by its matrices."""
+    """The representation that is copied, by its matrices."""
 
     @property
     def field(self) -> Field: ...
