@@ -116,6 +116,11 @@ class Step(ABC):
         return False
 
     @property
+    def prepares_by_psi(self) -> bool:
+        """Whether `prepare` calls psi, so that a prepared step is for the args of one run only."""
+        return False
+
+    @property
     def trace_key(self) -> Hashable:
         """Data of the prepared step on which its trace depends, besides orbits and options, hashable."""
         return None

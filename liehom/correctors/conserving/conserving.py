@@ -132,6 +132,10 @@ class Conserving(Step):
         return None if self._begun is None else self._begun.n
 
     @property
+    def prepares_by_psi(self) -> bool:
+        return True
+
+    @property
     def trace_key(self) -> Hashable:
         return self.kept_order, self.step.trace_key
 

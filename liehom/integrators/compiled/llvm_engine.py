@@ -97,6 +97,8 @@ class LlvmEngine:
         """Keep the plan of a call, if it was one that needs nothing but points and args."""
         o, (_, key, graph) = problem.options, run.groups[0]
         work = run.work * np.sum(solution.n_steps)
+        if problem.args is not None and problem.step.prepares_by_psi:
+            return
         if len(run.groups) > 1 or graph.guard is None or solution.status != END or work > OPERATIONS_PER_CALL:
             return
         if o.checkpoint is not None or o.progress or o.dense_output or (run.schedule is None and o.t_eval is None):

@@ -84,6 +84,10 @@ class Composition(Step):
         return True
 
     @property
+    def prepares_by_psi(self) -> bool:
+        return self.step.prepares_by_psi
+
+    @property
     def trace_key(self) -> Hashable:
         return self.step.trace_key
 

@@ -79,6 +79,11 @@ class MoserVeselov(Step):
         return True
 
     @property
+    def prepares_by_psi(self) -> bool:
+        """Whether `prepare` calls psi: True, as it finds J."""
+        return True
+
+    @property
     def trace_key(self) -> Hashable:
         """The inertia of a prepared step."""
         return None if self._inertia is None else repr(self._inertia)

@@ -81,6 +81,11 @@ class Splitting(Step):
         """Whether a step of size -h is the inverse of a step of size h: True."""
         return True
 
+    @property
+    def prepares_by_psi(self) -> bool:
+        """Whether the parts are given, so that `prepare` compares them with psi."""
+        return self.parts is not None
+
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         require_exponential(action, "Splitting")
         if not self._checked and type(m) is np.ndarray:

@@ -64,7 +64,9 @@ def test_each_call_of_a_propagator_has_the_inertia_of_its_args(step: lh.Step) ->
     start = np.array([0.6, 0.48, 0.64])
     propagator = lh.Propagator(field, step, args=np.array([2.0, 3.0, 4.0]), engine="llvm")
     for moments in ([2.0, 3.0, 4.0], [3.0, 3.5, 4.0], [2.0, 3.0, 4.0]):
-        found = propagator((0, 2), start, dt=0.1, args=np.array(moments)).y[:, -1]
+        found = propagator((0.0, 2.0), start, dt=0.1, args=np.array(moments)).y[:, -1]
+        again = propagator((0.0, 2.0), start, dt=0.1, args=np.array(moments)).y[:, -1]
+        assert np.array_equal(found, again)
         plain = lh.integrate(lh.RigidBody(moments).field("b"), (0, 2), start, step=step, dt=0.1).y[:, -1]
         assert np.abs(found - plain).max() < 1e-14
 
