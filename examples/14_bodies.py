@@ -11,7 +11,7 @@ q = satellite.attitude(sol)
 print("attitude:", satellite.quaternion(sol)[-1].round(4), "spin:", satellite.velocity(sol)[-1].round(4))
 assert np.abs(q @ np.swapaxes(q, -1, -2) - np.eye(3)).max() < 1e-13
 
-# A glider in water: different masses along its axes, Kirchhoff's equations; its momentum in space is constant.
+# A glider in water has different masses along its axes. Its momentum in space is constant.
 glider = lh.SE3Body(np.diag([0.5, 0.6, 0.7, 1.0, 2.0, 4.0]))
 sol = glider.integrate((0, 30), glider.start(velocity=[0.1, 0.5, 0.0, 1.0, 0.0, 0.2]), rtol=1e-8)
 print("position:", glider.position(sol)[-1].round(4))

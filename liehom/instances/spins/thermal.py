@@ -33,7 +33,7 @@ class Increments:
         Length of a step in time.
     seed : int
     parts : int
-        Each increment is the sum of so many drawn ones: steps of size h in p parts see the same path as steps of size
+        Number of drawn increments of which each is the sum: steps of size h in p parts see the same path as steps of size
         h/p in one part.
 
     Examples

@@ -1,7 +1,7 @@
 """Lattice fields in machine code: the stages of an explicit step, each for all sites, by the engine "llvm".
 
-Every trajectory of the run is a site, and psi couples the sites. psi is traced at one site, with np.roll as loads at
-shifted sites; the step is cut where it calls psi, because psi needs the points of that stage at all sites.
+Every trajectory of the run is a site, and psi couples the sites. It is traced at one site, with np.roll as loads at
+shifted sites. The step is cut into stages at the calls of psi, because psi needs the points of a stage at all sites.
 """
 
 from __future__ import annotations

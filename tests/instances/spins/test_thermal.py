@@ -164,5 +164,7 @@ def test_what_noise_needs() -> None:
         warm.integrate((0, 1), m, dt=0.1, seed=-1)
     with pytest.raises(lh.errors.InputError, match="Heun"):
         warm.integrate((0, 1), m, dt=0.1, step=lh.Corrected(lh.Euler(), 3))
+    with pytest.raises(lh.errors.InputError, match="engine='numpy'"):
+        warm.integrate((0, 1), m, dt=0.1, engine="llvm")
     with pytest.raises(lh.errors.InputError, match="no noise"):
         LandauLifshitz(damping=0.1).integrate((0, 1), m, dt=0.1, seed=3)
