@@ -33,8 +33,8 @@ class Increments:
         Length of a step in time.
     seed : int
     parts : int
-        Number of drawn increments of which each is the sum: steps of size h in p parts see the same path as steps of size
-        h/p in one part.
+        Number of drawn increments of which each is the sum: steps of size h in p parts see the same path as steps of
+        size h/p in one part.
 
     Examples
     --------
