@@ -90,7 +90,8 @@ def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
         return where
     xp = namespace(where)
     some: BooleanArray = xp.any(where, axis=tuple(range(-axes, 0)), keepdims=True)
-    return xp.broadcast_to(some, where.shape)
+    repeated: BooleanArray = xp.broadcast_to(some, where.shape)
+    return repeated
 
 
 def largest_size(max_step: Real, left: Values) -> Array:
