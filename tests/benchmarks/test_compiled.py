@@ -66,6 +66,7 @@ def compiled(step: Any, width: int, *, nominal: bool, points: Any) -> Callable[[
         fields: dict[str, Any] = {"start": x.copy(), "constants": kernel.run_values(values), "end": count}
         if nominal:
             fields |= {"sizes": np.full(count, H), "times": np.zeros(count), "codes": np.full(count, -1)}
+            fields["repeats"] = np.full(count, count)
         else:
             fields |= {"stops": np.full(2, 1e15), "last_stop": 0, "out": np.empty((3, *x.shape))}
         state = kernel.packed(x.shape[1], {"x": x, "alive": 1.0} | ({} if nominal else {"h": H}))

@@ -48,4 +48,5 @@ def _is_injective(matrix: Values, scale: Values) -> Values:
     for i in range(len(gram)):
         certain = certain & (gram[i, i] > GUARD_RTOL * total)
         gram = gram - gram[i][:, None] * gram[i][None] / gram[i, i]
-    return certain
+    found: Values = certain
+    return found

@@ -163,13 +163,14 @@ class CodeStore:
 
     def schedule(self, run: Run) -> Schedule:
         """The micro-steps of a run with steps of one size."""
-        span, dt = (float(run.span[0]), float(run.span[1])), float(np.max(run.options.dt))
-        times = None if run.state.samples is None else run.state.samples.times
+        sizes: Any = run.options.dt
+        span, dt = (float(run.span[0]), float(run.span[1])), float(np.max(sizes))
+        times, total = None if run.state.samples is None else run.state.samples.times, np.asarray(run.stops.total)
         key = (*span, dt, None if times is None else times.tobytes(), run.keeps)
         if key not in self.schedules:
             if len(self.schedules) >= MAX_SCHEDULES:
                 self.schedules.pop(next(iter(self.schedules)))
-            self.schedules[key] = schedule(span, dt, int(np.max(run.stops.total)), times, keeps=run.keeps)
+            self.schedules[key] = schedule(span, dt, int(np.max(total)), times, keeps=run.keeps)
         return self.schedules[key]
 
 
@@ -285,7 +286,8 @@ class _CompiledRun:
         self, run: Run, kernel: Kernel, lanes: IntegerArray, back: HandBack, taken: int, steps: int
     ) -> Made:
         """Steps of lanes that have all taken as many."""
-        plan, n, count = self.schedule, self.start.shape[-1], len(lanes)
+        plan: Any = self.schedule
+        n, count = self.start.shape[-1], len(lanes)
         last = min(taken + steps, plan.steps)
         begin, end = int(plan.first[taken]), int(plan.first[last])
         state = kernel.packed(
@@ -299,7 +301,7 @@ class _CompiledRun:
             {
                 **self._given(kernel, lanes),
                 "begin": begin, "end": end, "sizes": plan.sizes, "times": plan.times,
-                "codes": plan.codes, "out": out.ctypes.data - low * n * state.shape[1] * 8,
+                "codes": plan.codes, "repeats": plan.repeats, "out": out.ctypes.data - low * n * state.shape[1] * 8,
             },
             end - begin,
         )  # fmt: skip

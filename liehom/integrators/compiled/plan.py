@@ -38,7 +38,8 @@ def plan_key(t_span: object, y0: object, options: Mapping[str, Any], args: Pytre
     """
     if type(t_span) is not tuple or len(t_span) != 2 or type(y0) is not np.ndarray or y0.dtype != np.float64:
         return None
-    times, kind, sizes = options.get("t_eval"), type(options.get("t_eval")), []
+    times: Any = options.get("t_eval")
+    kind, sizes = type(times), []
     for name, value in options.items():
         if name in SIZES and type(value) is float:
             sizes.append((name, value))
@@ -114,6 +115,7 @@ class Plan:
             self.rows = slice(0, int(schedule.rows[-1]))
             self.fields: dict[str, Any] = {
                 "end": len(schedule.sizes), "sizes": schedule.sizes, "times": schedule.times, "codes": schedule.codes,
+                "repeats": schedule.repeats,
             }  # fmt: skip
         else:
             self.t = times = np.zeros(0) if times is None else times

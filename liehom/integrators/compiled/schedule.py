@@ -10,7 +10,7 @@ from typing import final
 
 import numpy as np
 
-from liehom.typing import Array, IntegerArray
+from liehom.typing import Array, BooleanArray, IntegerArray
 
 
 @final
@@ -24,6 +24,8 @@ class Schedule:
         Signed size, and time before each micro-step.
     codes : array of int64 of shape (q,)
         Twice the row in which the point is stored (-2 for none), plus 1 if the trajectory goes there.
+    repeats : array of int64 of shape (q,)
+        Number of the first micro-step after each that has another size or code, or is stored, or does not go on.
     first : array of int of shape (n + 1,)
         First micro-step of each of the n steps, and q.
     reached : array of shape (n + 1,)
@@ -32,18 +34,19 @@ class Schedule:
         Number of points that are stored before each micro-step.
     output : array of int
         For each stored point the index of its output time, -1 for none.
-    ends : array of bool
+    ends : bool array
         For each stored point whether it is the end of a step.
     """
 
     sizes: Array
     times: Array
     codes: IntegerArray
+    repeats: IntegerArray
     first: IntegerArray
     reached: Array
     rows: IntegerArray
     output: IntegerArray
-    ends: Array
+    ends: BooleanArray
 
     @property
     def steps(self) -> int:
@@ -73,7 +76,7 @@ def schedule(span: tuple[float, float], dt: float, steps: int, times: Array | No
     """
     begin, end = span
     direction = 1.0 if end >= begin else -1.0
-    reached = begin + np.arange(steps + 1) * (direction * dt)
+    reached: Array = begin + np.arange(steps + 1, dtype=np.float64) * (direction * dt)
     reached[0], reached[-1] = begin, end
     sizes = np.full(steps, direction * dt)
     sizes[-1] = end - reached[-2]
@@ -92,10 +95,15 @@ def schedule(span: tuple[float, float], dt: float, steps: int, times: Array | No
     commits = order < steps
     stored = (output >= 0) | (commits & keeps)
     rows = np.concatenate([[0], np.cumsum(stored)])
+    sizes = np.concatenate([sizes, wanted[within] - reached[step[within]]])[order]
+    alone = stored | ~commits
+    begins = np.append(True, alone[1:] | alone[:-1] | (sizes[1:] != sizes[:-1]))
+    places = np.append(np.flatnonzero(begins), len(sizes))
     return Schedule(
-        sizes=np.concatenate([sizes, wanted[within] - reached[step[within]]])[order],
+        sizes=sizes,
         times=np.concatenate([reached[:-1], reached[step[within]]])[order],
         codes=(2 * np.where(stored, rows[:-1], -1) + commits).astype(np.int64),
+        repeats=places[np.cumsum(begins)].astype(np.int64),
         first=np.concatenate([[0], np.flatnonzero(commits) + 1]),
         reached=reached,
         rows=rows,

@@ -23,10 +23,12 @@ from liehom.tracing.step_graph import StepGraph
 
 FIELDS = (
     "state", "start", "lanes", "first", "last", "begin", "end", "constants", "rows", "out", "path",
-    "sizes", "times", "codes", "stops", "last_stop", "origin",
+    "sizes", "times", "codes", "repeats", "stops", "last_stop", "origin",
 )  # fmt: skip
 """Entries of the argument of `run`, each of 8 bytes."""
-POINTERS = frozenset(["state", "start", "constants", "rows", "out", "path", "sizes", "times", "codes", "stops"])
+POINTERS = frozenset(
+    ["state", "start", "constants", "rows", "out", "path", "sizes", "times", "codes", "repeats", "stops"]
+)
 METADATA = """\
 attributes #0 = { nounwind "prefer-vector-width"="512" }
 !0 = !{!"branch_weights", i32 1, i32 1000}
@@ -154,6 +156,10 @@ class _RunWriter:
             state["h"] = self._select(unknown, first.name(graph.first), state["h"])
         before = w.label
         self._before_loop(state)
+        self._loop_head(state, before)
+
+    def _loop_head(self, state: dict[str, str], before: str) -> None:
+        """Begin the loop over steps with a state, from a basic block."""
         self.line("br label %step")
         self.label("step")
         self.line(f"%k = phi i64 [%begin, %{before}], [%k.next, %step.end]")
@@ -221,64 +227,87 @@ class _RunWriter:
 class _Lockstep(_RunWriter):
     """Micro-steps of a schedule: `sizes`, `times`, and `codes`: bit 0 whether to go there, the rest the row of `out`.
 
-    `count` of a lane that fails is the micro-step that failed.
+    Consecutive micro-steps of one size and code, up to number `repeats` of the first, are a *segment*; only one that is
+    alone is stored, or does not go on. What depends on the size alone is computed once for a segment. `count` of a lane
+    that fails is the micro-step that failed.
     """
+
+    def _loop_head(self, state: dict[str, str], before: str) -> None:
+        w, v = self.w, self.v
+        whole = w.all(w.emit(f"fcmp ogt {v} {state['alive']}, {w.splat(0.0)}"))
+        self.line("br label %segment")
+        self.label("segment")
+        self.line(f"%segment.k = phi i64 [%begin, %{before}], [%k.next, %segment.end]")
+        self.line(f"%segment.whole = phi i1 [{whole}, %{before}], [%whole.made, %segment.end]")
+        for name in self.names:
+            self.line(f"%{name}.old = phi {v} [{state[name]}, %{before}], [%{name}.next, %segment.end]")
+        self.h = self._shared("%sizes", "%segment.k")
+        for name, array in (("code", "codes"), ("repeated", "repeats")):
+            here = w.emit(f"getelementptr i64, ptr %{array}, i64 %segment.k")
+            self.line(f"%{name} = load i64, ptr {here}, align 8")
+        self.line("%within = icmp slt i64 %repeated, %end")
+        self.line("%until = select i1 %within, i64 %repeated, i64 %end")
+        self.line("br label %step")
+        self.label("step")
+        self.line("%k = phi i64 [%segment.k, %segment], [%k.next, %made]")
+        self.line("%whole = phi i1 [%segment.whole, %segment], [%whole.made, %made]")
+        for name in self.names:
+            self.line(f"%{name} = phi {v} [%{name}.old, %segment], [%{name}.made, %made]")
 
     def _loop(self) -> None:
         w = self.w
-        t, h = self._shared("%times", "%k"), self._shared("%sizes", "%k")
-        here = w.emit("getelementptr i64, ptr %codes, i64 %k")
-        self.line(f"%code = load i64, ptr {here}, align 8")
-        body = self._body({self.n: t, self.n + 1: h})
-        made = {f"x{i}": body.name(x) for i, x in enumerate(self.graph.point)}
-        records = self._recorded(body)
-        valid, alive = self._valid(body), self._alive()
-        go, before = self._and(valid, alive), w.label
+        body = self._body({self.n: self._shared("%times", "%k"), self.n + 1: self.h})
+        made = {f"x{i}": body.name(x) for i, x in enumerate(self.graph.point)} | self._recorded(body)
+        valid, before = self._valid(body), w.label
         # a predicted branch costs nothing; selections would lengthen the dependency chain from step to step
-        self.line(f"br i1 {w.all(go)}, label %made, label %mixed, !prof !1")
-        self._mixed({**made, **records}, go, alive)
+        usual = w.emit(f"and i1 {w.all(valid)}, %whole")
+        self.line(f"br i1 {usual}, label %made, label %mixed, !prof !1")
+        self._mixed(made, valid)
         self.label("made")
         for name in self.names:
-            plain = {**made, **records}.get(name, f"%{name}")
+            plain = made.get(name, f"%{name}")
             self.line(f"%{name}.made = phi {self.v} [{plain}, %{before}], [%{name}.mixed, %mixed]")
+        self.line(f"%whole.made = phi i1 [true, %{before}], [%whole.mixed, %mixed]")
         self.line(f"%going = phi i1 [true, %{before}], [%going.mixed, %mixed]")
-        self._store()
-        self._commit()
-        self._step_end("%going")
+        self.line("%k.next = add i64 %k, 1")
+        fewer = w.emit("icmp slt i64 %k.next, %until")
+        self.line(f"br i1 {w.emit(f'and i1 %going, {fewer}')}, label %step, label %ended")
+        self._segment_end()
 
-    def _mixed(self, made: dict[str, str], go: str, alive: str) -> None:
+    def _mixed(self, made: dict[str, str], valid: str) -> None:
         w = self.w
         self.label("mixed")
-        fails = self._and(alive, self._not(go))
+        alive = self._alive()
+        go, fails = self._and(valid, alive), self._and(alive, self._not(valid))
         number = w.spread(w.emit("sitofp i64 %k to double"))
         changed = {name: (go, value) for name, value in made.items()}
         changed |= {"alive": (fails, w.splat(FAILED)), "count": (fails, number)}
         for name, (where, value) in changed.items():
             self.line(f"%{name}.mixed = select {w.mask} {where}, {self.v} {value}, {self.v} %{name}")
+        self.line(f"%whole.mixed = and i1 {w.all(go)}, true")
         self.line(f"%going.mixed = or i1 {w.any(go)}, false")
         self.line("br label %made")
 
-    def _store(self) -> None:
-        row = self.w.emit("ashr i64 %code, 1")
-        stored = self.w.emit(f"icmp sge i64 {row}, 0")
-        self.line(f"br i1 {stored}, label %store, label %stored")
+    def _segment_end(self) -> None:
+        """Store the points, and go there or back to the points before, as the code says."""
+        w = self.w
+        self.label("ended")
+        row = w.emit("ashr i64 %code, 1")
+        stored = w.emit(f"icmp sge i64 {row}, 0")
+        self.line(f"br i1 {stored}, label %store, label %segment.end")
         self.label("store")
-        first = self.w.emit(f"mul i64 {row}, {self.n}")
+        first = w.emit(f"mul i64 {row}, {self.n}")
         for i in range(self.n):
-            place = self._place("%out", self.w.emit(f"add i64 {first}, {i}"))
+            place = self._place("%out", w.emit(f"add i64 {first}, {i}"))
             self.line(f"store {self.v} %x{i}.made, ptr {place}, align 8")
-        self.line("br label %stored")
-        self.label("stored")
-
-    def _commit(self) -> None:
-        self.line(f"br i1 {self.w.emit('trunc i64 %code to i1')}, label %commit, label %step.end")
-        self.label("commit")
-        self.line("br label %step.end")
-        self.label("step.end")
+        self.line("br label %segment.end")
+        self.label("segment.end")
+        self.line("%goes = trunc i64 %code to i1")
         for name in self.names:
-            moved = name.startswith(("x", "e"))
-            old = f"%{name}" if moved else f"%{name}.made"
-            self.line(f"%{name}.next = phi {self.v} [%{name}.made, %commit], [{old}, %stored]")
+            old = f"%{name}.old" if name.startswith(("x", "e")) else f"%{name}.made"
+            self.line(f"%{name}.next = select i1 %goes, {self.v} %{name}.made, {self.v} {old}")
+        fewer = w.emit("icmp slt i64 %k.next, %end")
+        self.line(f"br i1 {w.emit(f'and i1 %going, {fewer}')}, label %segment, label %block.end")
 
 
 @final
