@@ -2,7 +2,7 @@
 
 The field X = lambda y near a point e of S^2, with complex lambda = -K + i omega in the tangent plane, is given by
 
-    psi(m) = K m x e + omega e + sigma m,     m' = psi x m,
+    psi(m) = m x X(m) + sigma m,     m' = psi x m = X(m),     X(m) = K (e - <m, e> m) + omega e x m,
 
 where the isotropy sigma m does not change the field, but changes the steps of most methods. `amplification` measures
 the factor on the manifold, with the code of the step. Without isotropy it is the stability function of the method.
@@ -10,7 +10,6 @@ the factor on the manifold, with the code of the step. Without isotropy it is th
 
 from __future__ import annotations
 
-from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
@@ -19,10 +18,11 @@ import numpy.typing as npt
 
 from liehom.algebra import so
 from liehom.correctors.step import Generator, LocalStep, Step
-from liehom.errors import LiehomError
+from liehom.errors import ConvergenceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.integrators.implicit.linearization import Linearization
 from liehom.integrators.run.clock import clock_at, size_for
+from liehom.integrators.run.control import unsolvable
 from liehom.representations import adjoint
 from liehom.typing import Array, Values
 
@@ -60,7 +60,8 @@ def amplification(step: Step, z: npt.ArrayLike, *, isotropy: float = 0.0, clock:
 
     def psi(m: Values) -> Values:
         point: Any = m
-        found: Values = rate * np.cross(point, up) + turn * up + isotropy * point
+        along = point[..., 2:]
+        found: Values = rate * np.cross(point, up) + turn * (up - along * point) + isotropy * point
         return found
 
     field = GeneratorField(adjoint(so(3)), psi)
@@ -72,8 +73,13 @@ def amplification(step: Step, z: npt.ArrayLike, *, isotropy: float = 0.0, clock:
             size = _sizes(local, len(flat))
         made: Any = np.full_like(m, np.nan)
         good = np.isfinite(size)
-        with suppress(LiehomError, np.linalg.LinAlgError):
-            made = np.where(good[:, None], local.point(np.where(good, size, 0.0)[:, None]), np.nan)
+        for _ in range(2):
+            try:
+                made = np.where(good[:, None], local.point(np.where(good, size, 0.0)[:, None]), np.nan)
+            except ConvergenceError:
+                good = good & ~unsolvable(local, np.where(good, size, 0.0), good)
+            else:
+                break
     found: Array = (np.hypot(made[:, 0], made[:, 1]) / DEVIATION).reshape(values.shape)
     return found
 

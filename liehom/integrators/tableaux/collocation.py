@@ -154,7 +154,7 @@ def _refined(ascending: list[int], starts: npt.NDArray[np.float64]) -> list[Scal
     zeros: list[Scalar] = []
     for start in starts:
         x = Fraction(float(start))
-        for _ in range(4):  # Newton: 15 digits become 30, 60, 120; a start may have 8
+        for _ in range(4):  # Newton, from 8 digits on
             value = sum(c * x**k for k, c in enumerate(ascending))
             slope = sum(k * c * x ** (k - 1) for k, c in enumerate(ascending) if k)
             x = Fraction(round((x - value / slope) * scale), scale)

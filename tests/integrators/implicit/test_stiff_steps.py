@@ -103,7 +103,8 @@ def test_one_step_of_a_linear_relaxation_is_damped(step: lh.Step, rate: float) -
 @cache
 def explicit_steps() -> float:
     """Steps of an explicit pair for the same time, from those for a twentieth of it."""
-    sol = lh.integrate(chasing(1e4), (0, 0.1), [1.0, 0.0, 0.0], step=lh.RKMK("rk45"), rtol=1e-4, engine="llvm")
+    with pytest.warns(lh.StiffnessWarning):
+        sol = lh.integrate(chasing(1e4), (0, 0.1), [1.0, 0.0, 0.0], step=lh.RKMK("rk45"), rtol=1e-4, engine="llvm")
     return 20.0 * int(sol.n_steps)
 
 
@@ -193,7 +194,7 @@ def test_amplification_without_isotropy_is_the_stability_function(name: str) -> 
 def test_isotropy_multiplies_the_increment_of_euler_by_phi(s: float) -> None:
     """With isotropy sigma dt = s: |1 + z phi(i s)|, phi(x) = (e^x - 1)/x, so that it helps oscillation, not damping."""
     z = np.array([-0.5, -1.9, -1.0 + 1.0j, 0.7j])
-    total = 1j * (s + z.imag)
+    total = np.full(4, 1j * s)
     phi = np.where(total == 0, 1.0, (np.exp(total) - 1) / np.where(total == 0, 1.0, total))
     wanted = np.abs(1 + z * phi)
     np.testing.assert_allclose(amplification(lh.Euler(), z, isotropy=s), wanted, rtol=0, atol=1e-8)
