@@ -229,7 +229,7 @@ def least_atol(atol: npt.ArrayLike, size: int) -> float:
     >>> least_atol([1e-3, 1e-6], 2)
     1e-06
     """
-    if np.ndim(atol) == 0:  # type: ignore[arg-type]
+    if np.ndim(atol) == 0:
         return positive("atol", atol, zero=True)  # type: ignore[arg-type]
     try:
         values = np.asarray(atol, dtype=float)

@@ -17,7 +17,7 @@ from liehom.typing import Pytree
 
 @final
 class BoundCall:
-    """What `Propagator.bind` returns: the call from its points, a function of time span and args.
+    """A call of a propagator from its points, as a function of time span and args; `Propagator.bind` makes it.
 
     The first call checks everything. The next ones check times, step sizes and args only, so that they cost little more
     than the steps.

@@ -84,7 +84,8 @@ class Propagator:
     Notes
     -----
     `integrate` makes a propagator and calls it once. A propagator that is kept promises that psi is the same function
-    in all calls, so that its engine traces and compiles the step once. What changes from call to call goes into `args`.
+    in all calls, so that its engine traces and compiles the step once. `args` hold the numbers that change from call to
+    call.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it; constants of a run."""
+"""Expr, a tracer: a symbolic number or boolean on a tape, which records the operations on it. Constants of a run."""
 
 from __future__ import annotations
 

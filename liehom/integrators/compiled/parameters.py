@@ -68,7 +68,7 @@ def arg_values(args: Pytree, lead: int) -> dict[str, Any]:
 
 
 def args_form(args: Pytree, lead: int) -> Hashable:
-    """What args must have in common for one graph to serve them: paths and shapes.
+    """The form that args must share for one graph to serve them: paths and shapes.
 
     Examples
     --------

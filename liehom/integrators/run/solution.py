@@ -142,17 +142,17 @@ class Solution:
         >>> Solution.load("there is no such file")
         Traceback (most recent call last):
         ...
-        liehom.errors.FormatError: 'there is no such file' is no solution of liehom, or is damaged: ...
+        liehom.errors.FormatError: 'there is no such file' is not a solution of liehom, or is damaged: ...
         """
         name = os.fspath(path)
         try:
             with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
                 arrays = {key: archive[key] for key in archive.files}
         except (*UNREADABLE, MemoryError, zipfile.BadZipFile, zlib.error, struct.error) as error:
-            raise FormatError(f"{name!r} is no solution of liehom, or is damaged: {error}") from None
+            raise FormatError(f"{name!r} is not a solution of liehom, or is damaged: {error}") from None
         version, text, mark = (str(arrays.pop(key, "")) for key in ("format", "facts", MARK))
         if version != FORMAT:
-            raise FormatError(f"{name!r} is no solution of liehom of this version: Solution.save writes them")
+            raise FormatError(f"{name!r} is not a solution of liehom of this version: Solution.save writes them")
         if mark != checksum(arrays, FORMAT, text):
             raise FormatError(f"the solution {name!r} is damaged, its checksum does not agree with its contents")
         return from_arrays(arrays, json.loads(text))
@@ -297,7 +297,7 @@ def from_arrays(arrays: Mapping[str, npt.NDArray[Any]], facts: Mapping[str, Any]
     try:
         return _from_arrays(arrays, facts)
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise FormatError(f"this is no solution of this version ({type(error).__name__}: {error})") from None
+        raise FormatError(f"this is not a solution of this version ({type(error).__name__}: {error})") from None
 
 
 def _of_trajectories(found: npt.NDArray[Any]) -> Sequence[npt.NDArray[Any]]:
