@@ -24,6 +24,7 @@ from liehom.homogeneous.fields.expression import ComponentLike, compiled
 from liehom.homogeneous.fields.signature import CallForm, Evaluated, called, called_with, checked_form
 from liehom.pytrees import leaves, mapped, unwrapped
 from liehom.series.arrays import as_values, is_exact, is_jax, is_lazy, is_traced, namespace, zeros
+from liehom.series.jax_functions import expanded_by_jax
 from liehom.series.jet import Jet
 from liehom.typing import Array, Pytree, Real, Values, ValuesLike
 
@@ -166,7 +167,12 @@ class Components:
     def __call__(self, m: ValuesLike, t: Real = 0.0) -> Values:
         """The components at m (..., N) and t (...,): array or Jet of shape (..., count)."""
         if isinstance(m, Jet):
-            return self._checked(self._function(m, Jet.constant(t, m.order) if is_jax(t) else t), m)
+            time = Jet.constant(t, m.order) if is_jax(t) else t
+            try:
+                made = self._function(m, time)
+            except TypeError as error:  # functions of JAX do not take Jets
+                made = self._expanded_by_jax(m, time, error)
+            return self._checked(made, m)
         point: Values = as_values(m)
         if is_jax(point) or is_jax(t) or self._jax_leaves:
             # numpy functions run on Jets over JAX arrays, not on the arrays themselves
@@ -175,6 +181,20 @@ class Components:
             value: Values = found.value if isinstance(found, Jet) else xp.asarray(found)
             return value
         return self._checked(self._function(point, t), point)
+
+    def _expanded_by_jax(self, m: Jet, t: Any, error: TypeError) -> Jet:
+        """The components at a Jet of JAX arrays, for a function written with the functions of JAX."""
+        if self._form is None or not is_jax(m.value):
+            raise error
+        source: Any = self._source
+        if self.takes_args:
+            function = called_with(source, self._form, self.time_dependent, unwrapped(self.bound[0]))
+        else:
+            function = called(source, self._form, self.time_dependent)
+        try:
+            return expanded_by_jax(lambda m, t: joined(function(m, t), m), m, t)
+        except TypeError:
+            raise error from None
 
     def check(self, m: ValuesLike, t: Real = 0.0) -> None:
         """Check at initial points that the values are finite and that trajectories do not depend on each other.

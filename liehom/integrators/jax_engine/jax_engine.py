@@ -10,40 +10,32 @@ A call on JAX arrays is one of three.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
-from functools import partial
 from math import ceil
 from typing import Any, final
 
 import numpy as np
 from numpy.typing import DTypeLike
 
-from liehom.correctors.conserving import Conserving
-from liehom.errors import InputError, TraceError
+from liehom.errors import InputError
 from liehom.homogeneous import GeneratorField
-from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.compiled.compiled import compiled_steps
 from liehom.integrators.compiled.jax_kernel import enabled_x64
 from liehom.integrators.compiled.traced_size import SizeLimits
-from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.engine import Problem, executed
-from liehom.integrators.jax_engine.local_steps import ArrayStep, GraphStep, StepOnJax, representative_points
+from liehom.integrators.jax_engine.forms import step_for
+from liehom.integrators.jax_engine.local_steps import StepOnJax
 from liehom.integrators.jax_engine.loops import At, bound_step, with_adaptive_sizes, with_given_sizes
 from liehom.integrators.jax_engine.programs import Leaves, Program, is_float
 from liehom.integrators.jax_engine.solutions import Found, solution_of
 from liehom.integrators.run.clock import SLACK
-from liehom.integrators.run.control import ERROR_TERMS
 from liehom.integrators.run.solution import Solution
 from liehom.pytrees import PerTrajectory
 from liehom.series.arrays import is_jax, is_traced, namespace
-from liehom.tracing import StepGraph, needed
 from liehom.tracing.jax_code import JaxArray
 
-MAX_GRAPH_OPERATIONS = 700
-"""Scalar graphs of at most so many operations are compiled as graphs, longer ones as array code."""
 STEPS_PER_NOMINAL_STEP = 1.5
 """Largest number of steps of a step with a time of its own, in units of the nominal number."""
 MAX_RECORDED = 1024
@@ -69,7 +61,7 @@ class JaxEngine:
     def __init__(self) -> None:
         _register_with_jax()
         self._programs: dict[Hashable, Program] = {}
-        self._steps: dict[Hashable, StepOnJax] = {}
+        self.steps: dict[Hashable, StepOnJax] = {}
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem, with JAX arrays if the start is one."""
@@ -81,24 +73,6 @@ class JaxEngine:
         double = start.dtype == np.float64
         with enabled_x64() if double else nullcontext():
             return _Call(self, problem).solution()
-
-    def step_for(self, problem: Problem, dimension: int) -> StepOnJax:
-        """The step in the form that is compiled: as a graph if it is short, else as array code."""
-        o, action, step = problem.options, problem.action, problem.step
-        array = ArrayStep(action, step, dimension, o.nominal, ERROR_TERMS if o.dt is None else 0)
-        if o.dt is None or problem.args is not None or _closes_over_jax(problem.field.source):
-            return array
-        points: Any = representative_points(problem.start, problem.field.representation.size)
-        tight = tight_frame(action, points, dimension) if step.uses_isotropy else None
-        key = dimension, None if tight is None else repr([np.asarray(x).tolist() for x in tight[:4]])
-        if key not in self._steps:
-            try:
-                graph = traced_step(action, problem.field, step, points, dimension, nominal=o.nominal)
-                made: StepOnJax = GraphStep(graph) if _is_short(graph) or isinstance(step, Conserving) else array
-            except TraceError:
-                made = array
-            self._steps[key] = made
-        return self._steps[key]
 
     def program(self, key: Hashable, function: Callable[..., Sequence[JaxArray]], arguments: Leaves) -> Program:
         """The trace of a function for arguments of these shapes and types, kept under a key."""
@@ -160,7 +134,7 @@ class _Call:
             )
         self.engine, self.problem, self.dimension = engine, problem, int(dimensions.max())
         self.adaptive = o.dt is None
-        self.step = engine.step_for(problem, self.dimension)
+        self.step = step_for(problem, self.dimension, engine.steps)
         kind: Any = start
         kind = kind.dtype
         t0, t1 = (_array(x, kind) for x in problem.span)
@@ -195,7 +169,7 @@ class _Call:
         return bool(traced) and all(_is_linear(x) and not is_traced(getattr(x, "primal", x)) for x in traced)
 
     # -- programs ----------------------------------------------------------------------------------------
-    def _program(self, *, traced: bool, recorded: int = 1) -> Program:
+    def _program(self, *, traced: bool, recorded: int = FIRST_RECORDED) -> Program:
         """The trace of the loop: with given sizes, with adaptive ones, or with both if JAX traces the call."""
         if not self.adaptive:
             return self._given(None)
@@ -348,24 +322,6 @@ class _Call:
 
 
 # -- private helpers -------------------------------------------------------------------------------------
-def _closes_over_jax(source: object) -> bool:
-    """Whether a function uses JAX arrays of its surroundings; a graph would have their numbers in its operations."""
-    while isinstance(source, partial):
-        if any(is_jax(x) for x in (*source.args, *source.keywords.values())):
-            return True
-        source = source.func
-    if not inspect.isfunction(source):
-        return False
-    found = inspect.getclosurevars(source)
-    return any(is_jax(x) for x in (*found.nonlocals.values(), *found.globals.values()))
-
-
-def _is_short(graph: StepGraph) -> bool:
-    """Whether a graph is compiled as such: array code differentiates loops by the implicit function theorem."""
-    operations = needed([*graph.point, *graph.summed.values()])
-    return len(operations) <= MAX_GRAPH_OPERATIONS and not any(x.op == "loop" for x in operations)
-
-
 def _output_times(problem: Problem) -> JaxArray:
     """Times of `t_eval`, by default the initial and the final time."""
     times = problem.options.t_eval

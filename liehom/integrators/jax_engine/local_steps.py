@@ -17,9 +17,9 @@ import numpy as np
 
 from liehom.correctors.step import Generator, LocalStep, Step
 from liehom.homogeneous import Action, GeneratorField
+from liehom.integrators.compiled.parameters import arg_values
 from liehom.integrators.run.clock import MAX_RATE, MIN_RATE, RATE_SAMPLES
 from liehom.integrators.run.options import END, IMPLICIT, NOT_FINITE
-from liehom.series.arrays import is_traced
 from liehom.tracing import StepGraph
 from liehom.tracing.jax_code import JaxArray, evaluate_with_jax
 
@@ -161,12 +161,16 @@ class GraphStep:
     graph: StepGraph
 
     def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
-        """The step at the points m (..., N) and times t (...,); the field is that of the graph."""
+        """The step at the points m (..., N) and times t (...,); the field is that of the graph, with other args."""
         import jax.numpy as jnp
 
         graph = self.graph
         inputs = {**dict(enumerate(jnp.moveaxis(m, -1, 0))), graph.size: t}
-        inputs |= {-1 - i: jnp.asarray(f(start), m.dtype) for i, f in enumerate(graph.constant_functions)}
+        known = arg_values(field.args, m.ndim - 1)
+        for i, function in enumerate(graph.constant_functions):
+            name = getattr(function, "name", None)
+            value = known[name] if name in known else function(start)
+            inputs[-1 - i] = jnp.asarray(value, m.dtype).reshape(t.shape if np.ndim(value) else ())
         made = evaluate_with_jax([c for _, c in graph.clock], inputs, differentiable=True)
         clock = tuple((k, jnp.broadcast_to(c, t.shape)) for (k, _), c in zip(graph.clock, made, strict=True))
         return LocalOnJax(partial(self._moved, inputs, m, t), clock)
@@ -191,17 +195,3 @@ def _code(point: JaxArray) -> JaxArray:
     import jax.numpy as jnp
 
     return jnp.where(jnp.all(jnp.isfinite(point), axis=-1), np.int32(END), np.int32(NOT_FINITE))
-
-
-def representative_points(start: JaxArray, size: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Points (L, N) on which special properties of orbits are looked for: the initial ones, or random ones if traced.
-
-    Examples
-    --------
-    >>> representative_points(np.ones((2, 2, 3)), 3).shape
-    (4, 3)
-    """
-    if is_traced(start):
-        return np.random.default_rng(0).normal(size=(16, size))
-    found: np.ndarray[Any, np.dtype[np.float64]] = np.asarray(start, dtype=np.float64).reshape(-1, size)
-    return found
