@@ -21,6 +21,8 @@ from liehom.typing import Array, IntegerArray, Values
 
 MAX_BLOCK = 24
 """Largest block of which forms other than the scalar product are sought: their equations are n^2 by n (n + 1) / 2."""
+ELEMENTS = 3
+"""Number of random elements of the algebra by which forms are sought."""
 FORM_RTOL = 1e-11
 """Largest defect of an invariant form, relative to its size and that of the matrices."""
 GRADIENT_RTOL = 1e-6
@@ -192,8 +194,10 @@ def invariant_form(matrices: Array) -> Array | None:
     rows, columns = np.triu_indices(n)
     basis = np.zeros((len(rows), n, n))
     basis[np.arange(len(rows)), rows, columns] = basis[np.arange(len(rows)), columns, rows] = 1.0
-    made = np.swapaxes(matrices, 1, 2)[:, None] @ basis + basis @ matrices[:, None]
-    gram = np.einsum("apij,aqij->pq", made, made)
+    # random elements generate the algebra; the result is checked on all matrices
+    some = matrices if len(matrices) <= ELEMENTS else np.tensordot(_mixing(len(matrices)), matrices, 1)
+    made = np.moveaxis(np.swapaxes(some, 1, 2)[:, None] @ basis + basis @ some[:, None], 1, 0).reshape(len(basis), -1)
+    gram = made @ made.T
     values, vectors = np.linalg.eigh(gram)
     kernel = vectors[:, values <= FORM_RTOL * max(float(values[-1]), 1.0)]
     if not kernel.shape[1]:
@@ -207,6 +211,13 @@ def invariant_form(matrices: Array) -> Array | None:
     form = near if np.abs(form - near).max() <= FORM_RTOL else form
     defect = np.abs(np.swapaxes(matrices, 1, 2) @ form + form @ matrices).max()
     return form if defect <= FORM_RTOL else None
+
+
+def _mixing(count: int) -> Array:
+    """Coefficients of a few random elements of the algebra, of norm 1."""
+    made = np.random.default_rng(0).normal(size=(ELEMENTS, count))
+    rows: Array = made / np.linalg.norm(made, axis=1, keepdims=True)
+    return rows
 
 
 def _are_smooth(quadrics: Quadrics, points: Array) -> bool:

@@ -94,9 +94,9 @@ def tight_inverse(action: Action, points: Array, rank: int) -> TightInverse | No
     form = invariant_form(matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300))
     if form is None:
         return None
-    gram_inverse: Array = np.linalg.inv(action.inner_product.matrix)
-    corners = action.infinitesimal.right(np.eye(size))
-    trace = np.einsum("pia,ab,qjb,ij->pq", corners, gram_inverse, corners, form) / rank
+    gram_inverse = np.linalg.inv(action.inner_product.matrix).astype(np.float64)
+    corners = np.asarray(action.infinitesimal.right(np.eye(size)))
+    trace = (corners @ gram_inverse).reshape(size, -1) @ (form.T @ corners).reshape(size, -1).T / rank
     made = TightInverse(form, gram_inverse, (trace + trace.T) / 2, action.inner_product.invariant)
     if not made.constant:
         rows = np.arange(max(len(flat), SAMPLES)) % len(flat)

@@ -179,7 +179,7 @@ class TaylorSeries(LocalStep):
         # the smallest root is found by integer powers, as a root is the expensive operation
         smallest, root = bounds[0][0], 1 / n
         for i, (bound, k) in enumerate(bounds[1:], 1):
-            smaller = True
+            smaller: Any = True
             for other, j in bounds[:i]:
                 smaller = smaller & (bound**j < other**k)
             smallest, root = xp.where(smaller, bound, smallest), xp.where(smaller, 1 / k, root)
