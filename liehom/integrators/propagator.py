@@ -49,6 +49,8 @@ from liehom.typing import IntegerArray, Pytree, Values
 
 DEFAULT_ORDER = 6
 """Order of the default step with fixed step sizes."""
+RTOL, ATOL = 1e-6, 1e-9
+"""Default tolerances."""
 WARNS: ContextVar[bool] = ContextVar("WARNS", default=True)
 """Whether an `OrderWarning` is issued."""
 
@@ -237,18 +239,14 @@ class Propagator:
         return next((x for x in (args, self.args, self.field.args) if x is not None), None)
 
     def _step_for(
-        self, *, dt: npt.ArrayLike | None = None, rtol: float = 1e-6, atol: npt.ArrayLike = 1e-9, **_: object
+        self, *, dt: npt.ArrayLike | None = None, rtol: float = RTOL, atol: npt.ArrayLike = ATOL, **_: object
     ) -> Step:
         """The step of a call with these options."""
         if self.step is not None:
             return self.step
         if self._new_engine is None and self._engines:
             return next(iter(self._engines))
-        if dt is not None:
-            return LieTaylor(DEFAULT_ORDER)
-        return Taylor.for_tolerance(
-            positive("rtol", rtol, zero=True) + least_atol(atol, self.field.representation.size)
-        )
+        return default_step(dt, rtol, least_atol(atol, self.field.representation.size))
 
     def _engine_for(self, step: Step) -> Engine:
         """The engine for a step."""
@@ -266,8 +264,8 @@ class Propagator:
         *,
         args: Pytree = None,
         dt: npt.ArrayLike | None = None,
-        rtol: float = 1e-6,
-        atol: npt.ArrayLike = 1e-9,
+        rtol: float = RTOL,
+        atol: npt.ArrayLike = ATOL,
         t_eval: npt.ArrayLike | None = None,
         dense_output: bool = False,
         events: EventFunction | Sequence[EventFunction] | None = None,
@@ -340,6 +338,19 @@ class Propagator:
     def __repr__(self) -> str:
         step = "default step" if self.step is None else repr(self.step)
         return f"Propagator({self.field!r}, {step}, engine={self.engine.name!r})"
+
+
+def default_step(dt: npt.ArrayLike | None, rtol: float, atol: float) -> Step:
+    """The step for given sizes, or for tolerances, where none is given.
+
+    Examples
+    --------
+    >>> default_step(0.1, 1e-6, 1e-9), default_step(None, 1e-10, 0.0)
+    (LieTaylor(n=6), Taylor(n=13))
+    """
+    if dt is not None:
+        return LieTaylor(DEFAULT_ORDER)
+    return Taylor.for_tolerance(positive("rtol", rtol, zero=True) + atol)
 
 
 def has_fixed_points(problem: Problem) -> bool:

@@ -287,11 +287,11 @@ def test_without_matplotlib_the_extra_is_named_before_the_work(command: str, mon
 def interrupted_after(steps: int, monkeypatch: pytest.MonkeyPatch, *words: str) -> Result:
     plain, count = Run.advance, [0]
 
-    def advance(self: Run) -> None:
+    def advance(self: Run, *rest: Any) -> None:
         count[0] += 1
         if count[0] > steps:
             raise KeyboardInterrupt
-        plain(self)
+        plain(self, *rest)
 
     with monkeypatch.context() as patch:
         patch.setattr(Run, "advance", advance)
@@ -327,6 +327,12 @@ def test_a_checkpoint_of_something_else_is_refused(monkeypatch: pytest.MonkeyPat
 
 
 # -- bad input -------------------------------------------------------------------------------------------
+def test_a_point_that_the_group_fixes_stays_and_has_no_order_to_measure() -> None:
+    fixed = variant(point=[0, 0, 0])
+    assert liehom("integrate", fixed).exit_code == 0
+    refused(liehom("order", fixed), "orbit")
+
+
 @pytest.mark.parametrize("command", ["integrate", "order"])
 @pytest.mark.parametrize(
     ("keys", "named"),
@@ -334,7 +340,6 @@ def test_a_checkpoint_of_something_else_is_refused(monkeypatch: pytest.MonkeyPat
         ({"generator": None}, "'generator' nor 'vector_field'"),
         ({"point": None}, "'point'"),
         ({"t_span": None}, "--t-span"),
-        ({"point": [0, 0, 0]}, "orbit"),
         ({"generator": ["1/m1", "0", "0"]}, "generator[0] is inf"),
         ({"generator": ["0", "log(m1 - 1)", "0"]}, "generator[1] is nan"),
         ({"generator": ["1", "1", "10**400"]}, "generator[2]"),

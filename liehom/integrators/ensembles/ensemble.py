@@ -18,11 +18,12 @@ import numpy.typing as npt
 from liehom.correctors.step import as_step
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous import GeneratorField
-from liehom.integrators.arguments import EnsembleOptions
+from liehom.integrators.arguments import EnsembleOptions, least_atol
 from liehom.integrators.engines import engine_option
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, Fields, solved
 from liehom.integrators.ensembles.merging import merged
 from liehom.integrators.points import points_of
+from liehom.integrators.propagator import ATOL, RTOL, default_step
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.solution import Solution, as_arrays, from_arrays, warn_of_order
 from liehom.parallel import ExecutorLike, completed, open_store
@@ -240,9 +241,13 @@ def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
 
 def _renamed(options: EnsembleOptions, stacklevel: int) -> EnsembleOptions:
     """The options with `engine` in place of its former name `compile`, and a step in place of its name."""
-    renamed = options.copy()
+    renamed: EnsembleOptions = options.copy()
     if isinstance(renamed.get("step"), str):
         renamed["step"] = as_step(renamed["step"] or "")
+    if renamed.get("step") is None and renamed.get("dt") is None:
+        # by its name in the fingerprint, so that a store that was begun with another default is not continued
+        atol = renamed.get("atol", ATOL)
+        renamed["step"] = default_step(None, renamed.get("rtol", RTOL), least_atol(atol, np.size(atol)))
     if "compile" in renamed:
         renamed["engine"] = engine_option(options.get("engine", "numpy"), renamed.pop("compile"), stacklevel=stacklevel)
     return renamed

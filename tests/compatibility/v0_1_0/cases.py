@@ -208,7 +208,7 @@ OBJECTS: dict[str, Case] = {
         lambda: lh.integrate(free(), (0, 1), POINT, step=lh.Conserving(lh.Heun(), energy), dt=0.1), solution
     ),
     "ensemble solution": Case(
-        lambda: lh.integrate(field(), (0, 1), sphere(3, 4), t_eval=np.array([0.5, 1.0])), solution
+        lambda: lh.integrate(field(), (0, 1), sphere(3, 4), step=lh.LieTaylor(6), t_eval=np.array([0.5, 1.0])), solution
     ),
     "report": Case(lambda: solved(dt=0.25, step=lh.Corrected(lh.Heun(), 3)).report, text),
     # systems of the paper
