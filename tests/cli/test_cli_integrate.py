@@ -287,11 +287,11 @@ def test_without_matplotlib_the_extra_is_named_before_the_work(command: str, mon
 def interrupted_after(steps: int, monkeypatch: pytest.MonkeyPatch, *words: str) -> Result:
     plain, count = Run.advance, [0]
 
-    def advance(self: Run, *rest: Any) -> None:
+    def advance(self: Run, *rest: Any, **more: Any) -> None:
         count[0] += 1
         if count[0] > steps:
             raise KeyboardInterrupt
-        plain(self, *rest)
+        plain(self, *rest, **more)
 
     with monkeypatch.context() as patch:
         patch.setattr(Run, "advance", advance)
