@@ -331,8 +331,8 @@ class LandauLifshitz:
             self._check_together(step, dt, options)
         span = tuple(t_span)
         if self.temperature:
-            if options.get("engine", "numpy") != "numpy" or options.get("compile") is not None:
-                raise InputError("thermal noise is drawn in numpy: take engine='numpy'")
+            if options.get("engine", "numpy") not in (("numpy", "llvm") if self.coupled else ("numpy",)):
+                raise InputError("noise is compiled by engine='llvm' for coupled spins only: take engine='numpy'")
             step = self._thermal(step, dt, span, spins.shape, seed)
         elif seed is not None:
             raise InputError("a seed is given, but the temperature is 0: there is no noise")

@@ -86,7 +86,8 @@ class ThermalStep(Step):
     def __init__(
         self, step: Step, increments: Increments, response: Callable[[Values, Array], Values], begin: float
     ) -> None:
-        self.step, self.increments, self.response, self.begin = step, increments, response, begin
+        self.step, self.increments, self.begin = step, increments, begin
+        self.response = response
 
     @property
     def order(self) -> int:
@@ -98,9 +99,7 @@ class ThermalStep(Step):
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
         if error_terms:
             raise InputError("steps with thermal noise have a fixed size: give dt")
-        first = float(np.max(t))
-        size = self.increments.size
-        noise = self.increments(int(np.rint(abs(first - self.begin) / size))) / size
+        noise = self.noise(float(np.max(t)))
 
         def noisy(point: Values, time: Real = 0.0) -> Values:
             made: Any = psi.field.psi(point, time)
@@ -110,6 +109,11 @@ class ThermalStep(Step):
         field = psi.field
         made = GeneratorField(field.representation, noisy, time_dependent=True, sites=field.sites)
         return self.step.at(action, Generator(made, psi.orbit_dimension, psi.start), m, t)
+
+    def noise(self, t: float) -> Array:
+        """The noise of the step that begins at a time, as a field."""
+        size = self.increments.size
+        return self.increments(int(np.rint(abs(t - self.begin) / size))) / size
 
     def __repr__(self) -> str:
         noise = self.increments

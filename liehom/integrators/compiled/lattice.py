@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time as wall
 from dataclasses import replace
-from typing import Any, final
+from typing import Any, Protocol, final, runtime_checkable
 
 import numpy as np
 
@@ -27,6 +27,21 @@ from liehom.typing import Array, Values
 
 SECONDS_PER_CALL = 0.5
 """Seconds of steps in machine code between progress, checkpoints and Ctrl-C."""
+
+
+@runtime_checkable
+class NoisyStep(Protocol):
+    """A step whose psi has a field of noise added, which is constant over the step."""
+
+    step: Step
+
+    def noise(self, t: float) -> Array:
+        """The noise of the step at a time, of the shape of the points."""
+        ...
+
+    def response(self, m: Values, w: Values) -> Values:
+        """The generator of the noise w at m."""
+        ...
 
 
 @final
@@ -61,6 +76,7 @@ class LatticeStep(Step):
         self, step: Step, field: GeneratorField, action: Action, orbit_dimension: int, *, workers: int = 1
     ) -> None:
         self.step, self.workers = step, workers
+        self._noisy: NoisyStep | None = step if isinstance(step, NoisyStep) else None
         try:
             recorded = _Recorded(step, field, action, orbit_dimension)
         except TraceError as error:
@@ -109,11 +125,25 @@ class LatticeStep(Step):
                     errors[index] = 0.0
                 continue
             self.kernel.put(m[index])
-            self.kernel.run(0, 1, float(t[index + first]), size, self.workers)
+            begin = float(t[index + first])
+            if self._noisy is not None:
+                self.kernel.put(self._noisy.noise(begin)[index], "w")
+            self.kernel.run(0, 1, begin, size, self.workers)
             points[index] = self.kernel.get()
             if errors is not None:
                 errors[index] = self.kernel.get("e")
         return points, errors
+
+    def advance(self, m: Array, index: tuple[int, ...], steps: range, origin: float, size: float) -> Array:
+        """The points of one lattice of an ensemble after steps of a size, step k from origin + k size."""
+        self.kernel.put(m)
+        if self._noisy is None:
+            self.kernel.run(steps.start, steps.stop, origin, size, self.workers)
+            return self.kernel.get()
+        for k in steps:
+            self.kernel.put(self._noisy.noise(origin + k * size)[index], "w")
+            self.kernel.run(k, k + 1, origin, size, self.workers)
+        return self.kernel.get()
 
     def __repr__(self) -> str:
         return repr(self.step)
@@ -151,6 +181,8 @@ class _Recorded:
 
     def __init__(self, step: Step, field: GeneratorField, action: Action, orbit_dimension: int) -> None:
         self.field, self.calls = field, 0
+        self.noisy: NoisyStep | None = step if isinstance(step, NoisyStep) else None
+        step = step if self.noisy is None else self.noisy.step
         self.tape = tape = Tape()
         self.inputs = SiteInputs(tape, field.sites)
         self.time, self.size = self.inputs.fresh(), self.inputs.fresh()
@@ -174,6 +206,11 @@ class _Recorded:
     def _here(self) -> tuple[int, ...]:
         return (0,) * len(self.field.sites)
 
+    def _loaded(self, plane: tuple[str, int], count: int) -> LatticeTraced:
+        """The numbers of planes at the site."""
+        loads = np.array([self.inputs.load((*plane, c), self._here) for c in range(count)], dtype=object)
+        return LatticeTraced(self.inputs, Traced(self.tape, loads.reshape((1,) * len(self._here) + loads.shape)))
+
     def _psi(self, m: Values, t: Values) -> Values:
         """Values of psi at a stage, as inputs that stand for them."""
         if type(m) is not Traced or type(t) is not Traced:
@@ -191,10 +228,12 @@ class _Recorded:
             self.stages[-1].stores += [((*plane, c), x) for c, x in enumerate(entries)]
             self.stages.append(Stage())
         self.calls += 1
-        loads = np.array([self.inputs.load((*plane, c), self._here) for c in range(len(entries))], dtype=object)
-        point = LatticeTraced(self.inputs, Traced(tape, loads.reshape((1,) * lattice + loads.shape)))
+        point = self._loaded(plane, len(entries))
         moment = LatticeTraced(self.inputs, Traced(tape, np.broadcast_to(t.entries.reshape(()), (1,) * lattice)))
         found: Any = self.field.psi(point, moment)  # type: ignore[arg-type]
+        if self.noisy is not None:
+            noise: Any = self._loaded(("w", 0), len(entries))
+            found = found + self.noisy.response(point, noise)  # type: ignore[arg-type]
         values = found.inner.entries if isinstance(found, LatticeTraced) else Traced(tape, found).entries
         made = np.empty(self.field.representation.algebra.dimension, dtype=object)
         for a, x in enumerate(np.broadcast_to(values, (*(1,) * lattice, len(made))).reshape(-1)):
@@ -234,12 +273,10 @@ class LatticePath:
         if steps < 1 or int(np.min(now.taken)) != taken:
             return False
         begin = wall.perf_counter()
-        kernel, sites = self.step.kernel, self.step.kernel.layout.sites
+        sites = self.step.kernel.layout.sites
         made = np.empty(run.start.shape)
         for index in np.ndindex(*run.shape[: len(run.shape) - len(sites)]):
-            kernel.put(now.m[index])
-            kernel.run(taken, taken + steps, float(run.span[0]), size, self.step.workers)
-            made[index] = kernel.get()
+            made[index] = self.step.advance(now.m[index], index, range(taken, taken + steps), float(run.span[0]), size)
         if not np.isfinite(made).all():
             self.stopped = True  # from here on the run makes the steps one by one, and finds the one that fails
             return False

@@ -25,7 +25,7 @@ from liehom.tracing.machine_code.writer import Writer
 from liehom.typing import Array, IntegerArray
 
 Plane: TypeAlias = tuple[str, int, int]
-"""Name of a plane: "m" the point, "y" points of stages, "f" values of psi, "e" the error, "array" given numbers."""
+"""Plane: "m" the point, "y" points of stages, "f" values of psi, "e" the error, "w" noise, "array" given numbers."""
 
 PAGE, SKEW = 512, 80
 """Planes begin 80 numbers beyond a multiple of 512: planes that begin alike compete for the same cache lines."""
@@ -286,10 +286,12 @@ class LatticeKernel:
         stages: dict[str, list[type]] = {f"stage{k}": [p, p, i, i, i, d, d] for k in range(len(self.stages))}
         return {**stages, "margins": [p, p, p, i], "run": [p, p, i, i, p, p, i, i, i, d, d]}
 
-    def put(self, m: Array) -> None:
-        """Store points (*sites, N) as the point."""
+    def put(self, m: Array, name: str = "m") -> None:
+        """Store numbers (*sites, N) as the point, or as the noise "w"."""
         for c in range(self.coordinates):
-            plane = self._plane(("m", 0, c))
+            if (name, 0, c) not in self.places:
+                continue
+            plane = self._plane((name, 0, c))
             self.layout.interior(plane)[...] = m[..., c]
             plane[self.layout.targets] = plane[self.layout.sources]
 

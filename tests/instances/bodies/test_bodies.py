@@ -241,6 +241,17 @@ def test_gradients_by_jax_agree_with_differences() -> None:
     assert abs(slope[10] - (ends[0] - ends[1]) / (2 * h)) < 1e-8
 
 
+def test_args_of_a_torque_are_inputs_of_every_engine() -> None:
+    pytest.importorskip("llvmlite")
+    body = lh.AttitudeBody(TENSOR, lambda s, t, args: -args["drag"] * s.velocity)
+    plain = lh.AttitudeBody(TENSOR, lambda s: -0.2 * s.velocity)
+    y = body.start(Q0, velocity=[0.1, 0.2, 1.0])
+    wanted = plain.integrate((0, 2), y, step=lh.RKMK("rk4"), dt=0.1).y
+    for engine in ("numpy", "llvm"):
+        made = body.integrate((0, 2), y, step=lh.RKMK("rk4"), dt=0.1, args={"drag": 0.2}, engine=engine).y
+        np.testing.assert_allclose(made, wanted, rtol=0, atol=1e-13)
+
+
 # -- refusals ----------------------------------------------------------------------------------------------
 def test_arguments_that_are_refused() -> None:
     body = lh.AttitudeBody([1, 2, 3])

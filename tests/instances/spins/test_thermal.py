@@ -156,6 +156,22 @@ def test_seeds_reproduce_runs_and_distinguish_them() -> None:
     assert np.unique(first.y[..., 0, -1]).size == 12  # every site has noise of its own
 
 
+def test_noise_of_a_lattice_is_compiled() -> None:
+    pytest.importorskip("llvmlite")
+    damping = 0.1 + 0.4 * np.random.default_rng(1).random((5, 4))
+    model = LandauLifshitz((5, 4), exchange=1.0, dmi=0.3, damping=damping, temperature=0.5)
+    m0 = np.random.default_rng(0).normal(size=(2, 5, 4, 3))
+    m0 /= np.linalg.norm(m0, axis=-1, keepdims=True)
+    for step in (lh.Heun(), lh.Euler()):
+        plain, made = (
+            model.integrate((0, 1), m0, step=step, dt=0.1, seed=3, t_eval=[0.35, 1.0], engine=engine)
+            for engine in ("numpy", "llvm")
+        )
+        assert np.abs(plain.y - made.y).max() < 1e-13
+    cold = LandauLifshitz((5, 4), exchange=1.0, dmi=0.3, damping=damping)
+    assert np.abs(cold.integrate((0, 1), m0, dt=0.1, t_eval=[1.0]).y[..., 0] - made.y[..., -1]).max() > 0.1
+
+
 def test_what_noise_needs() -> None:
     warm, m = LandauLifshitz(damping=0.1, temperature=0.5), [0, 0, 1.0]
     with pytest.raises(lh.errors.InputError, match="one number dt"):
