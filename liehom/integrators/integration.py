@@ -142,14 +142,18 @@ def integrate(
     False, and an `OrderWarning` names the first time.
 
     The engines "llvm" and "jax" trace the step once, with everything that derives it, and compile it to machine code,
-    which "llvm" caches on disk. Compiled code makes the ordinary steps. The first and the last step, steps that pass a
-    time of `t_eval` and steps that fail are made without it. The results agree to round-off. psi is called while the
+    which "llvm" caches on disk. With "llvm" all steps are compiled; those that fail are made again in numpy, which says
+    why. With "jax" the first and the last step, and steps that pass a time of `t_eval`, are made in numpy. The results
+    agree to round-off. psi is called while the
     step is traced, not in the steps, so it must be the same function all the time. `nfev` is the number of calls that
     the trajectory with the most of them would make. Adaptive step sizes depend on the estimate of the error, a small
     difference of large numbers. If it is far below the tolerance, sizes may differ by 1e-7 relatively, and a step
     accepted by less than that may be rejected.
 
     `integrate` makes a `Propagator` and calls it once. Keep the propagator for many calls: it traces and compiles once.
+    With the engine "llvm", a call that differs from an earlier one in `y0` (a float64 array) and `args` only runs
+    machine code and nothing else. For this the step must record no numbers for `report`, and must have fixed sizes or
+    `t_eval`.
 
     With ``engine="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default the initial and the
     final time), and works under jax.jit, jax.grad and jax.vmap. It needs `dt`. Under jax.jit and

@@ -3,9 +3,9 @@
 A *tracer* (`Expr`) is a number, or a boolean, whose value is known only when the compiled code runs.  `Traced` is an
 array of tracers, on which numpy code runs; a `Tape` records the operations.  A *lane* is one trajectory of an ensemble,
 and a *mask* a boolean in each lane; a lane that has nothing left to do is masked out, so it keeps its values.  An
-*ordinary step* has no output time, no end of the time span and no failure in it; compiled code takes ordinary steps
-only, numpy takes the others.  Users reach this folder through the option ``engine`` of `liehom.integrate`; see
-docs/api/tracing.md.
+*ordinary step* has no output time, no end of the time span and no failure in it: the loops of JAX make ordinary steps
+only, those of LLVM all steps that do not fail.  Users reach this folder through the option ``engine`` of
+`liehom.integrate`; see docs/api/tracing.md.
 """
 
 from liehom.tracing.array import Traced as Traced

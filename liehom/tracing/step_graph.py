@@ -95,7 +95,7 @@ class StepGraph:
 
     @property
     def outputs(self) -> list[Expr]:
-        """All outputs: point, time, booleans, step sizes, recorded numbers; those of stops come last."""
+        """All outputs: point, time, booleans, step sizes, recorded numbers, and last those of stops."""
         extra = [x for x in (self.elapsed, self.ordinary) if x is not None]
         sizes = self.sizes
         adapted = [] if sizes is None else [sizes.tried, sizes.accepted, sizes.proposal]

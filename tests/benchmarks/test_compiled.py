@@ -23,6 +23,7 @@ import pytest
 import liehom as lh
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.tracing import Kernel, padded
+from tests.benchmarks import whole_call
 
 LANES, STEPS, H = 10_000, 200, 0.01
 INERTIA = np.array([1.0, 0.5, 0.25])
@@ -173,3 +174,9 @@ def test_compile_time(benchmark: Any, tmp_path: Path, monkeypatch: pytest.Monkey
     assert made()
     benchmark.extra_info |= {"first": first - begin, "cached": time.perf_counter() - first}
     benchmark.pedantic(made, rounds=1)
+
+
+def test_whole_calls_are_measured() -> None:
+    case = whole_call.CASES[1]
+    found = whole_call.row(case, lanes=20, rounds=1)
+    assert all(cost > 0 and error < 1e-5 for cost, error in found.values())

@@ -88,6 +88,8 @@ CASES = (
     Case("c", SPHERE, lh.LieTaylor(4), {"dt": 0.1}, tolerance=1e-9, by_hand=0.01),
     Case("d body", BODY, lh.LieTaylor(6), {"rtol": 1e-6}),
     Case("d S^3", SPHERE, lh.LieTaylor(6), {"rtol": 1e-6}, tolerance=1e-9, by_hand=0.01),
+    Case("d body Taylor", BODY, lh.Taylor(16), {"rtol": 1e-6}),
+    Case("d S^3 Taylor", SPHERE, lh.Taylor(16), {"rtol": 1e-6}, tolerance=1e-9, by_hand=0.01),
     Case("e body", BODY, lh.Corrected(lh.Euler(), 4), {"dt": 0.1}),
     Case("e S^3", SPHERE, lh.Corrected(lh.Euler(), 4), {"dt": 0.1}, tolerance=1e-9, by_hand=0.01),
 )
@@ -141,7 +143,7 @@ def main(names: Sequence[str]) -> None:
         found = row(case)
         ours = found["liehom"][0]
         cells = [f"{name} {cost:8.2f} us, {error:7.1e} ({cost / ours:.2f})" for name, (cost, error) in found.items()]
-        print(f"{case.name:7s} {case.step!r:28s} " + "; ".join(cells), flush=True)
+        print(f"{case.name:13s} {case.step!r:28s} " + "; ".join(cells), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Compiled runs: a step traced as a graph, then run by LLVM or JAX instead of numpy.
 
-Compiled code makes ordinary steps only, those without an output time, an end or a failure in them, and
-`liehom.integrators.run` makes the others. `liehom.integrators.propagator` uses it; see docs/tutorials/compiled.md.
+Machine code makes all steps, the first, the last and those at output times included; JAX on numpy arrays makes ordinary
+steps only. `liehom.integrators.run` makes the others, and those that fail. `liehom.integrators.propagator` uses this
+wing; see docs/tutorials/compiled.md.
 """

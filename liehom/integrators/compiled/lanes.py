@@ -25,7 +25,7 @@ if hasattr(os, "register_at_fork"):
 
 
 class Made(NamedTuple):
-    """What a kernel has made of some lanes.
+    """The steps that a kernel has made of some lanes.
 
     Attributes
     ----------

@@ -1,8 +1,8 @@
 """LlvmEngine: runs in machine code, every step of every trajectory, in lockstep or with a size of its own.
 
-The engine keeps machine code, the traces behind it and schedules from call to call. What compiled code does not
-decide (a point that is not finite, a clock that is not admissible, equations that were not solved) ends the compiled
-part of a trajectory before that step, which the automaton then makes or diagnoses.
+The engine keeps machine code, the traces behind it and schedules from call to call. A point that
+is not finite, a clock that is not admissible, or equations that were not solved end the compiled part of a trajectory
+before that step, which the automaton then makes or diagnoses.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ class CodeStore:
         return key, self.graphs[key]
 
     def kernel(self, key: Hashable, graph: StepGraph, lanes: int) -> Kernel:
-        """The machine code of a graph, in blocks for so many lanes."""
+        """The machine code of a graph, in blocks for this number of lanes."""
         width = block_width(graph, lanes)
         if (key, width) not in self.kernels:
             self.kernels[key, width] = Kernel(graph, width)
@@ -187,7 +187,7 @@ def _limits(run: Run) -> dict[str, float]:
 
 
 def compiled_run(run: Run, store: CodeStore) -> _CompiledRun:
-    """The fast path of a run: makes its steps by machine code; returns whether there are more for it to be made.
+    """The fast path of a run, which makes its steps by machine code and returns whether there are more to be made.
 
     Raises
     ------

@@ -29,7 +29,7 @@ SIZES = frozenset(["dt", "rtol", "atol"])
 
 
 def plan_key(t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Hashable | None:
-    """What a plan is for: times, sizes, shapes; None if the call has other options or arguments of other types.
+    """The times, sizes and shapes of a call; None if it has other options or arguments of other types.
 
     Examples
     --------
@@ -129,7 +129,7 @@ class Plan:
             state |= {} if kernel.graph.sizes is None else {"kept": float(self.starts)}
             self.fields = {"end": most, "stops": stops, "last_stop": len(stops) - 2, "origin": begin}
         self.first: Array = kernel.packed(self.lanes, state)
-        # lanes with sizes of their own have rows for the end and for what nobody reads
+        # lanes with sizes of their own have rows for the end, and one that is not read
         self.out_shape = (self.rows.stop + 2, self.n, self.first.shape[1])
         self.constants = kernel.run_values(self.values)
         self.changing = [(i, name) for i, name in enumerate(kernel.run_constants) if name.startswith("args")]

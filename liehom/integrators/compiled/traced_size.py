@@ -148,7 +148,7 @@ def size_to_stop(
         A step with a time reparametrization τ; None if the time that passes is the size.
     h, left : traced arrays of shape ()
         The signed size of the step, and the signed time to the stop.
-    bounds : (traced direction, traced time below which a rest is no step)
+    bounds : (traced direction, traced time below which a rest is not a step)
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """exp(A) m in LLVM assembly: the Taylor polynomial by Horner's rule, of a degree that follows from the norm of A.
 
 The degrees go up in levels. A block of lanes enters at the level of its largest norm; where the level of a lane begins,
-the lane begins too. So the result of a lane does not depend on the lanes beside it.
+the lane begins too. So the result of a lane does not depend on the other lanes of the block.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ STRAIGHT_OPERATIONS = 40
 
 
 def struct_of(w: Writer, count: int) -> str:
-    """The type of so many vectors."""
+    """The type of a structure of `count` vectors."""
     return "{" + ", ".join([w.vector] * count) + "}"
 
 

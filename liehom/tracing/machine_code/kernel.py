@@ -67,7 +67,7 @@ class Kernel:
         return made
 
     def packed(self, lanes: int, given: Mapping[str, Any]) -> npt.NDArray[np.float64]:
-        """The state of lanes as rows (names, lanes in whole blocks): given values, "x" for the points (N, L); else 0.
+        """Rows (names, lanes in whole blocks) of the state: given values, with "x" for the points (N, L), and else 0.
 
         The lanes that fill up the last block are at the first point, so that their numbers are not out of bounds.
         """

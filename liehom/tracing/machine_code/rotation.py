@@ -1,4 +1,4 @@
-"""sin(r)/r and cos(r) of r^2 in LLVM assembly: polynomials near 0, libm far from 0; a block branches as one."""
+"""sin(r)/r and cos(r) of r^2 in LLVM assembly: polynomials near 0, libm far from 0."""
 
 from __future__ import annotations
 

@@ -227,9 +227,9 @@ class _RunWriter:
 class _Lockstep(_RunWriter):
     """Micro-steps of a schedule: `sizes`, `times`, and `codes`: bit 0 whether to go there, the rest the row of `out`.
 
-    Consecutive micro-steps of one size and code, up to number `repeats` of the first, are a *segment*; only one that is
-    alone is stored, or does not go on. What depends on the size alone is computed once for a segment. `count` of a lane
-    that fails is the micro-step that failed.
+    Consecutive micro-steps of one size and code, up to number `repeats` of the first, are a *segment*. A micro-step
+    that is stored, or does not go on, is a segment of its own. Numbers that depend on the size alone are computed once
+    for a segment. `count` of a lane that fails is the micro-step that failed.
     """
 
     def _loop_head(self, state: dict[str, str], before: str) -> None:
@@ -402,7 +402,7 @@ class _OwnSizes(_RunWriter):
         self.line(f"%stop.time.mixed = fadd {v} {self._at_stops(changed['stop'])}, {w.splat(-0.0)}")
         alive = w.emit(f"fcmp ogt {v} %alive.mixed, {w.splat(0.0)}")
         self.line(f"%going.mixed = or i1 {w.any(alive)}, false")
-        unused = w.emit(f"fadd {v} {last}, {w.splat(1.0)}")  # a row of `out` that nobody reads
+        unused = w.emit(f"fadd {v} {last}, {w.splat(1.0)}")  # a row of `out` that is not read
         some = w.emit(f"or {w.mask} {stops}, {done}")
         row = self._select(some, "%stop", unused)
         self.line(f"br i1 {w.any(some)}, label %output, label %mixed.end")
