@@ -38,7 +38,7 @@ MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24
 
 
 class Landing(NamedTuple):
-    """What the landing on the orbits of a run uses.
+    """Data for the landing on the orbits of a run.
 
     Attributes
     ----------
@@ -70,12 +70,12 @@ class Taylor(Step):
     Notes
     -----
     The series of the trajectory costs n (n + 1) / 2 actions rho(psi_i) m_k, and no bracket. How it is landed on the
-    orbit follows from the orbit (theory/taylor):
+    orbit follows from the orbit (theory/taylor).
 
-    * by projection onto level sets of invariant quadratic forms, if the orbit is open in them. Spheres, hyperboloids,
-      light cones and their products are such orbits, and the levels are those at the start of the run;
-    * by nothing, if the orbit is open in V, or in V up to constant coordinates;
-    * otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
+    * By projection onto level sets of invariant quadratic forms, if the orbit is open in them. Spheres, hyperboloids,
+      light cones and their products are such orbits. The levels are those at the start of the run.
+    * By nothing, if the orbit is open in V, or in V up to constant coordinates.
+    * Otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
       is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
 
     An adaptive step size follows from the last two coefficients, without rejection: the terms m_(n-1) h^(n-1) and
