@@ -117,7 +117,7 @@ def test_what_cannot_be_corrected_is_refused() -> None:
     with pytest.raises(InputError, match="corrected already"):
         lh.Corrected(lh.Corrected(lh.Euler(), 2), 3)
     with pytest.raises(InputError, match="expected a step"):
-        lh.Corrected("euler", 2)  # type: ignore[arg-type]
+        lh.Corrected(2.0, 2)  # type: ignore[arg-type]
     for order in (0, 1.5, True):
         with pytest.raises(InputError, match="integer at least 1"):
             lh.Corrected(lh.Euler(), order)  # type: ignore[arg-type]
