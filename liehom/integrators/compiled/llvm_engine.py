@@ -38,6 +38,8 @@ OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
+MAX_PLANNED_LANES = 100_000
+"""Plans are kept for ensembles of at most this size, because they hold arrays of its size."""
 PLANNED_STEPS = 4
 """A plan makes at most so many times the steps of the first call."""
 RANKED = 64
@@ -104,6 +106,8 @@ class LlvmEngine:
         if o.checkpoint is not None or o.progress or o.dense_output or (run.schedule is None and o.t_eval is None):
             return
         shape = np.asarray(problem.start).shape
+        if np.prod(shape[:-1]) > MAX_PLANNED_LANES:
+            return
         kernel = self._store.kernel(key, graph, int(np.prod(shape[:-1], dtype=int)))
         if not all(isinstance(number, LaneConstant) for number in kernel.lane_constants):
             return
