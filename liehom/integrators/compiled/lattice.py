@@ -291,8 +291,8 @@ class LatticePath:
         return True
 
 
-def solved_on_lattice(problem: Problem) -> Solution:
-    """The solution of a problem whose trajectories are the sites of lattices.
+def lattice_step(problem: Problem) -> LatticeStep:
+    """The step of a problem whose trajectories are the sites of lattices, in machine code.
 
     Raises
     ------
@@ -302,13 +302,26 @@ def solved_on_lattice(problem: Problem) -> Solution:
     Examples
     --------
     >>> import liehom as lh
-    >>> chain, m = lh.LandauLifshitz((3,), exchange=1.0), np.eye(3)
-    >>> solved_on_lattice(lh.Propagator(chain.field, lh.Euler()).problem((0, 1), m, dt=0.1)).status
-    0
+    >>> chain = lh.LandauLifshitz((3,), exchange=1.0)
+    >>> lattice_step(lh.Propagator(chain.field, lh.Euler()).problem((0, 1), np.eye(3), dt=0.1))
+    Euler()
     """
     start: Any = problem.start
     if start.dtype != np.float64:
         raise InputError(f"engine='llvm' computes in float64, the start is of type {start.dtype}: take engine='numpy'")
     dimension = int(np.max(problem.orbit_dimension))
-    step = LatticeStep(problem.step, problem.field, problem.action, dimension, workers=cores())
+    return LatticeStep(problem.step, problem.bound, problem.action, dimension, workers=cores())
+
+
+def solved_on_lattice(problem: Problem, step: LatticeStep) -> Solution:
+    """The solution of a problem whose trajectories are the sites of lattices.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> chain = lh.LandauLifshitz((3,), exchange=1.0)
+    >>> problem = lh.Propagator(chain.field, lh.Euler()).problem((0, 1), np.eye(3), dt=0.1)
+    >>> solved_on_lattice(problem, lattice_step(problem)).status
+    0
+    """
     return executed(replace(problem, step=step), lambda run: LatticePath(step))

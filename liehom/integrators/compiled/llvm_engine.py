@@ -17,7 +17,7 @@ from liehom.correctors.step import Generator
 from liehom.errors import ConvergenceError, InputError
 from liehom.integrators.compiled.guard import with_guard
 from liehom.integrators.compiled.lanes import HandBack, Made, calls_of, lowest_numbers, records_of, run_blocks
-from liehom.integrators.compiled.lattice import solved_on_lattice
+from liehom.integrators.compiled.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
 from liehom.integrators.compiled.plan import Plan, plan_key, plan_names
 from liehom.integrators.compiled.schedule import Schedule, schedule
@@ -63,11 +63,17 @@ class LlvmEngine:
     def __init__(self) -> None:
         self._store = CodeStore()
         self._plans: dict[Hashable, Plan] = {}
+        self._lattice: LatticeStep | None = None
 
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if problem.field.sites:
-            return solved_on_lattice(problem)
+            step, self._lattice = self._lattice, None  # its planes serve one call at a time
+            if step is None or problem.args is not None:
+                step = lattice_step(problem)
+            solution = solved_on_lattice(problem, step)
+            self._lattice = step
+            return solution
         made: list[_CompiledRun] = []
 
         def fast_path(run: Run) -> Callable[[Run], bool]:

@@ -118,6 +118,23 @@ def test_threads_and_calls_of_any_length_give_the_same_numbers(monkeypatch: pyte
     assert not np.array_equal(ends[0], ends[3])
 
 
+def test_a_propagator_compiles_once_and_takes_args() -> None:
+    lattice, m = model((5, 4)), unit(11, 5, 4)
+    propagator = lh.Propagator(lattice.field, lh.Heun(), engine="llvm")
+    first, again = (propagator((0, 1), m, dt=0.1, t_eval=[1.0]).y for _ in range(2))
+    assert np.array_equal(first, again)
+    wanted = lattice.integrate((0, 0.7), m, step=lh.Heun(), dt=0.05, t_eval=[0.7]).y
+    np.testing.assert_allclose(propagator((0, 0.7), m, dt=0.05, t_eval=[0.7]).y, wanted, rtol=0, atol=1e-14)
+    field = lh.GeneratorField(
+        lattice.field.representation, lambda m, t, args: args * np.roll(m, 1, axis=-2), sites=(4,)
+    )
+    made = lh.Propagator(field, lh.Heun(), engine="llvm")
+    for strength in (0.5, 2.0):
+        plain = lh.integrate(field, (0, 1), m[0], step=lh.Heun(), dt=0.1, t_eval=[1.0], args=strength)
+        found = made((0, 1), m[0], dt=0.1, t_eval=[1.0], args=strength)
+        np.testing.assert_allclose(found.y, plain.y, rtol=0, atol=1e-14)
+
+
 def test_margins_repeat_the_other_side() -> None:
     layout = Layout((3, 4), (2, 1), 4)
     plane = np.full(layout.size, np.nan)
