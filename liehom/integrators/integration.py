@@ -155,9 +155,9 @@ def integrate(
     machine code and nothing else. For this the step must record no numbers for `report`, and must have fixed sizes or
     `t_eval`.
 
-    With ``engine="jax"`` and a JAX array y0 the result holds JAX arrays at t_eval (by default the initial and the
-    final time), and works under jax.jit, jax.grad and jax.vmap. It needs `dt`. Under jax.jit and
-    jax.vmap `report` only says what was asked for, and there is no warning; `statuses` is a JAX array.
+    With ``engine="jax"`` and a JAX array y0, args or times, the result holds JAX arrays at t_eval (by default the
+    initial and the final time), and works under jax.jit, jax.grad and jax.vmap (docs/gradients.md). Under jax.jit and
+    jax.vmap `report` only repeats the options, and there is no warning; `statuses` is a JAX array.
 
     Examples
     --------

@@ -22,8 +22,8 @@ def expanded_by_jax(function: Callable[..., Values], *operands: Jet | Values) ->
 
     Notes
     -----
-    Coefficient k is computed from the coefficients up to k of the operands, for each k anew: expansion to order n costs
-    O(n^3) operations, where functions written with numpy cost O(n^2).
+    Coefficient k is computed from the coefficients up to k of the operands, without those computed before. So the
+    expansion to order n costs O(n^3) operations. Functions written with numpy cost O(n^2).
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """A step at one point on JAX arrays, in two forms that give the same numbers to round-off.
 
 * "arrays": the step's own code runs on JAX arrays of shape (..., N).  Its operations are as many as those of the numpy
-  code, whatever N and dim g are, so that XLA compiles it fast.  psi sees the whole array, and may couple its points.
+  code, whatever N and dim g are.  XLA compiles it fast.  psi sees the whole array, and may couple its points.
 * "graph": the scalar graph of the step (`liehom.tracing`), with the trajectories on the last axis.  XLA compiles n
   operations in a time that grows like n^2, but short graphs run several times faster than arrays.
 """

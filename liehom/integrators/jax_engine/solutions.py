@@ -76,7 +76,7 @@ def solution_of(problem: Problem, dimension: int, times: JaxArray, found: Found)
 
 
 def _report(problem: Problem, dimension: int) -> Report:
-    """What was asked for; the order that is reached is not known while JAX traces."""
+    """The report that repeats the options; the order that is reached is not known while JAX traces."""
     step = problem.step
     return Report(
         step=repr(step),
