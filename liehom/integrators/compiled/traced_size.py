@@ -134,7 +134,8 @@ def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, 
         return None
     xp = namespace(m, t)
     bound = largest_size(limits.max_step, xp.abs(limits.end - t))
-    return xp.minimum(bound, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
+    found: Values = xp.minimum(bound, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
+    return found
 
 
 def size_to_stop(
