@@ -23,9 +23,9 @@ from liehom.integrators import step_named
 
 MARKERS = ("<!-- stiff: begin -->", "<!-- stiff: end -->")
 TARGET = 1e-5
-TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
-ENSEMBLE = 20
-REPEATS = 2
+TOLERANCES = [1e-4, 1e-5, 1e-6, 1e-7]
+ENSEMBLE = 10
+REPEATS = 1
 METHODS = ("radau5", "rodas4", "exprb4")
 
 
@@ -62,7 +62,13 @@ def systems() -> list[System]:
     def chase(m: Any, t: Any) -> Any:
         return 1e4 * np.cross(m, target(t))
 
-    spin = lh.LandauLifshitz(applied=turning, damping=1.0).field
+    llg = lh.LandauLifshitz(applied=turning, damping=1.0)
+
+    def horizontal(m: Any, t: Any) -> Any:  # without the isotropy, which would turn spins about themselves
+        psi = llg.generator(m, t)
+        return psi - np.sum(psi * m, axis=-1, keepdims=True) * m
+
+    spin = lh.GeneratorField(rho, horizontal)
 
     matrices = np.array([a.to_numpy() for a in four.matrices])  # <A_a m, e>: the generator of e - <m, e> m
 
@@ -120,16 +126,7 @@ def rows(system: System) -> list[str]:
     """Rows of the table for one system."""
     made = []
     start, many = system.starts[0], system.starts
-    reference = lh.integrate(
-        system.field,
-        (0, system.end),
-        many,
-        step=step_named("rodas4"),
-        rtol=1e-10,
-        atol=1e-10,
-        t_eval=[system.end],
-        engine="llvm",
-    ).y[..., -1]
+    exact = solve_ivp(system.right, (0, system.end), start, method="Radau", rtol=1e-9, atol=1e-10).y[:, -1]
 
     def peer(y0: Any, tolerance: float) -> Any:
         sol = solve_ivp(system.right, (0, system.end), y0, method="Radau", rtol=tolerance, atol=tolerance)
@@ -145,7 +142,7 @@ def rows(system: System) -> list[str]:
             return None
         return sol.y[..., -1] if sol.success else np.full_like(y0, np.nan)
 
-    single = matched(lambda tolerance: peer(start, tolerance), reference[0])
+    single = matched(lambda tolerance: peer(start, tolerance), exact)
     few = [peer(y, single[0]) for y in many[:5]] if single else []
     seconds = timed(lambda: [peer(y, single[0]) for y in many[:5]])[0] / 5 * ENSEMBLE if few and single else np.nan
     made.append(f"| {system.title} | scipy Radau | {single[1]:.0e} | {1e3 * single[2]:.0f} | {1e3 * seconds:.0f} |")
@@ -153,12 +150,12 @@ def rows(system: System) -> list[str]:
     print(made[-1], f"drift {drift:.1e}", flush=True)
     for name in METHODS:
         for engine in ("numpy", "llvm"):
-            one = matched(lambda t, name=name, engine=engine: own(name, start, engine, t), reference[0])
-            all_ = matched(lambda t, name=name, engine=engine: own(name, many, engine, t), reference)
-            if one is None or all_ is None:
+            one = matched(lambda t, name=name, engine=engine: own(name, start, engine, t), exact)
+            if one is None:
                 continue
-            made.append(f"| | {name}, {engine} | {all_[1]:.0e} | {1e3 * one[2]:.0f} | {1e3 * all_[2]:.0f} |")
-            print(made[-1], one[0], all_[0], flush=True)
+            spent, _ = timed(lambda name=name, engine=engine, one=one: own(name, many, engine, one[0]))
+            made.append(f"| | {name}, {engine} | {one[1]:.0e} | {1e3 * one[2]:.0f} | {1e3 * spent:.0f} |")
+            print(made[-1], one[0], flush=True)
     return made
 
 
