@@ -271,8 +271,8 @@ class _Call:
         from jax import numpy as jnp
 
         start, t0, t1, times, rtol, atol, max_step, first, most, *args = map(jax.lax.stop_gradient, leaves)
-        direction = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
-        tiny = 8 * float(jnp.finfo(start.dtype).eps) * jnp.maximum(jnp.abs(t0), jnp.abs(t1))
+        direction: Any = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
+        tiny: Any = 8 * float(np.finfo(start.dtype).eps) * jnp.maximum(jnp.abs(t0), jnp.abs(t1))
         limits = SizeLimits(rtol, atol, max_step, t1, direction, tiny)
         field, at = self._bound(start, args)
         step: Any = self.step

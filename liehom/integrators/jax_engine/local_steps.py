@@ -93,7 +93,7 @@ class LocalOnJax(NamedTuple):
         for _ in range(NEWTON_ITERATIONS):
             slope = 1 + sum(k * c * s ** (k - 1) for k, c in self.clock)
             s = s + (time - self.time(s)) / jnp.clip(slope, MIN_RATE, MAX_RATE)
-        bound = NEWTON_ROUNDOFFS * float(jnp.finfo(s.dtype).eps) * jnp.abs(time)
+        bound = NEWTON_ROUNDOFFS * float(np.finfo(s.dtype).eps) * jnp.abs(time)
         return s, jnp.abs(self.time(s) - time) <= bound
 
 
@@ -144,7 +144,8 @@ def _moved(local: LocalStep, m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
     found: Any = local.diagnostics(s[..., None])
     if "failed" in found:
         failed, near = (jnp.where(found[name][0], 1.0, zero) for name in ("failed", "near"))
-    code, valid = _code(point), local.valid(s[..., None])
+    valid: Any = local.valid(s[..., None])
+    code = _code(point)
     return Moved(point, code if valid is True else jnp.where(valid, code, np.int32(IMPLICIT)), failed, near)
 
 

@@ -154,7 +154,8 @@ def with_given_sizes(
 
     def body(state: State, time: JaxArray) -> State:
         # where all trajectories have landed, nothing is computed
-        return lax.cond(jnp.any(state.moving), one, lambda state, time: state, state, time)
+        made: State = lax.cond(jnp.any(state.moving), one, lambda state, time: state, state, time)
+        return made
 
     checkpointed = jax.checkpoint(body, prevent_cse=False)
 
@@ -191,7 +192,9 @@ def with_adaptive_sizes(
     from jax import lax
     from jax import numpy as jnp
 
-    lead, direction = m.shape[:-1], limits.direction
+    lead = m.shape[:-1]
+    direction: Any = limits.direction
+    stop: Any = limits.end
     psi = Generator(field, step.orbit_dimension)
     lanes, axes = int(np.prod(lead)), len(field.sites)
     places = jnp.arange(lanes)
@@ -200,16 +203,20 @@ def with_adaptive_sizes(
         state, proposal, sizes, tries = carried
         local = at(state.m, state.t)
         inner: Any = local.local
-        guess = first_size(limits, inner, psi, state.m, state.t)
+        guess: Any = first_size(limits, inner, psi, state.m, state.t)
         if guess is not None:
             proposal = jnp.where(jnp.isinf(proposal), guess, proposal)
+        h: Any
+        certain: Any
         h, certain = tried_size(limits, step.action, psi, inner, step.step, state.m, state.t, proposal)
-        to_end, solved = local.size_for(limits.end - state.t)
+        to_end, solved = local.size_for(stop - state.t)
         runs = local.runs(h)
-        last = jnp.where(runs, direction * (limits.end - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)
+        last = jnp.where(runs, direction * (stop - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)
         h = jnp.where(last & solved, to_end, h)
+        accepted: Any
+        proposal_after: Any
         accepted, proposal_after = judgement(limits, inner, state.m, h[..., None], axes)
-        after = jnp.where(last, limits.end, state.t + local.time(h))
+        after = jnp.where(last, stop, state.t + local.time(h))
         over = direction * (time - after) <= SLACK * jnp.abs(h)
         s, solved = local.size_for(jnp.where(over, time - state.t, h))
         moved = local.moved(jnp.where(over, s, h))
@@ -224,7 +231,7 @@ def with_adaptive_sizes(
         proposal = jnp.where(moving & ~(took & over), shrunk, proposal).astype(m.dtype)
         made = state.after(moved, after, took & ~over, took & over, direction)
         made = made.failing(moving & ~certain, TOO_SMALL)
-        return made.failing(moving & (state.count + 1 > most) & ~over, TOO_MANY), proposal, sizes, tries + 1
+        return made.failing(moving & (made.count >= most) & ~over, TOO_MANY), proposal, sizes, tries + 1
 
     def towards(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:
         carried = lax.while_loop(lambda c: jnp.any(c[0].moving), lambda c: one(c, time), carried)

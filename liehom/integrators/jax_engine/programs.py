@@ -161,7 +161,8 @@ def _shared(digest: str | None, kind: Hashable, make: Callable[[], Compiled], op
         if len(_SHARED) >= MAX_SHARED:
             _SHARED.pop(next(iter(_SHARED)))
         _SHARED[key] = jax.jit(make(), **options)
-    return _SHARED[key]
+    found: Compiled = _SHARED[key]
+    return found
 
 
 # -- digests ---------------------------------------------------------------------------------------------

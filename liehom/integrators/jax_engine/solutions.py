@@ -61,7 +61,7 @@ def solution_of(problem: Problem, dimension: int, times: JaxArray, found: Found)
         report = replace(report, stopped_at=ended.stopped_at)
     alone = found.code.ndim == 0 and not is_traced(code)
     return Solution(
-        t=times,  # type: ignore[arg-type]
+        t=times,
         y=y,
         sol=None,
         t_events=None,
