@@ -33,6 +33,8 @@ MAGNUS_ORDER = 4
 """Order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential."""
 SECOND_ORDER = 2
 """The same for any other Exp, which agrees with the true one through order 2."""
+EVEN = 2.0
+"""A term of a Taylor series is at most this, in units of what it is if the series converges evenly."""
 MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24
 """Bounds for the order that follows from a tolerance."""
 
@@ -168,23 +170,46 @@ class TaylorSeries(LocalStep):
     def size(self, limits: StepLimits) -> Array:
         """Largest step size (...,) at which the last two terms of the series are within the error that is allowed.
 
-        They are also at most a tenth of the length |X| h of the step, so that the series converges.
+        They are also at most a tenth of the length |X| h of the step, so that the series converges. They may vanish
+        where others do not, such as those of exp(t^3), so that the terms of the upper half of the orders count too.
         """
         n, xp = len(self.coefficients), namespace(limits.largest, limits.speed)
-        last = [over_sites(length(x), limits.axes) for x in self.coefficients[-2:]]
+        first = max(n // 2, 1)
+        terms = [over_sites(length(x), limits.axes) for x in self.coefficients[first - 1 :]]
+        before, last = terms[-2] if n > 1 else terms[-1], terms[-1]
         way: Any = xp.where(limits.speed > 0, SERIES_FRACTION * limits.speed, np.inf)
-        bounds = [(limits.allowed / last[-1], n)]  # h^k is at most this
+        a: Any = limits.allowed / last  # h^n is at most this
+        least, root = a, 1 / n
         if n > 3:
-            bounds += [(xp.minimum(limits.allowed / last[0], way / last[1]), n - 1), (way / last[0], n - 2)]
-        # the smallest root is found by integer powers, as a root is the expensive operation
-        smallest, root = bounds[0][0], 1 / n
-        for i, (bound, k) in enumerate(bounds[1:], 1):
-            smaller: Any = True
-            for other, j in bounds[:i]:
-                smaller = smaller & (bound**j < other**k)
-            smallest, root = xp.where(smaller, bound, smallest), xp.where(smaller, 1 / k, root)
-        size: Array = xp.minimum(limits.largest, smallest**root)
-        return size
+            # h^(n-1) and h^(n-2) are at most b and c; powers of quotients, which are sizes, do not overflow
+            b: Any = xp.minimum(limits.allowed / before, way / last)
+            c: Any = way / before
+            first_of_two = (a / b) ** (n - 1) < b
+            least, root = xp.where(first_of_two, a, b), xp.where(first_of_two, 1 / n, 1 / (n - 1))
+            third = ((a / c) ** (n - 2) > c * c) & ((b / c) ** (n - 2) > c)
+            least, root = xp.where(third, c, least), xp.where(third, 1 / (n - 2), root)
+        h: Any = xp.minimum(limits.largest, least**root)
+        return self._shortened(h, terms[:-2], first, limits)
+
+    def _shortened(self, h: Array, terms: Sequence[Array], first: int, limits: StepLimits) -> Array:
+        """The size, smaller if a term of an order k from `first` on is not small, which is where the last terms vanish.
+
+        With an error of |m| theta^n in a step, the term of order k of a series that converges evenly is |m| theta^k. It
+        may be `EVEN` times as large, with k/n rounded down to eighths.
+        """
+        if not terms:
+            return h
+        n, xp = len(self.coefficients), namespace(h, limits.speed)
+        whole: Any = over_sites(length(self.m), limits.axes)
+        eighth, worst = xp.sqrt(xp.sqrt(xp.sqrt(whole / limits.allowed))), 1.0
+        unit, power = 1 / (EVEN * whole), h**first
+        for k, term in enumerate(terms, first):
+            part = xp.where(term > 0, term * power * unit * eighth ** (8 * k // n), 0.0)
+            worst, power = xp.maximum(worst, part), power * h
+        while first > 1:  # a root of an order that is a power of 2 and at most `first`
+            worst, first = xp.sqrt(worst), first // 2
+        shorter: Array = h / worst
+        return shorter
 
     def series(self, h: Values) -> Values:
         """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""

@@ -221,3 +221,33 @@ def test_corrected_by_isotropy_on_a_sphere() -> None:
         for k in (16, 32)
     ]
     assert abs(np.log2(float(errors[0] / errors[1])) - 4) < 0.3, errors
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-11])
+@pytest.mark.parametrize("power", [1, 2, 3, 4, 5, 6])
+def test_sizes_are_right_where_the_last_terms_of_the_series_vanish(power, tolerance, engine):
+    # at t = 0 the series has powers of t^(power + 1) only
+    if engine == "llvm":
+        pytest.importorskip("llvmlite")
+    field = lh.GeneratorField(lh.defining(lh.so(2)), lambda m, t: (t**power)[..., None])
+    end = lh.integrate(field, (0, 2), [1.0, 0.0], rtol=tolerance, atol=tolerance / 10, engine=engine).y[:, -1]
+    angle = 2 ** (power + 1) / (power + 1)
+    assert np.abs(end - [np.cos(angle), np.sin(angle)]).max() < 30 * tolerance
+
+
+@pytest.mark.parametrize("engine", ["numpy", "llvm"])
+@pytest.mark.parametrize("unit", [1e-11, 1e9])
+def test_the_unit_of_time_does_not_change_the_steps(unit, engine):
+    if engine == "llvm":
+        pytest.importorskip("llvmlite")
+    rho = lh.defining(lh.so(2))
+
+    def run(u):
+        field = lh.GeneratorField(rho, lambda m, t: (t / u**2)[..., None])
+        return lh.integrate(field, (0, 4 * u), [1.0, 0.0], rtol=1e-8, engine=engine)
+
+    found, expected = run(unit), run(1.0)
+    assert found.n_steps == expected.n_steps
+    assert np.abs(found.y - expected.y).max() < 1e-12 + 1e-6 * np.abs(expected.y).max()
+    assert np.abs(found.y[:, -1] - [np.cos(8), np.sin(8)]).max() < 1e-8
