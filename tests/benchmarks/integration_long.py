@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tests.benchmarks.integration_measure import seconds
-from tests.benchmarks.integration_methods import EAGER, IN_JIT, LLVM, exact_orbit, integrate, under_jit
+from tests.benchmarks.integration_methods import EAGER, IN_JIT, LLVM, integrate, under_jit
 from tests.benchmarks.integration_peers import LANES_MANY, LANES_ONE, PEERS, Solver
 from tests.benchmarks.integration_problems import Problem, chain, quartic, rigid_body
 
@@ -45,8 +45,8 @@ def _one(problem: Problem, solver: Solver, span: float, setting: float, count: i
 def long_runs(*, span: float = 1e4, spins: int = 10_000) -> list[dict[str, Any]]:
     """Rows of the table."""
     rows = []
-    ours = [Solver(LLVM, n, integrate(n, "llvm"), (), "llvmlite", True) for n in ("E4", "T8", "C2")]
-    own = Solver(LLVM, "exact orbit", exact_orbit("llvm"), (), "llvmlite", True)
+    ours = [Solver(LLVM, n, integrate(n, "llvm"), (), "llvmlite", True) for n in ("E4", "T8", "S16", "C2")]
+    own = Solver(LLVM, "exact orbit", integrate("exact orbit", "llvm"), (), "llvmlite", True)
     others = [p for p in PEERS if p.group in ("heyoka.py", "scipy DOP853")]
     for problem in (rigid_body(), quartic()):
         scale = 1.0 if problem is rigid_body() else 0.25

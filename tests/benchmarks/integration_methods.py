@@ -1,5 +1,6 @@
 """liehom on the same problems: without compilation, and with engine="llvm" and engine="jax".
 
+Each method is a `Propagator` that is made once for a problem and called again and again, as the other programs are.
 Points of a compiled run are those of the run on numpy arrays to round-off (which tests hold), so that errors are
 measured once.  Spins that act on each other are not compiled by `integrate`; there a step under ``jax.jit`` stands for
 it, made of the public pieces of the library.
@@ -28,6 +29,11 @@ STEPS: dict[str, tuple[Any, str]] = {
     "T6": (lh.LieTaylor(6), "exp"),
     "T8": (lh.LieTaylor(8), "exp"),
     "T12": (lh.LieTaylor(12), "exp"),
+    "S4": (lh.Taylor(4), "exp"),
+    "S8": (lh.Taylor(8), "exp"),
+    "S12": (lh.Taylor(12), "exp"),
+    "S16": (lh.Taylor(16), "exp"),
+    "S20": (lh.Taylor(20), "exp"),
     "RK4": (lh.RKMK("rk4"), "exp"),
 }
 KEEPING = {"C2": lh.LieTaylor(2), "C4": lh.LieTaylor(4)}
@@ -40,10 +46,15 @@ EXPLAINED = {
     "T6": "`LieTaylor(6)`",
     "T8": "`LieTaylor(8)`",
     "T12": "`LieTaylor(12)`",
+    "S4": "`Taylor(4)`",
+    "S8": "`Taylor(8)`",
+    "S12": "`Taylor(12)`",
+    "S16": "`Taylor(16)`",
+    "S20": "`Taylor(20)`",
     "RK4": '`RKMK("rk4")`',
     "C2": "`Conserving(LieTaylor(2), energy)`",
     "C4": "`Conserving(LieTaylor(4), energy)`",
-    "adaptive": "`LieTaylor(6)` with an adaptive step size",
+    "adaptive": "the default, with an adaptive step size",
     "DOP853": '`RKMK("dop853")` with an adaptive step size',
     "exact orbit": "`ExactOrbit`, the step of the rigid body that stays on the orbit, with the Cayley transform",
 }
@@ -67,42 +78,38 @@ def step_of(name: str, problem: Problem) -> tuple[Any, str]:
     return STEPS[name]
 
 
-def integrate(name: str, engine: str) -> Solve:
-    """`liehom.integrate` with fixed steps."""
-
-    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        step, exponential = step_of(name, problem)
-        sol = lh.integrate(
-            problem.field, (0.0, span), _shaped(problem, starts), step=step, dt=setting, exponential=exponential,
-            t_eval=sample_times(span, samples), engine=engine,
-        )  # fmt: skip
-        return _flat(problem, sol.y, samples)
-
-    return solve
-
-
-def adaptive(step: Any, engine: str) -> Solve:
-    """`liehom.integrate` with adaptive steps."""
-
-    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        sol = lh.integrate(
-            problem.field, (0.0, span), _shaped(problem, starts), step=step, rtol=setting, atol=setting,
-            t_eval=sample_times(span, samples), engine=engine,
-        )  # fmt: skip
-        return _flat(problem, sol.y, samples)
-
-    return solve
-
-
-def exact_orbit(engine: str) -> Solve:
-    """The rigid body's own step."""
-
-    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+@cache
+def propagator(problem: Problem, name: str, engine: str) -> lh.Propagator:
+    """The method of that name for a problem, made once."""
+    if name == "adaptive":
+        return lh.Propagator(problem.field, engine=engine)
+    if name == "DOP853":
+        return lh.Propagator(problem.field, lh.RKMK("dop853"), engine=engine)
+    if name == "exact orbit":
         body = lh.RigidBody([1, 2, 3])
-        sol = lh.integrate(
-            body.field("o"), (0.0, span), _shaped(problem, starts), step=ExactOrbit(body), dt=setting,
-            exponential="cayley", t_eval=sample_times(span, samples), engine=engine, clock="nominal",
-        )  # fmt: skip
+        step = ExactOrbit(body)
+        return lh.Propagator(body.field("o"), step, exponential="cayley", engine=engine, clock="nominal")
+    step, exponential = step_of(name, problem)
+    return lh.Propagator(problem.field, step, exponential=exponential, engine=engine)
+
+
+def integrate(name: str, engine: str) -> Solve:
+    """A call with fixed steps."""
+
+    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+        run = propagator(problem, name, engine)
+        sol = run((0.0, span), _shaped(problem, starts), dt=setting, t_eval=sample_times(span, samples))
+        return _flat(problem, sol.y, samples)
+
+    return solve
+
+
+def adaptive(name: str, engine: str) -> Solve:
+    """A call with adaptive steps."""
+
+    def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
+        run, times = propagator(problem, name, engine), sample_times(span, samples)
+        sol = run((0.0, span), _shaped(problem, starts), rtol=setting, atol=setting, t_eval=times)
         return _flat(problem, sol.y, samples)
 
     return solve
@@ -148,7 +155,9 @@ def under_jit(name: str) -> Solve:
 
 
 # -- rows ------------------------------------------------------------------------------------------------
-FEW, MANY = ("E4", "T8", "RK4"), ("E2", "E2 cay", "E4", "E6", "T4", "T6", "T8", "T12", "RK4")
+SERIES = ("S4", "S8", "S12", "S16", "S20")
+FEW, MANY = ("E4", "RK4", *SERIES), ("E2", "E2 cay", "E4", "E6", "T4", "T6", "T8", "T12", "RK4", *SERIES)
+EAGER_TOO = ("E4", "T8", "RK4", "S12")
 EAGER, LLVM, JAX = "liehom, numpy", 'liehom, engine="llvm"', 'liehom, engine="jax"'
 IN_JIT = "liehom, a step under jax.jit"
 ALL, ENDS, LARGE = (1, 10, 10_000), (1, 10_000), (10_000,)
@@ -160,8 +169,7 @@ def names_for(problem: Problem) -> list[str]:
     if problem.size > 3:
         names.remove("T12")
     if problem.size > 10:  # minutes of compilation
-        names.remove("T6")
-        names.remove("T8")
+        names = [n for n in names if n not in ("T6", "T8", "S12", "S16", "S20")]
     return [n for n in names if problem.size <= 3 or n not in ("E6", "E2 cay")]
 
 
@@ -173,7 +181,7 @@ def solvers(problem: Problem) -> list[Solver]:
     for n in names_for(problem):
         made = Solver(LLVM, n, integrate(n, "llvm"), LADDER, "llvmlite", True, counts=ALL if n in FEW else LARGE)
         rows.append(made)
-        if n in FEW:
+        if n in EAGER_TOO:
             rows.append(Solver(EAGER, n, integrate(n, "numpy"), LADDER, "numpy", True, made, counts=ENDS))
         if (n == "T4" and problem.size <= 10) or (n == "E4" and problem.size == 3):
             rows.append(Solver(JAX, n, integrate(n, "jax"), LADDER, "jax", True, made, counts=ENDS))
@@ -184,22 +192,21 @@ def solvers(problem: Problem) -> list[Solver]:
         ]
     rows += _adaptive_solvers(compiled=problem.size <= 10)
     if problem is rigid_body():
-        made = Solver(LLVM, "exact orbit", exact_orbit("llvm"), LADDER[:6], "llvmlite", True, counts=ENDS)
+        made = Solver(LLVM, "exact orbit", integrate("exact orbit", "llvm"), LADDER[:6], "llvmlite", True, counts=ENDS)
         rows += [
             made,
-            Solver(EAGER, "exact orbit", exact_orbit("numpy"), LADDER[:6], "numpy", True, made, counts=LARGE),
+            Solver(
+                EAGER, "exact orbit", integrate("exact orbit", "numpy"), LADDER[:6], "numpy", True, made, counts=LARGE
+            ),
         ]
     return rows
 
 
 def _adaptive_solvers(*, compiled: bool) -> list[Solver]:
     rows = []
-    for label, step, tolerances in (
-        ("adaptive", lh.LieTaylor(6), (1e-3, 1e-6, 1e-9)),
-        ("DOP853", lh.RKMK("dop853"), (1e-3, 1e-6, 1e-9, 1e-12)),
-    ):
-        made = Solver(LLVM, label, adaptive(step, "llvm"), tolerances, "llvmlite", counts=ENDS, sample=8)
-        eager = Solver(EAGER, label, adaptive(step, "numpy"), tolerances, "numpy", False, made if compiled else None,
+    for label, tolerances in (("adaptive", (1e-3, 1e-6, 1e-9, 1e-12)), ("DOP853", (1e-3, 1e-6, 1e-9, 1e-12))):
+        made = Solver(LLVM, label, adaptive(label, "llvm"), tolerances, "llvmlite", counts=ALL, sample=8)
+        eager = Solver(EAGER, label, adaptive(label, "numpy"), tolerances, "numpy", False, made if compiled else None,
                        counts=(1,), sample=8)  # fmt: skip
         rows += [made, eager] if compiled else [eager]
     return rows

@@ -210,6 +210,17 @@ def sphere4() -> Problem:
 
 
 @cache
+def sphere3() -> Problem:
+    """The same on S^3."""
+    rng, rho = np.random.default_rng(5), lh.defining(lh.so(4))
+    linear, constant = rng.normal(size=(6, 4)), rng.normal(size=6)
+    return Problem(
+        name="S³", title="generic quadratic field on S³", start=_sphere(4), energy=None, drift=_norm, lanes_span=20.0,
+        slow=0.5, span=20.0, trajectory_span=20.0, **_linear_generator(rho, constant, linear),
+    )  # fmt: skip
+
+
+@cache
 def projective_plane() -> Problem:
     """The same on CP^2, the orbit of su(3) through diag(1, 1, -2) i."""
     rho = lh.adjoint(lh.su(3))
@@ -293,4 +304,4 @@ def chain(count: int = SPINS) -> Problem:
 
 def problems() -> list[Problem]:
     """All of them."""
-    return [rigid_body(), quartic(), spin(), chain(), sphere4(), projective_plane(), isospectral()]
+    return [rigid_body(), quartic(), spin(), chain(), sphere3(), sphere4(), projective_plane(), isospectral()]

@@ -25,6 +25,7 @@ from tests.benchmarks.integration_problems import Problem
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 RIVALS = ("heyoka.py", "scipy DOP853", "diffrax")
+BY_HAND = ("numba RK4 by hand",)
 
 
 def kernels(*, tiny: bool = False) -> dict[str, Any]:
@@ -113,10 +114,18 @@ def best(
     return min(found, default=(math.inf, ""))
 
 
-def ratios(problem: Problem, methods: list[dict[str, Any]], count: int, *, orbit: bool, call: bool) -> list[float]:
+def ratios(
+    problem: Problem,
+    methods: list[dict[str, Any]],
+    count: int,
+    *,
+    orbit: bool,
+    call: bool,
+    rivals: tuple[str, ...] = RIVALS,
+) -> list[float]:
     """How many times more the best rival costs than the best of liehom, at each of the errors."""
     ours = [row for row in methods if row["group"].startswith("liehom")]
-    theirs = [row for row in methods if row["group"] in (RIVALS if orbit else ("heyoka.py",))]
+    theirs = [row for row in methods if row["group"] in rivals]
     found = []
     for target in TARGETS:
         rival = best(problem, theirs, count, target, orbit=orbit, call=call)[0]
