@@ -145,7 +145,7 @@ class ConservingStep(LocalStep):
         return self.base.valid(h)
 
     def diagnostics(self, h: Values) -> Diagnostics:
-        """Numbers of the base, and of `conserved` with the prefix "conservation_".
+        """Numbers of the base, and of `conserved` with the prefix ``"conservation_"``.
 
         "missed" says whether F differs from its target by more than round-off, "left" whether the step has no
         correction, and "short" whether chi_m is not onto. Compiled code makes no step at which it is not.
