@@ -65,6 +65,9 @@ class LlvmEngine:
         self._plans: dict[Hashable, Plan] = {}
         self._lattice: LatticeStep | None = None
 
+    def __reduce__(self) -> tuple[type[LlvmEngine], tuple[()]]:
+        return type(self), ()  # machine code belongs to a process
+
     def solve(self, problem: Problem) -> Solution:
         """The solution of a problem."""
         if problem.field.sites:
@@ -231,7 +234,8 @@ class _CompiledRun:
         self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
         self.schedule = store.schedule(run) if self.groups[0][2].reached is None else None
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
-        self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **_limits(run), "latest": latest}
+        self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **_limits(run)}
+        self.values |= {"latest": latest, "rest": float(run.rest)}
 
         if not run.state.taken.any() and run.step.uses_isotropy:
             self._note_ranks(run)

@@ -19,6 +19,7 @@ from liehom.integrators.compiled.schedule import Schedule
 from liehom.integrators.engine import Problem
 from liehom.integrators.run.options import END, MESSAGES
 from liehom.integrators.run.solution import Report, Solution
+from liehom.pytrees import check_numbers
 from liehom.tracing import Kernel, LaneConstant
 from liehom.typing import Array, Pytree
 
@@ -159,6 +160,7 @@ class Plan:
 
     def _take(self, args: Pytree) -> None:
         """Take over the numbers of args."""
+        check_numbers(args, self.shape[:-1])
         values = arg_values(args, len(self.shape) - 1)
         for i, name in self.changing:
             self.constants[i] = values[name]

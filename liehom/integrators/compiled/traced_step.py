@@ -13,7 +13,7 @@ from liehom.errors import LiehomError, TraceError
 from liehom.homogeneous import Action, GeneratorField
 from liehom.homogeneous.frames.branch_free_frames import tight_frame
 from liehom.integrators.compiled.parameters import traced_args
-from liehom.integrators.compiled.traced_size import SizeLimits, first_size, judgement, size_to_stop, tried_size
+from liehom.integrators.compiled.traced_size import EPS, SizeLimits, first_size, judgement, size_to_stop, tried_size
 from liehom.integrators.run.clock import clock_at
 from liehom.integrators.run.control import ERROR_TERMS
 from liehom.integrators.run.statistics import LOST, bounds_of, earliness
@@ -108,7 +108,7 @@ def _traced(
         first = first_size(given_limits, local, psi, m, t) if given_limits is not None else None
         tape.calls = before
         stop, directed = Traced(tape, tape.input(n + 2)), Traced(tape, tape.run_constant("direction", 1.0))
-        bounds = directed, Traced(tape, tape.run_constant("tiny", 0.0))
+        bounds = directed, Traced(tape, tape.run_constant("rest", 8 * EPS * max(abs(ends[0]), abs(ends[1]))))
         h, reached, found = size_to_stop(local if own_clock else None, h, stop - t, bounds)
         tape.required.append(_number(tape, found))
     size = h[..., None]

@@ -195,7 +195,10 @@ class Automaton:
     shape: tuple[int, ...]
     dtype: np.dtype[np.float64]
     direction: np.float64
+    rest: np.floating[Any]
+    """A time below which nothing is left."""
     tiny: float
+    """The smallest step size."""
 
     def __init__(self, action: Action, psi: Generator, step: Step, span: Span, start: Array, options: Options) -> None:
         self.action, self.options, self.span = action, options, span
@@ -209,7 +212,8 @@ class Automaton:
         self.direction = self.dtype.type(1 if span[1] >= span[0] else -1)
         self.tried: tuple[LocalStep, Array] | None = None
         self.tolerance: Tolerance = Tolerance(options.rtol, options.atol, self.axes)
-        self.tiny = max(float(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1]))), options.least_step)
+        self.rest = self.dtype.type(8 * np.finfo(self.dtype).eps * max(abs(span[0]), abs(span[1])))
+        self.tiny = max(float(self.rest), options.least_step)
         self.keeps: bool = options.t_eval is None or options.dense_output
         self.logs = LOGGER.isEnabledFor(logging.DEBUG)  # asked once: a run without a log pays nothing for it
         self.step = step.prepare(action, self.psi, self.start, np.full(self.shape, span[0], dtype=self.dtype))

@@ -88,7 +88,7 @@ class Run(Automaton):
 
     def _number_of_steps(self, dt: Array) -> Array:
         """Numbers of steps of size dt to the end; a rest below 1e-9 dt, or below round-off, is not a step."""
-        rest = SLACK + self.tiny / dt
+        rest = SLACK + self.rest / dt
         return np.maximum(np.ceil(abs(self.span[1] - self.span[0]) / dt - rest), 1)
 
     # -- the loop ----------------------------------------------------------------------------------------

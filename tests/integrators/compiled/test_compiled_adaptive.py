@@ -252,6 +252,17 @@ def test_an_interrupted_run_goes_on_bit_for_bit(
     assert str(again.report) == str(whole.report) and not file.exists()
 
 
+def test_a_least_step_size_does_not_lengthen_steps() -> None:
+    starts = sphere(5) * SPEEDS[::4]
+    for options in ({"min_step": 0.5, "max_steps": 200}, {"min_step": 0.01, "t_eval": [1.0, 3.0]}):
+        plain, made = both(BODY, (0, 3), starts, step=STEPS["RK45"], **options)
+        np.testing.assert_array_equal(made.statuses, plain.statuses)
+        np.testing.assert_array_equal(made.n_steps, plain.n_steps)
+        np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-9)
+    plain = lh.integrate(BODY, (0, 3), START, step=STEPS["RK45"], dt=0.125, min_step=0.5)
+    assert plain.n_steps == 24
+
+
 # -- JAX, and refusals -----------------------------------------------------------------------------------------
 @pytest.mark.slow
 @pytest.mark.parametrize("step", ["Euler to 4", "RK45"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -162,3 +163,22 @@ def test_sizes_of_each_trajectory_are_not_taken_for_one_size() -> None:
     made(SPAN, points, dt=np.array([0.1, 0.2]), t_eval=[3.0])
     sol = made(SPAN, points, dt=0.2, t_eval=[3.0])
     assert sol.n_steps.tolist() == [15, 15]
+
+
+@pytest.mark.parametrize(
+    "args", ["3.0", np.complex128(2 + 3j), np.array(2 + 3j), lh.PerTrajectory(np.ones((1, 3)))], ids=repr
+)
+def test_a_second_call_checks_the_numbers_of_args(args: Any) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m, t, args: -m * args)
+    made, starts = lh.Propagator(field, engine="llvm"), sphere(5)
+    first = lh.PerTrajectory(np.ones((5, 3))) if isinstance(args, lh.PerTrajectory) else 2.0
+    made((0.0, 1.0), starts, args=first, dt=0.1)
+    with pytest.raises(lh.errors.LiehomError, match="args"):
+        made((0.0, 1.0), starts, args=args, dt=0.1)
+
+
+def test_a_propagator_that_has_compiled_can_be_pickled() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/4"])
+    made = lh.Propagator(field, engine="llvm")
+    expected = made(SPAN, START, dt=0.1).y
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(made))(SPAN, START, dt=0.1).y, expected)
