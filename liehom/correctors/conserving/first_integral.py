@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, final
 
 import numpy as np
 
-from liehom.correctors.expansion import Flow
+from liehom.correctors.expansion import ROUND_OFF_UNITS, Flow
 from liehom.errors import InputError, ShapeError
 from liehom.homogeneous.fields.components import Components, joined
 from liehom.homogeneous.fields.expression import TREES
@@ -162,13 +162,16 @@ class FirstIntegral:
             unit = _largest(*self.gradient(m), m) if scale is None else scale
             sizes = [np.linalg.norm(np.asarray(flow.point(k), dtype=float), axis=-1) for k in range(order + 1)]
         rate: Any = 0.0
+        turned: Any = 0.0
         for k in range(1, order + 1):
             wrong = np.asarray(made.coefficient(k))
             if exact:
                 bad = np.array([x != 0 for x in wrong.flat], dtype=bool).reshape(wrong.shape)
             else:
                 rate = np.maximum(rate, (sizes[k] / np.where(sizes[0] > 0, sizes[0], 1.0)) ** (1 / k))
-                bad = ~(np.abs(wrong) <= RTOL * unit * rate[..., None] ** k)
+                turned = np.maximum(turned, _rate(flow, k - 1) ** (1 / k))
+                noise = ROUND_OFF_UNITS * float(np.finfo(m.dtype).eps) * turned**k  # all that X is at an equilibrium
+                bad = ~(np.abs(wrong) <= unit * (RTOL * rate**k + noise)[..., None])
             if bad.any():
                 index = tuple(int(i) for i in np.argwhere(bad)[0])[:-1]
                 what = "DF(m) X(m)" if k == 1 else f"the coefficient of t^{k} of F along the flow"
@@ -178,6 +181,13 @@ class FirstIntegral:
         if self._components is None:
             return str(getattr(self._source, "__qualname__", type(self._source).__name__))
         return str(self._source[0]) if self.scalar else str([str(x) for x in self._source])
+
+
+def _rate(flow: Flow, k: int) -> Values:
+    """The norm of rho(psi_k), shape (...,)."""
+    columns = flow.field.infinitesimal(flow.psi(k)[..., None, :], np.eye(flow.points.shape[-1]))
+    found: Values = np.linalg.norm(np.asarray(columns, dtype=float), axis=(-2, -1))
+    return found
 
 
 def conditioning(value: Values, gradient: Values, m: Values) -> Values:

@@ -186,10 +186,9 @@ class OrderRecursion:
                 continue
             own = difference if part.fraction is None else part.fraction[..., None] * difference
             zeta, c, residual = part.solver.solve(own)
-            if residual is None:  # the correction is then 0 at equilibria
-                here = None
-            _add(changed, n - part.leading, _masked(self.xp, here, zeta))
-            self.clock.set(n - part.leading + 1, c if here is None else self.xp.where(here, c, 0.0))
+            where = None if residual is None else here  # without a residual zeta and c are 0 in other trajectories
+            _add(changed, n - part.leading, _masked(self.xp, where, zeta))
+            self.clock.set(n - part.leading + 1, c if where is None else self.xp.where(where, c, 0.0))
             if part.fraction is not None:
                 self._complete(changed, n, here, difference - own)
             self._judge(n, here, difference, residual)
@@ -218,13 +217,17 @@ class OrderRecursion:
         largest = xp.max(xp.abs(difference), axis=-1)
         scale = xp.where(largest > 0, largest, 1.0)
         relative = xp.max(xp.abs(residual), axis=-1) / scale
-        if is_lazy(relative) or bool(np.any(relative > SOLVED_RTOL / 10)):
+        if not is_lazy(relative):
+            relative = _masked(xp, here, relative[..., None])[..., 0]
+        suspicious = relative > SOLVED_RTOL / 10
+        if is_lazy(relative) or bool(np.any(suspicious)):
             # scaled, so that squares do not underflow
             left = norm(xp, residual / scale[..., None])
-            relative = left / xp.maximum(norm(xp, difference / scale[..., None]), 1.0)
-            relative = _masked(xp, here, relative[..., None])[..., 0]
+            exact = left / xp.maximum(norm(xp, difference / scale[..., None]), 1.0)
+            exact = _masked(xp, here, exact[..., None])[..., 0]
             noise = round_off(self.action, self.m, self.flow, self._factors, n)
-            relative = xp.where(left * scale > noise, relative, 0.0)
+            exact = xp.where(left * scale > noise, exact, 0.0)
+            relative = exact if is_lazy(relative) else xp.where(suspicious, exact, relative)
             solved = relative <= SOLVED_RTOL
             self.defects.append((n, xp.where(solved, 0.0, left * scale)))
             self._reach(n, _both(here, solved))
