@@ -249,7 +249,8 @@ class _CompiledRun:
         field = run.field if args is None else run.field.with_args(args_of_lanes(args, run.shape, some))
         psi = Generator(field, dimensions[some], points)
         with contextlib.suppress(np.linalg.LinAlgError, ConvergenceError):  # the first step will end with it
-            local = run.step.at(run.action, psi, points, times[:, None])
+            step = run.step.prepare(run.action, psi, points, times)  # what it has prepared is for all lanes
+            local = step.at(run.action, psi, points, times[:, None])
             run.state.statistics.take_lowest(local.diagnostics(np.zeros((len(some), 1))), some, times, points)
 
     def __call__(self, run: Run) -> bool:

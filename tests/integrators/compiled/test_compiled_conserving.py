@@ -144,3 +144,11 @@ def test_a_value_for_each_trajectory_is_refused_with_the_reason() -> None:
     step = lh.Conserving(lh.Heun(), "m0**2 + m1**2/2 + m2**2/4", value=[0.5, 0.6])
     with pytest.raises(TraceError, match="for each trajectory"):
         lh.integrate(field, (0, 1), np.eye(3)[:2] + 0.3, step=step, dt=0.1, engine="llvm")
+
+
+@pytest.mark.parametrize("count", [65, 200])
+def test_an_ensemble_larger_than_the_sample_of_ranks(count: int) -> None:
+    """Ranks are reported for some of the initial points, and the values to conserve are those of these points."""
+    made = lh.integrate(BODY, (0, 1), sphere(count), step=Conserving(lh.Heun(), energy), dt=0.1, engine="llvm")
+    drift = np.abs(energy(np.moveaxis(made.y, 1, -1)) - energy(sphere(count))[:, None]).max()
+    assert drift <= 4 * EPS and made.report.conservation.rank == 1
