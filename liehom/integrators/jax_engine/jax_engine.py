@@ -174,7 +174,7 @@ class _Call:
         if not self.adaptive:
             return self._given(None)
         recorded = self._most_recorded() if traced else recorded
-        key = "adaptive", traced, recorded
+        key = "adaptive", traced, recorded, self.problem.options.least_step
 
         def function(*leaves: JaxArray) -> Sequence[JaxArray]:
             found, sizes = self._adapted(leaves, recorded)
@@ -183,8 +183,7 @@ class _Call:
             import jax
 
             sizes = jax.lax.stop_gradient(sizes)
-            first = 1 + recorded
-            return [self._looped((*leaves[:4], sizes, *leaves[9:]), recorded + 1, table=True)[0], *found[1:]][:first]
+            return [self._looped((*leaves[:4], sizes, *leaves[9:]), recorded + 1, table=True)[0], *found[1:]]
 
         return self.engine.program((*key, self._static()), function, self._arguments(traced=traced))
 
@@ -273,6 +272,7 @@ class _Call:
         start, t0, t1, times, rtol, atol, max_step, first, most, *args = map(jax.lax.stop_gradient, leaves)
         direction: Any = jnp.where(t1 >= t0, 1.0, -1.0).astype(start.dtype)
         tiny: Any = 8 * float(np.finfo(start.dtype).eps) * jnp.maximum(jnp.abs(t0), jnp.abs(t1))
+        tiny = jnp.maximum(tiny, self.problem.options.least_step)
         limits = SizeLimits(rtol, atol, max_step, t1, direction, tiny)
         field, at = self._bound(start, args)
         step: Any = self.step

@@ -159,3 +159,18 @@ def test_an_unknown_number_of_steps_needs_a_bound() -> None:
     field = lh.GeneratorField(RHO, [0, 0, 1])
     with pytest.raises(InputError, match="give max_steps"):
         jax.jit(lambda t: lh.integrate(field, (0.0, t), START, dt=0.1, engine="jax").y)(1.0)
+
+
+@pytest.mark.parametrize("options", [{"max_steps": 3}, {"min_step": 2.0}], ids=str)
+def test_bounds_of_adaptive_steps_hold_under_jit(options: dict[str, Any]) -> None:
+    field = lh.GeneratorField(RHO, lambda m, t, args: -m * args)
+    propagator, numbers = lh.Propagator(field, "rk45", engine="jax"), jnp.array([1.0, 0.5, 0.25])
+
+    def run(args: Any, **given: Any) -> Any:
+        sol = propagator((0.0, 5.0), jnp.asarray(START), args=args, t_eval=[5.0], **given)
+        return sol.statuses, sol.y
+
+    assert int(jax.jit(run)(numbers)[0]) == 0
+    status, y = jax.jit(lambda args: run(args, **options))(numbers)
+    assert int(status) == int(run(numbers, **options)[0]) == -1
+    assert np.isnan(np.asarray(y)).all()
