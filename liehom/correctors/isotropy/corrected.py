@@ -181,13 +181,13 @@ class CorrectedStep(LocalStep):
     def diagnostics(self, h: Values) -> Diagnostics:
         """Numbers of the correction, and of the base.
 
-        * "equilibria": whether the point is an equilibrium.
-        * "failed": whether a linear system had no solution.
-        * "near": `is_near_cone`.
-        * "lost": whether one of the latter two holds.
-        * "short": the number of orders that were missed.
-        * "residual": the largest relative residual.
-        * "singular", "rank": see `Correction`. They are not computed in compiled code.
+        * Whether the point is an equilibrium ("equilibria").
+        * Whether a linear system had no solution ("failed").
+        * The value of `is_near_cone` ("near").
+        * Whether one of the latter two holds ("lost").
+        * The number of orders that were missed ("short").
+        * The largest relative residual ("residual").
+        * The numbers of these names in `Correction` ("singular", "rank"), which are not computed in compiled code.
 
         Where every linear system has a solution, only "equilibria", "singular" and "rank" are there.
         """

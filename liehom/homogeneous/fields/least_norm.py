@@ -135,7 +135,7 @@ class LeastNorm:
         return self.components.bound
 
     def with_args(self, args: Pytree) -> LeastNorm:
-        """The same for the vector field with these args.
+        """A LeastNorm for the vector field with these args.
 
         Examples
         --------

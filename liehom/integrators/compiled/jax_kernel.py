@@ -151,7 +151,7 @@ def options_of(how: str) -> dict[str, Any]:
     options: dict[str, Any] = {"xla_cpu_use_fusion_emitters": False}
     if how == "long":
         options["xla_backend_optimization_level"] = 0
-    wanted = {"compiler_options": options}
+    wanted: dict[str, Any] = {"compiler_options": options}
     try:
         if how != "nested" and jax.default_backend() == "cpu" and jax.jit(lambda x: x + 1, **wanted)(1) == 2:
             return wanted
