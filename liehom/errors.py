@@ -7,7 +7,11 @@ elements, a key of a file), the exception carries it as an attribute.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 
 class LiehomError(Exception):
@@ -251,7 +255,17 @@ class CertificateFormatError(CertificateError, FormatError):
 
 
 class ConvergenceError(LiehomError, ArithmeticError):
-    """An iteration did not converge: an implicit step, a time reparametrization, a point of an orbit."""
+    """An iteration did not converge: an implicit step, a time reparametrization, a point of an orbit.
+
+    Attributes
+    ----------
+    unsolved : bool array or None
+        For which trajectories of an ensemble; None if it is not known.
+    """
+
+    def __init__(self, message: str, unsolved: npt.NDArray[np.bool_] | None = None) -> None:
+        super().__init__(message)
+        self.unsolved = unsolved
 
 
 class DamageWarning(UserWarning):

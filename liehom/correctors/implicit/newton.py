@@ -20,6 +20,8 @@ from liehom.correctors.implicit.krylov import gmres
 from liehom.typing import Array, BooleanArray
 
 MAX_ITERATIONS = 60
+HASTY_ITERATIONS = 20
+"""Iterations of a step that is cheaper to repeat with half its size."""
 MAX_DENSE = 48
 """Largest number of unknowns of one trajectory for elimination."""
 REFRESH = 0.03
@@ -28,10 +30,18 @@ MAX_GROWTH = 10.0
 """A step that multiplies the residual by more than this is rejected."""
 GUIDED = 0.1
 """Steps above this fraction of the reach are compared with the direction of the pseudo-transient."""
+CRAWLS = 1e-3
+"""Damped steps below this fraction of the reach that do not reduce the residual end the guidance: they lead nowhere."""
 
 
 def newton(
-    equation: Equation, start: Array, wanted: BooleanArray, reach: float, *, joint: bool = False
+    equation: Equation,
+    start: Array,
+    wanted: BooleanArray,
+    reach: float,
+    *,
+    joint: bool = False,
+    hasty: bool = False,
 ) -> tuple[Array, BooleanArray, Array]:
     """The solutions x, which of them are solutions to round-off, and the last changes, for the trajectories `wanted`.
 
@@ -44,6 +54,8 @@ def newton(
         The largest norm of a step.
     joint : bool
         Whether F couples the trajectories, so that they are one system.
+    hasty : bool
+        Whether to give up after few iterations.
 
     Examples
     --------
@@ -52,8 +64,8 @@ def newton(
     >>> bool(solved), bool(abs(x) < 1e-15)
     (True, True)
     """
-    x, solved, change = _iterated(equation, start, wanted, reach, joint, guided=True)
-    if bool((wanted & ~solved).any()):
+    x, solved, change = _iterated(equation, start, wanted, reach, joint, guided=True, hasty=hasty)
+    if not hasty and bool((wanted & ~solved).any()):
         again, more, last = _iterated(equation, start, wanted & ~solved, reach, joint, guided=False)
         x, solved = np.where(more, again, x), solved | more
         change = np.where(more, 0.0, last)
@@ -61,7 +73,14 @@ def newton(
 
 
 def _iterated(
-    equation: Equation, x: Array, wanted: BooleanArray, reach: float, joint: bool, *, guided: bool
+    equation: Equation,
+    x: Array,
+    wanted: BooleanArray,
+    reach: float,
+    joint: bool,
+    *,
+    guided: bool,
+    hasty: bool = False,
 ) -> tuple[Array, BooleanArray, Array]:
     axes = tuple(range(x.ndim)) if joint else (0, -1)
     system = _System(equation, x, axes, wanted)
@@ -70,12 +89,12 @@ def _iterated(
     size, before = _norm(residual, axes), np.full(np.shape(wanted), np.inf)
     active, solved = wanted, np.zeros_like(wanted)
     stale, damping = wanted, np.zeros(np.shape(wanted), dtype=x.dtype)
-    change = before
-    for _ in range(MAX_ITERATIONS):
+    change, free = before, np.full(np.shape(wanted), not guided)
+    for _ in range(HASTY_ITERATIONS if hasty else MAX_ITERATIONS):
         system.refresh(x, stale)
         step = system.solve(residual, damping)
-        if guided:
-            against = active & ((step * residual).sum(axis=axes, keepdims=True) <= 0)
+        if not free.all():
+            against = active & ~free & ((step * residual).sum(axis=axes, keepdims=True) <= 0)
             against = against & (_norm(step, axes) > GUIDED * reach)
             if bool(against.any()):
                 damping = np.where(against, np.maximum(4 * damping, system.size()), damping)
@@ -90,14 +109,17 @@ def _iterated(
         largest = np.abs(trial).max(axis=axes, keepdims=True, initial=0.0)
         small = change <= 1e4 * eps * np.maximum(largest, 1.0)  # the residual may be round-off
         good = active & ((new <= MAX_GROWTH * size) | (small & np.isfinite(new)))
-        done = (change <= 2 * eps * largest) | (small & ((change >= before / 2) | (new == 0)))
+        exact = new <= eps * system.size() * largest  # the round-off of F
+        done = (change <= 2 * eps * largest) | (small & ((change >= before / 2) | exact))
         done = good & done & (damping == 0) & ~limited
         ratio = np.where(good, new / np.where(size > 0, size, 1.0), np.inf)
         damping = np.where(good, damping * np.minimum(ratio, 1.0), np.maximum(4 * damping, system.size()))
-        damping = np.where((damping < 1e-3) | small, 0.0, damping)
+        crawls = good & ~free & (damping > 0) & (ratio > 0.5) & (length < CRAWLS * reach)
+        free = free | crawls
+        damping = np.where((damping < 1e-3) | small | crawls, 0.0, damping)
         x, residual, size = np.where(good, trial, x), np.where(good, value, residual), np.where(good, new, size)
         before = np.where(good, change, before)
-        stale = good & ((ratio > REFRESH) | (damping > 0))
+        stale = good & ~small & ((ratio > REFRESH) | (damping > 0))
         solved, active = solved | done, active & ~done
         if not active.any():
             break

@@ -32,6 +32,7 @@ def solve_implicitly(
     stacked: bool = False,
     rows: Sequence[SparseRow] | None = None,
     reach: float = 1.0,
+    hasty: bool = False,
 ) -> Values:
     """Solution x of x = function(x), where function has a factor h.
 
@@ -52,11 +53,13 @@ def solve_implicitly(
         depends on y_i only.
     reach : float
         The largest norm of a step of Newton's method.
+    hasty : bool
+        Whether to give up after few iterations, if a smaller step is tried then. Arrays only.
 
     Raises
     ------
     ConvergenceError
-        If no solution is found: the step size is too large.
+        If no solution is found: the step size is too large. Its `unsolved` says for which trajectories.
 
     Notes
     -----
@@ -84,7 +87,11 @@ def solve_implicitly(
     if tape is not None:
         found: Any = solved_on_tape(equation, start, tape, SLOW, reach)
     else:
-        found = solved_by_jax(equation, start, reach) if is_jax(start) else _solved(equation, np.asarray(start), reach)
+        found = (
+            solved_by_jax(equation, start, reach)
+            if is_jax(start)
+            else _solved(equation, np.asarray(start), reach, hasty)
+        )
     solution: Values = found if rows is not None else _shaped(found[0], shape, stacked)
     return solution
 
@@ -126,13 +133,13 @@ def _solved_on_jets(function: Callable[[Any], Any], start: Values, order: int, r
     return x
 
 
-def _solved(equation: Equation, start: Array, reach: float) -> Array:
+def _solved(equation: Equation, start: Array, reach: float, hasty: bool) -> Array:
     """Solution (S, ..., n), by the fixed point iteration if that is fast, else by Newton's method."""
     with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported below
         x, settled, change = _iterated(equation, start)
         if settled.all():
             return x
-        x, solved, change = newton(equation, np.where(settled, x, start), ~settled, reach)
+        x, solved, change = newton(equation, np.where(settled, x, start), ~settled, reach, hasty=hasty)
         solved = solved | settled
         if x.ndim > 2 and not (solved.all() and _is_solution(equation, x)) and _couples(equation, start):
             everywhere = np.ones((1,) * x.ndim, dtype=bool)
@@ -140,7 +147,8 @@ def _solved(equation: Equation, start: Array, reach: float) -> Array:
     if not solved.all():
         raise ConvergenceError(
             f"an implicit step did not converge (last change of Newton's method {np.max(change):.2g}): "
-            "take a smaller step size"
+            "take a smaller step size",
+            np.broadcast_to(~solved[0, ..., 0], x.shape[1:-1]),
         )
     return x
 

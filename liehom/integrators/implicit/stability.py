@@ -76,8 +76,8 @@ def amplification(step: Step, z: npt.ArrayLike, *, isotropy: float = 0.0, clock:
         for _ in range(2):
             try:
                 made = np.where(good[:, None], local.point(np.where(good, size, 0.0)[:, None]), np.nan)
-            except ConvergenceError:
-                good = good & ~unsolvable(local, np.where(good, size, 0.0), good)
+            except ConvergenceError as error:
+                good = good & ~unsolvable(local, np.where(good, size, 0.0), good, error)
             else:
                 break
     found: Array = (np.hypot(made[:, 0], made[:, 1]) / DEVIATION).reshape(values.shape)

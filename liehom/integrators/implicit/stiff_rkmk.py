@@ -72,7 +72,8 @@ class StiffRKMK(OneExponential):
         return self._base.generator(action, psi, m, t, h)
 
     def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
-        return StiffStep(Stages(self._base, action, psi, m, t), *self._estimate)  # type: ignore[attr-defined]
+        stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
+        return StiffStep(stages, *self._estimate)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
         return f"StiffRKMK({self.tableau.name!r})"

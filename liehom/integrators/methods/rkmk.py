@@ -196,16 +196,22 @@ class EmbeddedStep(LocalStep):
 
 @final
 class Stages:
-    """Stages k_i of a method at one point, computed on demand for the last h."""
+    """Stages k_i of a method at one point, computed on demand for the last h.
+
+    `hasty` says whether equations are given up early, because a run repeats the step with a smaller size.
+    """
 
     method: RKMK
     action: Action
     psi: Generator
     m: Values
     t: Values
+    hasty: bool
 
-    def __init__(self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values) -> None:
-        self.method, self.action, self.psi, self.m, self.t = method, action, psi, m, t
+    def __init__(
+        self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values, *, hasty: bool = False
+    ) -> None:
+        self.method, self.action, self.psi, self.m, self.t, self.hasty = method, action, psi, m, t, hasty
         self.numbers: Coefficients = method.coefficients(m)
         # a row without entries beyond its diagonal needs no later stage
         self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
@@ -252,7 +258,7 @@ class Stages:
         def stage(k: Values) -> Values:
             return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
 
-        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action))
+        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action), hasty=self.hasty)
 
     def _solved(self, h: Values) -> list[Values]:
         """All stages of an implicit method, from one equation for an array with a first axis for the stages."""
@@ -261,7 +267,7 @@ class Stages:
         def stages(u: list[Any]) -> list[Values]:
             return [self._stage(i, x, h) for i, x in enumerate(u)]
 
-        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action))
+        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action), hasty=self.hasty)
         return [k[i] for i in range(len(rows))]
 
     def _stage(self, i: int, u: Values | None, h: Values) -> Values:

@@ -417,7 +417,7 @@ class Automaton:
         if self.tried is None:
             self._fail(now, now.active, code)
             return
-        where = now.active & unsolvable(*self.tried, now.active)
+        where = now.active & unsolvable(*self.tried, now.active, error)
         sizes = np.abs(self.tried[1])
         now.h = np.where(where, sizes / 2, now.h)
         self._fail(now, where & ((stops.total is not None) | (sizes <= 2 * self.tiny)), code)

@@ -209,11 +209,11 @@ def next_size(h: Array, ratio: Array, order: int) -> Array:
     return size
 
 
-def unsolvable(local: LocalStep, h: Array, where: BooleanArray) -> BooleanArray:
+def unsolvable(local: LocalStep, h: Array, where: BooleanArray, error: Exception | None = None) -> BooleanArray:
     """For which trajectories the equations of a step of size h have no solution, bool (...,).
 
-    Groups of trajectories are tried one after the other, with h = 0 for the others, so that psi is still called on the
-    whole ensemble.
+    The error, a `ConvergenceError`, may say it. Otherwise groups of trajectories are tried one after the other, with
+    h = 0 for the others, so that psi is still called on the whole ensemble.
 
     Examples
     --------
@@ -224,9 +224,16 @@ def unsolvable(local: LocalStep, h: Array, where: BooleanArray) -> BooleanArray:
     ...         raise ConvergenceError("too large")
     ...     return np.zeros((3, 2))
     >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros((3, 2)), point=point)
-    >>> unsolvable(local, np.array([0.5, 2.0, 0.7]), np.array([True, True, True])).tolist()
+    >>> h, where = np.array([0.5, 2.0, 0.7]), np.array([True, True, True])
+    >>> unsolvable(local, h, where).tolist()
+    [False, True, False]
+    >>> unsolvable(local, h, where, ConvergenceError("too large", np.array([False, True, False]))).tolist()
     [False, True, False]
     """
+    known = getattr(error, "unsolved", None)
+    if known is not None and known.shape == np.shape(h) and bool((known & where).any()):
+        named: BooleanArray = known & where
+        return named
     found = np.zeros(np.size(h), dtype=bool)
     groups, trials = [np.flatnonzero(where)], 0
     while groups:

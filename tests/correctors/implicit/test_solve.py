@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -124,6 +125,16 @@ def test_derivatives_by_differences_give_the_same_solution() -> None:
 def test_an_equation_without_solution_is_reported() -> None:
     with pytest.raises(ConvergenceError, match="smaller step size"):
         solve_implicitly(lambda x: 1 + x * x, np.zeros(1), 1.0)
+
+
+def test_the_error_names_the_trajectories_without_a_solution() -> None:
+    constants = np.array([[[0.1], [1.0]], [[3.0], [0.2]]])  # x = c + x^2 has a solution for c <= 1/4
+    with pytest.raises(ConvergenceError) as caught:
+        solve_implicitly(lambda x: constants + x * x, np.zeros((2, 2, 1)), 1.0)
+    unsolved = caught.value.unsolved
+    assert unsolved is not None and unsolved.tolist() == [[False, True], [True, False]]
+    copied = pickle.loads(pickle.dumps(caught.value)).unsolved
+    assert copied is not None and copied.tolist() == unsolved.tolist()
 
 
 # -- large and coupled systems -------------------------------------------------------------------------------

@@ -124,6 +124,21 @@ def test_the_number_of_steps_does_not_grow_with_the_rate(step: lh.Step) -> None:
     assert explicit_steps() > 100 * counts[1] or step.order == 2
 
 
+def test_an_ensemble_calls_psi_hardly_more_often_than_its_trajectories() -> None:
+    """A step that cannot be solved for one trajectory is not tried again for the others in turn."""
+    field, step = chasing(1e4), StiffRKMK("radau5")
+    m = np.array([1.0, 0.0, 0.0]) + 0.4 * np.random.default_rng(0).uniform(-1, 1, size=(6, 3))
+    m /= np.linalg.norm(m, axis=-1, keepdims=True)
+
+    def run(starts: Any) -> lh.Solution:
+        return lh.integrate(field, (0, 5), starts, step=step, rtol=1e-5, atol=1e-5, t_eval=[5.0])
+
+    together, alone = run(m), [run(start) for start in m]
+    assert together.nfev <= 2 * max(sol.nfev for sol in alone)
+    for i, sol in enumerate(alone):
+        assert np.allclose(together.y[i], sol.y, rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["radau5", "rodas4", "exprb4"])
 def test_a_stiff_run_agrees_with_radau_of_scipy(name: str) -> None:
     field = chasing(300.0)
