@@ -141,8 +141,6 @@ class Conserving(Step):
 
     def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Conserving:
         """The step with the checked first integrals, their target values, and n, for a run from m at times t."""
-        if self._begun is not None:
-            return self
         made = self.with_prepared(step=self.step.prepare(action, psi, m, t))
         return made.with_prepared(_begun=_Begun(made, action, psi, m, t))
 
