@@ -67,7 +67,9 @@ def integrate(
         the dense output to round-off, and so are two zeros next to an extremum of g within a step. All zeros are found
         if g has at most one extremum in each step; for others see `max_step` (with events, an adaptive step moves a
         point by at most half of |m|). A zero at the initial time is recorded, but does not end
-        the run.
+        the run. With the engine "llvm", functions may also be called for the points of several trajectories and steps
+        at once, with y of shape (p, N); those that do not take them are called as they are by the engine "numpy".
+        The engine "jax" takes no events.
     exponential : str, Exponential or callable
         "exp", "cayley", ...: see `liehom.homogeneous.exponential_of`.
     clock : "corrected" or "nominal"

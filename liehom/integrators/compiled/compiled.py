@@ -46,7 +46,7 @@ def compiled_steps(run: Run, backend: str) -> FastPath:
         If the step cannot be compiled.
     """
     if run.stops.events is not None:
-        raise InputError(f"engine={backend!r} does not look for events: take engine='numpy'")
+        raise InputError(f"engine={backend!r} does not look for events: take engine='llvm' or engine='numpy'")
     if run.dtype != np.float64:
         raise InputError(
             f"engine={backend!r} computes in float64, the start is of type {run.dtype}: take engine='numpy'"

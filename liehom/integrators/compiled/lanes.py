@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.integrators.compiled.traced_step import totals_of
-from liehom.integrators.run.options import END
+from liehom.integrators.run.options import END, EVENT
 from liehom.integrators.run.run import Run
 from liehom.tracing import Kernel, StepGraph
 from liehom.typing import Array, BooleanArray, IntegerArray
@@ -47,6 +47,8 @@ class Made(NamedTuple):
         All steps; sizes are 0 where a lane did not move.
     h : array of shape (L,) or None
         Proposed sizes.
+    halted : array of int of shape (L,) or None
+        The row of `path` in which a terminal event ends the lane, -1 for none.
     """
 
     m: Array
@@ -61,6 +63,7 @@ class Made(NamedTuple):
     until: IntegerArray
     path: tuple[Array, Array, Array] | None
     h: Array | None = None
+    halted: IntegerArray | None = None
 
 
 def run_blocks(kernel: Kernel, state: Array, given: Mapping[str, Any], steps: int) -> None:
@@ -127,6 +130,7 @@ class HandBack:
         self.active = run.state.active.reshape(-1)
         self.done = np.zeros(self.t.shape, dtype=bool)
         self.going = np.zeros(self.t.shape, dtype=bool)
+        self.halted = np.zeros(self.t.shape, dtype=bool)
         self.calls = np.zeros(self.t.shape)
         self.paths: list[tuple[IntegerArray, tuple[Array, Array, Array]]] = []
 
@@ -139,7 +143,9 @@ class HandBack:
             self.h[lanes] = made.h
         if made.records:
             run.state.statistics.add_compiled(lanes, made.records, (float(run.span[0]), float(run.span[1])))
-        if made.path is not None:
+        if made.halted is not None:
+            self.halted[lanes] = made.halted >= 0
+        if made.path is not None and run.keeps:
             self.paths.append((lanes, made.path))
         samples = run.state.samples
         if samples is None:
@@ -169,6 +175,8 @@ class HandBack:
         done = self.done.reshape(shape)
         if bool(done.any()):
             run.stop(now, done, END)
+        if bool(self.halted.any()):
+            run.stop(now, self.halted.reshape(shape), EVENT)
         return bool(self.going.any()) or not bool(now.active.any())
 
     def _record(self) -> None:
@@ -216,3 +224,23 @@ def calls_of(kernel: Kernel, row: dict[str, Array], steps: npt.NDArray[Any]) -> 
         made: Array = np.multiply(steps, graph.calls, dtype=np.float64)
         return made
     return row[f"e{len(graph.largest) + list(graph.summed).index('calls')}"]
+
+
+def moved_rows(path: Array, n: int) -> tuple[Array, Array, Array]:
+    """Times, points and sizes up to the last row in which a lane moves."""
+    some = np.flatnonzero((path[:, n + 1] != 0).any(axis=-1))
+    path = path[: int(some[-1]) + 1 if len(some) else 0]
+    return path[:, n], path[:, :n], path[:, n + 1]
+
+
+def times_until(run: Run, t: Array) -> IntegerArray:
+    """Number of output times up to t."""
+    if run.state.samples is None:
+        return np.zeros(t.shape, dtype=int)
+    found: IntegerArray = np.searchsorted(run.direction * run.state.samples.times, run.direction * t, side="right")
+    return found
+
+
+def stores_path(run: Run) -> bool:
+    """Whether kernels store every step: for the path, or to look for events."""
+    return run.keeps or run.stops.events is not None

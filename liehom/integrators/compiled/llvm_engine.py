@@ -15,8 +15,19 @@ import numpy as np
 
 from liehom.correctors.step import Generator
 from liehom.errors import ConvergenceError, InputError
+from liehom.integrators.compiled.event_search import EventSearch
 from liehom.integrators.compiled.guard import with_guard
-from liehom.integrators.compiled.lanes import HandBack, Made, calls_of, lowest_numbers, records_of, run_blocks
+from liehom.integrators.compiled.lanes import (
+    HandBack,
+    Made,
+    calls_of,
+    lowest_numbers,
+    moved_rows,
+    records_of,
+    run_blocks,
+    stores_path,
+    times_until,
+)
 from liehom.integrators.compiled.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
 from liehom.integrators.compiled.plan import Plan, plan_key, plan_names
@@ -25,6 +36,7 @@ from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.compiled.widths import block_width, operations
 from liehom.integrators.engine import Problem, executed
+from liehom.integrators.run.automaton import MAX_MOVE_WITH_EVENTS
 from liehom.integrators.run.options import END
 from liehom.integrators.run.run import Run
 from liehom.integrators.run.solution import Solution
@@ -36,6 +48,10 @@ PATH_BYTES_PER_CALL = 64_000_000
 """Bytes of points, times and sizes that a kernel call records at most."""
 OPERATIONS_PER_CALL = 4_000_000_000
 """Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
+COPIES_WITH_EVENTS = 8
+"""Arrays of the size of the path, about, while events are sought."""
+MIN_STEPS_WITH_ENDS = 64
+"""With terminal events, steps in the first call; further calls double their number."""
 MIN_STEPS_PER_CALL = 8
 """Steps per kernel call at least: the time between two calls is that of some steps."""
 MAX_PLANNED_LANES = 100_000
@@ -112,7 +128,13 @@ class LlvmEngine:
             return
         if len(run.groups) > 1 or graph.guard is None or solution.status != END or work > OPERATIONS_PER_CALL:
             return
-        if o.checkpoint is not None or o.progress or o.dense_output or (run.schedule is None and o.t_eval is None):
+        if (
+            o.events is not None
+            or o.checkpoint is not None
+            or o.progress
+            or o.dense_output
+            or (run.schedule is None and o.t_eval is None)
+        ):
             return
         shape = np.asarray(problem.start).shape
         if np.prod(shape[:-1]) > MAX_PLANNED_LANES:
@@ -147,11 +169,12 @@ class CodeStore:
         """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
         o, tight = run.options, run.action.tight_frame
         frame = None if tight is None else (tight.symmetric, round(float(tight.isotropy), 9))
-        uniform = o.dt is not None and _uniform(o.dt)
+        uniform = o.dt is not None and bool((o.dt == np.max(o.dt, initial=0.0)).all())
         args, lead = run.field.args, len(run.shape)
-        key = (dimension, uniform, o.dt is None, o.nominal, run.step.trace_key, frame, args_form(args, lead))
+        moves = np.inf if run.stops.events is None else MAX_MOVE_WITH_EVENTS
+        key = (dimension, uniform, o.dt is None and moves, o.nominal, run.step.trace_key, frame, args_form(args, lead))
         if key not in self.graphs:
-            limits = SizeLimits(*_limits(run).values()) if o.dt is None else None
+            limits = SizeLimits(*_limits(run).values())._replace(moves=moves) if o.dt is None else None
 
             def traced(*, stops: bool) -> StepGraph:
                 return traced_step(
@@ -179,16 +202,12 @@ class CodeStore:
         sizes: Any = run.options.dt
         span, dt = (float(run.span[0]), float(run.span[1])), float(np.max(sizes))
         times, total = None if run.state.samples is None else run.state.samples.times, np.asarray(run.stops.total)
-        key = (*span, dt, None if times is None else times.tobytes(), run.keeps)
+        key = (*span, dt, None if times is None else times.tobytes(), stores_path(run))
         if key not in self.schedules:
             if len(self.schedules) >= MAX_SCHEDULES:
                 self.schedules.pop(next(iter(self.schedules)))
-            self.schedules[key] = schedule(span, dt, int(np.max(total)), times, keeps=run.keeps)
+            self.schedules[key] = schedule(span, dt, int(np.max(total)), times, keeps=stores_path(run))
         return self.schedules[key]
-
-
-def _uniform(sizes: Array) -> bool:
-    return bool((sizes == np.max(sizes, initial=0.0)).all())
 
 
 def _limits(run: Run) -> dict[str, float]:
@@ -209,8 +228,6 @@ def compiled_run(run: Run, store: CodeStore) -> _CompiledRun:
     TraceError
         If the step cannot be compiled.
     """
-    if run.stops.events is not None:
-        raise InputError("engine='llvm' does not look for events: take engine='numpy'")
     if run.dtype != np.float64:
         raise InputError(f"engine='llvm' computes in float64, the start is of type {run.dtype}: take engine='numpy'")
     return _CompiledRun(run, store)
@@ -225,6 +242,7 @@ class _CompiledRun:
 
     def __init__(self, run: Run, store: CodeStore) -> None:
         self.store = store
+        self.search = None if run.stops.events is None else EventSearch(run)
         self.start = run.start.reshape(-1, run.start.shape[-1]).astype(np.float64)
         dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
         self.groups: list[tuple[IntegerArray, Hashable, StepGraph]] = []
@@ -260,8 +278,11 @@ class _CompiledRun:
         if not active.any():
             return False
         most = max(MIN_STEPS_PER_CALL, OPERATIONS_PER_CALL // (self.work * lanes))
-        if run.keeps:
-            most = min(most, max(1, PATH_BYTES_PER_CALL // (8 * lanes * (self.start.shape[-1] + 2))))
+        if stores_path(run):
+            share = 1 if self.search is None else COPIES_WITH_EVENTS
+            most = min(most, max(1, PATH_BYTES_PER_CALL // (8 * share * lanes * (self.start.shape[-1] + 2))))
+        if self.search is not None and self.search.ends_runs:
+            most = min(most, max(MIN_STEPS_WITH_ENDS, int(np.max(now.taken))))
         steps = int(min(run.options.max_steps - 1 - int(np.max(now.taken)), most))
         if steps < 1:
             return False
@@ -272,15 +293,53 @@ class _CompiledRun:
                 continue
             if graph.reached is not None:
                 kernel = self.store.kernel(key, graph, len(here))
-                back.take(here, self._by_themselves(run, kernel, here, back, steps))
+                back.take(
+                    here,
+                    self._looked_into(
+                        run, (key, graph), here, back, self._by_themselves(run, kernel, here, back, steps)
+                    ),
+                )
                 continue
             for taken in np.unique(back.taken[here]):
                 some = here[back.taken[here] == taken]
                 kernel = self.store.kernel(key, graph, len(some))
-                back.take(some, self._in_lockstep(run, kernel, some, back, int(taken), steps))
+                back.take(
+                    some,
+                    self._looked_into(
+                        run, (key, graph), some, back, self._in_lockstep(run, kernel, some, back, int(taken), steps)
+                    ),
+                )
         # calls of psi are counted for the trajectory with the most of them
         now.calls += int(np.max(back.calls, initial=0))
         return back.finish()
+
+    def _looked_into(
+        self, run: Run, code: tuple[Hashable, StepGraph], lanes: IntegerArray, back: HandBack, made: Made
+    ) -> Made:
+        """The steps up to terminal events; events are recorded."""
+        if self.search is not None:
+            made = self.search(lanes, (back.t[lanes], back.m[lanes], back.taken[lanes]), made)
+        if made.halted is None:
+            return made
+        key, graph = code
+        calls = np.array(made.calls)
+        records = {name: (np.array(x), kind) for name, (x, kind) in made.records.items()}
+        for row in np.unique(made.halted[made.halted >= 0]):
+            here = made.halted == row
+            if not graph.largest and not graph.summed:
+                calls[here] = np.minimum(calls[here], (row + 1) * (graph.calls or 0))
+                continue
+            # what steps report is known as totals only, so that the steps up to the event are made again
+            some = lanes[here]
+            kernel = self.store.kernel(key, graph, len(some))
+            if graph.reached is not None:
+                again = self._by_themselves(run, kernel, some, back, int(row) + 1)
+            else:
+                again = self._in_lockstep(run, kernel, some, back, int(back.taken[some[0]]), int(row) + 1)
+            calls[here] = again.calls
+            for name, (x, _) in again.records.items():
+                records[name][0][here] = x
+        return made._replace(calls=calls, records=records)
 
     def _given(self, kernel: Kernel, lanes: IntegerArray) -> dict[str, Any]:
         """Fields of the argument of a kernel that do not depend on the loop."""
@@ -325,7 +384,7 @@ class _CompiledRun:
         made = np.where(alive, last, np.searchsorted(plan.first, row["count"], side="right") - 1)
         reached, outputs, out = plan.reached[made], plan.output[low:high], out[..., :count]
         path = None
-        if run.keeps:
+        if stores_path(run):
             ends = plan.ends[low:high]
             number = np.arange(taken, last)[:, None]
             sizes = plan.sizes[plan.first[1:] - 1][taken:last, None]
@@ -341,7 +400,7 @@ class _CompiledRun:
             records=records_of(kernel, row),
             outputs=outputs[outputs >= 0],
             points=out[outputs >= 0],
-            until=_until(run, reached),
+            until=times_until(run, reached),
             path=path,
         )
 
@@ -358,7 +417,7 @@ class _CompiledRun:
                  "h": sizes, **lowest_numbers(graph)}  # fmt: skip
         state = kernel.packed(count, given if graph.sizes is None else {**given, "kept": done})
         out = np.empty((len(stops) + 1, n, state.shape[1]))
-        path = np.zeros((steps, n + 2, state.shape[1])) if run.keeps else None
+        path = np.zeros((steps, n + 2, state.shape[1])) if stores_path(run) else None
         run_blocks(
             kernel,
             state,
@@ -385,21 +444,6 @@ class _CompiledRun:
             outputs=np.arange(first, int(until.max(initial=first))),
             points=out[first : int(until.max(initial=first)), :, :count],
             until=until,
-            path=None if path is None else _moved(path[..., :count], n),
+            path=None if path is None else moved_rows(path[..., :count], n),
             h=row["h"] if graph.sizes is not None else None,
         )
-
-
-def _moved(path: Array, n: int) -> tuple[Array, Array, Array]:
-    """Times, points and sizes up to the last row in which a lane moves."""
-    some = np.flatnonzero((path[:, n + 1] != 0).any(axis=-1))
-    path = path[: int(some[-1]) + 1 if len(some) else 0]
-    return path[:, n], path[:, :n], path[:, n + 1]
-
-
-def _until(run: Run, t: Array) -> IntegerArray:
-    """Number of output times up to t."""
-    if run.state.samples is None:
-        return np.zeros(t.shape, dtype=int)
-    found: IntegerArray = np.searchsorted(run.direction * run.state.samples.times, run.direction * t, side="right")
-    return found

@@ -41,6 +41,8 @@ class SizeLimits(NamedTuple):
         1, or -1 if time decreases.
     tiny : float
         Below this size time does not advance.
+    moves : float
+        Bound for the way of a point in a step, in units of |m|; inf for none.
     """
 
     rtol: Real
@@ -49,6 +51,7 @@ class SizeLimits(NamedTuple):
     end: Real
     direction: Real
     tiny: Real
+    moves: float = float("inf")
 
 
 def tried_size(
@@ -88,7 +91,10 @@ def tried_size(
     """
     xp = namespace(m, t)
     left = xp.abs(limits.end - t)
-    h: Any = xp.minimum(proposal, largest_size(limits.max_step, left))
+    bound: Any = largest_size(limits.max_step, left)
+    if limits.moves < np.inf:
+        bound = xp.minimum(bound, limits.moves * time_scale(psi.field, m, t))
+    h: Any = xp.minimum(proposal, bound)
     if local.estimate_order is None:
         axes = len(psi.field.sites)
         speed = over_sites(length(m), axes) / time_scale(psi.field, m, t)

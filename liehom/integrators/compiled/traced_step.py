@@ -99,7 +99,7 @@ def _traced(
     given_limits: SizeLimits | None = None
     certain: Any = True
     if limits is not None:
-        given_limits = SizeLimits._make(Traced(tape, tape.run_constant(*x)) for x in limits._asdict().items())
+        given_limits = _traced_limits(tape, limits)
         h, certain = tried_size(given_limits, action, psi, local, step, m, t, h)
     own_clock, first, reached = bool(local.clock) and not nominal, None, None
     passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
@@ -139,6 +139,12 @@ def _traced(
         tried=None if reached is None else _number(tape, h),
         first=None if first is None else _number(tape, first),
     )  # fmt: skip
+
+
+def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
+    """The numbers of the limits by name, as constants of the run; `moves` as it is."""
+    numbers = (Traced(tape, tape.run_constant(*x)) for x in limits._asdict().items() if x[0] != "moves")
+    return SizeLimits._make((*numbers, limits.moves))
 
 
 def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:

@@ -211,7 +211,7 @@ def test_results_do_not_depend_on_threads_or_the_number_of_lanes(monkeypatch: py
     [
         ({"engine": "fortran"}, "expected one of"),
         ({"engine": "numba"}, 'is "llvm"'),
-        ({"events": lambda t, y: y[0]}, "events"),
+        ({"engine": "jax", "events": lambda t, y: y[0]}, "events"),
     ],
     ids=["backend", "former name", "events"],
 )
