@@ -94,7 +94,7 @@ class EventSearch:
         self.values = EventValues(run)
         self.start = run.start.reshape(-1, run.start.shape[-1])
         self.dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
-        self.psi_at_once = self._psi_works_at_once()
+        self.psi_at_once = not len(self.start) or self._psi_works_at_once()
         if not self.psi_at_once and run.shape:
             raise InputError(
                 "engine='llvm' looks for events by calls of psi for some trajectories of the ensemble, and this psi "

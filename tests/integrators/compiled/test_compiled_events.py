@@ -185,3 +185,12 @@ def test_an_interrupted_run_goes_on_with_its_events(tmp_path: Path, monkeypatch:
     np.testing.assert_array_equal(made.y, whole.y)
     for x, y in zip(listed(made.t_events), listed(whole.t_events), strict=True):
         np.testing.assert_array_equal(x, y)
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_ensembles_of_any_size_and_runs_that_fail_have_events(count: int) -> None:
+    options: dict[str, Any] = {"step": lh.LieTaylor(4), "dt": 0.3, "events": FIRST, "max_steps": 15}
+    plain, made = both(BODY, (0, 12), sphere(3)[:count], **options)
+    assert made.message == plain.message and made.t.shape == plain.t.shape
+    for x, y in zip(listed(made.t_events), listed(plain.t_events), strict=True):
+        np.testing.assert_allclose(x, y, rtol=0, atol=ULPS * EPS)
