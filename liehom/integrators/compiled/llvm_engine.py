@@ -100,7 +100,8 @@ class LlvmEngine:
             return made[0]
 
         solution = executed(problem, fast_path)
-        self._keep_plan(problem, made[0], solution)
+        if made[0].groups:  # an ensemble may be empty
+            self._keep_plan(problem, made[0], solution)
         return solution
 
     def again(self, t_span: object, y0: object, options: Mapping[str, Any], args: Pytree = None) -> Solution | None:
@@ -250,12 +251,12 @@ class _CompiledRun:
             lanes = np.flatnonzero(dimensions == d)
             self.groups.append((lanes, *store.graph(run, int(d), self.start[lanes])))
         self.work = max((operations(graph) for _, _, graph in self.groups), default=1)
-        self.schedule = store.schedule(run) if self.groups[0][2].reached is None else None
+        self.schedule = store.schedule(run) if self.groups and self.groups[0][2].reached is None else None
         latest = bounds_of((float(run.span[0]), float(run.span[1])))[1]
         self.values: dict[str, Any] = {**arg_values(run.field.args, len(run.shape)), **_limits(run)}
         self.values |= {"latest": latest, "rest": float(run.rest)}
 
-        if not run.state.taken.any() and run.step.uses_isotropy:
+        if len(self.start) and not run.state.taken.any() and run.step.uses_isotropy:
             self._note_ranks(run)
 
     def _note_ranks(self, run: Run) -> None:
