@@ -31,7 +31,7 @@ from liehom.integrators.compiled.lanes import (
 from liehom.integrators.compiled.lattice import LatticeStep, lattice_step, solved_on_lattice
 from liehom.integrators.compiled.parameters import arg_values, args_form, args_of_lanes
 from liehom.integrators.compiled.plan import Plan, plan_key, plan_names
-from liehom.integrators.compiled.schedule import Schedule, schedule
+from liehom.integrators.compiled.schedule import RunSchedule, Schedule
 from liehom.integrators.compiled.traced_size import SizeLimits
 from liehom.integrators.compiled.traced_step import traced_step
 from liehom.integrators.compiled.widths import block_width, operations
@@ -164,7 +164,7 @@ class CodeStore:
     def __init__(self) -> None:
         self.graphs: dict[Hashable, StepGraph] = {}
         self.kernels: dict[Hashable, Kernel] = {}
-        self.schedules: dict[Hashable, Schedule] = {}
+        self.schedules: dict[RunSchedule, Schedule] = {}
 
     def graph(self, run: Run, dimension: int, points: Array) -> tuple[Hashable, StepGraph]:
         """The graph of a step on orbits of a dimension, traced if it is not known, and its key."""
@@ -200,15 +200,12 @@ class CodeStore:
 
     def schedule(self, run: Run) -> Schedule:
         """The micro-steps of a run with steps of one size."""
-        sizes: Any = run.options.dt
-        span, dt = (float(run.span[0]), float(run.span[1])), float(np.max(sizes))
-        times, total = None if run.state.samples is None else run.state.samples.times, np.asarray(run.stops.total)
-        key = (*span, dt, None if times is None else times.tobytes(), stores_path(run))
-        if key not in self.schedules:
+        wanted = RunSchedule.of(run, keeps=stores_path(run))
+        if wanted not in self.schedules:
             if len(self.schedules) >= MAX_SCHEDULES:
                 self.schedules.pop(next(iter(self.schedules)))
-            self.schedules[key] = schedule(span, dt, int(np.max(total)), times, keeps=stores_path(run))
-        return self.schedules[key]
+            self.schedules[wanted] = wanted.schedule()
+        return self.schedules[wanted]
 
 
 def _limits(run: Run) -> dict[str, float]:

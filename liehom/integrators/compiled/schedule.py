@@ -6,10 +6,11 @@ A *micro-step* starts at the point before a step and goes to the end of the step
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import final
+from typing import NamedTuple, final
 
 import numpy as np
 
+from liehom.integrators.run.run import Run
 from liehom.typing import Array, BooleanArray, IntegerArray
 
 
@@ -54,8 +55,10 @@ class Schedule:
         return len(self.first) - 1
 
 
-def schedule(span: tuple[float, float], dt: float, steps: int, times: Array | None, *, keeps: bool) -> Schedule:
-    """The schedule of `steps` steps of size dt, the last of them to the end of the span.
+def schedule(
+    span: tuple[float, float], dt: float, steps: int, times: Array | None, *, keeps: bool, whole: bool = True
+) -> Schedule:
+    """The schedule of `steps` steps of size dt, the last of them to the end of the span if it is the `whole` run.
 
     Parameters
     ----------
@@ -67,6 +70,8 @@ def schedule(span: tuple[float, float], dt: float, steps: int, times: Array | No
         Output times in the direction of integration.
     keeps : bool
         Whether the end of every step is stored too.
+    whole : bool
+        False if the run is cut off after these steps.
 
     Examples
     --------
@@ -77,13 +82,16 @@ def schedule(span: tuple[float, float], dt: float, steps: int, times: Array | No
     begin, end = span
     direction = 1.0 if end >= begin else -1.0
     reached: Array = begin + np.arange(steps + 1, dtype=np.float64) * (direction * dt)
-    reached[0], reached[-1] = begin, end
+    reached[0] = begin
     sizes = np.full(steps, direction * dt)
-    sizes[-1] = end - reached[-2]
+    if whole:
+        reached[-1], sizes[-1] = end, end - reached[-2]
     output = np.full(steps, -1)
     wanted = np.zeros(0) if times is None else times
     offset = int(len(wanted) > 0 and wanted[0] == begin)  # the start is stored by the run
     wanted = wanted[offset:]
+    if not whole:
+        wanted = wanted[direction * wanted <= direction * reached[-1]]
     step = np.searchsorted(direction * reached[1:], direction * wanted)
     at_end = np.flatnonzero(reached[step + 1] == wanted)
     if len(at_end):
@@ -110,3 +118,28 @@ def schedule(span: tuple[float, float], dt: float, steps: int, times: Array | No
         output=output[stored],
         ends=commits[stored],
     )
+
+
+class RunSchedule(NamedTuple):
+    """What the schedule of a run follows from, hashable."""
+
+    span: tuple[float, float]
+    dt: float
+    steps: int
+    times: tuple[float, ...] | None
+    keeps: bool
+    whole: bool
+
+    @classmethod
+    def of(cls, run: Run, *, keeps: bool) -> RunSchedule:
+        """That of a run with steps of one size; no more steps than `max_steps` are scheduled."""
+        samples = run.state.samples
+        times = None if samples is None else tuple(samples.times.tolist())
+        total = float(np.max(np.asarray(run.stops.total)))
+        steps, dt = int(min(total, run.options.max_steps)), float(np.max(np.asarray(run.options.dt)))
+        return cls((float(run.span[0]), float(run.span[1])), dt, steps, times, keeps, steps == total)
+
+    def schedule(self) -> Schedule:
+        """The schedule itself."""
+        times = None if self.times is None else np.array(self.times)
+        return schedule(self.span, self.dt, self.steps, times, keeps=self.keeps, whole=self.whole)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import liehom as lh
 from liehom.integrators.compiled.schedule import schedule
 from tests.sampling import examples
 
@@ -51,3 +55,12 @@ def test_equal_micro_steps_are_one_segment() -> None:
     assert set(plan.codes[plan.codes != -1]) == {0}
     alone = schedule((0.0, 1.0), 0.25, 4, None, keeps=True)
     assert alone.repeats.tolist() == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("t_eval", [None, [0.5e-11, 3.0]])
+def test_a_run_that_is_cut_off_needs_no_more_memory_than_its_steps(t_eval: list[float] | None) -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    options: dict[str, Any] = {"step": "euler", "dt": 1e-12, "max_steps": 100, "t_eval": t_eval}
+    plain, made = (lh.integrate(field, (0, 3), [1.0, 0.0], engine=e, **options) for e in ("numpy", "llvm"))
+    assert made.status == plain.status == -1 and made.n_steps == plain.n_steps
+    np.testing.assert_allclose(made.y, plain.y, rtol=0, atol=1e-15)
