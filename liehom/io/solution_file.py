@@ -31,7 +31,7 @@ def report_json(report: Report) -> dict[str, Any]:
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
     >>> report = lh.integrators.integrate(field, (0, 1), [1.0, 0.0]).report
     >>> report_json(report)["order"], report_json(report)["singular_value"]
-    (6, None)
+    (8, None)
     """
     made = {entry.name: plain(getattr(report, entry.name)) for entry in dataclasses.fields(report)}
     return {**made, "range_condition": report.range_condition}

@@ -28,6 +28,7 @@ def expanded_by_jax(function: Callable[..., Values], *operands: Jet | Values) ->
     Examples
     --------
     >>> import jax
+    >>> import numpy as np
     >>> with jax.enable_x64(True):
     ...     x = Jet([jax.numpy.zeros(1), jax.numpy.ones(1), jax.numpy.zeros(1), jax.numpy.zeros(1)])
     ...     print(np.asarray(expanded_by_jax(jax.numpy.tanh, x).coefficient(3)).round(6).tolist())

@@ -89,7 +89,8 @@ class Kernel:
         **fields : arrays, numbers or None
             Other `FIELDS` of the argument of the machine code; by default all blocks of lanes are run.
         """
-        self.run(self.argument(state, **fields).ctypes.data)
+        argument = self.argument(state, **fields)  # must live as long as the machine code runs
+        self.run(argument.ctypes.data)
 
     def argument(
         self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None

@@ -272,7 +272,18 @@ def test_wrong_defining_representations_are_refused() -> None:
 def test_series_need_x_of_0_to_be_0() -> None:
     for name in ("so(3)", "Sym(3)"):
         with pytest.raises(SeriesError):
-            Cayley(representation(name))(lh.Jet(np.ones((2, 3))), np.ones(representation(name).size))
+            Cayley(representation(name))(lh.Jet(np.ones((3, 3))), np.ones(representation(name).size))
+
+
+def test_to_order_1_x_of_0_need_not_be_0() -> None:
+    """Newton's method of implicit steps asks for such derivatives, which have half of the digits."""
+    for name in ("so(3)", "Sym(3)"):
+        cayley, m, h = Cayley(representation(name)), np.arange(1.0, 1 + representation(name).size), 1e-5
+        x, v = np.array([0.3, -0.2, 0.5]), np.array([0.1, 0.7, -0.4])
+        made = cayley(lh.Jet(np.array([x, v])), m)
+        slope = (cayley(x + h * v, m) - cayley(x - h * v, m)) / (2 * h)
+        np.testing.assert_allclose(made.value, cayley(x, m), rtol=0, atol=1e-13)
+        np.testing.assert_allclose(made.coefficient(1), slope, rtol=0, atol=1e-6 * np.abs(m).max())
 
 
 def test_a_representation_with_a_kernel() -> None:
