@@ -121,7 +121,7 @@ def schedule(
 
 
 class RunSchedule(NamedTuple):
-    """What the schedule of a run follows from, hashable."""
+    """The numbers from which the schedule of a run follows, hashable."""
 
     span: tuple[float, float]
     dt: float
