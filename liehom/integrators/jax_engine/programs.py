@@ -155,7 +155,8 @@ def _shared(digest: str | None, kind: Hashable, make: Callable[[], Compiled], op
     import jax
 
     if digest is None:
-        return jax.jit(make(), **options)
+        alone: Compiled = jax.jit(make(), **options)
+        return alone
     key = digest, kind
     if key not in _SHARED:
         if len(_SHARED) >= MAX_SHARED:
