@@ -104,7 +104,9 @@ def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
 
 def picture_name(problem: Problem) -> str:
     """File name of the plot of a problem."""
-    plain = problem.name.lower().translate(str.maketrans({"⁴": "4", "²": "2", "(": "", ")": "", ",": "", " ": "_"}))
+    plain = problem.name.lower().translate(
+        str.maketrans({"⁴": "4", "³": "3", "²": "2", "(": "", ")": "", ",": "", " ": "_"})
+    )
     return f"work_precision_{plain}.svg"
 
 
@@ -149,6 +151,8 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
     c = data["conditions"]
     versions = ", ".join(f"{name} {version}" for name, version in c["versions"].items())
     loads = [p["load"] for p in data["problems"].values()]
+    older = [n for n, p in data["problems"].items() if not any(m["label"] == "S8" for m in p["methods"])]
+    earlier = f"* The tables of {', '.join(older)} were measured earlier, with a trace of the step in every call."
     return [
         f"Measured {c['date']} on one core of {c['cores']} ({c['processor']}) by `python -m tests.benchmarks.report`, "
         f"with {versions}. All fields are autonomous, and all trajectories of an ensemble have the same parameters.",
@@ -165,6 +169,7 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
         "`Propagator` that was made once, as the objects of the other programs are.",
         '* The other columns are the cost of the steps. For a program with "in" in the column "call" they contain the '
         "cost of the call too.",
+        *([earlier] if older else []),
         "* Each cell shows the cheapest method of its row, with its abbreviation:",
         "",
         *table(["abbreviation", "method"], EXPLAINED.items()),
