@@ -25,6 +25,8 @@ ITERATIONS = 200
 EXTREMUM_ITERATIONS = 60
 CLEAR_OF_ZERO = 0.5
 """An extremum is clear of 0 if two parabolas in turn leave at least this fraction of the value that is known."""
+PARABOLIC = 0.02
+"""A parabola counts for that if f differs from it at its vertex by at most this fraction of the value."""
 EXTREMUM_RTOL = 1e-9
 """The smallest bracket of an extremum, in units of the step."""
 
@@ -260,11 +262,12 @@ def lowest(
         x, least = _vertex((a, b, c), (fa, fb, fc))
         bracketed = (fb <= fa) & (fb <= fc)
         far = bracketed & (least > CLEAR_OF_ZERO * fb)
-        busy, clear = busy & ~(far & clear), far
+        busy = busy & ~(far & clear)
         # without a bracket, the extremum is beyond the lower end: f decreases at 0 and increases at h
         x = np.where(bracketed, x, np.where(fb > fc, (b + c) / 2, (a + b) / 2))
         x = np.where(busy, x, b)
         fx = np.where(busy, f(x), fb)
+        clear = far & (np.abs(fx - least) <= PARABOLIC * fb)  # else the parabola says nothing of f
         left, lower = np.abs(x) < np.abs(b), (fx < fb) | ~bracketed
         moved = busy & (x != b)
         a, fa, b, fb, c, fc = (
