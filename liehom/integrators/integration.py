@@ -125,8 +125,9 @@ def integrate(
     times t of the shape of the leading axes.
 
     An adaptive step size follows from the estimate of an embedded pair, or from the Taylor coefficients of the error at
-    the initial point of a step, as that of the default step does. Taylor coefficients do not show a jump of psi, a pulse
-    that is shorter than a step, or a term such as t^20 at t = 0: take a pair such as ``step="rk45"``, or `max_step`.
+    the initial point of a step, as that of the default step does. Taylor coefficients do not show a jump of psi, a
+    pulse that is shorter than a step, or a term such as t^20 at t = 0. For those take a pair such as ``step="rk45"``,
+    or `max_step`.
 
     Points that the group fixes, such as 0 in a linear representation, stay where they are for every psi.
 
