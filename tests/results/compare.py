@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 LISTED = "failure reports list all maximal invariant subspaces, over real number fields too"
+MACHINE_CODE = "machine code makes every step, also the first and the last: round-off, and calls of psi"
 INTENDED = (
     {
         f"decisions: [{name} over RR] [{key}] ": "numerical verdicts compare with propagated errors"
@@ -56,6 +57,29 @@ INTENDED = (
         "integrations: [resumed: body, Heun with energy, 0 to 5, dt=0.1] [nfev] ": (
             "the preparation of a step is counted once, also if a run is resumed"
         )
+    }
+    | {
+        f"integrations: [solved: {name}, compile=True] [{key}] ": MACHINE_CODE
+        for name, keys in (
+            ("S^4, Euler to 3, 0 to 2, rtol=1e-06", "t y"),
+            ("a hundred bodies, RK45, 0 to 5, rtol=1e-08", "t y nfev"),
+            ("body, Euler to 3, 0 to 10, dt=0.1", "y"),
+            ("body, Euler, 0 to 10, dt=0.1", "y"),
+            ("body, Heun with energy, 0 to 10, dt=0.1, clock=nominal", "y"),
+            ("body, RK4, 0 to 10, dt=0.1", "y"),
+            ("forced, Taylor 3, 0 to 5, dt=0.1", "y"),
+            ("many bodies, Euler to 3, 0 to 5, dt=21 values", "y"),
+        )
+        for key in keys.split()
+    }
+    | {
+        f"integrations: [{kind}: many forced, RK4, 0 to 3, dt=0.05, {more}compile=True] [{key}] ": MACHINE_CODE
+        for kind, more in (("chunked", "chunk=4, t_eval=7 values, "), ("resumed", "t_eval=7 values, "))
+        for key in ("y", "nfev")
+    }
+    | {
+        f"integrations: [a damped spin] [{key}] ": "the default step is a Taylor step"
+        for key in ("t", "y", "nfev", "n_steps", "report")
     }
 )
 """Values that differ from those of 0.1.0 on purpose, and why."""
