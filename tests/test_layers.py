@@ -100,6 +100,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "ensembles",
         "convergence",
     ),
+    "atlas": ("recipe", "entry", "facts", "sweep", "families", "build"),
     "instances": ("spheres", "bodies", "rigid_body", "spins", "sym_conjugation", "isospectral"),
 }
 

@@ -1,8 +1,10 @@
-"""Sweeps: tables of pairs that are decided one by one, each with a certificate.
+"""The atlas: tables of pairs that are decided one by one, each with a certificate.
 
-In reading order: `entry` (one pair of a table, and the table), `sweep` (decisions on any executor, stored on disk).
+In reading order: `recipe` (one pair of a family, constructed by the worker), `families` (generators of recipes),
+`entry` (one decided pair, and the table), `sweep` (decisions on any executor, stored on disk).
 """
 
 from liehom.atlas.entry import Atlas as Atlas
 from liehom.atlas.entry import Entry as Entry
+from liehom.atlas.recipe import Recipe as Recipe
 from liehom.atlas.sweep import sweep as sweep

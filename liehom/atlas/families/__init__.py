@@ -1,0 +1,6 @@
+"""Families of pairs as generators of recipes, one module for each family.
+
+Each generator yields `Recipe` objects; the functions that they name construct one pair from a few numbers and strings.
+`build` and users may import from here. The families and their sources are described in docs/atlas.md, the verdicts in
+docs/theory/fullness.md.
+"""
