@@ -155,13 +155,16 @@ if TYPE_CHECKING:
     from liehom.homogeneous import Exponential as Exponential
     from liehom.homogeneous import GeneratorField as GeneratorField
     from liehom.homogeneous import adjoint_strata as adjoint_strata
+    from liehom.homogeneous import binary_form_strata as binary_form_strata
     from liehom.homogeneous import failure_cone as failure_cone
     from liehom.homogeneous import hamiltonian_field as hamiltonian_field
     from liehom.homogeneous import hermitian_strata as hermitian_strata
     from liehom.homogeneous import lie_poisson_tensor as lie_poisson_tensor
     from liehom.homogeneous import orbit_types as orbit_types
     from liehom.homogeneous import range_condition as range_condition
+    from liehom.homogeneous import rectangular_strata as rectangular_strata
     from liehom.homogeneous import relative_invariant as relative_invariant
+    from liehom.homogeneous import skew_strata as skew_strata
     from liehom.homogeneous import structure_name as structure_name
     from liehom.homogeneous import symmetric_strata as symmetric_strata
     from liehom.instances import AttitudeBody as AttitudeBody
@@ -299,8 +302,9 @@ _NAMES = {
         "NumericallyNotFull NumericallyUndecided verify_certificate"
     ),
     "liehom.homogeneous": (
-        "Action Cayley Exponential GeneratorField adjoint_strata failure_cone hamiltonian_field hermitian_strata "
-        "lie_poisson_tensor orbit_types range_condition relative_invariant structure_name symmetric_strata"
+        "Action Cayley Exponential GeneratorField adjoint_strata binary_form_strata failure_cone hamiltonian_field "
+        "hermitian_strata lie_poisson_tensor orbit_types range_condition rectangular_strata relative_invariant "
+        "skew_strata structure_name symmetric_strata"
     ),
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 Conserving Corrected CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK "

@@ -32,8 +32,11 @@ from liehom.homogeneous.orbits import ConjugacyProof as ConjugacyProof
 from liehom.homogeneous.orbits import OrbitType as OrbitType
 from liehom.homogeneous.orbits import Stratum as Stratum
 from liehom.homogeneous.orbits import adjoint_strata as adjoint_strata
+from liehom.homogeneous.orbits import binary_form_strata as binary_form_strata
 from liehom.homogeneous.orbits import hermitian_strata as hermitian_strata
 from liehom.homogeneous.orbits import orbit_types as orbit_types
+from liehom.homogeneous.orbits import rectangular_strata as rectangular_strata
+from liehom.homogeneous.orbits import skew_strata as skew_strata
 from liehom.homogeneous.orbits import structure_name as structure_name
 from liehom.homogeneous.orbits import symmetric_strata as symmetric_strata
 from liehom.homogeneous.range import FailureSet as FailureSet

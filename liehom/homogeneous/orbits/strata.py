@@ -111,18 +111,18 @@ def symmetric_strata(k: int) -> list[Stratum]:
     >>> [(s.label, s.orbit_dimension, s.dimension, s.structure) for s in symmetric_strata(3)]
     [((1, 1, 1), 3, 6, '0'), ((2, 1), 2, 4, 'R'), ((3,), 0, 1, 'so(3)')]
     """
-    rho = sym_conjugation(_size(k))
+    rho = sym_conjugation(require_size(k))
     pairs = list(combinations(range(k), 2))
     found = []
-    for partition in _partitions(k):
-        level = _levels(partition)
+    for partition in partitions(k):
+        level = levels(partition)
         point = tuple(QQ.convert(level[i] if i == j else 0) for i in range(k) for j in range(i, k))
         # the standard basis of so(k): E_ij - E_ji for i < j in lexicographic order, up to sign
         rows = [_unit(len(pairs), x) for x, (i, j) in enumerate(pairs) if level[i] == level[j]]
         ideals = [canonical_real_form(f"so({m})") for m in partition if m > 2]
         structure = reductive_name(ideals, partition.count(2))
         found.append(_stratum(partition, structure, len(partition), rho, point, rows))
-    return _ordered(found)
+    return ordered(found)
 
 
 def hermitian_strata(k: int) -> list[Stratum]:
@@ -138,12 +138,12 @@ def hermitian_strata(k: int) -> list[Stratum]:
     >>> [(s.label, s.orbit_dimension, s.dimension, s.structure) for s in hermitian_strata(3)]
     [((1, 1, 1), 6, 9, 'R^2'), ((2, 1), 4, 6, 'so(3) + R'), ((3,), 0, 1, 'su(3)')]
     """
-    rho = hermitian_conjugation(_size(k))
+    rho = hermitian_conjugation(require_size(k))
     pairs = list(combinations(range(k), 2))
     n = k * k - 1
     found = []
-    for partition in _partitions(k):
-        level = _levels(partition)
+    for partition in partitions(k):
+        level = levels(partition)
         values = [[level[i] if part == 0 and i == j else 0] for i in range(k) for j in range(i, k) for part in range(2)]
         places = [(i, j, part) for i in range(k) for j in range(i, k) for part in range(2)]
         point = tuple(QQ.convert(v[0]) for v, (i, j, part) in zip(values, places, strict=True) if i < j or not part)
@@ -153,7 +153,7 @@ def hermitian_strata(k: int) -> list[Stratum]:
         ideals = [canonical_real_form(f"su({m})") for m in partition if m > 1]
         structure = reductive_name(ideals, len(partition) - 1)
         found.append(_stratum(partition, structure, len(partition), rho, point, rows))
-    return _ordered(found)
+    return ordered(found)
 
 
 def adjoint_strata(type_name: str) -> list[Stratum]:
@@ -194,7 +194,7 @@ def adjoint_strata(type_name: str) -> list[Stratum]:
         structure = reductive_name(_compact_names(system, vanishing), rank - len(vanishing))
         rows = [_unit(n, place) for place in places]
         found.append(_stratum(tuple(sets), structure, rank - len(vanishing), rho, point, rows))
-    return _ordered(found)
+    return ordered(found)
 
 
 def _compact_names(system: RootSystem, nodes: Sequence[int]) -> list[str]:
@@ -222,26 +222,28 @@ def _stratum(
     return Stratum(label, structure, parameters, rho, point, isotropy)
 
 
-def _ordered(strata: list[Stratum]) -> list[Stratum]:
+def ordered(strata: list[Stratum]) -> list[Stratum]:
+    """The strata by decreasing dimension of their orbits."""
     return sorted(strata, key=lambda s: (-s.orbit_dimension, -s.dimension, s.label))
 
 
-def _size(k: object) -> int:
+def require_size(k: object) -> int:
+    """The size of matrices or degree of forms, an integer at least 1; `InputError` otherwise."""
     if isinstance(k, bool) or not isinstance(k, int) or k < 1:
         raise InputError(f"the size of the matrices is an integer at least 1, got {k!r}")
     return k
 
 
-def _partitions(k: int, largest: int | None = None) -> Iterator[tuple[int, ...]]:
+def partitions(k: int, largest: int | None = None) -> Iterator[tuple[int, ...]]:
     """The decreasing sequences of positive integers with sum k."""
     if k == 0:
         yield ()
     for first in range(min(k, k if largest is None else largest), 0, -1):
-        for rest in _partitions(k - first, first):
+        for rest in partitions(k - first, first):
             yield (first, *rest)
 
 
-def _levels(partition: Sequence[int]) -> list[int]:
+def levels(partition: Sequence[int]) -> list[int]:
     """The eigenvalues 0, 1, 2, ... with these multiplicities."""
     return [value for value, m in enumerate(partition) for _ in range(m)]
 
