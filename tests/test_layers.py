@@ -50,7 +50,17 @@ BELOW: dict[str, tuple[str, ...]] = {
 # before it, at load time, inside functions and for type checkers alike
 WINGS: dict[str, tuple[str, ...]] = {
     "scalars": ("fields", "spaces", "modular", "functions", "lattices", "roots"),
-    "algebra": ("core", "closure", "roots", "matrices", "structure", "constructions", "cohomology", "involutions"),
+    "algebra": (
+        "core",
+        "closure",
+        "roots",
+        "matrices",
+        "structure",
+        "constructions",
+        "cohomology",
+        "involutions",
+        "parabolic",
+    ),
     "representations": ("invariants", "core", "rationalization", "highest_weight", "constructions", "analysis"),
     "homogeneous": ("maps", "frames", "exponentials", "range", "space", "fields", "orbits"),
     "fullness": (

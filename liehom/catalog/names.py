@@ -6,6 +6,7 @@
     items   =  item { ',' item },   item = integer | sum
     values  =  value { ',' value },  value = integer | integer '/' integer (a fraction only in bianchi and A4,2)
     head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
+            |  'P{' digits { ',' digits } '}'
 
 Blanks are ignored. Printing a tree and parsing the string gives the same tree. `parse` drops parameters that are the
 default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)', and replaces other spellings: 'schrodinger(3)' prints
@@ -29,7 +30,7 @@ SPELLINGS = {"schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e"}
 """Other spellings of heads."""
 MAX_LIKENESS = 100
 """Characters of the longest name to which similar names are looked for."""
-_TOKEN = re.compile(r"\s*(?:(R\^\d+)|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
+_TOKEN = re.compile(r"\s*(?:(R\^\d+|P\{[\d\s,]*\})|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
 
 
 @final
@@ -226,6 +227,8 @@ class _Parser:
             return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
         if re.fullmatch(r"A\d", head) and self.accept(","):
             return self.numbered(head)
+        if head.startswith("P{"):
+            return self.parabolic(head)
         if not self.accept("("):
             return Term(head)
         self.depth += 1
@@ -237,6 +240,13 @@ class _Parser:
         self.expect(")")
         self.depth -= 1
         return canonical(Term(head, tuple(items), after))
+
+    def parabolic(self, head: str) -> Term:
+        """A name such as P{1,6}, with the numbers in order."""
+        numbers = [number.strip() for number in head[2:-1].split(",")]
+        if not all(map(str.isdigit, numbers)):
+            raise self.error("expected numbers of nodes as in P{1,6}", self.tokens[self.at - 1][1])
+        return Term(f"P{{{','.join(map(str, sorted(set(map(small_integer, numbers)))))}}}")
 
     def numbered(self, head: str) -> Term:
         """A name such as A4,2(1/2) after its first comma."""

@@ -5,6 +5,7 @@ G/0, G/G        trivial ones                         e(n)/so(n), iso(p,q)/so(p,q
                                                      schroedinger(n)/so(n), aff(n)/gl(n), R^n/R^m, heisenberg(n)/R
 G/Pk, G/P       the stabilizer of a k-dimensional subspace over the scalars, isotropic if G preserves a form; P = P1;
                 in e6 the stabilizer of the line of an idempotent, in g2(2) of a null line
+G/P{i,j,...}    the parabolic subalgebra of a simple real algebra with these nodes of the Satake diagram crossed
 G/B             in sl(n) and gl(n) the stabilizer of a complete flag
 G/H             the subalgebra in the table of `special`; otherwise H as diagonal blocks of the matrices of G
 """
@@ -21,6 +22,7 @@ from liehom.catalog.algebras import affine_algebra, algebra_of
 from liehom.catalog.claims import CLAIMS
 from liehom.catalog.linear import is_linear, linear_matrices
 from liehom.catalog.names import Expression, Quotient, Term, canonical, parse, terms, unknown
+from liehom.catalog.parabolics import parabolic_pair
 from liehom.catalog.special import parabolic_rows, special_rows
 from liehom.catalog.subalgebras import coordinates, placements, preserving
 from liehom.errors import CatalogError
@@ -61,6 +63,10 @@ def pair(name: str) -> Pair:
     liehom.errors.CatalogError: 'so(4)/so(5)' is not the name of a pair in the catalogue; the nearest are ...
     """
     tree = parse(name)
+    if isinstance(tree, Quotient) and isinstance(tree.bottom, Term) and tree.bottom.head.startswith("P{"):
+        if not isinstance(tree.top, Term):
+            raise unknown(str(tree), CLAIMS, "pair")
+        return parabolic_pair(tree.top, tree.bottom)
     if isinstance(tree, Quotient):
         return _quotient(tree)
     if isinstance(tree, Term) and tree.head == "affine":

@@ -11,12 +11,14 @@ from liehom.catalog.algebras import EXAMPLES
 from liehom.catalog.names import Quotient, Sum, Term, canonical, parse
 from liehom.errors import CatalogError, LimitError
 
-heads = st.sampled_from(["so", "su", "sl", "sp", "g2", "affine", "tensor", "so*", "P1", "R", "R^3", "f4", "S2", "Q"])
+heads = st.sampled_from(
+    ["so", "su", "sl", "sp", "g2", "affine", "tensor", "so*", "P1", "P{1,6}", "R", "R^3", "f4", "S2", "Q"]
+)
 integers = st.integers(-40, 40)
 
 
 def build(head: str, items: list[object], after: list[int]) -> Term:
-    bare = head.startswith("R^") or not items
+    bare = head.startswith(("R^", "P{")) or not items
     return canonical(Term(head) if bare else Term(head, tuple(items), tuple(after)))  # type: ignore[arg-type]
 
 

@@ -13,7 +13,6 @@ from liehom.algebra.matrices import form_preserving
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.algebra.matrices.named_matrices import Parameter, classical_matrices, classical_name, linear_lie_algebra
 from liehom.errors import InputError
-from liehom.scalars import QQ
 
 
 def gl(n: int, over: str = "R") -> LieAlgebra:
@@ -206,7 +205,7 @@ def parabolic_subalgebra(*sizes: int) -> Subalgebra:
     Returns
     -------
     Subalgebra
-        Of ``sl(n)``, in its basis.
+        Of ``sl(n)``, in its basis. In `LieAlgebra.parabolic_subalgebra` the ends of the blocks are crossed.
 
     Raises
     ------
@@ -224,12 +223,8 @@ def parabolic_subalgebra(*sizes: int) -> Subalgebra:
         raise InputError("a parabolic subalgebra needs the sizes of its diagonal blocks, such as (1, 2)")
     for size in sizes:
         require_size("the size of a block", size)
-    n = sum(sizes)
-    block = [b for b, size in enumerate(sizes) for _ in range(size)]
-    off = [pair for pair in itertools.product(range(n), repeat=2) if pair[0] != pair[1]]
-    kept = [k for k, (i, j) in enumerate(off) if block[i] <= block[j]] + list(range(len(off), n * n - 1))
-    # Products of block upper triangular matrices are block upper triangular.
-    return Subalgebra(sl(n), QQ.identity(n * n - 1).select(rows=kept), check=False)
+    ends = list(itertools.accumulate(sizes))
+    return sl(ends[-1]).parabolic_subalgebra([end - 1 for end in ends[:-1]])
 
 
 def _classical(kind: str, first: int, second: Parameter) -> LieAlgebra:

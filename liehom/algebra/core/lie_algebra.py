@@ -1135,6 +1135,52 @@ class LieAlgebra(Immutable):
         """
         return self.cartan_decomposition(extend=extend).k
 
+    # -- parabolic subalgebras ---------------------------------------------------------------------------
+    def parabolic_subalgebra(self, crossed: Iterable[int]) -> Subalgebra:
+        """The standard parabolic subalgebra of a semisimple algebra with a set of crossed simple restricted roots.
+
+        Parameters
+        ----------
+        crossed : iterable of int
+            The numbers, from 0, of the simple restricted roots whose root spaces are in the nilradical. The other ones,
+            with their negatives, generate the semisimple part of the Levi factor, up to a compact part. No numbers give
+            the whole algebra, one number a maximal parabolic subalgebra, all numbers a minimal one.
+
+        Raises
+        ------
+        InputError
+            If the algebra is not semisimple, or there is no root with one of the numbers.
+        UndecidedError
+            If no split torus was found over the field of the algebra that is maximal over the reals. Such a torus may
+            exist over a larger real number field only: see `over`. Over float64.
+
+        Notes
+        -----
+        Simple restricted roots are numbered in the order of the white nodes of the Satake diagram, two nodes joined by
+        an arrow counted once (``form.satake.restricted_nodes`` for each ``form`` of `real_forms`). Crossed nodes are
+        those of Čap and Slovák, Parabolic Geometries I, 3.2. In the notation of Knapp, Lie Groups Beyond an
+        Introduction, VII.7, the set of roots of the Levi factor is the complement.
+
+        Let n_i(lambda) be the coefficients of a restricted root lambda in the simple ones. The result is the sum of the
+        centralizer of a maximal split torus and of the root spaces for which the sum of the n_i(lambda) over the
+        crossed i is at least 0. Each parabolic subalgebra is conjugate under inner automorphisms to exactly one of
+        these. If the diagram has symmetries, the basis of the algebra decides between the numberings.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.sl(3).parabolic_subalgebra([0]) == lh.parabolic_subalgebra(1, 2)
+        True
+        >>> g = lh.simple("e6(2)")
+        >>> g.real_forms()[0].satake.restricted_nodes
+        ((0, 5), (1,), (2, 4), (3,))
+        >>> [g.parabolic_subalgebra([i]).codimension for i in range(4)]
+        [24, 21, 31, 29]
+        """
+        from liehom.algebra.parabolic.parabolic_subalgebra import parabolic_subalgebra
+
+        return parabolic_subalgebra(self, crossed)
+
     # -- comparison and printing -------------------------------------------------------------------------
     def describe(self) -> str:
         """A summary: kind of algebra, real form, ranks, radical, series, Killing form.

@@ -100,6 +100,22 @@ class SatakeDiagram:
         return self.root_system().rank - len(self.black) - len(self.arrows)
 
     @property
+    def restricted_nodes(self) -> tuple[tuple[int, ...], ...]:
+        """The white nodes that restrict to the same simple restricted root, for each of these roots in turn.
+
+        The simple restricted roots are numbered from 0 in the order of their first white nodes.
+
+        Examples
+        --------
+        >>> SatakeDiagram("E6", arrows=((0, 5), (2, 4))).restricted_nodes
+        ((0, 5), (1,), (2, 4), (3,))
+        """
+        other = dict(self.arrows)
+        second = set(other.values()) | set(self.black)
+        white = [i for i in range(self.root_system().rank) if i not in second]
+        return tuple((i, other[i]) if i in other else (i,) for i in white)
+
+    @property
     def anisotropic_dimension(self) -> int:
         """The dimension of m, the centralizer in k of the split part of the Cartan subalgebra, an int."""
         zero = (0,) * self.root_system().rank
@@ -163,6 +179,17 @@ class SatakeDiagram:
         """
         return {root: times for root, times in self._projections().items() if any(root)}
 
+    def simple_restricted_roots(self) -> list[Root]:
+        """The simple restricted roots as a - theta a, in the order of `restricted_nodes`.
+
+        Examples
+        --------
+        >>> SatakeDiagram("B2", black=(1,)).simple_restricted_roots()
+        [(2, 2)]
+        """
+        projected = np.eye(self.root_system().rank, dtype=np.int64) - self.involution()
+        return [tuple(projected[nodes[0]].tolist()) for nodes in self.restricted_nodes]
+
     def graph(self) -> networkx.DiGraph[int]:
         """The diagram as a networkx graph.
 
@@ -208,8 +235,7 @@ class SatakeDiagram:
 def _restricted_system(diagram: SatakeDiagram) -> tuple[str, dict[str, int]]:
     """The type of the restricted roots and their multiplicities by length."""
     system, restricted = diagram.root_system(), diagram.restricted_roots()
-    projected = np.eye(system.rank, dtype=np.int64) - diagram.involution()
-    simple = list(dict.fromkeys(tuple(x) for x in projected.tolist() if any(x)))
+    simple = diagram.simple_restricted_roots()
     doubled = [i for i, a in enumerate(simple) if tuple(2 * x for x in a) in restricted]
     names = []
     for name, nodes in diagram_components(gram_to_cartan(system, simple)):
