@@ -159,7 +159,10 @@ if TYPE_CHECKING:
     from liehom.homogeneous import failure_cone as failure_cone
     from liehom.homogeneous import hamiltonian_field as hamiltonian_field
     from liehom.homogeneous import hermitian_strata as hermitian_strata
+    from liehom.homogeneous import invariant_degree as invariant_degree
     from liehom.homogeneous import lie_poisson_tensor as lie_poisson_tensor
+    from liehom.homogeneous import open_orbit_count as open_orbit_count
+    from liehom.homogeneous import orbit_dimension as orbit_dimension
     from liehom.homogeneous import orbit_types as orbit_types
     from liehom.homogeneous import range_condition as range_condition
     from liehom.homogeneous import rectangular_strata as rectangular_strata
@@ -303,8 +306,8 @@ _NAMES = {
     ),
     "liehom.homogeneous": (
         "Action Cayley Exponential GeneratorField adjoint_strata binary_form_strata failure_cone hamiltonian_field "
-        "hermitian_strata lie_poisson_tensor orbit_types range_condition rectangular_strata relative_invariant "
-        "skew_strata structure_name symmetric_strata"
+        "hermitian_strata invariant_degree lie_poisson_tensor open_orbit_count orbit_dimension orbit_types "
+        "range_condition rectangular_strata relative_invariant skew_strata structure_name symmetric_strata"
     ),
     "liehom.integrators": (
         "BackwardEuler CommutatorFree4 Conserving Corrected CrouchGrossman3 Euler Heun LieTaylor Propagator RKMK "

@@ -43,6 +43,9 @@ from liehom.homogeneous.range import FailureSet as FailureSet
 from liehom.homogeneous.range import RangeCondition as RangeCondition
 from liehom.homogeneous.range import RelativeInvariant as RelativeInvariant
 from liehom.homogeneous.range import failure_cone as failure_cone
+from liehom.homogeneous.range import invariant_degree as invariant_degree
+from liehom.homogeneous.range import open_orbit_count as open_orbit_count
+from liehom.homogeneous.range import orbit_dimension as orbit_dimension
 from liehom.homogeneous.range import range_condition as range_condition
 from liehom.homogeneous.range import relative_invariant as relative_invariant
 from liehom.homogeneous.space import Action as Action

@@ -2,7 +2,7 @@
 
 With x = psi mod h in V = g/h the condition is rank [rho(z_1) x, ..., rho(z_k) x, x] = d = dim V.  For one psi it is
 decided by this rank.  It holds for generic psi if and only if it holds for one psi.  The proof that it never holds is
-the rank of this matrix over the field of rational functions of x, or an invariant definite form.
+the generic rank of this matrix, or an invariant definite form.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import cast, final
 
 from liehom.errors import InputError, ShapeError, UndecidedError
+from liehom.homogeneous.range.generic_rank import MAX_POINTS, number_of_points, point_of_higher_rank
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import traceless
@@ -20,7 +21,6 @@ from liehom.scalars.spaces.linear_forms import LinearForms
 from liehom.typing import VectorLike
 
 SAMPLES = 6
-MAX_PROOF_DIMENSION = 10
 
 
 @final
@@ -110,10 +110,11 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     Notes
     -----
     One psi with rank d proves that the rank is d on a dense open cone. The proof that the rank is less than d
-    everywhere is one of the following: dim(rho(h) + R) < d; a definite form on g/h that h preserves up to scale, in
-    which case one psi outside h decides for all psi; or, for d <= 10, the rank over the field of rational functions in
-    x. If none of them applies, `holds` is None. If h acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with
-    both signs, the condition holds generically although the pair is not full.
+    everywhere is one of the following: dim(rho(h) + R) < d; the rank over the field of rational functions in x, from
+    ranks at finitely many points of a slice; or, if these are more than 20,000, a definite form on g/h that h preserves
+    up to scale, in which case one psi outside h decides for all psi. If none of them applies, `holds` is None. If h
+    acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with both signs, the condition holds generically
+    although the pair is not full.
 
     Examples
     --------
@@ -138,16 +139,66 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     forms = pencil(pair)
     if forms.shape[1] < pair.dimension:
         return _never(best, f"it never holds: rho(h) + R has dimension {forms.shape[1]} < {pair.dimension}")
-    if pair.dimension > MAX_PROOF_DIMENSION:
-        if _preserves_a_definite_form(pair):
-            return _never(best, "it never holds: h preserves a definite form up to scale, so one psi decides for all")
-        return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi")
-    at = forms.at((pair.algebra.row(best.psi) @ pair.subalgebra.quotient().projection).row(0))
-    columns = at.echelon()[1]
-    rows = at.select(columns=columns).T.echelon()[1]
-    if forms.rank_is_at_most(best.rank, rows, columns):
+    if number_of_points(best.rank, pair.dimension) <= MAX_POINTS:
+        best = _raised(pair, forms, best)
+        if best.holds:
+            return best
         return _never(best, f"it never holds: the rank over the rational functions of psi is {best.rank}")
-    return _decided(best, None, f"it fails at {SAMPLES} random points but the generic rank is larger; try again")
+    if _preserves_a_definite_form(pair):
+        return _never(best, "it never holds: h preserves a definite form up to scale, so one psi decides for all")
+    return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi")
+
+
+def orbit_dimension(pair: Pair) -> int:
+    """The dimension of the orbits of generic points of g/h under the group of rho(h) + R.
+
+    It is the rank of [h, psi] + R psi in g/h for generic psi, and dim g/h if the range condition holds generically.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over an exact field.
+
+    Raises
+    ------
+    UndecidedError
+        Over float64, or if the proof that the largest known rank is generic would take too many points.
+
+    Examples
+    --------
+    The orbits of so(3) + R on symmetric matrices of trace 0 are given by the ratio of two eigenvalues:
+
+    >>> import liehom as lh
+    >>> orbit_dimension(lh.pair("sl(3)/so(3)")), orbit_dimension(lh.pair("so(3,1)/so(2,1)"))
+    (4, 3)
+    """
+    if not pair.field.exact:
+        raise UndecidedError(
+            "the dimension of generic orbits is computed over exact fields only: go to exact numbers by "
+            "lh.rationalize(pair, max_denominator=...)"
+        )
+    if pair.dimension == 0:
+        return 0
+    best = _best_sample(pair)
+    forms = pencil(pair)
+    if best.rank == min(forms.shape):
+        return best.rank
+    if (points := number_of_points(best.rank, pair.dimension)) > MAX_POINTS:
+        raise UndecidedError(
+            f"the orbits of {SAMPLES} random points have at most the dimension {best.rank}; a proof that no orbit has "
+            f"a larger one takes {points} ranks, the limit is {MAX_POINTS}"
+        )
+    return _raised(pair, forms, best).rank
+
+
+def _raised(pair: Pair, forms: LinearForms, best: RangeCondition) -> RangeCondition:
+    """The answer at a point where the rank is proved to be the generic one."""
+    data = pair.subalgebra.quotient()
+    point = (pair.algebra.row(best.psi) @ data.projection).row(0)
+    while (higher := point_of_higher_rank(forms, point, best.rank)) is not None:
+        point = higher
+        best = _at(pair, pair.field.matrix([point]) @ data.lift, generic=True)
+    return _decided(best, True, "one psi at which it holds proves it") if best.holds else best
 
 
 def pencil(pair: Pair) -> LinearForms:

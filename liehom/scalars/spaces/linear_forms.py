@@ -97,38 +97,6 @@ class LinearForms:
         return polynomial if self._modulus is None else divmod(polynomial, self._modulus)[1]
 
     # -- proofs ------------------------------------------------------------------------------------------
-    def rank_is_at_most(self, rank: int, rows: Sequence[int], columns: Sequence[int]) -> bool:
-        """Whether the rank is at most `rank` at every x, given a non-zero minor of that size.
-
-        Parameters
-        ----------
-        rank : int
-        rows, columns : sequences of int
-            `rank` rows and columns whose minor is not the zero polynomial.
-
-        Notes
-        -----
-        For every further row, the cofactors of the chosen columns give a non-zero covector phi(x) on the chosen rows
-        and the further row that annihilates the chosen columns. The rank over the field of fractions is `rank` if and
-        only if these covectors annihilate all columns.
-        """
-        nrows, ncols = self.shape
-        for row in (i for i in range(nrows) if i not in set(rows)):
-            bordered = [*rows, row]
-            minors = self._expanded(bordered, list(columns))
-            covector = []
-            for place in range(len(bordered)):
-                cofactor = minors.get(tuple(bordered[:place] + bordered[place + 1 :]))
-                covector.append(cofactor if cofactor is None or (rank - place) % 2 == 0 else -cofactor)
-            for column in range(ncols):
-                total = 0 * self._context.gens()[0]
-                for i, factor in zip(bordered, covector, strict=True):
-                    if factor is not None:
-                        total = total + factor * self._table[i][column]
-                if not self._reduced(total).is_zero():
-                    return False
-        return True
-
     def invariant_factors(
         self, first: flint.fmpq_mpoly, second: flint.fmpq_mpoly, fields: Sequence[ExactMatrix]
     ) -> list[flint.fmpq_mpoly]:

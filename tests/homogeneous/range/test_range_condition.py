@@ -212,11 +212,21 @@ def test_never_over_a_number_field_is_proved_too() -> None:
         lh.relative_invariant(over)
 
 
-def test_what_is_not_proved_is_not_claimed() -> None:
+def test_generic_ranks_in_large_dimensions_are_proved() -> None:
     pair = affine(blocks(families.so(6), families.so(6)))
     condition = lh.range_condition(pair)
+    assert condition.holds is False and "rational functions" in condition.message
+    assert condition.rank == lh.homogeneous.orbit_dimension(pair) == 11
+    check_missing(pair, condition.psi, condition.missing)
+
+
+def test_what_is_not_proved_is_not_claimed() -> None:
+    pair = affine(blocks(*[families.so(2, 1)] * 8))
+    condition = lh.range_condition(pair)
     assert condition.holds is None and "not proved" in condition.message
-    assert condition.rank == 11
+    assert condition.rank == 17
+    with pytest.raises(UndecidedError, match="takes 480700 ranks"):
+        lh.homogeneous.orbit_dimension(pair)
     check_missing(pair, condition.psi, condition.missing)
     with pytest.raises(UndecidedError):
         bool(condition)
