@@ -7,4 +7,5 @@ In reading order: `recipe` (one pair of a family, constructed by the worker), `f
 from liehom.atlas.entry import Atlas as Atlas
 from liehom.atlas.entry import Entry as Entry
 from liehom.atlas.recipe import Recipe as Recipe
+from liehom.atlas.sweep import iter_sweep as iter_sweep
 from liehom.atlas.sweep import sweep as sweep

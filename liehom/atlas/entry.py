@@ -57,7 +57,7 @@ class Entry:
 
     @classmethod
     def from_json(cls, facts: Mapping[str, Any]) -> Entry:
-        """The entry with these attributes, a JSON object as ``dataclasses.asdict(entry)`` gives.
+        """The entry with these attributes, a JSON object as `to_json` gives.
 
         Raises
         ------
@@ -75,6 +75,10 @@ class Entry:
         if entry.certificate is not None and entry.certificate.full is not entry.full:
             raise FormatError(f"the entry of {entry.name} and its certificate do not agree whether it is full")
         return entry
+
+    def to_json(self) -> dict[str, Any]:
+        """The attributes by name as a JSON object."""
+        return {name: getattr(self, name) for name in KINDS}
 
     @property
     def full(self) -> bool | None:

@@ -2,24 +2,89 @@
 
 from __future__ import annotations
 
-import dataclasses
+import contextlib
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, final
 
 from liehom.atlas.entry import Atlas, Entry
+from liehom.atlas.recipe import Recipe
 from liehom.catalog import pair as named_pair
 from liehom.catalog import parse
 from liehom.errors import InputError, LiehomError, LimitError
 from liehom.fullness import decide_fullness
-from liehom.parallel import ExecutorLike, completed, open_store
+from liehom.parallel import Dispatcher, ExecutorLike, Records, open_store
+from liehom.parallel.tasks import BUFFERSIZE, check_count
 from liehom.representations import Pair
 
 
+def iter_sweep(
+    pairs: Iterable[str | Pair | Recipe],
+    *,
+    executor: ExecutorLike = None,
+    store: str | os.PathLike[str] | None = None,
+    retries: int = 2,
+    seed: int = 0,
+    verify: bool = True,
+    recheck: bool = False,
+    ordered: bool = False,
+    chunksize: int | None = None,
+    buffersize: int = BUFFERSIZE,
+) -> Iterator[tuple[int, Entry]]:
+    """Iterator of the fullness decisions of any number of pairs, in order of completion.
+
+    Parameters
+    ----------
+    pairs : iterable of str, Pair or Recipe
+        Catalogue names and recipes, from which the workers construct the pairs, or pairs. They are taken one at a
+        time, as earlier ones finish, so they may come from a generator of millions.
+    executor, store, retries, seed, verify, recheck
+        As for `sweep`.
+    ordered : bool
+        Whether the entries come in the order of `pairs`. A pair that takes long then delays those behind it, of which
+        at most `buffersize` are decided meanwhile.
+    chunksize : int, optional
+        Number of pairs in a task. By default tasks grow to 64 pairs while they take less than a second.
+    buffersize : int
+        Largest number of pairs that were taken from `pairs` and whose entries are not yet returned. Give more for more
+        than some hundred workers.
+
+    Returns
+    -------
+    iterator of (int, Entry)
+        The number of the pair in `pairs`, from 0, and its entry, which is in the store by then. Stored entries are read
+        when their turn comes. Closing the iterator cancels what is left.
+
+    Raises
+    ------
+    InputError, ParseError, CatalogError, WorkerLostError
+        As for `sweep`; for an unusable pair when its turn comes.
+
+    Notes
+    -----
+    With a store a pair that is given twice is decided once. In memory are then some 140 bytes for each stored entry,
+    and the pairs in flight. Without a store only pairs in flight are compared with each other.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> spheres = (f"so({n})/so({n - 1})" for n in range(3, 100))
+    >>> for number, entry in lh.atlas.iter_sweep(spheres):
+    ...     print(number, entry)
+    ...     if number == 1:
+    ...         break
+    0 so(3)/so(2): full: h acts on g/h = R^2 as so(2), compact and transitive on the sphere; checked at one point
+    1 so(4)/so(3): full: h acts on g/h = R^3 as so(3), compact and transitive on the sphere; checked at one point
+    """
+    check_count("buffersize", buffersize, 1)
+    made = _Sweep(executor, _opened(store, seed, verify), retries, recheck, ordered, chunksize, buffersize, None)
+    return made.entries(_task(pair, seed, verify) for pair in _several(pairs))
+
+
 def sweep(
-    pairs: Iterable[str | Pair],
+    pairs: Iterable[str | Pair | Recipe],
     *,
     executor: ExecutorLike = None,
     store: str | os.PathLike[str] | None = None,
@@ -29,19 +94,19 @@ def sweep(
     recheck: bool = False,
     progress: Callable[[Entry], object] | None = None,
 ) -> Atlas:
-    """An `Atlas` of the fullness decisions of many pairs.
+    """An `Atlas` of the fullness decisions of a list of pairs; `iter_sweep` is for more than fit in memory.
 
     Parameters
     ----------
-    pairs : iterable of str or Pair
-        Catalogue names, from which the workers construct the pairs, or pairs.
+    pairs : iterable of str, Pair or Recipe
+        Catalogue names and recipes, from which the workers construct the pairs, or pairs.
     executor : Executor or callable, optional
         Any `concurrent.futures.Executor`, or a function that makes one; see `liehom.integrate_ensemble`. By default
         the calling process decides the pairs one after the other.
     store : path, optional
-        A folder to which each finished entry is written as JSON. The file name depends only on the pair, so the same
-        call continues after an interruption, and a longer list reuses stored entries. A path that ends in .zarr is a
-        zarr group.
+        A folder to which each finished entry is written as a line of JSON. Its name in the store depends only on the
+        pair, so the same call continues after an interruption, and a longer list reuses stored entries. A path that
+        ends in .zarr is a zarr group.
     retries : int
         How often a pair is submitted again after its worker was lost, and how many times in succession executors may
         break without a finished pair in between.
@@ -51,8 +116,8 @@ def sweep(
         Whether the worker runs the independent checker on each certificate.
     recheck : bool
         Whether the independent checker runs again on the certificates of stored entries. Each entry has a checksum, and
-        a damaged one is decided again with a `DamageWarning`. Entries that liehom 0.1.0 has stored have no checksum;
-        their certificates are always checked again.
+        a damaged one is decided again with a `DamageWarning`. Entries in stores that liehom 0.1.0 has begun have no
+        checksum; their certificates are always checked again.
     progress : callable, optional
         Called with each entry when the pair is decided, in order of completion.
 
@@ -65,7 +130,7 @@ def sweep(
     Raises
     ------
     InputError
-        If an entry of `pairs` is neither a name nor a pair.
+        If an entry of `pairs` is neither a name nor a pair nor a recipe.
     ParseError, CatalogError
         If a name does not follow the grammar of names.
     WorkerLostError
@@ -79,44 +144,112 @@ def sweep(
     ...     sweep(names, executor=pool)
     <atlas of 4 pairs, 4 full, 0 not, 0 undecided>
     """
-    if isinstance(pairs, str | Pair):
-        raise InputError(f"expected a list of pairs, got one: {pairs!r}")
-    tasks = [_task(pair, seed, verify) for pair in pairs]
-    results = None if store is None else open_store(store, f"fullness, seed {seed}, {'' if verify else 'not '}verified")
-    stored = frozenset() if results is None else results.names()
-    found: dict[str, Entry] = {}
-    for task in tasks:
-        if results is not None and task.key in stored and task.key not in found:
-            again = recheck or not results.has_checksums
-            entry = results.restored(task.key, partial(_stored_entry, task=task, recheck=again))
-            if entry is not None:
-                found[task.key] = entry
-    todo = list({task.key: task for task in tasks if task.key not in found}.values())
-    for number, entry in completed(_decided, todo, executor, retries=retries):
-        if results is not None and not entry.failure:
-            results.save(todo[number].key, {}, dataclasses.asdict(entry))
-        found[todo[number].key] = entry
-        if progress is not None:
-            progress(entry)
+    tasks = [_task(pair, seed, verify) for pair in _several(pairs)]
+    distinct = list({task.key: task for task in tasks}.values())
+    made = _Sweep(executor, _opened(store, seed, verify), retries, recheck, False, None, BUFFERSIZE, progress)
+    found = {distinct[number].key: entry for number, entry in made.entries(distinct)}
     return Atlas(tuple(found[task.key] for task in tasks))
+
+
+@final
+class _Sweep:
+    """The state of one sweep: what is in flight, and what waits for its turn."""
+
+    def __init__(
+        self,
+        executor: ExecutorLike,
+        records: Records | None,
+        retries: int,
+        recheck: bool,
+        ordered: bool,
+        chunksize: int | None,
+        buffersize: int,
+        progress: Callable[[Entry], object] | None,
+    ) -> None:
+        self.dispatcher = Dispatcher[tuple[int, str], _Task, Entry](
+            _decided, executor, retries=retries, chunksize=chunksize
+        )
+        self.records, self.ordered, self.buffersize, self.progress = records, ordered, buffersize, progress
+        self.recheck = recheck or (records is not None and not records.has_checksums)
+        self.sharing: dict[str, list[int]] = {}  # numbers of each pair in flight, by key
+        self.waiting: dict[int, Entry] = {}
+        self.returned = 0
+
+    def entries(self, tasks: Iterable[_Task]) -> Iterator[tuple[int, Entry]]:
+        """Iterator of (number, entry)."""
+        with self.dispatcher, self.records or contextlib.nullcontext():
+            for number, task in enumerate(tasks):
+                entry = self._restored(task)
+                if entry is not None:
+                    self.waiting[number] = entry
+                    yield from self._released()
+                elif task.key in self.sharing:
+                    self.sharing[task.key].append(number)
+                else:
+                    self.sharing[task.key] = [number]
+                    self.dispatcher.submit((number, task.key), task)
+                while self.dispatcher.due or number + 1 - self.returned >= self.buffersize:
+                    yield from self._arrived()
+            while len(self.dispatcher):
+                yield from self._arrived()
+
+    def _restored(self, task: _Task) -> Entry | None:
+        if self.records is None or task.key not in self.records:
+            return None
+        return self.records.restored(task.key, partial(_stored_entry, task=task, recheck=self.recheck))
+
+    def _arrived(self) -> Iterator[tuple[int, Entry]]:
+        """Stores what the workers have decided, and returns it."""
+        for batch in self.dispatcher.arrived():
+            if self.records is not None:
+                self.records.append((key, entry.to_json()) for (_, key), entry in batch if not entry.failure)
+            for (_, key), entry in batch:
+                self.waiting.update((number, entry) for number in self.sharing.pop(key))
+                if self.progress is not None:
+                    self.progress(entry)
+            yield from self._released()
+
+    def _released(self) -> Iterator[tuple[int, Entry]]:
+        """The entries whose turn it is."""
+        while self.waiting:
+            number = self.returned if self.ordered else next(iter(self.waiting))
+            if number not in self.waiting:
+                return
+            self.returned += 1
+            yield number, self.waiting.pop(number)
 
 
 class _Task(NamedTuple):
     """A pair to decide, and the name of its entry in the store."""
 
     key: str
-    pair: str | Pair
+    pair: str | Pair | Recipe
     seed: int
     verify: bool
 
 
-def _task(pair: str | Pair, seed: int, verify: bool) -> _Task:
-    """The task of a catalogue name or of a pair, with a key that depends on the pair alone."""
+def _several(pairs: Iterable[str | Pair | Recipe]) -> Iterable[str | Pair | Recipe]:
+    if isinstance(pairs, str | Pair | Recipe):
+        raise InputError(f"expected a list of pairs, got one: {pairs!r}")
+    return pairs
+
+
+def _opened(store: str | os.PathLike[str] | None, seed: int, verify: bool) -> Records | None:
+    """The store of the decisions with these options."""
+    if store is None:
+        return None
+    return Records(open_store(store, f"fullness, seed {seed}, {'' if verify else 'not '}verified"))
+
+
+def _task(pair: str | Pair | Recipe, seed: int, verify: bool) -> _Task:
+    """The task of a pair, given in any of these ways, with a key that depends on the pair and its name alone."""
     if isinstance(pair, str):
         name = str(parse(pair))
         return _Task(_key(name), name, seed, verify)
+    if isinstance(pair, Recipe):
+        return _Task(_key(f"{pair.name} = {pair.key}"), pair, seed, verify)
     if not isinstance(pair, Pair):
-        raise InputError(f"expected a Pair or the name of one, got {pair!r}")
+        raise InputError(f"expected a Pair, a Recipe or the name of a pair, got {pair!r}")
     table, field = pair.algebra.table, pair.field
     numbers = [
         table.i.tolist(),
@@ -136,11 +269,17 @@ def _key(text: str) -> str:
     return f"{short}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
 
 
+def _constructed(task: _Task) -> Pair:
+    if isinstance(task.pair, Pair):
+        return task.pair
+    return named_pair(task.pair) if isinstance(task.pair, str) else task.pair.pair()
+
+
 def _stored_entry(arrays: object, facts: Mapping[str, Any], *, task: _Task, recheck: bool) -> Entry:
     """The entry that a shard holds; `FormatError` or `CertificateError` if it cannot be believed."""
     entry = Entry.from_json(facts)
     if recheck and entry.proved:
-        entry.verify(None if isinstance(task.pair, str) else task.pair)
+        entry.verify(_constructed(task))
     return entry
 
 
@@ -148,7 +287,7 @@ def _decided(task: _Task) -> Entry:
     """The entry of one task, computed by a worker."""
     name = task.pair if isinstance(task.pair, str) else task.pair.name or "pair without a name"
     try:
-        pair = named_pair(task.pair) if isinstance(task.pair, str) else task.pair
+        pair = _constructed(task)
         verdict = decide_fullness(pair, seed=task.seed)
         data = verdict.to_json()
         verified = bool(task.verify and data["proved"] and verdict.verify())

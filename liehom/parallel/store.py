@@ -1,4 +1,4 @@
-"""Stores of finished results on disk: a folder of .npz and .json files, or a zarr group.
+"""Stores of finished results on disk: a folder of .npz files, or a zarr group.
 
 A shard is written under a temporary name and then renamed, so a reader never sees a partial shard. Each shard, and the
 description of the store, has a checksum of its contents. A store has the fingerprint of its problem and contains no
@@ -143,7 +143,7 @@ def open_store(path: str | os.PathLike[str], fingerprint: str | None = None) -> 
 
 @final
 class _Folder(Store):
-    """A folder with one .npz or .json file for each shard."""
+    """A folder with one .npz file for each shard; former versions wrote those without arrays as .json files."""
 
     def __init__(self, path: str, fingerprint: str | None) -> None:
         self.path = path
@@ -154,7 +154,7 @@ class _Folder(Store):
                 raise _no_store(path)
             if self._folder.exists() and not _is_empty(self._folder) and not about.exists():  # or just made by another
                 raise FormatError(f"{path!r} exists and is not a store of liehom: give the path of a new folder")
-            with _writing(path):
+            with writing(path):
                 self._folder.mkdir(parents=True, exist_ok=True)
             self._write(ABOUT, json.dumps(_about(fingerprint)).encode())
         try:
@@ -164,16 +164,13 @@ class _Folder(Store):
         self._mark = _checked(path, found, fingerprint)
 
     def names(self) -> frozenset[str]:
-        # shards end in .npz or .json; unfinished files begin with a dot
+        # unfinished files begin with a dot
         files = (f for f in self._folder.iterdir() if f.suffix in (".npz", ".json"))
         return frozenset(f.stem for f in files if f.name != ABOUT and not f.name.startswith("."))
 
     def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         text = json.dumps(facts)
         marks = {} if self._mark is None else {MARK: checksum(arrays, self._mark, name, text)}
-        if not arrays:
-            self._write(f"{name}.json", json.dumps({**marks, "facts": facts} if marks else facts).encode())
-            return
         from io import BytesIO
 
         buffer = BytesIO()
@@ -187,22 +184,18 @@ class _Folder(Store):
         try:
             if file is plain:
                 found = json.loads(plain.read_text(encoding="utf-8"))
-                if self._mark is None:
-                    return {}, _object(found)
-                facts = _object(found["facts"])
-                _compare(found.get(MARK), checksum({}, self._mark, name, json.dumps(facts)))
-                return {}, facts
+                return {}, json_object(found) if self._mark is None else checked_facts(found, self._mark, name)
             with open(packed, "rb") as opened, np.load(opened, allow_pickle=False) as archive:
                 arrays = {key: archive[key] for key in archive.files}
             text, mark = str(arrays.pop("facts")), arrays.pop(MARK, None)
             if self._mark is not None:
                 _compare(str(mark), checksum(arrays, self._mark, name, text))
-            return arrays, _object(json.loads(text))
+            return arrays, json_object(json.loads(text))
         except DAMAGED as error:
             raise _damaged(os.fspath(file), error) from None
 
     def _write(self, name: str, data: bytes | memoryview) -> None:
-        with _writing(self.path):
+        with writing(self.path):
             write_atomically(self._folder / name, data)
 
 
@@ -245,7 +238,7 @@ class _Zarr(Store):
 
     def save(self, name: str, arrays: Mapping[str, npt.ArrayLike], facts: Mapping[str, object]) -> None:
         text = json.dumps(facts)
-        with _writing(self.path):
+        with writing(self.path):
             part = self._root.create_group(name, overwrite=True)
             for key, array in arrays.items():
                 part[key] = np.asarray(array)
@@ -259,9 +252,35 @@ class _Zarr(Store):
             text = str(part.attrs["facts"])
             if self._mark is not None:
                 _compare(part.attrs.get(MARK), checksum(arrays, self._mark, name, text))
-            return arrays, _object(json.loads(text))
+            return arrays, json_object(json.loads(text))
         except DAMAGED as error:
             raise _damaged(f"{self.path}/{name}", error) from None
+
+
+def json_object(found: object) -> dict[str, Any]:
+    """What a file holds; raises `ValueError` if it is not a JSON object."""
+    if not isinstance(found, dict):
+        raise ValueError(f"it holds a {type(found).__name__}, expected a JSON object")
+    return found
+
+
+def checked_facts(found: object, mark: str | None, name: str) -> dict[str, Any]:
+    """The facts of a shard in JSON, ``{"checksum": ..., "facts": {...}}``; raises `ValueError` if it is damaged."""
+    shard = json_object(found)
+    facts = json_object(shard["facts"])
+    if mark is not None:
+        _compare(shard.get(MARK), checksum({}, mark, name, json.dumps(facts)))
+    return facts
+
+
+@contextlib.contextmanager
+def writing(path: str) -> Iterator[None]:
+    """Context in which errors of the file system become `InputError`."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"the store {path!r} cannot be written: {reason}") from None
 
 
 # -- private helpers -------------------------------------------------------------------------------------
@@ -285,12 +304,6 @@ def _checked(path: str, found: object, fingerprint: str | None) -> str | None:
     return None if found["version"] == 1 else own
 
 
-def _object(facts: object) -> dict[str, Any]:
-    if not isinstance(facts, dict):
-        raise ValueError(f"its facts are a {type(facts).__name__}, expected a JSON object")
-    return facts
-
-
 def _compare(stored: object, computed: str) -> None:
     if stored != computed:
         raise ValueError("its checksum does not agree with its contents")
@@ -299,16 +312,6 @@ def _compare(stored: object, computed: str) -> None:
 def _is_empty(folder: Path) -> bool:
     """Whether a path is a folder without files; unfinished files, which begin with a dot, do not count."""
     return folder.is_dir() and all(file.name.startswith(".") for file in folder.iterdir())
-
-
-@contextlib.contextmanager
-def _writing(path: str) -> Iterator[None]:
-    """Context in which errors of the file system become `InputError`."""
-    try:
-        yield
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"the store {path!r} cannot be written: {reason}") from None
 
 
 def _no_store(path: str) -> FormatError:

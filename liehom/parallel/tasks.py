@@ -2,24 +2,30 @@
 
 Only the methods `submit` and `shutdown` of an executor are called. It may be a pool of processes or threads, the
 executor of a dask client, or an executor of mpi4py. The result of a task depends on its argument alone, so results do
-not depend on the executor. Tasks of lost workers are submitted again.
+not depend on the executor. Tasks of lost workers are submitted again. A bounded number of tasks is in flight, so tasks
+may come from a generator that is longer than the memory. Small tasks travel in batches, since a submission takes about
+a millisecond of the caller.
 """
 
 from __future__ import annotations
 
+import math
 import pickle
-from collections import Counter, deque
-from collections.abc import Callable, Iterator, Sequence
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import asdict, dataclass
+from operator import itemgetter
 from queue import SimpleQueue
-from typing import Generic, Protocol, TypeAlias, TypeGuard, TypeVar, final
+from typing import Any, Generic, Protocol, TypeAlias, TypeGuard, TypeVar, final
 
 from liehom.budget import Limits, limits, remaining_limits
 from liehom.errors import InputError, WorkerLostError
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+Label = TypeVar("Label", bound=int | tuple[Any, ...])
 
 
 class TaskExecutor(Protocol):
@@ -39,12 +45,25 @@ ExecutorLike: TypeAlias = TaskExecutor | Callable[[], TaskExecutor] | None
 
 RETRIES = 2
 """Default number of times that the task of a lost worker is submitted again."""
+BUFFERSIZE = 4096
+"""Default number of tasks in flight: enough for hundreds of workers, and a few megabytes of small tasks."""
+BATCH_SECONDS = 1.0
+"""Time after which a worker returns the rest of a batch; a submission costs about a thousandth of it."""
+PATIENCE = 0.1
+"""Seconds after which an incomplete batch is sent and results that are ready are taken."""
+LARGEST_BATCH = 64
+"""Largest batch, so that the tasks in flight are at least 64 batches."""
 # exceptions of dask for dead workers, by name, since dask is not imported here
 WORKER_LOSS = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PConsistencyError")
 
 
 def completed(
-    function: Callable[[Task], Result], tasks: Sequence[Task], executor: ExecutorLike = None, *, retries: int = RETRIES
+    function: Callable[[Task], Result],
+    tasks: Iterable[Task],
+    executor: ExecutorLike = None,
+    *,
+    retries: int = RETRIES,
+    buffersize: int = BUFFERSIZE,
 ) -> Iterator[tuple[int, Result]]:
     """Iterator of pairs (number of the task, function(task)), in order of completion.
 
@@ -52,7 +71,8 @@ def completed(
     ----------
     function : callable
         A function of one argument. For other processes it must be picklable, as must tasks and results.
-    tasks : sequence
+    tasks : iterable
+        Taken one at a time, as earlier tasks finish.
     executor : Executor, callable or None
         An executor is used and left open. A function without parameters that returns an executor is called to make
         one, and again if that one breaks; these executors are shut down at the end. None runs the tasks in the
@@ -60,6 +80,8 @@ def completed(
     retries : int
         How often a task is submitted again after its worker was lost, and how many times in succession an executor
         may break without a finished task in between.
+    buffersize : int
+        Largest number of tasks that are submitted and whose results are not yet returned.
 
     Raises
     ------
@@ -78,24 +100,59 @@ def completed(
     >>> sorted(completed(abs, [-1, 2, -3], lambda: ThreadPoolExecutor(2)))
     [(0, 1), (1, 2), (2, 3)]
     """
-    if isinstance(retries, bool) or not isinstance(retries, int) or retries < 0:
-        raise InputError(f"retries is {retries!r}, expected an integer at least 0")
-    if executor is None:
-        return ((number, function(task)) for number, task in enumerate(tasks))
-    return _Run(function, tasks, _Pool(executor), retries).results()
+    check_count("buffersize", buffersize, 1)
+    dispatcher = Dispatcher[int, Task, Result](function, executor, retries=retries, chunksize=1)
+
+    def results() -> Iterator[tuple[int, Result]]:
+        with dispatcher:
+            for number, task in enumerate(tasks):
+                dispatcher.submit(number, task)
+                while dispatcher.due or len(dispatcher) >= buffersize:
+                    for batch in dispatcher.arrived():
+                        yield from batch
+            while len(dispatcher):
+                for batch in dispatcher.arrived():
+                    yield from batch
+
+    return results()
+
+
+def check_count(name: str, value: object, least: int) -> None:
+    """Raise `InputError` if an argument is not an integer from `least`.
+
+    Examples
+    --------
+    >>> check_count("retries", 1.5, 0)
+    Traceback (most recent call last):
+    ...
+    liehom.errors.InputError: retries is 1.5, expected an integer at least 0
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise InputError(f"{name} is {value!r}, expected an integer at least {least}")
 
 
 @final
 @dataclass(frozen=True, slots=True)
-class _Limited(Generic[Task, Result]):
-    """A function that runs under given limits, in whatever thread or process."""
+class _Batch(Generic[Task, Result]):
+    """A function that maps a list of tasks to results under given limits, in whatever thread or process.
+
+    After `seconds` it returns the results it has, at least one; the other tasks are submitted again.
+    """
 
     function: Callable[[Task], Result]
     limits: Limits
+    seconds: float
 
-    def __call__(self, task: Task) -> Result:
+    def __call__(self, tasks: Sequence[Task]) -> tuple[list[Result], float]:
+        begin, elapsed = time.monotonic(), 0.0
+        results: list[Result] = []
         with limits(**asdict(self.limits)):
-            return self.function(task)
+            for task in tasks:
+                results.append(self.function(task))
+                elapsed = time.monotonic() - begin
+                if elapsed > self.seconds:
+                    break
+        return results, elapsed
 
 
 @final
@@ -129,7 +186,7 @@ class _Pool:
         if self._executor is None:
             raise BrokenExecutor("there is no executor")
         try:
-            return self._executor.submit(_Limited(function, remaining_limits()), task)
+            return self._executor.submit(function, task)
         except RuntimeError as error:  # raised also by an executor that was shut down
             if isinstance(error, BrokenExecutor):
                 raise
@@ -143,90 +200,192 @@ class _Pool:
 
 
 @final
-class _Run(Generic[Task, Result]):
-    """The state of one call of `completed`."""
+class Dispatcher(Generic[Label, Task, Result]):
+    """Tasks in flight on an executor, sent in batches; a context manager that cancels what is left at its end.
 
-    def __init__(self, function: Callable[[Task], Result], tasks: Sequence[Task], pool: _Pool, retries: int) -> None:
-        self.function, self.tasks, self.pool, self.retries = function, tasks, pool, retries
-        self.todo = deque(range(len(tasks)))
-        self.waiting: dict[Future[Result], int] = {}
-        self.ready: SimpleQueue[Future[Result]] = SimpleQueue()
-        self.done, self.breaks = 0, 0
-        self.lost: Counter[int] = Counter()
+    Parameters
+    ----------
+    function, executor, retries
+        As for `completed`.
+    chunksize : int, optional
+        Number of tasks in a batch. By default batches grow until one takes about a second, and a worker that exceeds
+        this time returns the rest of its batch.
 
-    def results(self) -> Iterator[tuple[int, Result]]:
-        """Iterator of (number of the task, result) in order of completion."""
+    Notes
+    -----
+    Labels are numbers, or tuples that begin with one; tasks are submitted again in the order of their labels. A task
+    whose worker was lost is submitted again in a batch of its own.
+
+    Examples
+    --------
+    >>> with Dispatcher(abs, None) as dispatcher:
+    ...     dispatcher.submit(0, -5)
+    ...     len(dispatcher), list(dispatcher.arrived()), len(dispatcher)
+    (1, [[(0, 5)]], 0)
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Task], Result],
+        executor: ExecutorLike,
+        *,
+        retries: int = RETRIES,
+        chunksize: int | None = None,
+    ) -> None:
+        check_count("retries", retries, 0)
+        if chunksize is not None:
+            check_count("chunksize", chunksize, 1)
+        self._function, self._retries = function, retries
+        self._pool = None if executor is None else _Pool(executor)
+        self._chunksize, self._size = chunksize, chunksize or 1
+        self._unsent: deque[tuple[Label, Task]] = deque()
+        self._waiting: dict[Future[tuple[list[Result], float]], list[tuple[Label, Task]]] = {}
+        self._ready: SimpleQueue[Future[tuple[list[Result], float]]] = SimpleQueue()
+        self._done, self._open, self._breaks = 0, 0, 0
+        self._credit = 0  # tasks that may be submitted before results that are ready are taken
+        self._sent = self._took = time.monotonic()
+        self._losses: dict[Label, int] = {}  # of unfinished tasks
+        self._broken: BaseException | None = None
+
+    def __len__(self) -> int:
+        """The number of tasks that were submitted and whose results have not been returned."""
+        return self._open
+
+    def __enter__(self) -> Dispatcher[Label, Task, Result]:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        for future in self._waiting:
+            future.cancel()
+        if self._pool is not None:
+            self._pool.drop()
+
+    def submit(self, label: Label, task: Task) -> None:
+        """Submit a task, or keep it until its batch is complete or results are asked for.
+
+        Raises
+        ------
+        InputError
+            If the task cannot be pickled.
+        """
+        self._unsent.append((label, task))
+        self._open += 1
+        self._credit -= 1
+        is_late = time.monotonic() - self._sent > PATIENCE
+        if self._pool is not None and self._broken is None and (is_late or len(self._unsent) >= self._size):
+            self._send(self._pool)
+
+    @property
+    def due(self) -> bool:
+        """Whether results should be taken now; between them, twice as many tasks are submitted as have finished."""
+        if self._pool is None:
+            return bool(self._unsent)
+        is_late = time.monotonic() - self._took > PATIENCE
+        return self._broken is not None or (not self._ready.empty() and (is_late or self._credit <= 0))
+
+    def arrived(self) -> Iterator[list[tuple[Label, Result]]]:
+        """Iterator of finished batches, as lists of (label, result); it waits for the first one.
+
+        Raises
+        ------
+        WorkerLostError
+            If workers are lost more often than `retries`, or the executor breaks and no function can make another.
+        """
+        if self._pool is None:
+            while self._unsent:
+                label, task = self._unsent.popleft()
+                self._open -= 1
+                yield [(label, self._function(task))]
+            return
+        while self._unsent and self._broken is None:
+            self._send(self._pool)
+        for future in self._finished():
+            batch = self._waiting.pop(future)
+            error = _error_of(future)
+            if error is None:
+                yield self._taken(batch, *future.result())
+            elif isinstance(error, BrokenExecutor):
+                self._broken = error
+                self._unsent.extend(batch)
+            elif is_worker_loss(error):
+                self._again(batch, error)
+            else:
+                raise _explained(error)
+        if self._broken is not None:
+            self._renew(self._pool, self._broken)
+
+    def _send(self, pool: _Pool) -> None:
+        """Submit one batch; a broken executor is remembered."""
+        size = 1 if self._unsent[0][0] in self._losses else self._size
+        batch = [self._unsent.popleft() for _ in range(min(size, len(self._unsent)))]
+        seconds = BATCH_SECONDS if self._chunksize is None else math.inf
+        run = _Batch(self._function, remaining_limits(), seconds)
         try:
-            while self.todo or self.waiting:
-                broken = self._submit()
-                for future in self._finished():
-                    number = self.waiting.pop(future)
-                    error = _error_of(future)
-                    if error is None:
-                        self.done, self.breaks = self.done + 1, 0
-                        yield number, future.result()
-                    elif isinstance(error, BrokenExecutor):
-                        broken = error
-                        self.todo.append(number)
-                    elif is_worker_loss(error):
-                        self._again(number, error)
-                    else:
-                        raise _explained(error)
-                if broken is not None:
-                    self._renew(broken)
-        finally:
-            for future in self.waiting:
-                future.cancel()
-            self.pool.drop()
+            future = pool.submit(run, [task for _, task in batch])
+        except (BrokenExecutor, ConnectionError) as error:
+            self._unsent.extendleft(reversed(batch))
+            self._broken = error
+            return
+        except (TypeError, AttributeError, pickle.PicklingError) as error:
+            raise _explained(error) from None
+        self._waiting[future], self._sent = batch, time.monotonic()
+        future.add_done_callback(self._ready.put)
 
-    def _submit(self) -> BaseException | None:
-        """Submit all tasks in `todo`; returns the error if the executor is broken, else None."""
-        while self.todo:
-            try:
-                future = self.pool.submit(self.function, self.tasks[self.todo[0]])
-            except (BrokenExecutor, ConnectionError) as error:
-                return error
-            except (TypeError, AttributeError, pickle.PicklingError) as error:
-                raise _explained(error) from None
-            self.waiting[future] = self.todo.popleft()
-            future.add_done_callback(self.ready.put)
-        return None
-
-    def _finished(self) -> list[Future[Result]]:
+    def _finished(self) -> list[Future[tuple[list[Result], float]]]:
         """The finished futures, at least one if any is waiting; those of dropped executors are ignored."""
-        found: list[Future[Result]] = []
-        while self.waiting and (not found or not self.ready.empty()):
-            future = self.ready.get()
-            if future in self.waiting:
+        found: list[Future[tuple[list[Result], float]]] = []
+        while self._waiting and (not found or not self._ready.empty()):
+            future = self._ready.get()
+            if future in self._waiting:
                 found.append(future)
         return found
 
-    def _again(self, number: int, error: BaseException) -> None:
-        """Schedule a task again after its worker was lost; raises `WorkerLostError` after `retries` losses."""
-        self.lost[number] += 1
-        if self.lost[number] > self.retries:
-            raise self._gave_up(error) from error
-        self.todo.append(number)
+    def _taken(
+        self, batch: list[tuple[Label, Task]], results: list[Result], seconds: float
+    ) -> list[tuple[Label, Result]]:
+        """The results of a batch with their labels; tasks for which there was no time are scheduled again."""
+        self._unsent.extendleft(reversed(batch[len(results) :]))
+        if self._chunksize is None and len(batch) >= self._size:
+            if len(results) < len(batch):
+                self._size = max(1, self._size // 2)
+            elif seconds < BATCH_SECONDS / 2:
+                self._size = min(2 * self._size, LARGEST_BATCH)
+        taken = [(label, result) for (label, _), result in zip(batch, results, strict=False)]
+        for label, _ in taken:
+            self._losses.pop(label, None)
+        self._breaks, self._credit, self._took = 0, 2 * len(taken), time.monotonic()
+        self._open, self._done = self._open - len(taken), self._done + len(taken)
+        return taken
 
-    def _renew(self, error: BaseException) -> None:
+    def _again(self, batch: list[tuple[Label, Task]], error: BaseException) -> None:
+        """Schedule a batch again after its worker was lost; raises `WorkerLostError` after `retries` losses."""
+        self._unsent.extendleft(reversed(batch))
+        for label, _ in batch:
+            self._losses[label] = self._losses.get(label, 0) + 1
+            if self._losses[label] > self._retries:
+                raise self._gave_up(error) from error
+
+    def _renew(self, pool: _Pool, error: BaseException) -> None:
         """Drop the broken executor and schedule all unfinished tasks for the next one."""
-        self.breaks += 1
-        if self.breaks > self.retries or not self.pool.renewable:
+        self._breaks += 1
+        if self._breaks > self._retries or not pool.renewable:
             raise self._gave_up(error) from error
-        self.todo = deque(sorted([*self.todo, *self.waiting.values()]))
-        self.waiting.clear()
-        self.pool.drop()
+        self._unsent.extend(item for batch in self._waiting.values() for item in batch)
+        self._unsent = deque(sorted(self._unsent, key=itemgetter(0)))
+        self._losses.update({label: self._losses.get(label, 0) for label, _ in self._unsent})
+        self._waiting.clear()
+        self._broken = None
+        pool.drop()
 
     def _gave_up(self, error: BaseException) -> WorkerLostError:
         """The final error, with the numbers of finished and missing tasks."""
-        missing = len(self.tasks) - self.done
         advice = "pass a function that makes an executor, and another is made when one breaks"
-        if self.pool.renewable or not isinstance(error, BrokenExecutor):
+        if self._pool is None or self._pool.renewable or not isinstance(error, BrokenExecutor):
             advice = "is there enough memory for a task? (a script that starts processes needs __name__ == '__main__')"
         return WorkerLostError(
-            self.done,
-            missing,
-            f"workers were lost ({type(error).__name__}: {error}); {self.done} tasks are done, {missing} are not; "
+            self._done,
+            self._open,
+            f"workers were lost ({type(error).__name__}: {error}); {self._done} tasks are done, {self._open} are not; "
             f"finished results in a store remain, and the same call continues from them; {advice}",
         )
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import threading
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,12 @@ from liehom.errors import CatalogError, InputError, ParseError
 from tests.parallel.test_tasks import processes, threads
 
 NAMES = ["so(4)/so(3)", "so(3,1)/so(2,1)", "sl(3)/P1", "affine(sl(2))", "so(3)/so(2)", "so(3)/0"]
+
+
+def lines(folder: Path) -> list[dict[str, Any]]:
+    """The lines of the entries in a store."""
+    files = sorted(folder.glob("records-*.jsonl"))
+    return [json.loads(line) for file in files for line in file.read_text().splitlines()]
 
 
 def test_every_entry_is_decided() -> None:
@@ -54,7 +62,7 @@ def test_pairs_that_differ_only_in_their_numbers_have_different_keys(tmp_path: P
     affine = lh.LieAlgebra({(0, 1): {1: 1}})
     pairs = [lh.Pair(affine, rows) for rows in ([[1, 0]], [[0, 1]], [])]
     atlas = lh.atlas.sweep(pairs, store=tmp_path / "atlas")
-    assert len(list((tmp_path / "atlas").glob("*.json"))) == 4  # and store.json
+    assert len(lines(tmp_path / "atlas")) == 3
     assert [entry.full for entry in atlas] == [lh.decide_fullness(pair).full for pair in pairs]
     assert all(entry.verify(pair) for entry, pair in zip(atlas, pairs, strict=True))
 
@@ -71,7 +79,7 @@ def test_rejected_pairs_have_a_reason_and_are_not_stored(tmp_path: Path) -> None
     assert [entry.full for entry in atlas] == [True, None]
     assert "CatalogError" in atlas.failures[0].reason
     assert "? " in str(atlas)
-    assert len(list((tmp_path / "atlas").glob("so*.json"))) == 1
+    assert [line["facts"]["name"] for line in lines(tmp_path / "atlas")] == ["so(4)/so(3)"]
     with pytest.raises(InputError, match="there is no certificate"):
         atlas[1].verify()
 
@@ -106,3 +114,110 @@ def test_invalid_arguments_raise_errors() -> None:
         lh.atlas.sweep(["so(4)//so(3)"])
     with pytest.raises(CatalogError):
         lh.atlas.sweep([lh.Pair(lh.so(3), [[0, 0, 1]], name="my own")])[0].verify()
+
+
+# -- the iterator --------------------------------------------------------------------------------------------
+def spheres(number: int) -> Iterator[lh.Pair]:
+    """Pairs that differ in their subalgebra, made when they are asked for."""
+    algebra = lh.LieAlgebra({(0, 1): {1: 1}})
+    return (lh.Pair(algebra, [[i, 1]], name=f"line {i}") for i in range(number))
+
+
+@pytest.mark.parametrize("executor", [None, threads, processes], ids=["none", "threads", "processes"])
+def test_iterator_gives_every_entry_once_with_its_number(executor: Any) -> None:
+    found = dict(lh.atlas.iter_sweep(NAMES, executor=executor))
+    assert [found[number] for number in range(len(NAMES))] == list(lh.atlas.sweep(NAMES))
+
+
+@pytest.mark.parametrize("store", [False, True])
+@pytest.mark.parametrize("ordered", [False, True])
+def test_generator_is_taken_lazily_and_at_most_buffersize_ahead(tmp_path: Path, ordered: bool, store: bool) -> None:
+    taken: list[int] = []
+    returned: list[int] = []
+    ahead: list[int] = []
+
+    def pairs() -> Iterator[lh.Pair]:
+        for pair in spheres(200):
+            taken.append(len(taken))
+            ahead.append(len(taken) - len(returned))
+            yield pair
+
+    with ThreadPoolExecutor(2) as pool:
+        call: dict[str, Any] = {"executor": pool, "store": tmp_path / "atlas" if store else None, "verify": False}
+        for number, entry in lh.atlas.iter_sweep(pairs(), ordered=ordered, buffersize=20, **call):
+            assert entry.name == f"line {number}"
+            returned.append(number)
+    assert sorted(returned) == list(range(200))
+    assert max(ahead) <= 20 + 1  # the one that is being taken
+    assert not ordered or returned == sorted(returned)
+
+
+def test_a_pair_that_takes_long_delays_only_the_ordered_iterator() -> None:
+    begun = threading.Event()
+
+    def slow() -> lh.Pair:
+        begun.wait(30)
+        return lh.pair("so(3)/so(2)")
+
+    slow.__qualname__ = "slow"
+    pairs = [lh.atlas.Recipe("slow", "slow", slow), *spheres(50)]
+    with ThreadPoolExecutor(2) as pool:
+        found = lh.atlas.iter_sweep(pairs, executor=pool, chunksize=1)
+        first = [next(found)[0] for _ in range(50)]
+        assert 0 not in first
+        begun.set()
+        assert [number for number, _ in found] == [0]
+        begun.clear()
+        threading.Timer(0.2, begun.set).start()
+        assert [number for number, _ in lh.atlas.iter_sweep(pairs, executor=pool, ordered=True, chunksize=1)] == [
+            *range(51)
+        ]
+
+
+def test_recipes_are_constructed_by_the_worker_and_stored_by_their_call(tmp_path: Path) -> None:
+    recipes = [lh.atlas.Recipe(f"my {name}", "mine", lh.pair, (name,)) for name in NAMES[:3]]
+    unusable = lh.atlas.Recipe("nothing", "mine", lh.pair, ("so(4)/so(5)",))
+    atlas = lh.atlas.sweep([*recipes, unusable], store=tmp_path / "atlas", executor=processes)
+    assert [entry.name for entry in atlas] == [*(recipe.name for recipe in recipes), "nothing"]
+    assert [e.verdict for e in atlas[:3]] == [e.verdict for e in lh.atlas.sweep(NAMES[:3])]
+    assert "CatalogError" in atlas[3].reason
+    decided: list[str] = []
+    again = lh.atlas.sweep(recipes, store=tmp_path / "atlas", progress=lambda e: decided.append(e.name), recheck=True)
+    assert again.entries == atlas[:3] and decided == []
+
+
+@pytest.mark.parametrize("executor", [None, threads], ids=["none", "threads"])
+def test_a_pair_given_again_is_read_from_the_store(tmp_path: Path, executor: Any) -> None:
+    names = NAMES[:2] * 50
+    found = dict(lh.atlas.iter_sweep(iter(names), executor=executor, store=tmp_path / "atlas", buffersize=5))
+    assert [found[number].name for number in range(100)] == names
+    assert sorted(line["facts"]["name"] for line in lines(tmp_path / "atlas")) == sorted(NAMES[:2])
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ZeroDivisionError])
+def test_what_was_finished_before_an_interruption_is_stored(tmp_path: Path, error: type[BaseException]) -> None:
+    def interrupted() -> Iterator[lh.Pair]:
+        yield from spheres(10)
+        raise error
+
+    with pytest.raises(error):
+        list(lh.atlas.iter_sweep(interrupted(), store=tmp_path / "atlas"))
+    assert len(lines(tmp_path / "atlas")) == 10
+    files = {file.name: file.read_bytes() for file in (tmp_path / "atlas").iterdir()}
+    assert len(list(lh.atlas.iter_sweep(spheres(10), store=tmp_path / "atlas"))) == 10
+    assert {file.name: file.read_bytes() for file in (tmp_path / "atlas").iterdir()} == files
+
+
+def test_closing_the_iterator_cancels_what_is_left(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(2) as pool:
+        found = lh.atlas.iter_sweep(spheres(10**9), executor=pool, store=tmp_path / "atlas", buffersize=100)
+        for _ in range(5):
+            next(found)
+        found.close()  # type: ignore[attr-defined]
+    assert len(lines(tmp_path / "atlas")) < 200
+
+
+@pytest.mark.parametrize("arguments", [{"buffersize": 0}, {"chunksize": 0}, {"chunksize": 1.5}, {"retries": -1}])
+def test_invalid_counts_raise_before_the_first_pair(arguments: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match=next(iter(arguments))):
+        lh.atlas.iter_sweep(NAMES, **arguments)

@@ -27,7 +27,7 @@ import liehom as lh
 from liehom.errors import LiehomError
 from liehom.integrators.run import checkpoint
 from liehom.io.json_reader import read_object
-from liehom.parallel import open_store
+from liehom.parallel import Records, open_store
 
 FIGURES = Path(__file__).with_name("figures") / "damage.json"
 PAIRS = ["so(4)/so(3)", "so(3,1)/so(2,1)", "sl(3)/P1", "su(3)/u(2)", "g2/su(3)", "so(5)/so(4)"]
@@ -128,7 +128,7 @@ def same_shards(first: Any, second: Any) -> bool:
 
 def shards(path: Path, fingerprint: str | None) -> Callable[[], Any]:
     def read() -> Any:
-        store = open_store(path, fingerprint)
+        store = Records(open_store(path, fingerprint))
         names = store.names()
         return {name: store.load(name) for name in sorted(names)}
 
@@ -164,7 +164,7 @@ def subjects(folder: Path) -> list[Subject]:
         file = folder / f"{name}.json"
         made.append(Subject(f"{name} file", [file], partial(written_again, file), lambda a, b: bool(a == b)))
     return [
-        Subject("atlas store", sorted((folder / "atlas").glob("*.json")), shards(folder / "atlas", key), same_shards),
+        Subject("atlas store", sorted((folder / "atlas").glob("*.json*")), shards(folder / "atlas", key), same_shards),
         *made,
         Subject("checkpoint", [points[0]], lambda: {"": (checkpoint.load(points[0], "abc"), {})}, same_shards),
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -26,25 +27,85 @@ def test_committed_figures_are_those_of_a_whole_campaign() -> None:
     assert figures["count"] == counted >= 10_000 and not any(row[BELIEVED] for row in figures["rows"])
 
 
-def shard(folder: Path, pair: str) -> Path:
-    return next(f for f in folder.iterdir() if f.name.startswith("".join(c if c.isalnum() else "-" for c in pair)))
+def parts(folder: Path) -> list[bytes]:
+    """The lines of the only file of entries, in the order of `PAIRS`."""
+    return (folder / "records-000000.jsonl").read_bytes().splitlines(keepends=True)
+
+
+def as_single_files(folder: Path, version: int) -> list[Path]:
+    """Rewrites a store with an entry in a file, as earlier versions did, in version 1 (0.1.0) without checksums."""
+    files = []
+    for line in map(json.loads, parts(folder)):
+        files.append(folder / f"{line['name']}.json")
+        shard = {"checksum": line["checksum"], "facts": line["facts"]}
+        files[-1].write_text(json.dumps(shard if version == 2 else line["facts"]))
+    (folder / "records-000000.jsonl").unlink()
+    if version == 1:
+        about = json.loads((folder / "store.json").read_text())
+        del about["checksum"]
+        (folder / "store.json").write_text(json.dumps({**about, "version": 1}))
+    return files
 
 
 def test_a_damaged_entry_is_named_and_decided_again(tmp_path: Path) -> None:
     whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
-    first, second = shard(tmp_path / "atlas", PAIRS[0]), shard(tmp_path / "atlas", PAIRS[1])
-    original = first.read_bytes()
+    first, second, third = parts(tmp_path / "atlas")
+    name = json.loads(first)["name"]
     for content in (
-        b"[]",
-        b"1",
-        original.replace(b'"full": true', b'"full": false'),
-        second.read_bytes(),
-        b"[" * 10**5,
+        first.replace(b'"full": true', b'"full": false'),
+        first.replace(b'"facts": {', b'"facts": [', 1),
+        first.replace(b'"checksum"', b'"checksun"'),
+        first[:100] + b"\n",
+        b'{"name": "' + name.encode() + b'", ' + second.partition(b", ")[2],
+        b'{"name": "' + name.encode() + b'", ' + b"[" * 10**5 + b"\n",
     ):
-        first.write_bytes(content)
-        with pytest.warns(DamageWarning, match=first.stem):
+        assert content != first
+        for file in (tmp_path / "atlas").glob("records-*"):
+            file.unlink()
+        (tmp_path / "atlas" / "records-000000.jsonl").write_bytes(content + second + third)
+        with pytest.warns(DamageWarning, match=name):
             assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas") == whole
-        assert first.read_bytes() == original
+        assert (tmp_path / "atlas" / "records-000001.jsonl").read_bytes() == first
+        assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas") == whole  # without a warning
+
+
+@pytest.mark.parametrize("content", [b"[]\n", b"\x00\n", b'{"nome": "x", "facts": {}}\n'])
+def test_a_line_without_a_name_is_counted_and_its_entry_decided_again(tmp_path: Path, content: bytes) -> None:
+    whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
+    first, _, third = parts(tmp_path / "atlas")
+    (tmp_path / "atlas" / "records-000000.jsonl").write_bytes(first + content + third)
+    decided: list[str] = []
+    with pytest.warns(DamageWarning, match=r"line 2 of .*records-000000.jsonl"):
+        again = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name))
+    assert again == whole and decided == [PAIRS[1]]
+
+
+def test_half_a_line_at_the_end_of_a_file_is_no_damage(tmp_path: Path) -> None:
+    whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
+    first, second, third = parts(tmp_path / "atlas")
+    (tmp_path / "atlas" / "records-000000.jsonl").write_bytes(first + second + third[:-1])
+    decided: list[str] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        again = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name))
+    assert again == whole and decided == [PAIRS[2]]
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_stores_with_an_entry_in_a_file_are_read_and_continued(tmp_path: Path, version: int) -> None:
+    whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
+    files = as_single_files(tmp_path / "atlas", version)
+    files[0].unlink()
+    content = files[2].read_bytes()
+    files[2].write_bytes(content.replace(b'"full": true', b'"full": false'))
+    decided: list[str] = []
+    with pytest.warns(DamageWarning, match=files[2].stem):
+        again = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name))
+    assert again == whole and decided == [PAIRS[0], PAIRS[2]]
+    assert [json.loads(line)["name"] for line in parts(tmp_path / "atlas")] == [files[0].stem, files[2].stem]
+    assert all(("checksum" in json.loads(line)) == (version == 2) for line in parts(tmp_path / "atlas"))
+    assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name)) == whole
+    assert len(decided) == 2
 
 
 def test_stored_certificates_are_checked_again_where_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -55,25 +116,11 @@ def test_stored_certificates_are_checked_again_where_asked(tmp_path: Path, monke
     assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", recheck=True) == whole and checked == PAIRS
 
 
-def as_version_1(folder: Path) -> None:
-    """Rewrites a store of JSON shards as liehom 0.1.0 writes it, without checksums."""
-    for file in folder.iterdir():
-        data = json.loads(file.read_text())
-        if file.name == "store.json":
-            data = {**data, "version": 1}
-            del data["checksum"]
-        else:
-            data = data["facts"]
-        file.write_text(json.dumps(data))
-
-
 def test_entries_without_checksums_are_believed_only_with_their_certificates(tmp_path: Path) -> None:
     whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
-    as_version_1(tmp_path / "atlas")
+    file, another, _ = as_single_files(tmp_path / "atlas", 1)
     assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas") == whole
-    file = shard(tmp_path / "atlas", PAIRS[0])
-    entry = json.loads(file.read_text())
-    other = json.loads(shard(tmp_path / "atlas", PAIRS[1]).read_text())
+    entry, other = json.loads(file.read_text()), json.loads(another.read_text())
     for changed in (
         {**entry, "verdict": {**entry["verdict"], "full": False}},
         {**entry, "verdict": {**entry["verdict"], "certificate": other["verdict"]["certificate"]}},
@@ -82,6 +129,8 @@ def test_entries_without_checksums_are_believed_only_with_their_certificates(tmp
         {"name": "so(4)/so(3)"},
         {**entry, "verified": 1},
     ):
+        for written in (tmp_path / "atlas").glob("records-*"):  # they replace the files of single entries
+            written.unlink()
         file.write_text(json.dumps(changed))
         with pytest.warns(DamageWarning):
             assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas") == whole

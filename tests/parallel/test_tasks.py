@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from liehom.errors import DependentRowsError, InputError, WorkerLostError
-from liehom.parallel import completed
+from liehom.parallel import Dispatcher, completed
 from tests.parallel import work
 
 
@@ -140,3 +140,81 @@ def test_invalid_executor_raises_input_error(executor: Any) -> None:
 def test_invalid_retries_raise_input_error(retries: Any) -> None:
     with pytest.raises(InputError, match="retries"):
         list(completed(work.square, [1], retries=retries))
+
+
+# -- many tasks ------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("executor", [None, threads, Immediate], ids=["none", "threads", "immediate"])
+def test_tasks_are_taken_one_at_a_time_and_at_most_buffersize_are_in_flight(executor: Any) -> None:
+    taken, returned, ahead = [], [], []
+
+    def tasks() -> Iterator[int]:
+        for x in range(300):
+            taken.append(x)
+            ahead.append(len(taken) - len(returned))
+            yield x
+
+    for number, square in completed(work.square, tasks(), executor, buffersize=10):
+        assert square == number**2
+        returned.append(number)
+    assert sorted(returned) == list(range(300)) and max(ahead) <= 11
+
+
+def dispatched(dispatcher: Dispatcher[int, Any, Any], tasks: Iterable[Any]) -> list[tuple[int, Any]]:
+    with dispatcher:
+        for number, task in enumerate(tasks):
+            dispatcher.submit(number, task)
+        found = []
+        while len(dispatcher):
+            found += [item for batch in dispatcher.arrived() for item in batch]
+    return found
+
+
+@pytest.mark.parametrize("chunksize", [None, 1, 7, 1000])
+def test_batches_of_any_size_give_every_result(chunksize: int | None) -> None:
+    for executor in (None, threads, Immediate):
+        made = Dispatcher[int, int, int](work.square, executor, chunksize=chunksize)
+        assert sorted(dispatched(made, range(500))) == [(x, x * x) for x in range(500)]
+
+
+def test_batches_of_small_tasks_grow() -> None:
+    pool = Immediate()
+    found = list(completed(work.square, range(1000), pool))
+    assert len(found) == pool.calls == 1000
+    pool = Immediate()
+    with Dispatcher[int, int, int](work.square, pool) as dispatcher:
+        count = 0
+        for number in range(1000):
+            dispatcher.submit(number, number)
+            while dispatcher.due:
+                count += sum(map(len, dispatcher.arrived()))
+        while len(dispatcher):
+            count += sum(map(len, dispatcher.arrived()))
+    assert count == 1000 and pool.calls < 100
+
+
+def test_a_worker_returns_what_it_has_no_time_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("liehom.parallel.tasks.BATCH_SECONDS", 0.0)
+    pool = Immediate()
+    made = Dispatcher[int, int, int](work.square, pool)
+    made._size = 8  # as after small tasks
+    assert sorted(dispatched(made, range(32))) == [(x, x * x) for x in range(32)]
+    assert pool.calls == 32
+
+
+def test_a_task_whose_worker_was_lost_goes_alone() -> None:
+    sizes: list[int] = []
+
+    class Recording(Immediate):
+        def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            sizes.append(len(args[0]))
+            return super().submit(function, *args, **kwargs)
+
+    made = Dispatcher[int, int, int](work.square, Recording(KilledWorker("a batch")), chunksize=4)
+    assert sorted(dispatched(made, range(8))) == [(x, x * x) for x in range(8)]
+    assert sizes == [4, 4, 1, 1, 1, 1]
+
+
+def test_a_killed_process_takes_nothing_from_its_batch(tmp_path: Path) -> None:
+    made = Dispatcher[int, tuple[str, int], int](work.kills_its_worker_once, processes, chunksize=3)
+    assert sorted(dispatched(made, [(str(tmp_path), x) for x in range(8)])) == [(x, x) for x in range(8)]
+    assert (tmp_path / "killed").exists()

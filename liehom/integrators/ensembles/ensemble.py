@@ -27,6 +27,8 @@ from liehom.integrators.propagator import ATOL, RTOL, default_step
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.solution import Solution, as_arrays, from_arrays, warn_of_order
 from liehom.parallel import ExecutorLike, completed, open_store
+from liehom.parallel.tasks import BUFFERSIZE
+from liehom.typing import Array
 
 CHUNK = 1024
 """Default number of trajectories in a chunk, large enough for the fixed cost of a step to be small."""
@@ -122,6 +124,7 @@ def integrate_ensemble(
     options = _renamed(options, stacklevel=4)
     with Progress(progress) as shown:
         parts: list[EnsemblePart] = []
+        done = 0
         for part in ensemble_parts(
             field,
             t_span,
@@ -134,8 +137,8 @@ def integrate_ensemble(
             **options,
         ):
             parts.append(part)
-            done = sum(p.last - p.first for p in parts) / len(given)
-            shown.update(lambda done=done: done)  # type: ignore[misc]
+            done += part.last - part.first
+            shown.update(lambda: done / len(given))  # noqa: B023 - called at once
         shown.update(lambda: 1.0, last=True)
     sampled = options.get("t_eval") is not None
     solution = merged([part.solution for part in sorted(parts, key=lambda part: part.first)], sampled=sampled)
@@ -202,7 +205,8 @@ def ensemble_parts(
                     todo.append(rows)
                 else:
                     yield EnsemblePart(*rows, stored)
-        for number, solution in completed(solved, [problem.task(rows) for rows in todo], executor, retries=retries):
+        tasks, buffersize = (problem.task(rows) for rows in todo), _buffersize(start, chunk)
+        for number, solution in completed(solved, tasks, executor, retries=retries, buffersize=buffersize):
             rows = todo[number]
             if kept is not None:
                 kept.save(_name(rows), *as_arrays(solution))
@@ -275,6 +279,11 @@ def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:
     count = -(-n // chunk)
     ends = [i * n // count for i in range(count + 1)]
     return list(pairwise(ends))
+
+
+def _buffersize(start: Array, chunk: int) -> int:
+    """Number of chunks in flight, whose initial points take some 100 MB."""
+    return max(64, min(BUFFERSIZE, 10**8 // (8 * chunk * int(start[0].size))))
 
 
 def _name(rows: tuple[int, int]) -> str:

@@ -151,7 +151,7 @@ def all_solved(
     read = {i: kept.restored(names[i], from_arrays) for i in range(len(names)) if kept is not None and names[i] in done}
     found = {i: solution for i, solution in read.items() if solution is not None}
     todo = [i for i in range(len(problems)) if i not in found]
-    for number, solution in completed(solved, [problems[i] for i in todo], executor, retries=retries):
+    for number, solution in completed(solved, (problems[i] for i in todo), executor, retries=retries):
         if kept is not None:
             kept.save(names[todo[number]], *as_arrays(solution))
         found[todo[number]] = solution
