@@ -63,6 +63,7 @@ from liehom.algebra.roots import real_form_of as real_form_of
 from liehom.algebra.roots import real_forms as real_forms
 from liehom.algebra.roots import real_forms_with as real_forms_with
 from liehom.algebra.roots import root_system as root_system
+from liehom.algebra.roots import simple_real_forms as simple_real_forms
 from liehom.algebra.structure import LeviDecomposition as LeviDecomposition
 from liehom.algebra.structure import Place as Place
 from liehom.algebra.structure import RootSpace as RootSpace

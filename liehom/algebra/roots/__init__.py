@@ -13,6 +13,7 @@ from liehom.algebra.roots.real_form import RealForm as RealForm
 from liehom.algebra.roots.real_form import complex_form as complex_form
 from liehom.algebra.roots.real_form import real_forms as real_forms
 from liehom.algebra.roots.real_form import real_forms_with as real_forms_with
+from liehom.algebra.roots.real_form import simple_real_forms as simple_real_forms
 from liehom.algebra.roots.real_form_names import canonical_real_form as canonical_real_form
 from liehom.algebra.roots.root_system import RootSystem as RootSystem
 from liehom.algebra.roots.root_system import root_system as root_system

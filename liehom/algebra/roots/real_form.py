@@ -8,8 +8,10 @@ A complex simple algebra, as a real one, has two copies of its Dynkin diagram th
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import count
 from typing import TYPE_CHECKING, final
 
 from liehom.algebra.roots.dynkin import parse_type
@@ -19,7 +21,7 @@ from liehom.algebra.roots.real_form_names import (
     canonical_real_form,
     parse_name,
 )
-from liehom.algebra.roots.root_system import RootSystem
+from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.algebra.roots.satake import SatakeDiagram
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.budget import within
@@ -186,6 +188,32 @@ def real_forms(type_name: str) -> list[RealForm]:
     ['e7(7)', 'e7(-5)', 'e7(-25)', 'e7']
     """
     return list(_real_forms(type_name))
+
+
+def simple_real_forms(max_dimension: int) -> Iterator[RealForm]:
+    """The simple real Lie algebras of a dimension up to a bound, complex ones included, each once up to isomorphism.
+
+    Yields
+    ------
+    RealForm
+        By complex type (A1, A2, ..., B2, ..., C3, ..., D4, ..., E6, E7, E8, F4, G2), and for each type by decreasing
+        character, the complex algebra regarded as real last.
+
+    Examples
+    --------
+    >>> [form.name for form in simple_real_forms(8)]
+    ['sl(2,R)', 'so(3)', 'sl(2,C)', 'sl(3,R)', 'su(2,1)', 'su(3)']
+    """
+    ranks = {"A": count(1), "B": count(2), "C": count(3), "D": count(4), "E": range(6, 9), "F": (4,), "G": (2,)}
+    for letter, allowed in ranks.items():
+        for rank in allowed:
+            name = f"{letter}{rank}"
+            dimension = root_system(name).number_of_roots + rank
+            if dimension > max_dimension:
+                break
+            yield from real_forms(name)
+            if 2 * dimension <= max_dimension:
+                yield complex_form(name)
 
 
 def real_forms_with(type_name: str, character: int) -> list[RealForm]:
