@@ -2,31 +2,31 @@
 
 The layers, in reading order; each imports only those above it in this list:
 
-`errors`           what the library refuses, and why
-`immutable`        classes whose attributes are set once
-`budget`           how large an input may be, how long a computation may take
-`disk`             files that are written whole, checksums
-`pytrees`          numbers and arrays in nested containers
-`parallel`         many tasks on any executor, and their results on disk
-`scalars`          QQ, real number fields, float64, and linear algebra over them
-`algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions
-`representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners
-`pauli`            dynamical Lie algebras of Pauli words
-`tracing`          a computation recorded as a graph, and machine code of it
-`series`           truncated Taylor series on which numpy code runs, series in Lie algebras
-`homogeneous`      actions with an exponential, generator fields; the range condition, orbit types
-`correctors`       expansions of flow and step; the order-n isotropy corrector and its clock
-`integrators`      steps, tableaux, `integrate`, measured orders
-`instances`        the paper's systems: spheres, the rigid body, isospectral flows, Landau-Lifshitz spins
-`fullness`         is a pair full? the decision, its certificates, the independent checker
-`catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1"
-`atlas`            sweeps over families of pairs, every entry decided
-`io`               JSON files in and out
-`paper`            the figures of the paper, done again
-`plotting`         plots of trajectories and of measured orders
-`testing`          a public conformance suite
+`errors`           exceptions, with what was found, what was expected and a remedy.
+`immutable`        classes whose attributes are set once.
+`budget`           how large an input may be, how long a computation may take.
+`disk`             files that are written whole, checksums.
+`pytrees`          numbers and arrays in nested containers.
+`parallel`         many tasks on any executor, and their results on disk.
+`scalars`          QQ, real number fields, float64, and linear algebra over them.
+`algebra`          Lie algebras by structure constants, subalgebras, homomorphisms, constructions.
+`representations`  representations by matrices, pairs (g, h), isotropy of a point, intertwiners.
+`pauli`            dynamical Lie algebras of Pauli words.
+`tracing`          a computation recorded as a graph, and machine code of it.
+`series`           truncated Taylor series on which numpy code runs, series in Lie algebras.
+`homogeneous`      actions with an exponential, generator fields, the range condition, orbit types.
+`correctors`       expansions of flow and step, the order-n isotropy corrector and its time reparametrization.
+`integrators`      steps, tableaux, `integrate`, measured orders.
+`instances`        the paper's systems: spheres, the rigid body, isospectral flows, Landau-Lifshitz spins.
+`fullness`         full pairs: the decision, its certificates and the independent checker.
+`catalog`          names that parse: "so(4)/so(3)", "g2/su(3)", "sl(3)/P1".
+`atlas`            sweeps over families of pairs, every entry decided.
+`io`               JSON files in and out.
+`paper`            the figures of the paper, reproduced.
+`plotting`         plots of trajectories and of measured orders.
+`testing`          a public conformance suite.
 `cli`              the command line
-"""
+."""
 
 from __future__ import annotations
 

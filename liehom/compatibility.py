@@ -1,7 +1,7 @@
 """Objects that liehom 0.1.0 has pickled: their classes are found where they are now, or refused by name.
 
-A pickle refers to a class by the module in which it was defined. Since 0.1.0 modules stand in wings, one folder
-deeper: ``liehom.algebra.lie_algebra`` has become ``liehom.algebra.core.lie_algebra``. `OldModules` is a finder that
+A pickle refers to a class by the module in which it was defined. Since 0.1.0 modules have moved into subfolders, called
+wings: ``liehom.algebra.lie_algebra`` has become ``liehom.algebra.core.lie_algebra``. `OldModules` is a finder that
 Python's import system asks last. For an old name it gives an `OldModule`, whose attributes are those of the module at
 the new place, so that old pickles load. It is asked for no name that exists, and so costs nothing.
 
@@ -142,7 +142,7 @@ CHANGED: frozenset[str] = frozenset()
 
 @final
 class OldModules:
-    """A finder and loader of the modules of 0.1.0 that stand elsewhere now.
+    """Finder and loader for modules of 0.1.0 that have another name now.
 
     Examples
     --------
