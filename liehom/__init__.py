@@ -25,8 +25,8 @@ The layers, in reading order; each imports only those above it in this list:
 `paper`            the figures of the paper, reproduced.
 `plotting`         plots of trajectories and of measured orders.
 `testing`          a public conformance suite.
-`cli`              the command line
-."""
+`cli`              the command line.
+"""
 
 from __future__ import annotations
 
