@@ -2,21 +2,19 @@
 
 With x = psi mod h in V = g/h the condition is rank [rho(z_1) x, ..., rho(z_k) x, x] = d = dim V.  For one psi it is
 decided by this rank.  It holds for generic psi if and only if it holds for one psi.  The proof that it never holds is
-the generic rank of this matrix, or an invariant definite form.
+the generic rank of this matrix.
 """
 
 from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import cast, final
+from typing import final
 
 from liehom.errors import InputError, ShapeError, UndecidedError
-from liehom.homogeneous.range.generic_rank import MAX_POINTS, number_of_points, point_of_higher_rank
+from liehom.homogeneous.range.generic_rank import point_of_higher_rank
 from liehom.representations import Pair
-from liehom.representations.invariants.intertwiners import invariant_forms
-from liehom.representations.invariants.irreducibility import traceless
-from liehom.scalars import ExactMatrix, FloatMatrix, Matrix, RankDecision, Scalar
+from liehom.scalars import FloatMatrix, Matrix, RankDecision, Scalar
 from liehom.scalars.spaces.linear_forms import LinearForms
 from liehom.typing import VectorLike
 
@@ -110,11 +108,10 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     Notes
     -----
     One psi with rank d proves that the rank is d on a dense open cone. The proof that the rank is less than d
-    everywhere is one of the following: dim(rho(h) + R) < d; the rank over the field of rational functions in x, from
-    ranks at finitely many points of a slice; or, if these are more than 20,000, a definite form on g/h that h preserves
-    up to scale, in which case one psi outside h decides for all psi. If none of them applies, `holds` is None. If h
-    acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with both signs, the condition holds generically
-    although the pair is not full.
+    everywhere is dim(rho(h) + R) < d, or the rank over the field of rational functions in x. The latter follows from
+    the stabilizer of one point, or from ranks at finitely many points of a slice. `holds` is None if these would be
+    more than 20,000. If h acts on g/h as on the tangent spaces of so(p, q)/so(p', q') with both signs, the condition
+    holds generically although the pair is not full.
 
     Examples
     --------
@@ -139,14 +136,13 @@ def range_condition(pair: Pair, psi: VectorLike | None = None) -> RangeCondition
     forms = pencil(pair)
     if forms.shape[1] < pair.dimension:
         return _never(best, f"it never holds: rho(h) + R has dimension {forms.shape[1]} < {pair.dimension}")
-    if number_of_points(best.rank, pair.dimension) <= MAX_POINTS:
+    try:
         best = _raised(pair, forms, best)
-        if best.holds:
-            return best
-        return _never(best, f"it never holds: the rank over the rational functions of psi is {best.rank}")
-    if _preserves_a_definite_form(pair):
-        return _never(best, "it never holds: h preserves a definite form up to scale, so one psi decides for all")
-    return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi")
+    except UndecidedError as error:
+        return _decided(best, None, f"it fails at {SAMPLES} random points; not proved for all psi: {error}")
+    if best.holds:
+        return best
+    return _never(best, f"it never holds: the rank over the rational functions of psi is {best.rank}")
 
 
 def orbit_dimension(pair: Pair) -> int:
@@ -162,7 +158,7 @@ def orbit_dimension(pair: Pair) -> int:
     Raises
     ------
     UndecidedError
-        Over float64, or if the proof that the largest known rank is generic would take too many points.
+        Over float64, or if the proof that the largest known rank is generic would take ranks at too many points.
 
     Examples
     --------
@@ -179,16 +175,7 @@ def orbit_dimension(pair: Pair) -> int:
         )
     if pair.dimension == 0:
         return 0
-    best = _best_sample(pair)
-    forms = pencil(pair)
-    if best.rank == min(forms.shape):
-        return best.rank
-    if (points := number_of_points(best.rank, pair.dimension)) > MAX_POINTS:
-        raise UndecidedError(
-            f"the orbits of {SAMPLES} random points have at most the dimension {best.rank}; a proof that no orbit has "
-            f"a larger one takes {points} ranks, the limit is {MAX_POINTS}"
-        )
-    return _raised(pair, forms, best).rank
+    return _raised(pair, pencil(pair), _best_sample(pair)).rank
 
 
 def _raised(pair: Pair, forms: LinearForms, best: RangeCondition) -> RangeCondition:
@@ -282,14 +269,6 @@ def _best_sample(pair: Pair) -> RangeCondition:
     if best.holds is None:
         return best
     return _decided(best, False, f"the numerical rank is at most {best.rank} of {best.dimension} at {SAMPLES} points")
-
-
-def _preserves_a_definite_form(pair: Pair) -> bool:
-    """Whether a basis element of the symmetric forms on g/h that h preserves up to scale is definite."""
-    d = pair.dimension
-    reduced = traceless(cast(list[ExactMatrix], pair.isotropy_matrices()), d, pair.field)
-    found = invariant_forms(reduced, d, pair.field).symmetric
-    return any(d in form.signature()[:2] for form in found)
 
 
 def _never(best: RangeCondition, message: str) -> RangeCondition:

@@ -212,21 +212,30 @@ def test_never_over_a_number_field_is_proved_too() -> None:
         lh.relative_invariant(over)
 
 
-def test_generic_ranks_in_large_dimensions_are_proved() -> None:
-    pair = affine(blocks(families.so(6), families.so(6)))
+@pytest.mark.parametrize(
+    ("matrices", "rank"),
+    [(blocks(families.so(6), families.so(6)), 11), (blocks(*[families.so(2, 1)] * 8), 17)],
+    ids=["compact", "not compact"],
+)
+def test_generic_ranks_in_large_dimensions_are_proved(matrices: Any, rank: int) -> None:
+    pair = affine(matrices)
     condition = lh.range_condition(pair)
     assert condition.holds is False and "rational functions" in condition.message
-    assert condition.rank == lh.homogeneous.orbit_dimension(pair) == 11
+    assert condition.rank == lh.orbit_dimension(pair) == rank
     check_missing(pair, condition.psi, condition.missing)
 
 
 def test_what_is_not_proved_is_not_claimed() -> None:
-    pair = affine(blocks(*[families.so(2, 1)] * 8))
+    """Hom(R^8, R^9) on R^17, an abelian algebra whose orbits have dimension 9; with R it is 10."""
+    matrices = np.zeros((72, 17, 17), dtype=int)
+    for k in range(72):
+        matrices[k, k // 8, 9 + k % 8] = 1
+    pair = affine(matrices)
     condition = lh.range_condition(pair)
     assert condition.holds is None and "not proved" in condition.message
-    assert condition.rank == 17
-    with pytest.raises(UndecidedError, match="takes 480700 ranks"):
-        lh.homogeneous.orbit_dimension(pair)
+    assert condition.rank == 10
+    with pytest.raises(UndecidedError, match="takes 31824 ranks"):
+        lh.orbit_dimension(pair)
     check_missing(pair, condition.psi, condition.missing)
     with pytest.raises(UndecidedError):
         bool(condition)
