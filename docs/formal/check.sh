@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Checks the proofs, prints what the main theorems assume, extracts the checker and builds the program liehom-check.
+# Usage: check.sh [FOLDER]; what is built goes to that folder, build/formal by default.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+build=${1:-$here/../../build/formal}
+
+packages="coq libcoq-mathcomp-ssreflect libcoq-mathcomp-algebra libcoq-mathcomp-field libcoq-mathcomp-real-closed
+libcoq-mathcomp-zify libcoq-mathcomp-algebra-tactics ocaml-nox ocaml-findlib libzarith-ocaml-dev libyojson-ocaml-dev"
+for tool in coqc ocamlfind; do
+    command -v $tool >/dev/null || { echo "$tool is missing: apt-get install" $packages >&2; exit 1; }
+done
+
+mkdir -p "$build"
+cp -r "$here"/_CoqProject "$here"/theories "$here"/Assumptions.v "$here"/ocaml "$build"
+cd "$build"
+
+coq() { coqc -w none -R theories Liehom "$@"; }
+for file in $(grep '\.v$' _CoqProject); do
+    echo "proof  $file"
+    coq "$file"
+done
+
+coq Assumptions.v | tee assumptions.txt
+theorems=$(grep -c '^Print Assumptions' Assumptions.v)
+closed=$(grep -c '^Closed under the global context$' assumptions.txt || true)
+[ "$closed" -eq "$theorems" ] || { echo "$closed of $theorems theorems are closed" >&2; exit 1; }
+echo "$theorems theorems, no axioms"
+
+cd ocaml
+coqc -w none -R ../theories Liehom Extraction.v
+ocamlfind ocamlopt -package zarith,yojson -linkpkg integer.ml checker.mli checker.ml reader.ml propose.ml \
+    certificates.ml main.ml -o ../liehom-check
+echo "program $build/liehom-check"

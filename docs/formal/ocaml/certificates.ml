@@ -1,0 +1,74 @@
+(* Certificates from the JSON that liehom writes, with denominators cleared. A mistake here can make the checker reject
+   or accept a certificate that is not the one in the file, but what it accepts proves the verdict all the same. *)
+
+open Reader
+
+type t =
+  | Trivial
+  | Witness of Checker.witness * t option
+  | Other of string  (** a kind that is not covered *)
+
+let number what (json : Yojson.Safe.t) =
+  match json with
+  | `String _ -> let a, b = fraction json in Q.make a b
+  | _ -> malformed "%s holds something that is not a string" what
+
+let numbers what json = List.map (number what) (list what json)
+
+(* Common factor of all numbers of a list of rows, and the rows of integers. *)
+let cleared_rows rows =
+  let s = List.fold_left (List.fold_left (fun s (x : Q.t) -> Z.lcm s x.Q.den)) Z.one rows in
+  List.map (List.map (fun (x : Q.t) -> Z.divexact (Z.mul s x.Q.num) x.Q.den)) rows
+
+(* Coordinates that are polynomials of at most [size] coefficients, as a polynomial of vectors. *)
+let polynomials what n size json =
+  let entry : Yojson.Safe.t -> Q.t list = function
+    | `List [] -> malformed "%s holds an empty list of coefficients" what
+    | `List l -> List.map (number what) l
+    | json -> [number what json]
+  in
+  let coordinates = List.map entry (list what json) in
+  if List.length coordinates <> n then raise (Propose.Impossible (what ^ " has the wrong length"));
+  if List.exists (fun c -> List.length c > size) coordinates then
+    raise (Propose.Impossible (what ^ " has a degree that is not below that of minpoly"));
+  let coordinates = cleared_rows coordinates in
+  let coefficient s c = match List.nth_opt c s with Some x -> x | None -> Z.zero in
+  List.init size (fun s -> Checker.sparse (List.map (coefficient s) coordinates))
+
+let only_keys what required optional members =
+  List.iter
+    (fun (name, _) -> if not (List.mem name required || List.mem name optional) then malformed "%s: the key %s" what name)
+    members;
+  List.iter (fun name -> ignore (member what name members)) required
+
+let rec certificate n json =
+  let what = "the certificate" in
+  let members = keys what json in
+  (match member what "format" members, member what "version" members with
+   | `String "liehom-certificate", `Int 1 -> ()
+   | _ -> malformed "%s: another format or version" what);
+  if List.mem_assoc "field" members then unsupported "a certificate that is not over the rationals";
+  let fields = List.filter (fun (name, _) -> not (List.mem name ["format"; "version"; "kind"])) members in
+  match member what "kind" members with
+  | `String "trivial" ->
+    only_keys what [] [] fields;
+    Trivial
+  | `String "witness" ->
+    only_keys what ["minpoly"; "interval"; "eta"; "phi"] ["also"] fields;
+    let get name = member what name fields in
+    let minpoly = List.hd (cleared_rows [numbers "minpoly" (get "minpoly")]) in
+    let degree = List.length minpoly - 1 in
+    if degree < 1 || Z.sign (List.nth minpoly degree) = 0 then malformed "minpoly has no leading coefficient";
+    let low, high =
+      match numbers "interval" (get "interval") with
+      | [a; b] -> ((a.Q.num, a.Q.den), (b.Q.num, b.Q.den))
+      | _ -> malformed "interval does not have two ends"
+    in
+    let eta = polynomials "eta" n degree (get "eta") and phi = polynomials "phi" n degree (get "phi") in
+    let also = Option.map (certificate n) (List.assoc_opt "also" fields) in
+    (match also with
+     | None | Some (Other _) -> ()
+     | Some _ -> malformed "also is neither of kind commutant nor dominance");
+    Witness ({ minpoly; low; high; eta; phi }, also)
+  | `String (("full" | "commutant" | "dominance") as kind) -> Other kind
+  | _ -> malformed "%s: an unknown kind" what

@@ -1,0 +1,151 @@
+(* What the checker wants proposed: coordinates, factorizations, inverses. Untrusted: the checker verifies all of it. *)
+
+module Big = Z
+open Checker
+module Z = Big
+
+exception Impossible of string
+
+let impossible s = raise (Impossible s)
+let fractions = List.map (fun (a, b) -> Q.make a b)
+
+(* A common positive factor that makes rational numbers integers, and the integers. *)
+let cleared (xs : Q.t list) =
+  let s = List.fold_left (fun s (x : Q.t) -> Z.lcm s x.den) Z.one xs in
+  (s, List.map (fun (x : Q.t) -> Z.divexact (Z.mul s x.num) x.den) xs)
+
+let sparse_row (row : Q.t array) factor : vector =
+  let entries = ref [] in
+  for j = Array.length row - 1 downto 0 do
+    if Q.sign row.(j) <> 0 then
+      entries := (j, Z.divexact (Z.mul factor row.(j).Q.num) row.(j).Q.den) :: !entries
+  done;
+  !entries
+
+let common_factor rows =
+  Array.fold_left (Array.fold_left (fun s (x : Q.t) -> Z.lcm s x.den)) Z.one rows
+
+(* A matrix of integers, and the factor that it has been multiplied by. *)
+let integral rows =
+  let s = common_factor rows in
+  (Array.to_list (Array.map (fun row -> sparse_row row s) rows), s)
+
+(* Reduced row echelon form of [rows | identity]: the form, the multipliers, and the pivot columns. *)
+let echelon (rows : Q.t array array) columns =
+  let m = Array.length rows in
+  let a = Array.mapi (fun i row -> Array.append row (Array.init m (fun j -> if i = j then Q.one else Q.zero))) rows in
+  let width = columns + m in
+  let rank = ref 0 and pivots = ref [] in
+  for column = 0 to columns - 1 do
+    let chosen = ref (-1) in
+    for i = m - 1 downto !rank do
+      if Q.sign a.(i).(column) <> 0 then chosen := i
+    done;
+    if !chosen >= 0 then begin
+      let row = a.(!chosen) in
+      a.(!chosen) <- a.(!rank);
+      a.(!rank) <- row;
+      let inverse = Q.inv row.(column) in
+      for j = 0 to width - 1 do
+        if Q.sign row.(j) <> 0 then row.(j) <- Q.mul inverse row.(j)
+      done;
+      for i = 0 to m - 1 do
+        let factor = a.(i).(column) in
+        if i <> !rank && Q.sign factor <> 0 then
+          for j = 0 to width - 1 do
+            if Q.sign row.(j) <> 0 then a.(i).(j) <- Q.sub a.(i).(j) (Q.mul factor row.(j))
+          done
+      done;
+      pivots := column :: !pivots;
+      incr rank
+    end
+  done;
+  let part start length = Array.map (fun row -> Array.sub row start length) (Array.sub a 0 !rank) in
+  (part 0 columns, part columns m, List.rev !pivots)
+
+let dense columns (row : Z.t list) = Array.append (Array.of_list (List.map Q.of_bigint row))
+    (Array.make (max 0 (columns - List.length row)) Q.zero)
+
+(* Coordinates on g/h: pivots and free indices of the echelon form of h. *)
+let coordinates (p : pair_data) : coordinates_hint =
+  let n = p.dimension and k = List.length p.rows in
+  if List.exists (fun row -> List.length row <> n) p.rows then impossible "a row of h has the wrong length";
+  let scale, integers = cleared (fractions (List.map snd p.constants)) in
+  let subalgebra = List.map (fun row -> cleared (fractions row)) p.rows in
+  let rows = Array.of_list (List.map (fun (_, row) -> dense n row) subalgebra) in
+  let reduced, multipliers, pivots = echelon rows n in
+  if List.length pivots < k then impossible "the rows of h are linearly dependent";
+  let free = List.filter (fun j -> not (List.mem j pivots)) (List.init n Fun.id) in
+  let basis, q = integral reduced in
+  let change, factor = integral (Array.map (Array.map (fun x -> Q.mul (Q.of_bigint q) x)) multipliers) in
+  let quotient = Array.make n [] and dual = Array.make n [] in
+  List.iteri (fun r pivot -> dual.(pivot) <- [(r, Z.one)]) pivots;
+  List.iteri (fun u j -> quotient.(j) <- [(u, q)]) free;
+  List.iteri
+    (fun r pivot ->
+      let row = Array.of_list (List.map (fun j -> Q.neg reduced.(r).(j)) free) in
+      quotient.(pivot) <- sparse_row row q)
+    pivots;
+  { codimension = List.length free; scale; integers; subalgebra; basis; change; factor;
+    quotient = Array.to_list quotient; section = List.map (fun j -> [(j, Z.one)]) free; dual = Array.to_list dual;
+    denominator = q }
+
+(* Polynomials over the rationals: arrays of ascending coefficients without leading zeros. *)
+module Poly = struct
+  let trim a =
+    let size = ref (Array.length a) in
+    while !size > 0 && Q.sign a.(!size - 1) = 0 do decr size done;
+    Array.sub a 0 !size
+
+  let of_list l = trim (Array.of_list (List.map Q.of_bigint l))
+
+  let divide f g =
+    let rest = Array.copy f and size = Array.length g in
+    let quotient = Array.make (max 0 (Array.length f - size + 1)) Q.zero in
+    for top = Array.length f - 1 downto size - 1 do
+      let factor = Q.div rest.(top) g.(size - 1) in
+      quotient.(top - size + 1) <- factor;
+      for j = 0 to size - 1 do
+        let at = top - size + 1 + j in
+        rest.(at) <- Q.sub rest.(at) (Q.mul factor g.(j))
+      done
+    done;
+    (trim quotient, trim rest)
+
+  let combine f g operation =
+    trim (Array.init (max (Array.length f) (Array.length g)) (fun i ->
+        let entry a = if i < Array.length a then a.(i) else Q.zero in
+        operation (entry f) (entry g)))
+
+  let multiply f g =
+    let out = Array.make (max 0 (Array.length f + Array.length g - 1)) Q.zero in
+    Array.iteri (fun i a -> Array.iteri (fun j b -> out.(i + j) <- Q.add out.(i + j) (Q.mul a b)) g) f;
+    trim out
+
+  (* g and u, v with u f + v p = g, a greatest common divisor. *)
+  let rec bezout f p =
+    if p = [||] then (f, [| Q.one |], [||])
+    else
+      let quotient, rest = divide f p in
+      let g, u, v = bezout p rest in
+      (g, v, combine u (multiply quotient v) Q.sub)
+end
+
+let oracle : oracle =
+  let divide f p =
+    let f = Poly.of_list f and p = Poly.of_list p in
+    if f = [||] then (Z.zero, [])
+    else
+      let quotient, rest = Poly.divide p f in
+      if rest <> [||] then (Z.zero, []) else cleared (Array.to_list quotient)
+  and bezout f p =
+    let f = Poly.of_list f and p = Poly.of_list p in
+    let g, u, v = Poly.bezout f p in
+    if Array.length g <> 1 then (([], []), Z.zero)
+    else
+      let s, all = cleared (g.(0) :: Array.to_list u @ Array.to_list v) in
+      ignore s;
+      let size = Array.length u in
+      ((List.filteri (fun i _ -> 0 < i && i <= size) all, List.filteri (fun i _ -> i > size) all), List.hd all)
+  in
+  { divide; bezout }

@@ -1,0 +1,31 @@
+(** The checker: a pair, a certificate, and what an unproved program proposes for their verification.
+
+    [check_sound] is the theorem about the executable: whatever is proposed, if [check] returns true, then the pair has
+    the property that the kind of the certificate claims, over every real closed field. *)
+From Coq Require Import ZArith.
+From mathcomp Require Import all_ssreflect all_algebra.
+From Liehom Require Import Sound Pair Certificate CheckerAlgebra CheckerPair CheckerWitness.
+Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
+Import Order.Theory GRing.Theory Num.Theory. Local Open Scope ring_scope.
+
+Inductive certificate := TrivialCertificate | WitnessCertificate of witness.
+
+(** Whether the certificate claims that the pair is full, or else that it is not. *)
+Definition claims_full (c : certificate) : bool := if c is WitnessCertificate _ then false else true.
+
+Definition check (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certificate) : bool :=
+  let ads := adjoint p t in
+  let isos := isotropies t ads in
+  check_coordinates p t ads isos &&
+  match c with
+  | TrivialCertificate => Nat.leb (codimension t) 1
+  | WitnessCertificate w => check_witness o p t ads w
+  end.
+
+Theorem check_sound (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certificate) (R : rcfType) :
+  check o p t c -> if claims_full c then pair_is_full R p else ~ pair_is_full R p.
+Proof.
+case: c => [|w] /andP [cc] /=; last exact: check_witness_sound.
+move=> /Nat.leb_le/ssrnat.leP d1; have [[cl co _] <-] := check_coordinates_sound R cc.
+by apply/(full_pairP cl co); apply: trivial_sound.
+Qed.
