@@ -14,7 +14,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.util import logging
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))  # the pages document this tree, whatever is installed
+sys.path[:0] = [str(ROOT), str(ROOT / "docs")]  # the pages document this tree, whatever is installed
 
 project = "liehom"
 author = "liehom authors"
@@ -25,7 +25,7 @@ version = release
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "pictures"]
 
 # a single pair of backticks in a docstring is code
 default_role = "code"
@@ -90,6 +90,10 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
+    import pictures  # found by the path that is set above
+
+    app.connect("builder-inited", pictures.draw)
+    app.add_directive("picture", pictures.Picture)
     app.add_html_math_renderer(
         "mathml",
         (lambda visitor, node: mathml(visitor, node, display=False), None),

@@ -1,9 +1,13 @@
-"""Plots of measured orders and of trajectories, by matplotlib (the extra `liehom[plot]`).
+"""Plots of measured orders, trajectories, strata and failure cones, by matplotlib (the extra `liehom[plot]`).
 
 `canvas` makes figures, colours and files, and is the one module that loads matplotlib; `convergence_plot` draws errors
-over step sizes, `trajectory_plot` solutions. A figure belongs to the caller: no window is opened, and no setting of
-matplotlib is changed. docs/api/plotting.md lists the functions.
+over step sizes, `trajectory_plot` solutions, `strata_plot` failure cones, eigenvalues and Weyl chambers. A figure
+belongs to the caller: no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists the
+functions.
 """
 
 from liehom.plotting.convergence_plot import plot_convergence as plot_convergence
+from liehom.plotting.strata_plot import plot_eigenvalues as plot_eigenvalues
+from liehom.plotting.strata_plot import plot_failure_cone as plot_failure_cone
+from liehom.plotting.strata_plot import plot_weyl_chamber as plot_weyl_chamber
 from liehom.plotting.trajectory_plot import plot_trajectory as plot_trajectory

@@ -7,7 +7,7 @@ in their markers or dashes.
 from __future__ import annotations
 
 import os
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +24,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 DASHES = ("-", "--", "-.", ":")
 GREY, PALE = "#6b6b6b", "#d9d9d9"
+# the same hues, light enough for a dark page
+DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 
 STYLE: dict[str, object] = {
     "font.size": 10,
@@ -48,6 +50,14 @@ STYLE: dict[str, object] = {
     "savefig.dpi": 160,
     "svg.hashsalt": "liehom",  # equal plots are equal files
 }
+TEXT = ("text.color", "axes.labelcolor", "axes.titlecolor", "xtick.labelcolor", "ytick.labelcolor", "legend.labelcolor")
+DARK: dict[str, object] = {
+    **dict.fromkeys(TEXT, "#dddddd"),
+    "grid.color": "#3a3a3a",
+    "axes.edgecolor": "#999999",
+    "axes.facecolor": "none",
+}
+"""What `style` sets for a dark page, besides `STYLE`."""
 # metadata that would contain the time of writing, so that equal plots would be different files
 UNDATED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
@@ -72,10 +82,30 @@ def matplotlib_module(name: str) -> Any:
     return import_module(f"matplotlib.{name}" if name else "matplotlib")
 
 
-def style() -> AbstractContextManager[None]:
-    """Context manager that sets the style of the library's plots."""
-    context: AbstractContextManager[None] = matplotlib_module("").rc_context(STYLE)
+def style(*, dark: bool = False) -> AbstractContextManager[None]:
+    """Context manager that sets the style of the library's plots.
+
+    Parameters
+    ----------
+    dark : bool, optional
+        Light text on no background, for a dark page; the colours of lines are then `DARK_COLOURS`.
+    """
+    context: AbstractContextManager[None] = matplotlib_module("").rc_context({**STYLE, **(DARK if dark else {})})
     return context
+
+
+def style_unless(ax: Axes | None) -> AbstractContextManager[object]:
+    """The style of the library for new figures; the style of the caller, unchanged, for axes that the caller gives.
+
+    Raises
+    ------
+    InputError
+        If `ax` is not None and not axes of matplotlib.
+    """
+    if ax is None:
+        return style()
+    figure_of(ax)
+    return nullcontext()
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -93,7 +123,7 @@ def figure_of(axes: Axes) -> Figure:
         If `axes` are not axes of matplotlib.
     """
     if not isinstance(axes, matplotlib_module("axes").Axes):
-        raise InputError(f"axes is {axes!r}, expected axes of matplotlib")
+        raise InputError(f"expected axes of matplotlib, got {axes!r}")
     figure: Figure = axes.figure
     return figure
 

@@ -16,7 +16,7 @@ from liehom.typing import Array
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Axes: TypeAlias = Any
+AnyAxes: TypeAlias = Any
 """Axes of matplotlib in the plane or in space; those in space have no types."""
 
 MAX_TRAJECTORIES = 50
@@ -118,7 +118,7 @@ def _ends(points: Array) -> tuple[Array, Array]:
     return points[:, there[0]], points[:, there[-1]]
 
 
-def _mark_ends(axes: Axes, y: Array, hidden: Callable[[Array], bool] | None = None) -> None:
+def _mark_ends(axes: AnyAxes, y: Array, hidden: Callable[[Array], bool] | None = None) -> None:
     """Mark initial points by a disc and ends by a square, pale if `hidden`, with one legend for all curves."""
     size = 6 if len(y) <= 5 else 3.5
     for k, points in enumerate(y):
@@ -157,9 +157,9 @@ def _in_space(y: Array) -> Figure:
     return figure
 
 
-def _on_the_sphere(axes: Axes, y: Array, radius: float) -> None:
+def _on_the_sphere(axes: AnyAxes, y: Array, radius: float) -> None:
     """Draw curves on the sphere, pale if behind it, and the ends of the coordinate axes."""
-    _draw_sphere(axes, radius)
+    draw_sphere(axes, radius)
     for k, points in enumerate(y):
         front = _towards_the_eye() @ points >= 0
         axes.plot(*_only(points, ~front), **_look(k, len(y)), alpha=0.3, zorder=1)
@@ -192,7 +192,7 @@ def _only(points: Array, kept: Array) -> Array:
     return np.where(near, points, np.nan)
 
 
-def _draw_sphere(axes: Axes, radius: float) -> None:
+def draw_sphere(axes: AnyAxes, radius: float) -> None:
     """Draw the outline of the sphere, and the visible parts of its circles of latitude and longitude."""
     u, v = np.linspace(0, 2 * np.pi, 145), np.linspace(0, np.pi, 73)
     grid = radius * np.array(

@@ -17,28 +17,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import liehom as lh
-from liehom.plotting.canvas import COLOURS, matplotlib_module, style
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, matplotlib_module, style
 
 DT = 0.1
 SAMPLES = 600
 """Times at which energy and Casimir functions are looked at; half of them are spread evenly over the logarithm."""
 MARKERS = ("<!-- energy drift: begin -->", "<!-- energy drift: end -->")
-LETTERS = (
-    "text.color",
-    "axes.labelcolor",
-    "axes.titlecolor",
-    "xtick.labelcolor",
-    "ytick.labelcolor",
-    "legend.labelcolor",
-)
-DARK = {
-    **dict.fromkeys(LETTERS, "#dddddd"),
-    "legend.labelcolor": "#dddddd",
-    "grid.color": "#3a3a3a",
-    "axes.edgecolor": "#999999",
-    "axes.facecolor": "none",
-}
-DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 HAIRLINE = 1e-17
 SYMPLECTIC = ("Midpoint", "MoserVeselov", "Splitting")
 """Words in the names of the symplectic steps, whose lines are drawn without dashes."""
@@ -163,8 +147,8 @@ def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
 def draw(found: Sequence[tuple[System, Sequence[Row]]], folder: Path) -> None:
     """energy_drift_light.svg and energy_drift_dark.svg: the largest energy error so far over time."""
     pyplot = matplotlib_module("figure")
-    for kind, options, colours in (("light", {}, COLOURS), ("dark", DARK, DARK_COLOURS)):
-        with style(), matplotlib_module("").rc_context(options):
+    for kind, colours in (("light", COLOURS), ("dark", DARK_COLOURS)):
+        with style(dark=kind == "dark"):
             figure = pyplot.Figure(figsize=(9.0, 4.4), layout="constrained")
             figure.patch.set_alpha(0.0)
             for axes, (system, rows) in zip(figure.subplots(1, len(found), sharey=True), found, strict=True):

@@ -18,8 +18,7 @@ import numpy as np
 
 import liehom as lh
 from liehom.integrators import amplification
-from liehom.plotting.canvas import COLOURS, matplotlib_module, style
-from tests.benchmarks.energy_drift import DARK, DARK_COLOURS
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, matplotlib_module, style
 
 MARKERS = ("<!-- stability: begin -->", "<!-- stability: end -->")
 GRID = np.array([0.2, 0.4, 0.6, 0.8, *np.arange(1, 2.05, 0.1), *np.arange(2.5, 6, 0.5), 8, 10, 30, 100, 1000])
@@ -148,8 +147,8 @@ def draw(found: list[tuple[str, list[tuple[str, Any]]]], folder: Path) -> None:
     pyplot = matplotlib_module("figure")
     x = np.linspace(EXTENT[0], EXTENT[1], RESOLUTION)
     y = np.linspace(EXTENT[2], EXTENT[3], 2 * (RESOLUTION // 2) + 1)
-    for kind, options, colours in (("light", {}, COLOURS), ("dark", DARK, DARK_COLOURS)):
-        with style(), matplotlib_module("").rc_context(options):
+    for kind, colours in (("light", COLOURS), ("dark", DARK_COLOURS)):
+        with style(dark=kind == "dark"):
             figure = pyplot.Figure(figsize=(9.5, 4.0), layout="constrained")
             figure.patch.set_alpha(0.0)
             for axes, (title, maps) in zip(figure.subplots(1, len(found), sharey=True), found, strict=True):

@@ -1,0 +1,77 @@
+"""Pictures of the pages, drawn when the pages are built: one function for each, in the modules of this folder.
+
+A page shows a picture, in a light and a dark version, by
+
+    ```{picture} name
+    :alt: what it shows, for those who do not see it
+    ```
+
+where `name` is the name of a function that `picture` decorates. It is called in the style of the version, with the
+colours of lines, and returns a figure.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.util.docutils import SphinxDirective
+
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, UNDATED, style
+
+FOLDER = Path(__file__).resolve().parent.parent / "_pictures"
+DRAWN: dict[str, Callable[[Sequence[str]], Any]] = {}
+"""The functions by name."""
+
+
+def picture(function: Callable[[Sequence[str]], Any]) -> Callable[[Sequence[str]], Any]:
+    """Register a function of the colours that returns a figure."""
+    DRAWN[function.__name__] = function
+    return function
+
+
+def load() -> None:
+    """Import the modules of this folder, which register their functions."""
+    for module in pkgutil.iter_modules([str(Path(__file__).resolve().parent)]):
+        importlib.import_module(f"{__name__}.{module.name}")
+
+
+def draw(app: object = None) -> None:
+    """Write each picture that is missing, or older than the module that draws it, in both versions."""
+    load()
+    FOLDER.mkdir(exist_ok=True)
+    for name, function in DRAWN.items():
+        source = Path(function.__code__.co_filename).stat().st_mtime
+        for kind, colours in (("light", COLOURS), ("dark", DARK_COLOURS)):
+            file = FOLDER / f"{name}_{kind}.svg"
+            if not file.exists() or file.stat().st_mtime < source:
+                with style(dark=kind == "dark"):
+                    figure = function(colours)
+                    figure.patch.set_alpha(0.0)
+                    figure.savefig(file, metadata=UNDATED[".svg"])
+
+
+class Picture(SphinxDirective):
+    """The directive ``picture``: both versions of a picture, of which the page shows one."""
+
+    required_arguments = 1
+    option_spec: ClassVar = {"alt": directives.unchanged_required, "width": directives.unchanged}
+
+    def run(self) -> list[nodes.Node]:
+        name = self.arguments[0]
+        if name not in DRAWN or not self.options.get("alt"):
+            raise self.error(f"{name!r} is not a function of docs/pictures, or has no alt text")
+        return [
+            nodes.image(
+                uri=f"/_pictures/{name}_{kind}.svg",
+                alt=self.options["alt"],
+                classes=[f"only-{kind}"],
+                **({"width": self.options["width"]} if "width" in self.options else {}),
+            )
+            for kind in ("light", "dark")
+        ]

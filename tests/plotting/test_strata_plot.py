@@ -1,0 +1,79 @@
+"""Failure cones, eigenvalues by stratum, Weyl chambers: what is drawn, and on whose axes."""
+
+import numpy as np
+import pytest
+
+import liehom as lh
+
+pytest.importorskip("matplotlib")
+
+from liehom.plotting import plot_eigenvalues, plot_failure_cone, plot_weyl_chamber
+from liehom.plotting.canvas import new_figure
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [("sl(2)/so(1,1)", 4), ("affine(diag(1,-1))", 4), ("affine(upper(2))", 2), ("so(3)/so(2)", 0), ("R^2/0", 0)],
+)
+def test_directions_in_the_plane_on_which_the_condition_fails(name, lines):
+    """Zeros of the invariant and invariant lines, which agree; every direction that is drawn fails, others do not."""
+    pair = lh.pair(name)
+    ax = plot_failure_cone(pair)
+    drawn = [np.array(line.get_data()) for line in ax.lines[1:]]
+    assert len(drawn) == lines
+    rows = np.array([[float(x) for x in m.entries()] for m in pair.isotropy_matrices()]).reshape(-1, 2, 2)
+    for direction in [d[:, 1] for d in drawn]:
+        assert np.linalg.svd(np.array([direction, *(rows @ direction)]))[1][1] < 1e-12
+    if lines:
+        generic = np.array([0.3, 0.7])
+        assert np.linalg.svd(np.array([generic, *(rows @ generic)]))[1][1] > 0.1
+
+
+def test_the_null_cone_is_drawn_as_two_circles_on_the_sphere():
+    ax = plot_failure_cone(lh.pair("so(3,1)/so(2,1)"))
+    curves = [np.array(line.get_data_3d()) for line in ax.lines if line.get_color() == "#0072B2"]
+    assert len(curves) == 2
+    for x in curves:
+        assert abs(x[0] ** 2 + x[1] ** 2 - x[2] ** 2).max() < 1e-3
+        assert abs((x**2).sum(axis=0) - 1).max() < 1e-6
+
+
+def test_titles_say_what_is_known():
+    assert "full" in plot_failure_cone(lh.pair("so(4)/so(3)")).get_title(loc="left")
+    assert "no ψ" in plot_failure_cone(lh.pair("su(2)/0")).get_title(loc="left")
+
+
+def test_given_axes_are_used_and_must_have_the_dimension():
+    flat = new_figure(3, 3).add_subplot()
+    assert plot_failure_cone(lh.pair("sl(2)/so(1,1)"), flat) is flat
+    with pytest.raises(lh.InputError, match="in space"):
+        plot_failure_cone(lh.pair("so(4)/so(3)"), flat)
+    for draw in (plot_eigenvalues, lambda ax: plot_weyl_chamber("A2", ax)):
+        with pytest.raises(lh.InputError, match="axes of matplotlib"):
+            draw("axes")
+
+
+@pytest.mark.parametrize("pair", ["so(4)/so(3)", None, lh.pair("so(5)/so(4)"), lh.pair("so(2)/so(1)")])
+def test_other_pairs_are_refused(pair):
+    with pytest.raises(lh.InputError, match="dim g/h = 2 or 3"):
+        plot_failure_cone(pair)
+
+
+def test_eigenvalues_are_marked_at_their_barycentric_coordinates():
+    ax = plot_eigenvalues(points=[(2, 2, 2), (5, 0, 0)])
+    marked = np.array(ax.lines[-1].get_data()).T
+    assert np.allclose(marked, [[0, 0], [0, 1]])
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert any("isotropy so(3), orbits of dimension 0" in text for text in labels)
+    with pytest.raises(lh.InputError, match="positive sum"):
+        plot_eigenvalues(points=[(1, -1, 0)])
+
+
+@pytest.mark.parametrize(("kind", "angle"), [("A2", 60), ("B2", 45), ("C2", 45), ("G2", 30), ("A1 + A1", 90)])
+def test_the_chamber_has_the_angle_of_the_root_system(kind, angle):
+    ax = plot_weyl_chamber(kind)
+    first, second = ax.patches[0].get_xy()[1:3]
+    cosine = first @ second / np.linalg.norm(first) / np.linalg.norm(second)
+    assert np.degrees(np.arccos(cosine)) == pytest.approx(angle)
+    with pytest.raises(lh.InputError, match="rank 3"):
+        plot_weyl_chamber("A3")
