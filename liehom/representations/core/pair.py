@@ -103,6 +103,28 @@ class Pair(Immutable):
         matrices = [block.T for block in blocks]
         return Representation(self.subalgebra.as_algebra(), matrices, size=self.dimension, check=False)
 
+    def is_primitive(self) -> bool:
+        """Whether h is a maximal subalgebra of g: h != g, and no subalgebra is strictly between h and g.
+
+        Raises
+        ------
+        UndecidedError
+            Over float64, or if g/h contains equivalent irreducible subspaces and no subalgebra between was found.
+
+        Notes
+        -----
+        Then no foliation of G/H is invariant under G. The answer is over the reals, for any field of the pair.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.pair(name).is_primitive() for name in ("so(4)/so(3)", "sl(3)/P1", "sl(3)/B", "sl(3)/0")]
+        [True, True, False, False]
+        """
+        from liehom.representations.analysis.primitive import is_primitive
+
+        return is_primitive(self)
+
     def coordinates(self, x: VectorLike) -> Matrix:
         """The coordinates of x mod h, a row matrix (1, d), in the complement of ``subalgebra.quotient()``."""
         made: Matrix = self.algebra.row(x) @ self.subalgebra.quotient().projection
