@@ -6,6 +6,7 @@ Each is the stabilizer of a subspace, a point, a linear map or a form, in the co
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -93,7 +94,7 @@ def _unitary(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
 
 
 def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:
-    """The stabilizer of two summands, for su(n)/s(u(p)+u(q)), su(p,q)/s(u(p)+u(q)), sl(n)/s(gl(p)+gl(q)), or None."""
+    """The stabilizer of two summands, for su(p,q)/s(u(a,b)+u(c,d)) and sl(n)/s(gl(p)+gl(q)), or None."""
     inner = bottom.items[0] if isinstance(bottom, Term) and bottom.head == "s" and len(bottom.items) == 1 else None
     if not isinstance(inner, Sum) or len(inner.terms) != 2 or {t.head for t in inner.terms} - {"u", "gl"}:
         return None
@@ -102,9 +103,21 @@ def _special_blocks(top: Term, bottom: Expression, matrices: IntegerArray) -> Ro
     size, unit = matrices.shape[1], _units(top)
     if top.head not in ("su", "sl") or any(t.head != kind for t in inner.terms) or sum(sizes) * unit != size:
         return None
-    if top.head == "su" and len(top.items) == 2 and sizes != list(_signature(top)):
-        return None
+    if top.head == "su" and len(top.items) == 2:
+        return _signed_blocks(_signature(top), [_signature(t) for t in inner.terms], matrices)
     return preserving(matrices, subspaces=_split(size, sizes[0] * unit))
+
+
+def _signed_blocks(whole: tuple[int, int], parts: Sequence[tuple[int, int]], matrices: IntegerArray) -> Rows:
+    """The stabilizer in su(p,q) of two summands with given signatures, where u(n) is (n, 0) or (0, n), or None."""
+    first, second = ([part, part[::-1]] if part[1] == 0 else [part] for part in parts)
+    fitting = [one for one, two in product(first, second) if (one[0] + two[0], one[1] + two[1]) == whole]
+    if not fitting:
+        return None
+    (p, q), (a, b) = whole, fitting[0]
+    inside = np.repeat([1, 0, 1, 0], [2 * a, 2 * (p - a), 2 * b, 2 * (q - b)]).astype(bool)
+    one = np.eye(2 * (p + q), dtype=np.int64)
+    return preserving(matrices, subspaces=[w for w in (one[inside], one[~inside]) if len(w)])
 
 
 def _symmetric(top: Term, bottom: Expression, matrices: IntegerArray) -> Rows:

@@ -96,6 +96,23 @@ def test_sizes_are_free(name: str, g: int, h: int) -> None:
     assert (pair.algebra.dimension, pair.subalgebra.dimension, pair.name) == (g, h, name)
 
 
+@pytest.mark.parametrize(
+    ("name", "signature"),
+    [
+        ("su(2,2)/s(u(2)+u(2))", (0, 7, 0)),
+        ("su(2,2)/s(u(1,1)+u(1,1))", (4, 3, 0)),
+        ("su(3,2)/s(u(2,1)+u(1,1))", (6, 6, 0)),
+        ("su(3,1)/s(u(2)+u(1,1))", (2, 5, 0)),
+    ],
+)
+def test_signatures_of_blocks_decide_which_unitary_subalgebra_is_meant(name, signature):
+    pair = lh.pair(name)
+    basis = pair.subalgebra.basis
+    assert (basis @ pair.algebra.killing_form() @ basis.T).signature() == signature
+    with pytest.raises(lh.errors.CatalogError):
+        lh.pair("su(2,2)/s(u(1,1)+u(2))")
+
+
 @pytest.mark.parametrize("n", range(2, 8))
 def test_spheres_are_orbits_of_points(n: int) -> None:
     rho = lh.catalog.representation(f"so({n})")

@@ -1,4 +1,4 @@
-"""Root systems and real forms: Dynkin, Vogan and Satake diagrams, and the algebras built from them.
+"""Root systems and real forms: Dynkin, Vogan and Satake diagrams, involutions, and the algebras built from them.
 
 The combinatorics of Cartan matrices, Chevalley bases, compact and real forms, and their names. The identification of
 algebras and the highest weight modules build on this wing; see docs/theory/structure.md.
@@ -14,7 +14,9 @@ from liehom.algebra.roots.real_form import complex_form as complex_form
 from liehom.algebra.roots.real_form import real_forms as real_forms
 from liehom.algebra.roots.real_form import real_forms_with as real_forms_with
 from liehom.algebra.roots.real_form import simple_real_forms as simple_real_forms
+from liehom.algebra.roots.real_form_involutions import involutions as involutions
 from liehom.algebra.roots.real_form_names import canonical_real_form as canonical_real_form
+from liehom.algebra.roots.root_automorphism import RootAutomorphism as RootAutomorphism
 from liehom.algebra.roots.root_system import RootSystem as RootSystem
 from liehom.algebra.roots.root_system import root_system as root_system
 from liehom.algebra.roots.satake import SatakeDiagram as SatakeDiagram

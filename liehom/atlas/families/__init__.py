@@ -4,3 +4,7 @@ Each generator yields `Recipe` objects; the functions that they name construct o
 `build` and users may import from here. The families and their sources are described in docs/atlas.md, the verdicts in
 docs/theory/fullness.md.
 """
+
+from liehom.atlas.families.symmetric import group_pairs as group_pairs
+from liehom.atlas.families.symmetric import symmetric_pairs as symmetric_pairs
+from liehom.atlas.families.symmetric import symmetric_rank as symmetric_rank
