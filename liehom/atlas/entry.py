@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, final
 
 from liehom.catalog import pair as named_pair
@@ -18,8 +18,13 @@ KINDS: dict[str, Any] = {
     "verdict": Mapping,
     "verified": bool,
     "failure": str,
+    "family": str,
+    "facts": Mapping,
 }
 """Types of the attributes of an entry in JSON."""
+
+OPTIONAL = ("failure", "family", "facts")
+"""Attributes that may be missing in JSON, in particular in entries that earlier versions have stored."""
 
 
 @final
@@ -39,6 +44,11 @@ class Entry:
         Whether the independent checker has accepted the certificate.
     failure : str
         The reason if there is no verdict; otherwise empty.
+    family : str
+        The family of the recipe; empty for other pairs.
+    facts : mapping
+        What is known of the pair besides the verdict: the facts of its recipe, and those of `liehom.atlas.facts` if the
+        sweep was asked for them, with the CPU time ``"seconds"`` that the worker took for the pair.
 
     Examples
     --------
@@ -54,6 +64,8 @@ class Entry:
     verdict: Mapping[str, Any]
     verified: bool
     failure: str = ""
+    family: str = ""
+    facts: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
     def from_json(cls, facts: Mapping[str, Any]) -> Entry:
@@ -64,9 +76,9 @@ class Entry:
         FormatError
             If an attribute is missing or unknown, or is not of the type stated above.
         """
-        expected = {field.name: KINDS[field.name] for field in fields(cls)}
+        expected = {attribute.name: KINDS[attribute.name] for attribute in fields(cls)}
         unknown = sorted(set(facts) - set(expected))
-        if unknown or set(expected) - set(facts) - {"failure"}:
+        if unknown or set(expected) - set(facts) - set(OPTIONAL):
             raise FormatError(f"an entry has the keys {', '.join(expected)}; found {', '.join(map(str, facts))}")
         for key, value in facts.items():
             if not isinstance(value, expected[key]) or (isinstance(value, bool) and key != "verified"):
@@ -188,7 +200,7 @@ class Atlas:
                     "dimension": entry.dimension,
                     "subalgebra_dimension": entry.subalgebra_dimension,
                     "verified": entry.verified,
-                    **({"failure": entry.failure} if entry.failure else {}),
+                    **{key: value for key in OPTIONAL if (value := getattr(entry, key))},
                     **entry.verdict,
                 }
                 for entry in self.entries

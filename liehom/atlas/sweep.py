@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any, NamedTuple, final
 
 from liehom.atlas.entry import Atlas, Entry
+from liehom.atlas.facts import facts as facts_of
 from liehom.atlas.recipe import Recipe
 from liehom.catalog import pair as named_pair
 from liehom.catalog import parse
@@ -30,6 +32,7 @@ def iter_sweep(
     verify: bool = True,
     recheck: bool = False,
     ordered: bool = False,
+    facts: bool = False,
     chunksize: int | None = None,
     buffersize: int = BUFFERSIZE,
 ) -> Iterator[tuple[int, Entry]]:
@@ -45,6 +48,8 @@ def iter_sweep(
     ordered : bool
         Whether the entries come in the order of `pairs`. A pair that takes long then delays those behind it, of which
         at most `buffersize` are decided meanwhile.
+    facts : bool
+        Whether the entries have `facts` besides the verdict, see `liehom.atlas.facts`.
     chunksize : int, optional
         Number of pairs in a task. By default tasks grow to 64 pairs while they take less than a second.
     buffersize : int
@@ -79,8 +84,9 @@ def iter_sweep(
     1 so(4)/so(3): full: h acts on g/h = R^3 as so(3), compact and transitive on the sphere; checked at one point
     """
     check_count("buffersize", buffersize, 1)
-    made = _Sweep(executor, _opened(store, seed, verify), retries, recheck, ordered, chunksize, buffersize, None)
-    return made.entries(_task(pair, seed, verify) for pair in _several(pairs))
+    records = _opened(store, seed, verify, facts)
+    made = _Sweep(executor, records, retries, recheck, ordered, chunksize, buffersize, None)
+    return made.entries(_task(pair, seed, verify, facts) for pair in _several(pairs))
 
 
 def sweep(
@@ -226,6 +232,7 @@ class _Task(NamedTuple):
     pair: str | Pair | Recipe
     seed: int
     verify: bool
+    facts: bool
 
 
 def _several(pairs: Iterable[str | Pair | Recipe]) -> Iterable[str | Pair | Recipe]:
@@ -234,20 +241,21 @@ def _several(pairs: Iterable[str | Pair | Recipe]) -> Iterable[str | Pair | Reci
     return pairs
 
 
-def _opened(store: str | os.PathLike[str] | None, seed: int, verify: bool) -> Records | None:
+def _opened(store: str | os.PathLike[str] | None, seed: int, verify: bool, facts: bool = False) -> Records | None:
     """The store of the decisions with these options."""
     if store is None:
         return None
-    return Records(open_store(store, f"fullness, seed {seed}, {'' if verify else 'not '}verified"))
+    options = f"fullness, seed {seed}, {'' if verify else 'not '}verified{', with facts' if facts else ''}"
+    return Records(open_store(store, options))
 
 
-def _task(pair: str | Pair | Recipe, seed: int, verify: bool) -> _Task:
+def _task(pair: str | Pair | Recipe, seed: int, verify: bool, facts: bool = False) -> _Task:
     """The task of a pair, given in any of these ways, with a key that depends on the pair and its name alone."""
     if isinstance(pair, str):
         name = str(parse(pair))
-        return _Task(_key(name), name, seed, verify)
+        return _Task(_key(name), name, seed, verify, facts)
     if isinstance(pair, Recipe):
-        return _Task(_key(f"{pair.name} = {pair.key}"), pair, seed, verify)
+        return _Task(_key(f"{pair.name} = {pair.key}"), pair, seed, verify, facts)
     if not isinstance(pair, Pair):
         raise InputError(f"expected a Pair, a Recipe or the name of a pair, got {pair!r}")
     table, field = pair.algebra.table, pair.field
@@ -260,7 +268,7 @@ def _task(pair: str | Pair | Recipe, seed: int, verify: bool) -> _Task:
     ]
     defined = [field.name, str(getattr(field, "minpoly", "")), str(getattr(field, "root_index", ""))]
     rows = [field.format(x) for x in pair.subalgebra.basis.entries()]
-    return _Task(_key(repr([pair.name, table.dimension, numbers, defined, rows])), pair, seed, verify)
+    return _Task(_key(repr([pair.name, table.dimension, numbers, defined, rows])), pair, seed, verify, facts)
 
 
 def _key(text: str) -> str:
@@ -286,13 +294,20 @@ def _stored_entry(arrays: object, facts: Mapping[str, Any], *, task: _Task, rech
 def _decided(task: _Task) -> Entry:
     """The entry of one task, computed by a worker."""
     name = task.pair if isinstance(task.pair, str) else task.pair.name or "pair without a name"
+    family, found = "", dict[str, Any]()
+    if isinstance(task.pair, Recipe):
+        family, found = task.pair.family, dict(task.pair.known)
+    begin = time.process_time()
     try:
         pair = _constructed(task)
         verdict = decide_fullness(pair, seed=task.seed)
         data = verdict.to_json()
         verified = bool(task.verify and data["proved"] and verdict.verify())
+        if task.facts:
+            found |= facts_of(pair, verdict)
+            found["seconds"] = round(time.process_time() - begin, 3)
     except LiehomError as error:
         if isinstance(error, LimitError) and error.limit == "seconds":
             raise  # it says nothing about this pair
-        return Entry(name, None, None, {}, False, f"{type(error).__name__}: {error}")
-    return Entry(name, pair.algebra.dimension, pair.subalgebra.dimension, data, verified)
+        return Entry(name, None, None, {}, False, f"{type(error).__name__}: {error}", family, found)
+    return Entry(name, pair.algebra.dimension, pair.subalgebra.dimension, data, verified, "", family, found)
