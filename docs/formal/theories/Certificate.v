@@ -5,7 +5,7 @@
 From mathcomp Require Import all_ssreflect all_algebra.
 From Liehom Require Import Sound Pair.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
-Import GRing.Theory Num.Theory. Local Open Scope ring_scope.
+Import Order.TTheory GRing.Theory Num.Theory. Local Open Scope ring_scope.
 
 Section Full.
 Variables (F : realFieldType) (d : nat).
