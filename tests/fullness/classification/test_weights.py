@@ -1,7 +1,8 @@
 """Theorem L, compact part, by enumeration: which representations satisfy the conditions on weights in the proof.
 
 The proof in docs/theory/classification.md covers all ranks. Here the root systems of rank at most 10 and the
-exceptional ones are enumerated: every dominant weight of dimension at most 2 + 2 |Phi+|, which is all that the conditions admit.
+exceptional ones are enumerated: every dominant weight of dimension at most 2 + 2 |Phi+|, which is all that the
+conditions admit.
 """
 
 from __future__ import annotations
