@@ -130,6 +130,7 @@ if TYPE_CHECKING:
     from liehom.errors import LiehomError as LiehomError
     from liehom.errors import LimitError as LimitError
     from liehom.errors import NotASubalgebraError as NotASubalgebraError
+    from liehom.errors import NotFullError as NotFullError
     from liehom.errors import NotInSpanError as NotInSpanError
     from liehom.errors import OrderWarning as OrderWarning
     from liehom.errors import ParseError as ParseError
@@ -141,11 +142,13 @@ if TYPE_CHECKING:
     from liehom.errors import TraceError as TraceError
     from liehom.errors import UndecidedError as UndecidedError
     from liehom.fullness import Certificate as Certificate
+    from liehom.fullness import Classification as Classification
     from liehom.fullness import Full as Full
     from liehom.fullness import NotFull as NotFull
     from liehom.fullness import NumericallyFull as NumericallyFull
     from liehom.fullness import NumericallyNotFull as NumericallyNotFull
     from liehom.fullness import NumericallyUndecided as NumericallyUndecided
+    from liehom.fullness import classify as classify
     from liehom.fullness import decide_fullness as decide_fullness
     from liehom.fullness import decide_numerically as decide_numerically
     from liehom.fullness import failure_report as failure_report
@@ -297,12 +300,12 @@ _NAMES = {
     ),
     "liehom.errors": (
         "CatalogError CertificateError ConvergenceError DamageWarning FieldError FormatError InputError JacobiError "
-        "LiehomError LimitError NotASubalgebraError NotInSpanError OrderWarning ParseError RepresentationError "
-        "ShapeError SingularError StiffnessWarning StructureError TraceError UndecidedError"
+        "LiehomError LimitError NotASubalgebraError NotFullError NotInSpanError OrderWarning ParseError "
+        "RepresentationError ShapeError SingularError StiffnessWarning StructureError TraceError UndecidedError"
     ),
     "liehom.fullness": (
-        "Certificate decide_fullness decide_numerically failure_report Full NotFull NumericallyFull "
-        "NumericallyNotFull NumericallyUndecided verify_certificate"
+        "Certificate Classification classify decide_fullness decide_numerically failure_report Full NotFull "
+        "NumericallyFull NumericallyNotFull NumericallyUndecided verify_certificate"
     ),
     "liehom.homogeneous": (
         "Action Cayley Exponential GeneratorField adjoint_strata binary_form_strata failure_cone hamiltonian_field "

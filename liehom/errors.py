@@ -226,6 +226,14 @@ class NotInvariantError(InputError):
         super().__init__(what)
 
 
+class NotFullError(InputError):
+    """A pair is not full, so it is in no row of the classification; `verdict` says why, with its certificate."""
+
+    def __init__(self, verdict: object, what: str) -> None:
+        self.verdict = verdict
+        super().__init__(what)
+
+
 class NotCompletelyReducibleError(InputError):
     """A representation is not a sum of irreducible ones, or an invariant subspace has no invariant complement."""
 

@@ -73,8 +73,10 @@ WINGS: dict[str, tuple[str, ...]] = {
         "least_singular_value",
         "numerical",
         "search",
+        "classification",
         "reasons",
         "decide",
+        "classifier",
     ),
     "correctors": (
         "implicit",

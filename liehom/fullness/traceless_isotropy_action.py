@@ -11,6 +11,7 @@ from typing import cast, final
 
 from liehom.errors import UndecidedError
 from liehom.representations import Pair
+from liehom.representations.invariants.intertwiners import commutant
 from liehom.scalars import ExactField, ExactMatrix, Scalar
 from liehom.scalars.modular.modular import independent_columns, independent_rows, pivot_columns
 from liehom.scalars.spaces.quotient import Quotient
@@ -36,7 +37,7 @@ class TracelessIsotropyAction:
 
     quotient: Quotient[ExactMatrix]
 
-    __slots__ = ("_columns", "field", "matrices", "members", "pair", "quotient", "size", "traceless")
+    __slots__ = ("_columns", "_commutant", "field", "matrices", "members", "pair", "quotient", "size", "traceless")
 
     def __init__(self, pair: Pair) -> None:
         if not isinstance(pair.field, ExactField):
@@ -55,6 +56,7 @@ class TracelessIsotropyAction:
         self.members: list[int] = independent_rows(flat) if reduced else []
         self.traceless: list[ExactMatrix] = [reduced[i] for i in self.members]
         self._columns: dict[int, tuple[list[int], ExactMatrix]] = {}
+        self._commutant: list[ExactMatrix] | None = None
 
     def _traceless(self, matrix: ExactMatrix) -> ExactMatrix:
         trace = matrix.trace()
@@ -64,6 +66,12 @@ class TracelessIsotropyAction:
     def dimension(self) -> int:
         """Dimension of L0."""
         return len(self.traceless)
+
+    def commutant(self) -> list[ExactMatrix]:
+        """A basis of the matrices that commute with L0 (cached)."""
+        if self._commutant is None:
+            self._commutant = commutant(self.traceless, self.size, self.field)
+        return self._commutant
 
     # -- between V and g ---------------------------------------------------------------------------------
     def lifted(self, x: ExactMatrix) -> ExactMatrix:

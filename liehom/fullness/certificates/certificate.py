@@ -28,6 +28,7 @@ from liehom.fullness.certificates.certificate_fields import (
     converted,
     is_sparse,
     malformed,
+    number_field_json,
     read_number_field,
     to_json_value,
 )
@@ -129,11 +130,7 @@ class Certificate:
         """The JSON object, of dicts, lists, strings and integers only."""
         out: dict[str, Any] = {"format": FORMAT, "version": VERSION, "kind": self.kind}
         if isinstance(self.field, NumberField):
-            out["field"] = {
-                "name": self.field.symbol,
-                "minpoly": [QQ.format(QQ.convert(c)) for c in self.field.minpoly],
-                "interval": [str(end) for end in self.field.interval],
-            }
+            out["field"] = number_field_json(self.field)
         return out | self.to_fields()
 
     def to_fields(self) -> dict[str, Any]:

@@ -162,6 +162,19 @@ def read_number_field(data: object) -> NumberField:
         raise CertificateFormatError("field", str(error)) from None
 
 
+def number_field_json(field: NumberField) -> dict[str, Any]:
+    """The JSON object {"name", "minpoly", "interval"} of a number field.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> read_number_field(number_field_json(lh.number_field("sqrt(2)"))) == lh.number_field("sqrt(2)")
+    True
+    """
+    minpoly = [QQ.format(QQ.convert(c)) for c in field.minpoly]
+    return {"name": field.symbol, "minpoly": minpoly, "interval": [str(end) for end in field.interval]}
+
+
 READERS: dict[str, dict[str, Callable[[ExactField, str, object], object]]] = {
     "trivial": {},
     "full": {"form": _read_square, "elements": _read_rows, "eta": _read_vector},
