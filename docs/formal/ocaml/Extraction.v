@@ -5,7 +5,7 @@
     compared, added once, and increased by one. Booleans, lists and pairs are those of OCaml. *)
 From Coq Require Import ZArith Extraction.
 From mathcomp Require Import all_ssreflect.
-From Liehom Require Import CheckerAlgebra CheckerPair CheckerWitness Checker.
+From Liehom Require Import CheckerAlgebra CheckerPair CheckerWitness CheckerFull Checker.
 
 Extraction Language OCaml.
 
@@ -32,4 +32,4 @@ Extract Inlined Constant Z.eqb => "Integer.equal".
 Extract Inlined Constant Z.leb => "Integer.leq".
 Extract Inlined Constant Z.ltb => "Integer.lt".
 
-Extraction "checker.ml" check claims_full.
+Extraction "checker.ml" check claims_full metric motions.

@@ -5,6 +5,7 @@ open Reader
 
 type t =
   | Trivial
+  | Full of Checker.full_data
   | Witness of Checker.witness * t option
   | Other of string  (** a kind that is not covered *)
 
@@ -34,6 +35,40 @@ let polynomials what n size json =
   let coordinates = cleared_rows coordinates in
   let coefficient s c = match List.nth_opt c s with Some x -> x | None -> Z.zero in
   List.init size (fun s -> Checker.sparse (List.map (coefficient s) coordinates))
+
+(* A matrix, dense or sparse, as rows of numbers; the number of rows is that of the entries if it is not given. *)
+let matrix what rows columns (json : Yojson.Safe.t) =
+  let wrong () = raise (Propose.Impossible (what ^ " has the wrong size")) in
+  match list what json with
+  | `List (`Int _ :: _) :: _ as entries ->
+    let entry = function
+      | `List [i; j; x] -> ((index what i, index what j), number what x)
+      | _ -> malformed "%s holds something that is not [i, j, number]" what
+    in
+    let entries = List.map entry entries in
+    let places = List.map fst entries in
+    if List.length (List.sort_uniq compare places) < List.length places then malformed "%s gives an entry twice" what;
+    let given = List.sort_uniq compare (List.map fst places) in
+    let count = match rows with Some r -> r | None -> List.length given in
+    if rows = None && List.exists (fun i -> i >= count) given then malformed "%s has a row without entries" what;
+    if List.exists (fun (i, j) -> i >= count || j >= columns) places then wrong ();
+    let out = Array.make_matrix count columns Q.zero in
+    List.iter (fun ((i, j), x) -> out.(i).(j) <- x) entries;
+    Array.to_list (Array.map Array.to_list out)
+  | dense ->
+    let dense = List.map (fun row -> numbers what row) dense in
+    (match dense with
+     | [] -> ()
+     | first :: _ ->
+       if List.exists (fun row -> List.length row <> List.length first) dense then
+         malformed "the rows of %s have different lengths" what;
+       if List.length first <> columns then wrong ());
+    (match rows with
+     | Some r when dense = [] -> List.init r (fun _ -> List.init columns (fun _ -> Q.zero))
+     | Some r when List.length dense <> r -> wrong ()
+     | _ -> dense)
+
+let sparse_rows rows = List.map Checker.sparse (cleared_rows rows)
 
 let only_keys what required optional members =
   List.iter
@@ -70,5 +105,13 @@ let rec certificate n json =
      | None | Some (Other _) -> ()
      | Some _ -> malformed "also is neither of kind commutant nor dominance");
     Witness ({ minpoly; low; high; eta; phi }, also)
-  | `String (("full" | "commutant" | "dominance") as kind) -> Other kind
+  | `String "full" ->
+    only_keys what ["form"; "elements"; "eta"] [] fields;
+    let get name = member what name fields in
+    let form = sparse_rows (matrix "form" (Some n) n (get "form")) in
+    let elements = sparse_rows (matrix "elements" None n (get "elements")) in
+    let eta = numbers "eta" (get "eta") in
+    if List.length eta <> n then raise (Propose.Impossible "eta has the wrong length");
+    Full { form; elements; point = List.hd (sparse_rows [eta]) }
+  | `String (("commutant" | "dominance") as kind) -> Other kind
   | _ -> malformed "%s: an unknown kind" what

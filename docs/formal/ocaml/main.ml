@@ -9,14 +9,16 @@ type outcome =
 let run pair_json certificate_json =
   try
     let pair = Reader.pair pair_json in
+    let given = Certificates.certificate pair.Checker.dimension certificate_json in
+    let coordinates = Propose.coordinates pair in
     let certificate, note =
-      match Certificates.certificate pair.Checker.dimension certificate_json with
+      match given with
       | Certificates.Trivial -> (Checker.TrivialCertificate, "")
+      | Certificates.Full f -> (Checker.FullCertificate (f, Propose.full_hint pair coordinates f), "")
       | Certificates.Witness (w, also) ->
         (Checker.WitnessCertificate w, if also = None then "" else ", not checked: also")
       | Certificates.Other kind -> Reader.unsupported "the kind %s" kind
     in
-    let coordinates = Propose.coordinates pair in
     if Checker.check Propose.oracle pair coordinates certificate then
       Accepted ((if Checker.claims_full certificate then "full" else "not full") ^ note)
     else Rejected "a check fails"

@@ -149,3 +149,51 @@ let oracle : oracle =
       ((List.filteri (fun i _ -> 0 < i && i <= size) all, List.filteri (fun i _ -> i > size) all), List.hd all)
   in
   { divide; bezout }
+
+let of_sparse columns (row : vector) =
+  let out = Array.make columns Q.zero in
+  List.iter (fun (j, x) -> out.(j) <- Q.add out.(j) (Q.of_bigint x)) row;
+  out
+
+let of_matrix columns (rows : matrix) = Array.of_list (List.map (of_sparse columns) rows)
+
+(* P = L D L^T with L unit lower triangular and D positive, or None. *)
+let positive_factors (p : Q.t array array) =
+  let d = Array.length p in
+  let rest = Array.map Array.copy p in
+  let lower = Array.init d (fun i -> Array.init d (fun j -> if i = j then Q.one else Q.zero)) in
+  try
+    for i = 0 to d - 1 do
+      if Q.sign rest.(i).(i) <= 0 then raise Exit;
+      for a = i + 1 to d - 1 do
+        let factor = Q.div rest.(a).(i) rest.(i).(i) in
+        lower.(a).(i) <- factor;
+        if Q.sign factor <> 0 then
+          for b = i to d - 1 do
+            rest.(a).(b) <- Q.sub rest.(a).(b) (Q.mul factor rest.(i).(b))
+          done
+      done
+    done;
+    Some (lower, Array.init d (fun i -> rest.(i).(i)))
+  with Exit -> None
+
+let full_hint (p : pair_data) (t : coordinates_hint) (f : full_data) : full_hint =
+  let d = t.codimension in
+  let form = of_matrix d (metric p t f) in
+  let lower, diagonal =
+    match positive_factors form with Some found -> found | None -> impossible "the form is not positive definite"
+  in
+  (* columns of L without denominators: L = L' / m, D = D' / m^2 *)
+  let factors = Array.init d (fun j -> common_factor [| Array.map (fun row -> row.(j)) lower |]) in
+  let upper = Array.map (Array.mapi (fun j x -> Q.mul (Q.of_bigint factors.(j)) x)) lower in
+  let diagonal = Array.to_list (Array.mapi (fun j x -> Q.div x (Q.of_bigint (Z.mul factors.(j) factors.(j)))) diagonal) in
+  let pivots_factor, pivots = cleared diagonal in
+  let _, inverse, _ = echelon upper d in
+  let upper_inverse, upper_factor = integral inverse in
+  let upper, _ = integral upper in
+  let x = vmul f.point t.quotient in
+  let images = List.map (fun k -> vmul x k) (motions t (isotropies t (adjoint p t)) f) in
+  let reduced, multipliers, _ = echelon (of_matrix d (x :: images)) d in
+  if Array.length reduced < d then impossible "eta and its images do not span";
+  let left_inverse, rank_factor = integral multipliers in
+  { upper; upper_inverse; upper_factor; pivots; pivots_factor; left_inverse; rank_factor }

@@ -4,11 +4,15 @@
     the property that the kind of the certificate claims, over every real closed field. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
-From Liehom Require Import Sound Pair Certificate CheckerAlgebra CheckerPair CheckerWitness.
+From Liehom Require Import Sound Pair Certificate FullSound CheckerAlgebra CheckerPair CheckerWitness CheckerFull.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
 Import Order.Theory GRing.Theory Num.Theory. Local Open Scope ring_scope.
 
-Inductive certificate := TrivialCertificate | WitnessCertificate of witness.
+(** A certificate of kind full comes with the proposed factors. *)
+Inductive certificate :=
+  | TrivialCertificate
+  | FullCertificate of full_data & full_hint
+  | WitnessCertificate of witness.
 
 (** Whether the certificate claims that the pair is full, or else that it is not. *)
 Definition claims_full (c : certificate) : bool := if c is WitnessCertificate _ then false else true.
@@ -19,13 +23,16 @@ Definition check (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certif
   check_coordinates p t ads isos &&
   match c with
   | TrivialCertificate => Nat.leb (codimension t) 1
+  | FullCertificate f i => check_full p t isos f i
   | WitnessCertificate w => check_witness o p t ads w
   end.
 
 Theorem check_sound (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certificate) (R : rcfType) :
   check o p t c -> if claims_full c then pair_is_full R p else ~ pair_is_full R p.
 Proof.
-case: c => [|w] /andP [cc] /=; last exact: check_witness_sound.
-move=> /Nat.leb_le/ssrnat.leP d1; have [[cl co _] <-] := check_coordinates_sound R cc.
-by apply/(full_pairP cl co); apply: trivial_sound.
+case: c => [|f i|w] /andP [cc] /=; last exact: check_witness_sound.
+  move=> /Nat.leb_le/ssrnat.leP d1; have [[cl co _] <-] := check_coordinates_sound R cc.
+  by apply/(full_pairP cl co); apply: trivial_sound.
+move=> cf; have [valid <-] := check_coordinates_sound R cc.
+exact: full_sound_base valid (check_full_certificate R cc cf).
 Qed.
