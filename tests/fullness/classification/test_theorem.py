@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import liehom as lh
+from liehom.fullness.classification import rows as library_rows
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "theory" / "classification.md").read_text(encoding="utf-8")
 Key = tuple[str, int, int, int, str, str]
@@ -67,6 +68,12 @@ def test_keys_of_different_rows_are_different() -> None:
         assert max(Counter(rows(d)).values()) == 1
 
 
+def test_the_rows_of_the_library_are_those_of_the_theorem() -> None:
+    signs = {None: "", 1: "compact", -1: "non-compact"}
+    for d in range(2, 61):
+        assert sorted((*row.key[:5], signs[row.key.parameter]) for row in library_rows(d)) == sorted(rows(d))
+
+
 def test_odd_dimensions_have_eight_rows_except_seven() -> None:
     assert {d: len(rows(d)) for d in range(3, 100, 2)} == {d: 11 if d == 7 else 8 for d in range(3, 100, 2)}
 
@@ -87,16 +94,17 @@ def test_numbers_of_rows_on_the_page() -> None:
 
 
 def names(d: int) -> list[tuple[str, str]]:
-    """(class, name) of the rows of dimension 2, 3 or 4 on the page, with c = 1 for the spirals."""
+    """(class, name) of the rows of dimension 2, 3 or 4 on the page."""
     column = table("| class | $d = 2$ | $d = 3$ | $d = 4$ |")
-    return [(line[0], line[d - 1].strip("`").replace("(c,1)", "(1,1)")) for line in column if line[d - 1]]
+    return [(line[0], line[d - 1].strip("`")) for line in column if line[d - 1]]
 
 
 @pytest.mark.parametrize("d", [2, 3, 4])
 def test_names_on_the_page_are_the_rows_and_are_full(d: int) -> None:
+    assert sorted(names(d)) == sorted((row.key.letter, row.name) for row in library_rows(d))
     keys = {}
     for letter, name in names(d):
-        pair = lh.pair(name)
+        pair = lh.pair(name.replace("(c,1)", "(1,1)"))
         verdict = lh.decide_fullness(pair)
         assert verdict.full
         assert pair.dimension == d
