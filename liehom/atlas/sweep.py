@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
@@ -51,7 +52,7 @@ def iter_sweep(
     facts : bool
         Whether the entries have `facts` besides the verdict, see `liehom.atlas.facts`.
     chunksize : int, optional
-        Number of pairs in a task. By default tasks grow to 64 pairs while they take less than a second.
+        Number of pairs in a task. By default as many as take about half a second of processor time, at most 64.
     buffersize : int
         Largest number of pairs that were taken from `pairs` and whose entries are not yet returned. Give more for more
         than some hundred workers.
@@ -183,21 +184,28 @@ class _Sweep:
 
     def entries(self, tasks: Iterable[_Task]) -> Iterator[tuple[int, Entry]]:
         """Iterator of (number, entry)."""
-        with self.dispatcher, self.records or contextlib.nullcontext():
-            for number, task in enumerate(tasks):
-                entry = self._restored(task)
-                if entry is not None:
-                    self.waiting[number] = entry
-                    yield from self._released()
-                elif task.key in self.sharing:
-                    self.sharing[task.key].append(number)
-                else:
-                    self.sharing[task.key] = [number]
-                    self.dispatcher.submit((number, task.key), task)
-                while self.dispatcher.due or number + 1 - self.returned >= self.buffersize:
-                    yield from self._arrived()
-            while len(self.dispatcher):
+        with self.records or contextlib.nullcontext(), self.dispatcher:
+            try:
+                yield from self._each(tasks)
+            finally:  # after an interruption
+                for batch in self.dispatcher.finished():
+                    self._save(batch)
+
+    def _each(self, tasks: Iterable[_Task]) -> Iterator[tuple[int, Entry]]:
+        for number, task in enumerate(tasks):
+            entry = self._restored(task)
+            if entry is not None:
+                self.waiting[number] = entry
+                yield from self._released()
+            elif task.key in self.sharing:
+                self.sharing[task.key].append(number)
+            else:
+                self.sharing[task.key] = [number]
+                self.dispatcher.submit((number, task.key), task)
+            while self.dispatcher.due or number + 1 - self.returned >= self.buffersize:
                 yield from self._arrived()
+        while len(self.dispatcher):
+            yield from self._arrived()
 
     def _restored(self, task: _Task) -> Entry | None:
         if self.records is None or task.key not in self.records:
@@ -207,13 +215,16 @@ class _Sweep:
     def _arrived(self) -> Iterator[tuple[int, Entry]]:
         """Stores what the workers have decided, and returns it."""
         for batch in self.dispatcher.arrived():
-            if self.records is not None:
-                self.records.append((key, entry.to_json()) for (_, key), entry in batch if not entry.failure)
+            self._save(batch)
             for (_, key), entry in batch:
                 self.waiting.update((number, entry) for number in self.sharing.pop(key))
                 if self.progress is not None:
                     self.progress(entry)
-            yield from self._released()
+        yield from self._released()
+
+    def _save(self, batch: list[tuple[tuple[int, str], Entry]]) -> None:
+        if self.records is not None:
+            self.records.append((key, entry.to_json()) for (_, key), entry in batch if not entry.failure)
 
     def _released(self) -> Iterator[tuple[int, Entry]]:
         """The entries whose turn it is."""
@@ -273,7 +284,7 @@ def _task(pair: str | Pair | Recipe, seed: int, verify: bool, facts: bool = Fals
 
 def _key(text: str) -> str:
     """A file name from a string: its first 40 characters, letters and digits only, and a digest of the string."""
-    short = "".join(c if c.isalnum() else "-" for c in text[:40]).strip("-")
+    short = re.sub(r"[\W_]", "-", text[:40]).strip("-")
     return f"{short}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
 
 

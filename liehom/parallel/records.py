@@ -1,6 +1,6 @@
 """Shards without arrays, many in a file: the entries of a sweep, of which there may be millions.
 
-A file ``records-000000.jsonl`` has a line ``{"name": ..., "checksum": ..., "facts": {...}}`` for each shard, and only
+A file ``records-000000.jsonl`` has a line ``{"name": ..., "facts": {...}, "checksum": ...}`` for each shard, and only
 grows. Each process that writes begins a file of its own, and the next one after a full file. A line has reached the
 operating system when `append` returns, so it survives the end of the process, however sudden. A file is flushed to the
 disk when it is full or closed. An interruption may leave half a line at the end of a file; it is ignored.
@@ -19,14 +19,15 @@ from typing import BinaryIO, final
 
 import numpy.typing as npt
 
-from liehom.disk import checksum
 from liehom.errors import DamageWarning, FormatError
-from liehom.parallel.store import DAMAGED, MARK, Shard, Store, checked_facts, writing
+from liehom.parallel.store import DAMAGED, MARK, Shard, Store, json_object, writing
 
 LINES = 4096
 """Lines of a full file."""
 BYTES = 1 << 26
 """Size of a full file with fewer lines."""
+READ_AHEAD = 1 << 16
+"""Bytes."""
 FILE = re.compile(r"records-(\d{6,})\.jsonl")
 NAME = re.compile(rb'\{"name": ("(?:[ !#-\[\]-~]|\\u[0-9a-f]{4}|\\["\\bfnrt])*"), ')
 """Begin of a line, with the name as JSON."""
@@ -63,6 +64,7 @@ class Records(Store):
         self._places: dict[bytes, tuple[int, int]] = {}  # numbers of the file and of the first byte
         self._output: BinaryIO | None = None
         self._number = self._lines = self._size = 0  # of the file that is written
+        self._ahead = -1, 0, b""  # a part of the file that was read last: number, offset, content
         for number in self._numbers():
             for offset, name in self._names_in(number):
                 self._places[_digest(name)] = number, offset
@@ -96,11 +98,10 @@ class Records(Store):
         """
         with writing(self.path):
             for name, facts in shards:
-                key, text = json.dumps(name), json.dumps(facts)
-                mark = "" if self._mark is None else f'"{MARK}": "{checksum({}, self._mark, name, text)}", '
-                line = f'{{"name": {key}, {mark}"facts": {text}}}\n'.encode()
+                line = f'{{"name": {json.dumps(name)}, "facts": {json.dumps(facts)}'.encode()
+                line += b"}\n" if self._mark is None else self._end(line)
                 self._writable().write(line)
-                self._places[_digest(key.encode())] = self._number, self._size
+                self._places[_digest(json.dumps(name).encode())] = self._number, self._size
                 self._size, self._lines = self._size + len(line), self._lines + 1
             if self._output is not None:
                 self._output.flush()
@@ -111,11 +112,34 @@ class Records(Store):
             return self._others.load(name)
         number, offset = place
         try:
-            with open(self._file(number), "rb") as file:
-                file.seek(offset)
-                return {}, checked_facts(json.loads(file.readline()), self._mark, name)
+            line = self._line(number, offset)
+            found = json.loads(line)
+            if found["name"] != name or (self._mark is not None and not self._is_whole(line)):
+                raise ValueError("its checksum does not agree with its contents")
+            return {}, json_object(found["facts"])
         except DAMAGED as error:
             raise FormatError(f"the shard {name!r} in {os.fspath(self._file(number))!r} is damaged ({error})") from None
+
+    def _end(self, line: bytes) -> bytes:
+        """The end of a line, with the checksum of its begin."""
+        return f', "{MARK}": "{hashlib.sha256(f"{self._mark}".encode() + line).hexdigest()}"}}\n'.encode()
+
+    def _is_whole(self, line: bytes) -> bool:
+        begin, comma, _ = line.rpartition(b", ")
+        return bool(comma) and begin + self._end(begin) == line
+
+    def _line(self, number: int, offset: int) -> bytes:
+        """A line with its end; what follows it is kept, since the next one is often read next."""
+        begin = offset - self._ahead[1]
+        if number == self._ahead[0] and 0 <= begin < len(self._ahead[2]):
+            end = self._ahead[2].find(b"\n", begin) + 1
+            if end:
+                return self._ahead[2][begin:end]
+        with open(self._file(number), "rb") as file:
+            file.seek(offset)
+            line = file.readline()
+            self._ahead = number, offset + len(line), file.read(READ_AHEAD)
+            return line
 
     def _file(self, number: int) -> Path:
         return Path(self.path) / f"records-{number:06d}.jsonl"

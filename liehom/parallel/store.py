@@ -184,7 +184,11 @@ class _Folder(Store):
         try:
             if file is plain:
                 found = json.loads(plain.read_text(encoding="utf-8"))
-                return {}, json_object(found) if self._mark is None else checked_facts(found, self._mark, name)
+                if self._mark is None:
+                    return {}, json_object(found)
+                facts = json_object(found["facts"])
+                _compare(found.get(MARK), checksum({}, self._mark, name, json.dumps(facts)))
+                return {}, facts
             with open(packed, "rb") as opened, np.load(opened, allow_pickle=False) as archive:
                 arrays = {key: archive[key] for key in archive.files}
             text, mark = str(arrays.pop("facts")), arrays.pop(MARK, None)
@@ -258,19 +262,10 @@ class _Zarr(Store):
 
 
 def json_object(found: object) -> dict[str, Any]:
-    """What a file holds; raises `ValueError` if it is not a JSON object."""
+    """The JSON object that a file holds; raises `ValueError` if it holds something else."""
     if not isinstance(found, dict):
         raise ValueError(f"it holds a {type(found).__name__}, expected a JSON object")
     return found
-
-
-def checked_facts(found: object, mark: str | None, name: str) -> dict[str, Any]:
-    """The facts of a shard in JSON, ``{"checksum": ..., "facts": {...}}``; raises `ValueError` if it is damaged."""
-    shard = json_object(found)
-    facts = json_object(shard["facts"])
-    if mark is not None:
-        _compare(shard.get(MARK), checksum({}, mark, name, json.dumps(facts)))
-    return facts
 
 
 @contextlib.contextmanager

@@ -1,60 +1,43 @@
 """Results of many tasks on any `concurrent.futures.Executor`, in order of completion.
 
-Only the methods `submit` and `shutdown` of an executor are called. It may be a pool of processes or threads, the
-executor of a dask client, or an executor of mpi4py. The result of a task depends on its argument alone, so results do
-not depend on the executor. Tasks of lost workers are submitted again. A bounded number of tasks is in flight, so tasks
-may come from a generator that is longer than the memory. Small tasks travel in batches, since a submission takes about
-a millisecond of the caller.
+The result of a task depends on its argument alone, so results do not depend on the executor. Tasks of lost workers are
+submitted again. A bounded number of tasks is in flight, so tasks may come from a generator that is longer than the
+memory. Small tasks travel in batches, since a submission takes about a millisecond of the caller.
 """
 
 from __future__ import annotations
 
 import math
 import pickle
+import secrets
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Future
+from concurrent.futures import BrokenExecutor, Future
 from dataclasses import asdict, dataclass
 from operator import itemgetter
 from queue import SimpleQueue
-from typing import Any, Generic, Protocol, TypeAlias, TypeGuard, TypeVar, final
+from typing import Any, Generic, TypeVar, final
 
 from liehom.budget import Limits, limits, remaining_limits
 from liehom.errors import InputError, WorkerLostError
+from liehom.parallel.executors import ExecutorLike, Pool, error_of, explained, is_worker_loss
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 Label = TypeVar("Label", bound=int | tuple[Any, ...])
 
 
-class TaskExecutor(Protocol):
-    """The methods that liehom calls of an executor; every `concurrent.futures.Executor` has them."""
-
-    def submit(self, function: Callable[[Task], Result], task: Task, /) -> Future[Result]:
-        """The future of ``function(task)``."""
-        ...
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Release the workers."""
-        ...
-
-
-ExecutorLike: TypeAlias = TaskExecutor | Callable[[], TaskExecutor] | None
-"""An executor, a function that makes one (called again if one breaks), or None for the calling process."""
-
 RETRIES = 2
 """Default number of times that the task of a lost worker is submitted again."""
 BUFFERSIZE = 4096
 """Default number of tasks in flight: enough for hundreds of workers, and a few megabytes of small tasks."""
 BATCH_SECONDS = 1.0
-"""Time after which a worker returns the rest of a batch; a submission costs about a thousandth of it."""
+"""Processor time after which a worker returns the rest of a batch; a submission costs some thousandths of it."""
 PATIENCE = 0.1
 """Seconds after which an incomplete batch is sent and results that are ready are taken."""
 LARGEST_BATCH = 64
 """Largest batch, so that the tasks in flight are at least 64 batches."""
-# exceptions of dask for dead workers, by name, since dask is not imported here
-WORKER_LOSS = ("KilledWorker", "CommClosedError", "SchedulerClosedError", "P2PConsistencyError")
 
 
 def completed(
@@ -134,69 +117,30 @@ def check_count(name: str, value: object, least: int) -> None:
 @final
 @dataclass(frozen=True, slots=True)
 class _Batch(Generic[Task, Result]):
-    """A function that maps a list of tasks to results under given limits, in whatever thread or process.
+    """Tasks for one worker, which runs them under given limits, in whatever thread or process.
 
-    After `seconds` it returns the results it has, at least one; the other tasks are submitted again.
+    After `seconds` of processor time it returns the results it has, at least one; the others are submitted again.
     """
 
     function: Callable[[Task], Result]
+    tasks: Sequence[Task]
     limits: Limits
     seconds: float
 
-    def __call__(self, tasks: Sequence[Task]) -> tuple[list[Result], float]:
-        begin, elapsed = time.monotonic(), 0.0
+    def results(self) -> tuple[list[Result], float]:
+        """The results, and the processor time that they took."""
+        begin, elapsed = time.thread_time(), 0.0
         results: list[Result] = []
         with limits(**asdict(self.limits)):
-            for task in tasks:
+            for task in self.tasks:
                 results.append(self.function(task))
-                elapsed = time.monotonic() - begin
+                elapsed = time.thread_time() - begin
                 if elapsed > self.seconds:
                     break
         return results, elapsed
 
-
-@final
-class _Pool:
-    """The current executor, replaced by another one when it breaks."""
-
-    def __init__(self, source: TaskExecutor | Callable[[], TaskExecutor]) -> None:
-        self._make: Callable[[], TaskExecutor] | None = None
-        self._executor: TaskExecutor | None = None
-        if _is_executor(source):
-            self._executor = source
-        elif callable(source):
-            self._make = source
-        else:
-            raise InputError(
-                f"executor is {source!r}, expected a concurrent.futures.Executor, or a function that makes one"
-            )
-
-    @property
-    def renewable(self) -> bool:
-        """Whether there is a function that makes another executor."""
-        return self._make is not None
-
-    def submit(self, function: Callable[[Task], Result], task: Task) -> Future[Result]:
-        """The future of a task; raises `BrokenExecutor` if the executor does not accept tasks."""
-        if self._executor is None and self._make is not None:
-            made = self._make()
-            if not callable(getattr(made, "submit", None)):
-                raise InputError(f"the function that makes executors returned {made!r}")
-            self._executor = made
-        if self._executor is None:
-            raise BrokenExecutor("there is no executor")
-        try:
-            return self._executor.submit(function, task)
-        except RuntimeError as error:  # raised also by an executor that was shut down
-            if isinstance(error, BrokenExecutor):
-                raise
-            raise BrokenExecutor(str(error)) from error
-
-    def drop(self) -> None:
-        """Shut the current executor down if it was made here."""
-        if self.renewable and self._executor is not None:
-            self._executor.shutdown(wait=True, cancel_futures=True)
-            self._executor = None
+    def __dask_tokenize__(self) -> str:  # dask would pickle each task thrice for the name of the batch
+        return secrets.token_hex(16)
 
 
 @final
@@ -208,8 +152,8 @@ class Dispatcher(Generic[Label, Task, Result]):
     function, executor, retries
         As for `completed`.
     chunksize : int, optional
-        Number of tasks in a batch. By default batches grow until one takes about a second, and a worker that exceeds
-        this time returns the rest of its batch.
+        Number of tasks in a batch. By default as many as take about half a second of processor time, at most 64, and a
+        worker that has used a second returns the rest of its batch.
 
     Notes
     -----
@@ -236,14 +180,15 @@ class Dispatcher(Generic[Label, Task, Result]):
         if chunksize is not None:
             check_count("chunksize", chunksize, 1)
         self._function, self._retries = function, retries
-        self._pool = None if executor is None else _Pool(executor)
+        self._pool = None if executor is None else Pool(executor)
         self._chunksize, self._size = chunksize, chunksize or 1
+        self._pace: float | None = None  # seconds that a task takes, the mean of the last ones
         self._unsent: deque[tuple[Label, Task]] = deque()
         self._waiting: dict[Future[tuple[list[Result], float]], list[tuple[Label, Task]]] = {}
         self._ready: SimpleQueue[Future[tuple[list[Result], float]]] = SimpleQueue()
         self._done, self._open, self._breaks = 0, 0, 0
         self._credit = 0  # tasks that may be submitted before results that are ready are taken
-        self._sent = self._took = time.monotonic()
+        self._since = self._took = time.monotonic()  # when the first unsent task came, and the last result
         self._losses: dict[Label, int] = {}  # of unfinished tasks
         self._broken: BaseException | None = None
 
@@ -268,12 +213,13 @@ class Dispatcher(Generic[Label, Task, Result]):
         InputError
             If the task cannot be pickled.
         """
+        if not self._unsent:
+            self._since = time.monotonic()
         self._unsent.append((label, task))
         self._open += 1
         self._credit -= 1
-        is_late = time.monotonic() - self._sent > PATIENCE
-        if self._pool is not None and self._broken is None and (is_late or len(self._unsent) >= self._size):
-            self._send(self._pool)
+        if self._pool is not None:
+            self._send_batches(self._pool, PATIENCE)
 
     @property
     def due(self) -> bool:
@@ -297,11 +243,10 @@ class Dispatcher(Generic[Label, Task, Result]):
                 self._open -= 1
                 yield [(label, self._function(task))]
             return
-        while self._unsent and self._broken is None:
-            self._send(self._pool)
-        for future in self._finished():
+        self._send_batches(self._pool, PATIENCE if self._waiting else 0.0)
+        for future in self._arrived():
             batch = self._waiting.pop(future)
-            error = _error_of(future)
+            error = error_of(future)
             if error is None:
                 yield self._taken(batch, *future.result())
             elif isinstance(error, BrokenExecutor):
@@ -310,28 +255,42 @@ class Dispatcher(Generic[Label, Task, Result]):
             elif is_worker_loss(error):
                 self._again(batch, error)
             else:
-                raise _explained(error)
+                raise explained(error)
         if self._broken is not None:
             self._renew(self._pool, self._broken)
 
-    def _send(self, pool: _Pool) -> None:
+    def finished(self) -> Iterator[list[tuple[Label, Result]]]:
+        """Iterator of the batches that have finished, without waiting and without errors, for the end of a run."""
+        while not self._ready.empty():
+            future = self._ready.get()
+            if future in self._waiting and error_of(future) is None:
+                yield self._taken(self._waiting.pop(future), *future.result())
+
+    def _send_batches(self, pool: Pool, patience: float) -> None:
+        """Submit complete batches, and an incomplete one if it has waited for `patience` seconds."""
+        while self._unsent and self._broken is None:
+            if len(self._unsent) < self._size and time.monotonic() - self._since < patience:
+                return
+            self._send(pool)
+
+    def _send(self, pool: Pool) -> None:
         """Submit one batch; a broken executor is remembered."""
         size = 1 if self._unsent[0][0] in self._losses else self._size
         batch = [self._unsent.popleft() for _ in range(min(size, len(self._unsent)))]
         seconds = BATCH_SECONDS if self._chunksize is None else math.inf
-        run = _Batch(self._function, remaining_limits(), seconds)
+        tasks = _Batch(self._function, [task for _, task in batch], remaining_limits(), seconds)
         try:
-            future = pool.submit(run, [task for _, task in batch])
+            future = pool.submit(_Batch.results, tasks)
         except (BrokenExecutor, ConnectionError) as error:
             self._unsent.extendleft(reversed(batch))
             self._broken = error
             return
         except (TypeError, AttributeError, pickle.PicklingError) as error:
-            raise _explained(error) from None
-        self._waiting[future], self._sent = batch, time.monotonic()
+            raise explained(error) from None
+        self._waiting[future] = batch
         future.add_done_callback(self._ready.put)
 
-    def _finished(self) -> list[Future[tuple[list[Result], float]]]:
+    def _arrived(self) -> list[Future[tuple[list[Result], float]]]:
         """The finished futures, at least one if any is waiting; those of dropped executors are ignored."""
         found: list[Future[tuple[list[Result], float]]] = []
         while self._waiting and (not found or not self._ready.empty()):
@@ -345,11 +304,10 @@ class Dispatcher(Generic[Label, Task, Result]):
     ) -> list[tuple[Label, Result]]:
         """The results of a batch with their labels; tasks for which there was no time are scheduled again."""
         self._unsent.extendleft(reversed(batch[len(results) :]))
-        if self._chunksize is None and len(batch) >= self._size:
-            if len(results) < len(batch):
-                self._size = max(1, self._size // 2)
-            elif seconds < BATCH_SECONDS / 2:
-                self._size = min(2 * self._size, LARGEST_BATCH)
+        if self._chunksize is None:
+            pace = seconds / len(results)
+            self._pace = pace if self._pace is None else 0.9 * self._pace + 0.1 * pace
+            self._size = max(1, min(LARGEST_BATCH, int(BATCH_SECONDS / (2 * self._pace + 1e-9))))
         taken = [(label, result) for (label, _), result in zip(batch, results, strict=False)]
         for label, _ in taken:
             self._losses.pop(label, None)
@@ -365,7 +323,7 @@ class Dispatcher(Generic[Label, Task, Result]):
             if self._losses[label] > self._retries:
                 raise self._gave_up(error) from error
 
-    def _renew(self, pool: _Pool, error: BaseException) -> None:
+    def _renew(self, pool: Pool, error: BaseException) -> None:
         """Drop the broken executor and schedule all unfinished tasks for the next one."""
         self._breaks += 1
         if self._breaks > self._retries or not pool.renewable:
@@ -388,43 +346,3 @@ class Dispatcher(Generic[Label, Task, Result]):
             f"workers were lost ({type(error).__name__}: {error}); {self._done} tasks are done, {self._open} are not; "
             f"finished results in a store remain, and the same call continues from them; {advice}",
         )
-
-
-def _is_executor(source: object) -> TypeGuard[TaskExecutor]:
-    """Whether it has the methods of an executor and is not a class of executors."""
-    return not isinstance(source, type) and callable(getattr(source, "submit", None))
-
-
-def is_worker_loss(error: BaseException) -> bool:
-    """Whether an exception reports the loss of workers, rather than the failure of a task.
-
-    Examples
-    --------
-    >>> is_worker_loss(BrokenExecutor("a process was killed")), is_worker_loss(ValueError("psi"))
-    (True, False)
-    """
-    kinds = (BrokenExecutor, CancelledError, ConnectionError)
-    return isinstance(error, kinds) or type(error).__name__ in WORKER_LOSS
-
-
-def _error_of(future: Future[Result]) -> BaseException | None:
-    """The exception of a finished future, `CancelledError` included, or None."""
-    try:
-        return future.exception()
-    except CancelledError as error:
-        return error
-
-
-def _explained(error: BaseException) -> BaseException:
-    """The error of a task; for a pickling error, an `InputError` with the remedy."""
-    message = str(error)
-    is_pickling = isinstance(error, TypeError | AttributeError) and ("pickle" in message or "serialize" in message)
-    if not is_pickling and not isinstance(error, pickle.PicklingError):
-        return error
-    made = InputError(
-        f"a task cannot be sent to another process: {message}; give functions that have a name in a module (no lambda, "
-        "no function within a function), psi as a list of strings such as ['m0', 'sin(t)'], or use an executor that "
-        "pickles tasks by cloudpickle (dask), or threads"
-    )
-    made.__cause__ = error
-    return made

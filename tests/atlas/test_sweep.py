@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -206,6 +206,27 @@ def test_what_was_finished_before_an_interruption_is_stored(tmp_path: Path, erro
     files = {file.name: file.read_bytes() for file in (tmp_path / "atlas").iterdir()}
     assert len(list(lh.atlas.iter_sweep(spheres(10), store=tmp_path / "atlas"))) == 10
     assert {file.name: file.read_bytes() for file in (tmp_path / "atlas").iterdir()} == files
+
+
+def test_entries_that_were_decided_but_not_returned_are_stored(tmp_path: Path) -> None:
+    class Immediate(Executor):
+        def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.set_result(function(*args))
+            return future
+
+    found = lh.atlas.iter_sweep(spheres(20), executor=Immediate(), store=tmp_path / "atlas", chunksize=10)
+    next(found)
+    found.close()  # type: ignore[attr-defined]
+    assert len(lines(tmp_path / "atlas")) == 10
+
+    def interrupted() -> Iterator[lh.Pair]:
+        yield from spheres(25)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        list(lh.atlas.iter_sweep(interrupted(), executor=Immediate(), store=tmp_path / "other", chunksize=10))
+    assert len(lines(tmp_path / "other")) == 20
 
 
 def test_closing_the_iterator_cancels_what_is_left(tmp_path: Path) -> None:

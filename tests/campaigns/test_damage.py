@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
+from liehom.disk import checksum
 from liehom.errors import DamageWarning, FormatError
 from tests.campaigns.damage import BELIEVED, FIGURES, campaign
 
@@ -34,10 +35,11 @@ def parts(folder: Path) -> list[bytes]:
 
 def as_single_files(folder: Path, version: int) -> list[Path]:
     """Rewrites a store with an entry in a file, as earlier versions did, in version 1 (0.1.0) without checksums."""
-    files = []
+    files, fingerprint = [], json.loads((folder / "store.json").read_text())["fingerprint"]
     for line in map(json.loads, parts(folder)):
         files.append(folder / f"{line['name']}.json")
-        shard = {"checksum": line["checksum"], "facts": line["facts"]}
+        mark = checksum({}, fingerprint, line["name"], json.dumps(line["facts"]))
+        shard = {"checksum": mark, "facts": line["facts"]}
         files[-1].write_text(json.dumps(shard if version == 2 else line["facts"]))
     (folder / "records-000000.jsonl").unlink()
     if version == 1:

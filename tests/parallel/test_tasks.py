@@ -206,7 +206,7 @@ def test_a_task_whose_worker_was_lost_goes_alone() -> None:
 
     class Recording(Immediate):
         def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-            sizes.append(len(args[0]))
+            sizes.append(len(args[0].tasks))
             return super().submit(function, *args, **kwargs)
 
     made = Dispatcher[int, int, int](work.square, Recording(KilledWorker("a batch")), chunksize=4)
