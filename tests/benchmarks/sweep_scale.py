@@ -2,9 +2,9 @@
 
     python -m tests.benchmarks.sweep_scale --count 1000000 --executor dask
 
-Each pair is a line in the algebra [x, y] = y, given as a recipe. The workers construct the pair, decide it and check the
-certificate. The first process kills itself (SIGKILL) when it has half of the entries. The second makes the same call,
-and gets all of them.
+Each pair is a line in the algebra [x, y] = y, given as a recipe. The workers construct the pair, decide it and check
+the certificate. The first process kills itself (SIGKILL) when it has half of the entries. The second makes the same
+call, and gets all of them.
 """
 
 from __future__ import annotations
