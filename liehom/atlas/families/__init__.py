@@ -5,6 +5,7 @@ Each generator yields `Recipe` objects; the functions that they name construct o
 docs/theory/fullness.md.
 """
 
+from liehom.atlas.families.affine import affine_pairs as affine_pairs
 from liehom.atlas.families.symmetric import group_pairs as group_pairs
 from liehom.atlas.families.symmetric import symmetric_pairs as symmetric_pairs
 from liehom.atlas.families.symmetric import symmetric_rank as symmetric_rank

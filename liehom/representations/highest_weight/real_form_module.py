@@ -129,9 +129,11 @@ def real_module(form: RealForm | str, weight: Sequence[int], *, check: bool = Tr
     CatalogError
         If there is no such real form.
 
-    Notes ----- Every irreducible real module is constructed in this way, from one highest weight if its commutant is R
-    or H, and from two conjugate ones if it is C. For the commutant R the coordinates refer to the vectors u + T u, i (u
-    - T u) in the admissible lattice; otherwise they are the real and then the imaginary parts.
+    Notes
+    -----
+    Every irreducible real module is constructed in this way, from one highest weight if its commutant is R or H, and
+    from two conjugate ones if it is C. For the commutant R the coordinates refer to the vectors u + T u, i (u - T u) in
+    the admissible lattice; otherwise they are the real and then the imaginary parts.
 
     Examples
     --------
