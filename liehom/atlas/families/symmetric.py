@@ -52,7 +52,8 @@ def symmetric_pairs(max_rank: int = 4, max_rank_of_rank_one: int = 6) -> Iterato
     Yields
     ------
     Recipe
-        Of the family "symmetric". The facts known are ``rank`` and ``riemannian``, whether h is compact.
+        Of the family "symmetric". The facts known are ``rank``, ``riemannian``, whether h is compact, and ``maximal``,
+        whether h is a maximal subalgebra.
 
     Raises
     ------
@@ -78,10 +79,37 @@ def symmetric_pairs(max_rank: int = 4, max_rank_of_rank_one: int = 6) -> Iterato
     for type_name in TYPES:
         if int(type_name[1]) <= max_rank:
             for form in (*real_forms(type_name), complex_form(type_name)):
-                yield from _of_form(form)
+                yield from symmetric_pairs_of(form)
     for rank in range(max_rank + 1, max_rank_of_rank_one + 1):
         for name, riemannian in _rank_one_names(rank):
-            yield Recipe(name, "symmetric", named_pair, (name,), {"rank": 1, "riemannian": riemannian})
+            known = {"rank": 1, "riemannian": riemannian, "maximal": not name.startswith("sl")}
+            yield Recipe(name, "symmetric", named_pair, (name,), known)
+
+
+def symmetric_pairs_of(form: RealForm) -> Iterator[Recipe]:
+    """The symmetric pairs of one simple real algebra of complex rank at most 4.
+
+    Notes
+    -----
+    The isotropy h is a maximal subalgebra unless g/h is reducible, which is so if and only if the centre of h is not
+    compact. Then h is the centralizer of an element with real eigenvalues, and is in a parabolic subalgebra.
+
+    Examples
+    --------
+    >>> [(recipe.name, recipe.known["maximal"]) for recipe in symmetric_pairs_of(RealForm.of_name("sl(3,R)"))]
+    [('sl(3)/so(3)', True), ('sl(3)/s(gl(2)+gl(1))', False), ('sl(3)/so(2,1)', True)]
+    """
+    names = isotropy_names(form)
+    for involution in involutions(form):
+        kind = involution_type(form, involution)
+        name = str(parse(f"{_short(form.name)}/{names[kind.ideals]}"))
+        known = {
+            "rank": _rank(form, involution, kind),
+            "riemannian": not kind.noncompact,
+            "maximal": not any(ratio == 0 and noncompact for ratio, _, noncompact in kind.ideals),
+        }
+        arguments = (name, form.name, involution.images, involution.exponents)
+        yield Recipe(name, "symmetric", symmetric_pair, arguments, known)
 
 
 def group_pairs(max_rank: int = 4) -> Iterator[Recipe]:
@@ -241,17 +269,6 @@ def _require_symmetric(pair: Pair, isotropy: ExactMatrix, complement: ExactMatri
     brackets = pair.algebra.table.bracket_rows(complement, complement)
     if not (brackets @ as_exact(pair.subalgebra.quotient().projection)).is_zero():
         raise InputError(f"[q, q] is not in h for the complement q of h in {pair!r}; expected a symmetric pair")
-
-
-def _of_form(form: RealForm) -> Iterator[Recipe]:
-    """The symmetric pairs of one real form."""
-    names = isotropy_names(form)
-    for involution in involutions(form):
-        kind = involution_type(form, involution)
-        name = str(parse(f"{_short(form.name)}/{names[kind.ideals]}"))
-        known = {"rank": _rank(form, involution, kind), "riemannian": not kind.noncompact}
-        arguments = (name, form.name, involution.images, involution.exponents)
-        yield Recipe(name, "symmetric", symmetric_pair, arguments, known)
 
 
 def _rank(form: RealForm, involution: RootAutomorphism, kind: InvolutionType) -> int:
