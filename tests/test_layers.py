@@ -112,7 +112,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "ensembles",
         "convergence",
     ),
-    "atlas": ("recipe", "entry", "facts", "sweep", "families", "build"),
+    "atlas": ("recipe", "entry", "facts", "table", "sweep", "families", "build"),
     "instances": ("spheres", "bodies", "rigid_body", "spins", "sym_conjugation", "isospectral"),
 }
 

@@ -9,7 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from liehom.budget import limits, parsed_limits
-from liehom.cli import describe_command, numerical_commands, reproduce
+from liehom.cli import atlas_command, describe_command, numerical_commands, reproduce
 from liehom.cli.guard import NO, NUMERICAL, YES, guarded
 from liehom.cli.options import JsonOption, run
 
@@ -325,6 +325,7 @@ app.command()(describe_command.describe)
 app.command()(numerical_commands.integrate)
 app.command()(numerical_commands.order)
 app.command()(reproduce.reproduce)
+app.add_typer(atlas_command.atlas, name="atlas")
 
 
 @app.command()

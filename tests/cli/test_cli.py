@@ -22,7 +22,19 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 FULL, NOT_FULL, FLOAT = (str(EXAMPLES / f"{name}.json") for name in ("so4_so3", "so31_so21", "so4_so3_float"))
 SYM3 = str(EXAMPLES / "sym3.json")
-COMMANDS = ("fullness", "verify", "isotropy", "range", "describe", "integrate", "order", "reproduce", "catalog", "demo")
+COMMANDS = (
+    "fullness",
+    "verify",
+    "isotropy",
+    "range",
+    "describe",
+    "integrate",
+    "order",
+    "reproduce",
+    "catalog",
+    "demo",
+    "atlas",
+)
 
 
 def liehom(*words: str) -> Result:

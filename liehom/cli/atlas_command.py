@@ -1,0 +1,128 @@
+"""Command `atlas`: list the families, decide all their pairs, search the result."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, TypeAlias
+
+import typer
+
+from liehom.cli.guard import YES
+from liehom.cli.options import JsonOption, run
+
+FamilyOption: TypeAlias = Annotated[
+    list[str] | None, typer.Option(metavar="NAME", help="A family; may be repeated (default: all).")
+]
+
+atlas: typer.Typer = typer.Typer(
+    help="The atlas: families of pairs, each pair decided with a certificate.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+
+
+@atlas.command()
+def families(json: JsonOption = False) -> None:
+    """List the families and their numbers of pairs."""
+
+    def action() -> int:
+        from liehom.atlas import FAMILIES, recipes
+        from liehom.cli.show import show_json, show_table
+
+        counts = {name: sum(1 for _ in recipes([name])) for name in FAMILIES}
+        if json:
+            show_json(counts)
+        else:
+            show_table(["family", "pairs"], [[name, str(count)] for name, count in counts.items()])
+        return YES
+
+    run(action)
+
+
+@atlas.command()
+def build(
+    out: Annotated[str, typer.Argument(metavar="OUT.jsonl", help="File for the entries with their certificates.")],
+    family: FamilyOption = None,
+    table: Annotated[
+        str | None, typer.Option(metavar="TABLE.json", help="File for the table without certificates (default: none).")
+    ] = None,
+    store: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="Folder from which an interrupted build continues (default: none)."),
+    ] = None,
+    processes: Annotated[int, typer.Option(metavar="N", min=1, help="Number of processes (default: 1).")] = 1,
+    force: Annotated[bool, typer.Option("--force", help="Replace the files if they exist.")] = False,
+    json: JsonOption = False,
+) -> None:
+    """Decide all pairs of the families, verify the certificates, and count.  Exit code 0: all decided, 1: not all."""
+    run(lambda: _build(out, family, table, store, processes, force, json))
+
+
+def _build(
+    out: str, names: list[str] | None, table: str | None, store: str | None, processes: int, force: bool, as_json: bool
+) -> int:
+    from concurrent.futures import ProcessPoolExecutor
+    from functools import partial
+
+    from liehom import atlas as built
+    from liehom.cli.guard import NO
+    from liehom.cli.show import show_json, show_table
+    from liehom.disk import check_target
+
+    for path in (out, table):
+        if path is not None:
+            check_target(path, force=force)
+    executor = None if processes == 1 else partial(ProcessPoolExecutor, processes)
+    made = built.write_entries(out, built.build(names, executor=executor, store=store))
+    if table is not None:
+        built.write_table(table, made)
+    counts: dict[str, dict[str, Any]] = made["counts"]
+    if as_json:
+        show_json(counts)
+    else:
+        heads = list(next(iter(counts.values()), {}))
+        show_table(["family", *heads], [[name, *(str(n) for n in own.values())] for name, own in counts.items()])
+    return NO if any(own["undecided"] for own in counts.values()) else YES
+
+
+@atlas.command()
+def show(
+    file: Annotated[str, typer.Argument(metavar="FILE.jsonl", help="File that `build` has written.")],
+    family: FamilyOption = None,
+    full: Annotated[bool | None, typer.Option("--full/--not-full", help="Only pairs that are full, or not.")] = None,
+    letter: Annotated[
+        str | None, typer.Option(metavar="LETTER", help="Only full pairs of the letter A, B or C.")
+    ] = None,
+    search: Annotated[str, typer.Option(metavar="TEXT", help="Only pairs with this text in a cell.")] = "",
+    json: JsonOption = False,
+) -> None:
+    """Print rows of the table of a file; with --json the entries with their certificates."""
+
+    def action() -> int:
+        from liehom.atlas.table import COLUMNS, read_entries, table_row
+        from liehom.cli.inputs import file_argument
+        from liehom.cli.show import show_json, show_table
+
+        rows, entries = [], []
+        for entry in read_entries(file_argument(file)):
+            cells = table_row(entry)
+            if (
+                (family is None or entry.family in family)
+                and (full is None or entry.full is full)
+                and (letter is None or cells[COLUMNS.index("letter")] == letter.upper())
+                and any(search.lower() in str(cell).lower() for cell in cells)
+            ):
+                rows.append([_text(cell) for cell in cells])
+                entries.append(entry.to_json() if json else None)
+        if json:
+            show_json({"entries": entries})
+        else:
+            show_table(COLUMNS, rows)
+        return YES
+
+    run(action)
+
+
+def _text(cell: str | int | bool | None) -> str:
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    return "" if cell is None else str(cell)

@@ -1,0 +1,78 @@
+"""`liehom atlas`: the families, a build, and a search in its file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from liehom.atlas import FAMILIES
+from liehom.atlas.families.parabolic import parabolic_pairs
+from liehom.atlas.families.symmetric import group_pairs
+from liehom.cli.app import app
+
+RUN = CliRunner()
+
+
+@pytest.fixture(autouse=True, scope="module")
+def small_families() -> Iterator[None]:
+    saved = dict(FAMILIES)
+    FAMILIES.clear()
+    FAMILIES.update({"group": lambda: group_pairs(2), "parabolic": lambda: parabolic_pairs(8)})
+    yield
+    FAMILIES.clear()
+    FAMILIES.update(saved)
+
+
+def test_families_are_listed_with_their_numbers_of_pairs() -> None:
+    counts = json.loads(RUN.invoke(app, ["atlas", "families", "--json"]).stdout)
+    assert counts == {"group": sum(1 for _ in group_pairs(2)), "parabolic": 6}
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("atlas")
+    words = ["atlas", "build", str(folder / "atlas.jsonl"), "--family", "group", "--store", str(folder / "store")]
+    done = RUN.invoke(app, [*words, "--table", str(folder / "atlas.json")])
+    assert done.exit_code == 0, done.output
+    assert done.stdout.splitlines()[0].startswith("family  pairs  full")
+    return folder
+
+
+def test_a_second_build_takes_the_entries_from_the_store(built: Path) -> None:
+    words = [
+        "atlas",
+        "build",
+        str(built / "atlas.jsonl"),
+        "--family",
+        "group",
+        "--store",
+        str(built / "store"),
+        "--json",
+    ]
+    assert RUN.invoke(app, words).exit_code == 2, "the file exists"
+    done = RUN.invoke(app, [*words, "--force"])
+    table = json.loads((built / "atlas.json").read_text(encoding="utf-8"))
+    assert json.loads(done.stdout) == table["counts"]
+
+
+def test_rows_are_filtered(built: Path) -> None:
+    words = ["atlas", "show", str(built / "atlas.jsonl"), "--json"]
+
+    def shown(*options: str) -> list[str]:
+        return [entry["name"] for entry in json.loads(RUN.invoke(app, [*words, *options]).stdout)["entries"]]
+
+    everything = shown()
+    assert set(shown("--full")) | set(shown("--not-full")) == set(everything)
+    assert shown("--full") == ["so(3)+so(3)/diagonal"]
+    assert shown("--search", "G2") == [name for name in everything if "g2" in name]
+    assert shown("--family", "parabolic") == []
+    assert "dim g/h" in RUN.invoke(app, words[:-1]).stdout
+
+
+def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "other.jsonl").write_text("[]\n", encoding="utf-8")
+    assert RUN.invoke(app, ["atlas", "show", str(tmp_path / "other.jsonl")]).exit_code == 2
