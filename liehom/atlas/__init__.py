@@ -1,8 +1,7 @@
 """The atlas: tables of pairs that are decided one by one, each with a certificate.
 
-In reading order: `recipe` (one pair of a family, constructed by the worker), `entry` (one decided pair, and the list
-of them), `facts` (more about a decided pair), `table` (entries as rows, in files), `sweep` (decisions on any executor,
-stored on disk), `families` (generators of recipes), `build` (all families).
+`recipe` and `families` describe pairs, which workers construct. `entry`, `facts` and `table` hold what is known of a
+decided pair. `sweep` decides pairs on any executor and stores the entries. `build` does so for all families.
 """
 
 from liehom.atlas.build import FAMILIES as FAMILIES

@@ -81,7 +81,7 @@ def build(
     >>> import liehom as lh
     >>> entry = next(lh.atlas.build(["parabolic"]))
     >>> entry.name, entry.full, entry.facts["open_orbits"]
-    ('sl(2)/P1', True, 2)
+    ('sl(2)/P{1}', True, 2)
     """
     entries = iter_sweep(recipes(families), executor=executor, store=store, recheck=recheck, ordered=True, facts=True)
     return (entry for _, entry in entries)

@@ -1,4 +1,4 @@
-"""Facts about one decided pair: the range condition for generic eta, orbits of the isotropy.
+"""Facts about one decided pair: its row if it is full, the range condition for generic eta, orbits of the isotropy.
 
 A fact is exact, or it is missing and the reason is stated.
 """
@@ -10,11 +10,11 @@ from typing import TypeAlias
 
 from liehom.budget import in_time, limits
 from liehom.errors import FieldError, LimitError, UndecidedError
-from liehom.fullness import Full, Verdict
+from liehom.fullness import Full, Verdict, classify
 from liehom.homogeneous.range import invariant_degree, open_orbit_count, orbit_dimension
 from liehom.representations import Pair
 
-Fact: TypeAlias = bool | int | dict[str, str] | None
+Fact: TypeAlias = bool | int | str | list[int | str | None] | dict[str, str] | None
 """A fact as a JSON value."""
 
 SECONDS = 20.0
@@ -35,6 +35,8 @@ def facts(pair: Pair, verdict: Verdict, *, seconds: float = SECONDS) -> dict[str
     Returns
     -------
     dict
+        ``"key"``, ``"row"`` and ``"space"``: key, name and space of the row of a full pair in the classification, see
+        `liehom.classify`; None for other pairs.
         ``"range_condition"``: whether [h, eta] + R eta + h = g for generic eta.
         ``"orbit_dimension"``: the dimension of [h, eta] + R eta in g/h for generic eta, see `liehom.orbit_dimension`.
         ``"invariant_degree"``: see `liehom.invariant_degree`; None if the range condition holds for no eta.
@@ -68,13 +70,21 @@ def facts(pair: Pair, verdict: Verdict, *, seconds: float = SECONDS) -> dict[str
         orbits = fact("open_orbits", open_orbit_count) if holds else None if holds is None else 0
     if holds is None:
         missing |= dict.fromkeys(("range_condition", "invariant_degree", "open_orbits"), missing["orbit_dimension"])
-    return {
+    return _row(pair, verdict) | {
         "range_condition": holds,
         "orbit_dimension": dimension,
         "invariant_degree": degree,
         "open_orbits": orbits,
         "missing": missing,
     }
+
+
+def _row(pair: Pair, verdict: Verdict) -> dict[str, Fact]:
+    if not isinstance(verdict, Full):
+        return {"key": None, "row": None, "space": None}
+    found = classify(pair, verdict)
+    key = [value if isinstance(value, int | str) or value is None else str(value) for value in found.key]
+    return {"key": key, "row": found.name, "space": found.space}
 
 
 def _in(seconds: float, compute: Callable[[Pair], int | None], pair: Pair) -> int | None:

@@ -105,7 +105,7 @@ def write_table(path: str | os.PathLike[str], made: Mapping[str, Any]) -> None:
 
 
 def write_entries(path: str | os.PathLike[str], entries: Iterable[Entry]) -> dict[str, Any]:
-    """Write entries to a file as they come, and return their `table`. The file is there when all are written.
+    """Write entries to a file one by one, and return their `table`. The file is there when all are written.
 
     Examples
     --------

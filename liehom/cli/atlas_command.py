@@ -10,7 +10,7 @@ from liehom.cli.guard import YES
 from liehom.cli.options import JsonOption, run
 
 FamilyOption: TypeAlias = Annotated[
-    list[str] | None, typer.Option(metavar="NAME", help="A family; may be repeated (default: all).")
+    list[str] | None, typer.Option(metavar="NAME", help="Family, once or more often (default: all families).")
 ]
 
 atlas: typer.Typer = typer.Typer(

@@ -40,6 +40,16 @@ def test_the_facts_of_a_full_pair_agree_with_their_computation() -> None:
         assert found["open_orbits"] == lh.open_orbit_count(pair)
 
 
+def test_full_pairs_have_their_row() -> None:
+    pair = lh.pair("so(6)/u(3)")
+    found = facts_of(pair, lh.decide_fullness(pair))
+    assert found["key"] == ["C", 6, 8, 2, "J", 1]
+    assert found["row"] == "su(4)/u(3)"
+    assert "CP^3" in str(found["space"])
+    pair = lh.pair("so(3,1)/so(2,1)")
+    assert facts_of(pair, lh.decide_fullness(pair))["key"] is None
+
+
 def test_missing_facts_say_why() -> None:
     pair = lh.pair("affine(S3(gl(2)))")
     found = facts_of(pair, lh.decide_fullness(pair))
