@@ -112,7 +112,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "ensembles",
         "convergence",
     ),
-    "atlas": ("recipe", "entry", "facts", "table", "sweep", "families", "build"),
+    "atlas": ("recipe", "entry", "pair_facts", "table_rows", "sweep", "families", "all_families"),
     "instances": ("spheres", "bodies", "rigid_body", "spins", "sym_conjugation", "isospectral"),
 }
 

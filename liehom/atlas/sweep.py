@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any, NamedTuple, final
 
 from liehom.atlas.entry import Atlas, Entry
-from liehom.atlas.facts import facts as facts_of
+from liehom.atlas.pair_facts import facts as facts_of
 from liehom.atlas.recipe import Recipe
 from liehom.catalog import pair as named_pair
 from liehom.catalog import parse

@@ -98,7 +98,7 @@ def show(
     """Print rows of the table of a file; with --json the entries with their certificates."""
 
     def action() -> int:
-        from liehom.atlas.table import COLUMNS, read_entries, table_row
+        from liehom.atlas.table_rows import COLUMNS, read_entries, table_row
         from liehom.cli.inputs import file_argument
         from liehom.cli.show import show_json, show_table
 

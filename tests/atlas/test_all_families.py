@@ -9,16 +9,17 @@ from pathlib import Path
 import pytest
 
 import liehom as lh
-from liehom.atlas.table import COLUMNS, COUNTS, MISSING, table_row
+from liehom.atlas.table_rows import COLUMNS, COUNTS, MISSING, table_row
 from liehom.errors import FormatError, InputError
 
 
 @pytest.mark.parametrize("family", lh.atlas.FAMILIES)
 def test_names_are_unique_in_a_family_and_recipes_name_it(family: str) -> None:
-    names = Counter(recipe.name for recipe in lh.atlas.recipes([family]))
+    recipes = list(lh.atlas.recipes([family]))
+    names = Counter(recipe.name for recipe in recipes)
     assert names
     assert max(names.values()) == 1
-    assert {recipe.family for recipe in lh.atlas.recipes([family])} == {family}
+    assert {recipe.family for recipe in recipes} == {family}
 
 
 def test_an_unknown_family_raises() -> None:

@@ -7,8 +7,8 @@ import time
 import pytest
 
 import liehom as lh
-from liehom.atlas.facts import _in
-from liehom.atlas.facts import facts as facts_of
+from liehom.atlas.pair_facts import _in
+from liehom.atlas.pair_facts import facts as facts_of
 from liehom.budget import in_time
 from liehom.errors import LimitError, UndecidedError
 
