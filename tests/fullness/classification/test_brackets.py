@@ -284,6 +284,38 @@ def test_sums_of_parts_that_close_with_a_compact_algebra(name: str, found: set[s
     assert sorted(closed) == sorted(lh.catalog.representation(n).algebra.dimension for n in found)
 
 
+@pytest.mark.parametrize(
+    ("name", "units", "closes"),
+    [
+        *((f"sp({m})", units, units == 1) for m in (1, 2) for units in (1, 2, 3)),
+        ("sp(1)+u(1)", 1, True),
+        ("sp(1)+u(1)", 2, True),  # sp(4,R)
+        ("sp(2)+u(1)", 1, True),
+        ("sp(2)+u(1)", 2, False),
+    ],
+)
+def test_quaternion_units_that_extend_sp(name: str, units: int, closes: bool) -> None:
+    """k = sp(m) and u(1) = R(1 x i), with p = A x U for U = <i>, <i, j>, <i, j, k>, or <j, k> next to u(1)."""
+    sp = lh.catalog.representation(name.partition("+")[0])
+    i, j = quaternion_units(sp)
+    right = [j, i @ j] if units == 2 and "u(1)" in name else [i, j, i @ j][:units]
+    k = [*sp.matrices, i] if "u(1)" in name else list(sp.matrices)
+    p = [a @ u for u in right for a in sp.matrices]
+    brackets = [a @ b - b @ a for a, b in itertools.combinations(p, 2)]
+    assert (rank([*k, *brackets]) == len(k)) is closes
+
+
+def quaternion_units(rho: lh.Representation) -> tuple[Any, Any]:
+    """Multiples of two operators i, j that commute with sp(m), with ij = -ji."""
+    one = QQ.identity(rho.size)
+    imaginary = [c - one.scale(c.trace() / rho.size) for c in rho.commutant()]
+    i, v = [u for u in imaginary if not u.is_zero()][:2]
+    j = v - i.scale((v @ i).trace() / (i @ i).trace())
+    assert i @ j == -(j @ i)
+    assert not j.is_zero()
+    return i, j
+
+
 # -- the determinant f = const q^d of the first proof of soundness ---------------------------------------------
 
 
