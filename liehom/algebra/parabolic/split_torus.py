@@ -32,6 +32,7 @@ from liehom.scalars.spaces.integral_basis import integral_basis, short_basis
 
 REAL = 1e-6  # largest imaginary part of an eigenvalue, relative to the largest eigenvalue, that counts as 0
 SUMS = 400  # sums and differences of two rows that are tried
+HYPERBOLIC = 500  # elements of p of each height that are tried
 LATTICE_DIMENSION = 60  # dimension up to which nilpotent elements are searched by lattice reduction
 WEIGHT = 99  # bound on the coefficients of a generic element
 
@@ -148,8 +149,10 @@ def _split_element(
     found = split_part(algebra, center)
     if field.stack_rows([torus, found], n).rank() > torus.nrows:
         return found
-    neutral = _of_nilpotent_element(algebra, rest)
-    return neutral if neutral is not None and eigenvalues(algebra, neutral) is not None else None
+    for x in _of_the_semisimple_part(algebra, rest):
+        if eigenvalues(algebra, x) is not None:
+            return x
+    return None
 
 
 def _projection(killing: ExactMatrix, torus: ExactMatrix) -> ExactMatrix | None:
@@ -175,22 +178,45 @@ def _short_elements(
         yield x - y
 
 
-def _of_nilpotent_element(algebra: LieAlgebra, rest: ExactMatrix) -> ExactMatrix | None:
-    """The h of a triple (e, h, f) of the semisimple part of a reductive subalgebra over QQ, (1, n), or None."""
+def _of_the_semisimple_part(algebra: LieAlgebra, rest: ExactMatrix) -> Iterator[ExactMatrix]:
+    """Rows (1, n) of the semisimple part of a reductive subalgebra over QQ that may be split, from a large order."""
     reductive = Subalgebra(algebra, rest, check=False)  # the Killing complement of a split torus in its centralizer
     rows = as_exact(reductive.as_algebra().derived_subalgebra().basis) @ rest
-    if rest.field.degree > 1 or rows.nrows > LATTICE_DIMENSION:
-        return None
+    if rest.field.degree > 1 or not 0 < rows.nrows <= LATTICE_DIMENSION:
+        return
     rows = integral_basis(rows)
     inner = Subalgebra(algebra, rows, check=False).as_algebra()
-    theta = approximate_involution(inner, cartan_subalgebra(inner).dimension)
+    rank = cartan_subalgebra(inner).dimension
+    theta = approximate_involution(inner, rank)
     if theta is None:
-        return None
+        return
     try:
         order = lattice_order(inner, orthonormal_frame(inner, theta))
         inner = inner.change_of_basis(order)
-        theta = approximate_involution(inner, cartan_subalgebra(inner).dimension)
+        theta = approximate_involution(inner, rank)
         triple = None if theta is None else generic_nilpotent(inner, theta)
     except (np.linalg.LinAlgError, SingularError):  # double precision was not enough
-        return None
-    return None if triple is None else triple.h @ order @ rows
+        return
+    found = [triple.h] if triple is not None else _hyperbolic_elements(inner)
+    yield from (x @ order @ rows for x in found)
+
+
+def _hyperbolic_elements(algebra: LieAlgebra) -> Iterator[ExactMatrix]:
+    """Small elements x of p, (1, n), for which the eigenvalues of ad x are near integers; g = k + p over the field.
+
+    In the basis of an order, the eigenvalues are algebraic integers, hence integers if they are rational.
+    """
+    try:
+        p = algebra.cartan_decomposition().p
+    except UndecidedError:
+        return
+    rows = integral_basis(as_exact(p.basis))
+    actions = np.array([algebra.ad(rows.select(rows=[i])).to_numpy() for i in range(rows.nrows)])
+    rng = np.random.default_rng(rows.nrows)
+    for height in (1, 2, 3):
+        weights = np.unique(rng.integers(-height, height + 1, (HYPERBOLIC, rows.nrows)), axis=0)
+        values = np.linalg.eigvals(np.tensordot(weights.astype(float), actions, 1))
+        near = np.abs(values - np.rint(values.real)).max(axis=1) < REAL * np.abs(values).max(axis=1)
+        for weight in weights[near].tolist():
+            in_time()
+            yield rows.field.from_integers(weight, 1, rows.nrows) @ rows
