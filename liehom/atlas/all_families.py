@@ -6,7 +6,9 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 
 from liehom.atlas.entry import Entry
+from liehom.atlas.families.affine import affine_pairs
 from liehom.atlas.families.low_dimensional import low_dimensional_pairs
+from liehom.atlas.families.maximal import maximal_pairs
 from liehom.atlas.families.parabolic import parabolic_pairs
 from liehom.atlas.families.symmetric import group_pairs, symmetric_pairs
 from liehom.atlas.recipe import Recipe
@@ -18,6 +20,8 @@ FAMILIES: dict[str, Callable[[], Iterable[Recipe]]] = {
     "symmetric": symmetric_pairs,
     "group": group_pairs,
     "parabolic": parabolic_pairs,
+    "maximal": maximal_pairs,
+    "affine": affine_pairs,
     "dimension at most 4": low_dimensional_pairs,
 }
 """The generator of each family, by the name of the family."""
