@@ -26,8 +26,10 @@ LINES = 4096
 """Lines of a full file."""
 BYTES = 1 << 26
 """Size of a full file with fewer lines."""
+OFFSETS = 1 << 40
+"""More than the bytes of a file."""
 READ_AHEAD = 1 << 16
-"""Bytes."""
+"""Bytes that are read after a line."""
 FILE = re.compile(r"records-(\d{6,})\.jsonl")
 NAME = re.compile(rb'\{"name": ("(?:[ !#-\[\]-~]|\\u[0-9a-f]{4}|\\["\\bfnrt])*"), ')
 """Begin of a line, with the name as JSON."""
@@ -61,13 +63,13 @@ class Records(Store):
     def __init__(self, store: Store) -> None:
         self.path, self._mark, self._others = store.path, store._mark, store
         self._other_names = store.names()
-        self._places: dict[bytes, tuple[int, int]] = {}  # numbers of the file and of the first byte
+        self._places: dict[bytes, int] = {}  # by digests of names: OFFSETS * number of the file + offset in it
         self._output: BinaryIO | None = None
         self._number = self._lines = self._size = 0  # of the file that is written
         self._ahead = -1, 0, b""  # a part of the file that was read last: number, offset, content
         for number in self._numbers():
             for offset, name in self._names_in(number):
-                self._places[_digest(name)] = number, offset
+                self._places[_digest(name)] = OFFSETS * number + offset
 
     def __contains__(self, name: str) -> bool:
         return _digest(json.dumps(name).encode()) in self._places or name in self._other_names
@@ -101,7 +103,7 @@ class Records(Store):
                 line = f'{{"name": {json.dumps(name)}, "facts": {json.dumps(facts)}'.encode()
                 line += b"}\n" if self._mark is None else self._end(line)
                 self._writable().write(line)
-                self._places[_digest(json.dumps(name).encode())] = self._number, self._size
+                self._places[_digest(json.dumps(name).encode())] = OFFSETS * self._number + self._size
                 self._size, self._lines = self._size + len(line), self._lines + 1
             if self._output is not None:
                 self._output.flush()
@@ -110,7 +112,7 @@ class Records(Store):
         place = self._places.get(_digest(json.dumps(name).encode()))
         if place is None:
             return self._others.load(name)
-        number, offset = place
+        number, offset = divmod(place, OFFSETS)
         try:
             line = self._line(number, offset)
             found = json.loads(line)
@@ -149,14 +151,18 @@ class Records(Store):
 
     def _names_in(self, number: int) -> Iterator[tuple[int, bytes]]:
         """Numbers of the first bytes of the lines of a file, and the names as JSON; a damaged name gives a warning."""
-        offset = 0
-        with open(self._file(number), "rb") as file:
+        path, offset = os.fspath(self._file(number)), 0
+        try:
+            file = open(path, "rb")  # noqa: SIM115 - the next statement closes it
+        except OSError as error:
+            raise FormatError(f"{path!r} cannot be read: {error.strerror}") from None
+        with file:
             for count, line in enumerate(file, 1):
                 name = NAME.match(line)
                 if name is not None and line.endswith(b"\n"):
                     yield offset, name[1]
                 elif line.endswith(b"\n"):
-                    text = f"line {count} of {os.fspath(self._file(number))!r} is damaged; its result is computed again"
+                    text = f"line {count} of {path!r} is damaged; its result is computed again"
                     warnings.warn(DamageWarning(text), stacklevel=2)
                 offset += len(line)
 

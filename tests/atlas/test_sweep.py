@@ -187,6 +187,20 @@ def test_recipes_are_constructed_by_the_worker_and_stored_by_their_call(tmp_path
 
 
 @pytest.mark.parametrize("executor", [None, threads], ids=["none", "threads"])
+@pytest.mark.parametrize("store", [False, True])
+def test_a_pair_of_two_families_has_the_family_of_each_recipe(tmp_path: Path, executor: Any, store: bool) -> None:
+    recipes = [lh.atlas.Recipe(NAMES[0], family, lh.pair, (NAMES[0],), {family: 1}) for family in ("a", "b")] * 3
+    call: dict[str, Any] = {"executor": executor, "store": tmp_path / "atlas" if store else None}
+    found = [entry for _, entry in lh.atlas.iter_sweep(recipes, ordered=True, **call)]
+    assert (
+        [entry.family for entry in found]
+        == [entry.family for entry in lh.atlas.sweep(recipes, **call)]
+        == ["a", "b"] * 3
+    )
+    assert all(entry.facts[entry.family] == 1 for entry in found)
+
+
+@pytest.mark.parametrize("executor", [None, threads], ids=["none", "threads"])
 def test_a_pair_given_again_is_read_from_the_store(tmp_path: Path, executor: Any) -> None:
     names = NAMES[:2] * 50
     found = dict(lh.atlas.iter_sweep(iter(names), executor=executor, store=tmp_path / "atlas", buffersize=5))

@@ -143,7 +143,8 @@ def written_again(file: Path) -> dict[str, Any]:
 
 
 def subjects(folder: Path) -> list[Subject]:
-    lh.atlas.sweep(PAIRS, store=folder / "atlas")
+    for count in (3, len(PAIRS)):  # each call begins a file
+        lh.atlas.sweep(PAIRS[:count], store=folder / "atlas")
     key = json.loads((folder / "atlas" / "store.json").read_text())["fingerprint"]
     field = lh.GeneratorField(lh.defining(lh.so(3)), ["m2", "m0", "1"])
     starts = np.random.default_rng(0).standard_normal((4, 3))

@@ -110,6 +110,13 @@ def test_half_a_line_is_ignored_and_not_continued(tmp_path: Path) -> None:
         assert (copy / file.name).stat().st_size == length
 
 
+def test_a_file_that_cannot_be_read_raises_format_error(tmp_path: Path) -> None:
+    store = open_store(tmp_path / "a", "abc")
+    (tmp_path / "a" / "records-000007.jsonl").mkdir()
+    with pytest.raises(FormatError, match=r"records-000007.jsonl' cannot be read"):
+        Records(store)
+
+
 def test_a_folder_that_cannot_be_written_raises_input_error(tmp_path: Path) -> None:
     made = opened(tmp_path / "a")
     shutil.rmtree(tmp_path / "a")

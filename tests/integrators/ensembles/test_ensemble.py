@@ -16,6 +16,7 @@ import pytest
 import liehom as lh
 from liehom.errors import InputError, ShapeError
 from liehom.integrators import ensemble_parts, stored_parts
+from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem
 from tests.parallel import work
 from tests.parallel.test_tasks import processes, threads
 
@@ -166,6 +167,22 @@ def test_parts_come_one_by_one_and_can_be_left() -> None:
     part = next(parts)
     assert part.solution.y.shape == (part.last - part.first, 3, 5)
     parts.close()  # type: ignore[attr-defined]
+
+
+def test_chunks_are_cut_when_they_are_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    cut: list[tuple[int, int]] = []
+    task = EnsembleProblem.task
+
+    def counted(self: EnsembleProblem, rows: tuple[int, int]) -> EnsembleProblem:
+        cut.append(rows)
+        return task(self, rows)
+
+    monkeypatch.setattr(EnsembleProblem, "task", counted)
+    parts = ensemble_parts(TOP, (0, 1), starts(), chunk=1, dt=0.25)
+    checked = len(cut)  # the first and the last chunk
+    for number, _ in enumerate(parts, 1):
+        assert len(cut) == checked + number
+    assert checked == 2 and number == len(starts())
 
 
 def test_progress() -> None:
