@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any, final
 
@@ -66,6 +66,10 @@ class Entry:
     failure: str = ""
     family: str = ""
     facts: Mapping[str, Any] = field(default_factory=dict)
+
+    def __setstate__(self, state: Sequence[Any]) -> None:
+        for name, value in zip(KINDS, [*state, "", {}], strict=False):  # 0.1.0 had neither family nor facts
+            object.__setattr__(self, name, value)
 
     @classmethod
     def from_json(cls, facts: Mapping[str, Any]) -> Entry:
