@@ -267,7 +267,7 @@ def _task(pair: str | Pair | Recipe, seed: int, verify: bool, facts: bool = Fals
         name = str(parse(pair))
         return _Task(_key(name), name, seed, verify, facts)
     if isinstance(pair, Recipe):
-        return _Task(_key(f"{pair.name} = {pair.key}"), pair, seed, verify, facts)
+        return _Task(_key(f"{pair.family}: {pair.name} = {pair.key}"), pair, seed, verify, facts)
     if not isinstance(pair, Pair):
         raise InputError(f"expected a Pair, a Recipe or the name of a pair, got {pair!r}")
     table, field = pair.algebra.table, pair.field

@@ -87,6 +87,11 @@ def test_a_sweep_adds_facts_and_what_its_recipe_knows() -> None:
     assert plain.facts == {"rank": 1}
 
 
+def test_one_pair_in_two_families_has_two_entries() -> None:
+    recipes = [lh.atlas.Recipe("so(5)/so(4)", family, lh.pair, ("so(5)/so(4)",)) for family in ("symmetric", "maximal")]
+    assert [entry.family for entry in lh.atlas.sweep(recipes)] == ["symmetric", "maximal"]
+
+
 def test_stores_with_and_without_facts_are_not_mixed(tmp_path: object) -> None:
     names = ["so(4)/so(3)"]
     list(lh.atlas.iter_sweep(names, store=str(tmp_path)))
