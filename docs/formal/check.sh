@@ -21,14 +21,14 @@ for file in $(grep '\.v$' _CoqProject); do
     coq "$file"
 done
 
-coq Assumptions.v | tee assumptions.txt
+coq Assumptions.v > assumptions.txt
 theorems=$(grep -c '^Print Assumptions' Assumptions.v)
 closed=$(grep -c '^Closed under the global context$' assumptions.txt || true)
-[ "$closed" -eq "$theorems" ] || { echo "$closed of $theorems theorems are closed" >&2; exit 1; }
-echo "$theorems theorems, no axioms"
+[ "$closed" -eq "$theorems" ] || { cat assumptions.txt; echo "$closed of $theorems theorems are closed" >&2; exit 1; }
+sed -n 's/^Print Assumptions \(.*\)\.$/theorem  \1:/p' Assumptions.v | paste -d' ' - assumptions.txt
 
 cd ocaml
 coqc -w none -R ../theories Liehom Extraction.v
-ocamlfind ocamlopt -package zarith,yojson -linkpkg integer.ml checker.mli checker.ml reader.ml propose.ml \
+ocamlfind ocamlopt -package zarith,yojson -linkpkg integer.ml checker.mli checker.ml reader.ml propose.ml halfplane.ml \
     certificates.ml main.ml -o ../liehom-check
 echo "program $build/liehom-check"

@@ -7,7 +7,8 @@ type t =
   | Trivial
   | Full of Checker.full_data
   | Witness of Checker.witness * t option
-  | Other of string  (** a kind that is not covered *)
+  | Commutant of { matrix : Q.t list list; complement : Q.t list list; cut : Q.t }
+  | Dominance of { element : Q.t list; cut : Q.t; eps : Q.t }
 
 let number what (json : Yojson.Safe.t) =
   match json with
@@ -76,7 +77,8 @@ let only_keys what required optional members =
     members;
   List.iter (fun name -> ignore (member what name members)) required
 
-let rec certificate n json =
+(* [d] is the codimension of h, and [n] the dimension of g. *)
+let rec certificate n d json =
   let what = "the certificate" in
   let members = keys what json in
   (match member what "format" members, member what "version" members with
@@ -100,9 +102,9 @@ let rec certificate n json =
       | _ -> malformed "interval does not have two ends"
     in
     let eta = polynomials "eta" n degree (get "eta") and phi = polynomials "phi" n degree (get "phi") in
-    let also = Option.map (certificate n) (List.assoc_opt "also" fields) in
+    let also = Option.map (certificate n d) (List.assoc_opt "also" fields) in
     (match also with
-     | None | Some (Other _) -> ()
+     | None | Some (Commutant _ | Dominance _) -> ()
      | Some _ -> malformed "also is neither of kind commutant nor dominance");
     Witness ({ minpoly; low; high; eta; phi }, also)
   | `String "full" ->
@@ -113,5 +115,16 @@ let rec certificate n json =
     let eta = numbers "eta" (get "eta") in
     if List.length eta <> n then raise (Propose.Impossible "eta has the wrong length");
     Full { form; elements; point = List.hd (sparse_rows [eta]) }
-  | `String (("commutant" | "dominance") as kind) -> Other kind
+  | `String "commutant" ->
+    only_keys what ["matrix"; "complement"; "cut"] [] fields;
+    let get name = member what name fields in
+    let matrix_ = matrix "matrix" (Some d) d (get "matrix") in
+    let complement = matrix "complement" (Some d) n (get "complement") in
+    Commutant { matrix = matrix_; complement; cut = number "cut" (get "cut") }
+  | `String "dominance" ->
+    only_keys what ["element"; "cut"; "eps"] [] fields;
+    let get name = member what name fields in
+    let element = numbers "element" (get "element") in
+    if List.length element <> n then raise (Propose.Impossible "element has the wrong length");
+    Dominance { element; cut = number "cut" (get "cut"); eps = number "eps" (get "eps") }
   | _ -> malformed "%s: an unknown kind" what

@@ -6,27 +6,35 @@ type outcome =
   | Malformed of string
   | Unsupported of string
 
+let require holds what = if not holds then raise (Propose.Impossible what)
+
+(* The certificates to check, of which the first gives the verdict. *)
+let rec proposed pair (t : Checker.coordinates_hint) certificate =
+  match certificate with
+  | Certificates.Trivial -> [Checker.TrivialCertificate]
+  | Certificates.Full f -> [Checker.FullCertificate (f, Propose.full_hint pair t f)]
+  | Certificates.Witness (w, also) ->
+    Checker.WitnessCertificate w :: (match also with None -> [] | Some c -> proposed pair t c)
+  | Certificates.Commutant { matrix; complement; cut } ->
+    let right = Halfplane.(count (characteristic (Array.of_list (List.map Array.of_list matrix))) cut) in
+    require (0 < right && right < t.codimension) "the eigenvalues are on one side of the cut";
+    [Checker.CommutantCertificate (Propose.commutant t matrix complement)]
+  | Certificates.Dominance _ -> Reader.unsupported "the kind dominance"
+
 let run pair_json certificate_json =
   try
     let pair = Reader.pair pair_json in
-    let given = Certificates.certificate pair.Checker.dimension certificate_json in
     let coordinates = Propose.coordinates pair in
-    let certificate, note =
-      match given with
-      | Certificates.Trivial -> (Checker.TrivialCertificate, "")
-      | Certificates.Full f -> (Checker.FullCertificate (f, Propose.full_hint pair coordinates f), "")
-      | Certificates.Witness (w, also) ->
-        (Checker.WitnessCertificate w, if also = None then "" else ", not checked: also")
-      | Certificates.Other kind -> Reader.unsupported "the kind %s" kind
-    in
-    if Checker.check Propose.oracle pair coordinates certificate then
-      Accepted ((if Checker.claims_full certificate then "full" else "not full") ^ note)
+    let given = Certificates.certificate pair.Checker.dimension coordinates.Checker.codimension certificate_json in
+    let all = proposed pair coordinates given in
+    if List.for_all (Checker.check Propose.oracle pair coordinates) all then
+      Accepted (if Checker.claims_full (List.hd all) then "full" else "not full")
     else Rejected "a check fails"
   with
   | Reader.Malformed s -> Malformed s
   | Reader.Unsupported s -> Unsupported s
   | Propose.Impossible s -> Rejected s
-  | Stack_overflow -> Unsupported "too large"
+  | Halfplane.Symmetric -> Rejected "two eigenvalues are symmetric about the cut"
 
 let sentence = function
   | Accepted s -> "accepted: " ^ s

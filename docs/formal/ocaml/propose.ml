@@ -197,3 +197,45 @@ let full_hint (p : pair_data) (t : coordinates_hint) (f : full_data) : full_hint
   if Array.length reduced < d then impossible "eta and its images do not span";
   let left_inverse, rank_factor = integral multipliers in
   { upper; upper_inverse; upper_factor; pivots; pivots_factor; left_inverse; rank_factor }
+
+let product (a : Q.t array array) (b : Q.t array array) =
+  let columns = if b = [||] then 0 else Array.length b.(0) in
+  Array.map
+    (fun row ->
+      let out = Array.make columns Q.zero in
+      Array.iteri
+        (fun i x -> if Q.sign x <> 0 then Array.iteri (fun j y -> out.(j) <- Q.add out.(j) (Q.mul x y)) b.(i))
+        row;
+      out)
+    a
+
+let transpose a = if a = [||] then a else Array.init (Array.length a.(0)) (fun j -> Array.map (fun row -> row.(j)) a)
+
+(* The operator in the coordinates of V, from its matrix in the basis of complement; positions and the relation. *)
+let commutant (t : coordinates_hint) matrix complement : commutant =
+  let d = t.codimension in
+  let array rows = Array.of_list (List.map Array.of_list rows) in
+  if d = 0 then impossible "g/h = 0";
+  let basis = product (array complement) (of_matrix d t.quotient) in
+  let reduced, inverse, _ = echelon basis d in
+  if Array.length reduced < d then impossible "h and complement are not a basis";
+  let operator, factor = integral (product (product inverse (transpose (array matrix))) basis) in
+  let a = of_matrix d operator in
+  ignore factor;
+  let square = product a a in
+  let one i j = if i = j then Q.one else Q.zero in
+  let positions = List.concat (List.init d (fun i -> List.init d (fun j -> (i, j)))) in
+  let corner = a.(0).(0) in
+  match List.find_opt (fun (i, j) -> not (Q.equal a.(i).(j) (Q.mul corner (one i j)))) positions with
+  | None -> impossible "the matrix is a multiple of the identity"
+  | Some (k, l) ->
+    (* T^2 = x T + y at the positions (0, 0) and (k, l) *)
+    let det = Q.sub a.(k).(l) (Q.mul corner (one k l)) in
+    let x = Q.div (Q.sub square.(k).(l) (Q.mul square.(0).(0) (one k l))) det in
+    let y = Q.sub square.(0).(0) (Q.mul x corner) in
+    let holds (i, j) = Q.equal square.(i).(j) (Q.add (Q.mul x a.(i).(j)) (Q.mul y (one i j))) in
+    (match List.find_opt (fun p -> not (holds p)) positions with
+     | Some p -> { operator; positions = [(0, 0); (k, l); p]; relation = ((Z.zero, Z.zero), Z.zero) }
+     | None ->
+       let s, numbers = cleared [x; y] in
+       { operator; positions = [(0, 0); (k, l)]; relation = ((s, List.nth numbers 0), List.nth numbers 1) })

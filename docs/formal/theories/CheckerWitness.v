@@ -6,7 +6,7 @@
     with s p = f g, and [bezout f p] proposes u, v and c != 0 with u f + v p = c. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra zify.ssrZ.
-From Liehom Require Import Sound Pair Certificate CheckerAlgebra CheckerPair.
+From Liehom Require Import Sound Pair Certificate WitnessSound CheckerAlgebra CheckerPair.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
 Import Order.Theory GRing.Theory Num.Theory. Local Open Scope ring_scope.
 
@@ -153,18 +153,6 @@ rewrite !numD !numM mulrDl mulfK ?mulf_neq0 ?lt0r_neq0 //; congr (_ + _).
 by rewrite invfM mulrACA mulrA.
 Qed.
 
-(** A witness over the field itself. *)
-Lemma witness_not_full (F : fieldType) n k (c : 'I_n -> 'M[F]_n) (h : 'M[F]_(k, n)) (e : 'rV[F]_n) (f : 'cV[F]_n) :
-  witness_certificate c h e f -> ~ full_pair c h.
-Proof.
-move=> [eh f0 hf ef bf] full; case/eqP: f0; rewrite -[f]mul1mx; apply/row_matrixP => i; rewrite row_mul row0.
-have [u [z [t [uh zh ->]]]] := full e eh (row i 1%:M).
-have in_h y : (y <= h)%MS -> y *m f = 0 by case/submxP => w ->; rewrite -mulmxA hf mulmx0.
-rewrite !mulmxDl in_h // add0r -scalemxAl ef scaler0 addr0.
-case/submxP: zh => w ->; rewrite /bracket ad_h mulmx_sumr mulmx_suml big1 // => p _.
-by rewrite -scalemxAr -scalemxAl -/(bracket _ _ _) bf scaler0.
-Qed.
-
 Section Sound.
 Variables (R : rcfType) (o : oracle) (p : pair_data) (t : coordinates_hint) (w : witness).
 Local Notation num := (num R).
@@ -216,7 +204,7 @@ case/and3P: cc => sp _ _.
 case/and5P => /root_exists [x fx] _ bphi phi0 /and4P [eta0 hphi ephi bphi'].
 pose e := combination x n (eta w); pose f := (combination x n (phi w))^T.
 have entry0 (a : 'M[R]_1) : a 0 0 = 0 -> a = 0 by move=> a0; rewrite [a]mx11_scalar a0 raddf0.
-apply: (@witness_not_full _ _ _ _ _ e f); split.
+apply: (@witness_pair_sound _ _ _ _ _ e f); split.
 - apply/negP => /submxP [u eu]; case/hasP: eta0 => j; rewrite mem_iota /= => jd /(coprime_value fx) /eqP; apply.
   rewrite -(combinationE x _ (Ordinal jd)) (combination_mul _ _ _ (size_Q sp)) -/e -/(Q_of R p t).
   by rewrite eu -mulmxA GQ mulmx0 mxE.

@@ -1,0 +1,48 @@
+"""The checker extracted from the proofs agrees with the checker of the library; docs/formal/check.sh builds it."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+
+from tests.formal import agreement
+
+pytestmark = pytest.mark.skipif(agreement.program() is None, reason="docs/formal/check.sh has not built liehom-check")
+
+
+def assert_agreement(cases: list[agreement.Case]) -> None:
+    seen, different = agreement.compared(cases)
+    assert not different, different[0]
+    assert seen.total() == len(cases)
+
+
+def test_catalogue_of_small_dimensions() -> None:
+    assert_agreement(list(agreement.catalogue(4)))
+
+
+def test_mutants_of_small_pairs() -> None:
+    cases = list(agreement.mutants(400, 1, limit=5))
+    outcomes = set(agreement.compared(cases)[0])
+    assert {"accepted: full / accepted: full", "rejected / rejected"} <= outcomes
+    assert_agreement(cases)
+
+
+def test_wrong_claims_are_rejected() -> None:
+    """The outcome depends on the numbers: a form that is not invariant, a covector that does not vanish on h."""
+    full = {"format": "liehom-certificate", "version": 1, "kind": "full", "eta": ["1", "0", "0"],
+            "elements": [["0", "0", "1"]], "form": [[0, 0, "1"], [1, 1, "1"]]}  # fmt: skip
+    sphere = {"dimension": 3, "structure_constants": [[0, 1, 2, "1"], [1, 2, 0, "1"], [0, 2, 1, "-1"]],
+              "subalgebra": [["0", "0", "1"]]}  # fmt: skip
+    wrong_form, wrong_pair = copy.deepcopy(full), copy.deepcopy(sphere)
+    wrong_form["form"][0][2] = "2"
+    wrong_pair["structure_constants"][2][3] = "1"
+    cases = [("right", sphere, full), ("form", sphere, wrong_form), ("pair", wrong_pair, full)]
+    outcomes = [outcome.split(":")[0] for outcome in agreement.of_program(cases)]
+    assert outcomes == ["accepted", "rejected", "rejected"]
+
+
+@pytest.mark.slow
+def test_whole_catalogue_and_twenty_thousand_mutants() -> None:
+    assert_agreement(list(agreement.catalogue()))
+    assert_agreement(list(agreement.mutants(20000, 0)))
