@@ -6,6 +6,7 @@ docs/theory/fullness.md.
 """
 
 from liehom.atlas.families.affine import affine_pairs as affine_pairs
+from liehom.atlas.families.isotropy_irreducible import isotropy_irreducible_pairs as isotropy_irreducible_pairs
 from liehom.atlas.families.symmetric import group_pairs as group_pairs
 from liehom.atlas.families.symmetric import symmetric_pairs as symmetric_pairs
 from liehom.atlas.families.symmetric import symmetric_rank as symmetric_rank
