@@ -22,7 +22,7 @@ from liehom.algebra.roots.dynkin import isomorphisms
 from liehom.algebra.roots.real_form import RealForm
 from liehom.algebra.roots.root_system import Root
 from liehom.algebra.roots.vogan import gram_to_cartan, simple_system
-from liehom.algebra.structure.direct_sum_decomposition import direct_sum_decomposition
+from liehom.algebra.structure.identification import SimplePart, simple_parts
 from liehom.errors import InputError, InternalError
 from liehom.scalars import ExactMatrix, Scalar, as_exact
 
@@ -75,22 +75,22 @@ def restricted_root_spaces(algebra: LieAlgebra) -> RestrictedRootSpaces:
             "only a semisimple algebra has restricted roots and parabolic subalgebras; take the Levi factor of "
             "levi_decomposition()"
         )
-    ideals = direct_sum_decomposition(algebra)
+    ideals = simple_parts(algebra)
     if len(ideals) == 1:
-        return _of_simple(algebra)
+        return _of_simple(algebra, ideals[0])
     field, n = algebra.field, algebra.dimension
-    found = [(as_exact(ideal.basis), restricted_root_spaces(ideal.as_algebra())) for ideal in ideals]
-    rank, start = sum(part.rank for _, part in found), 0
+    found = [(as_exact(part.ideal.basis), _of_simple(part.ideal.as_algebra(), part)) for part in ideals]
+    rank, start = sum(own.rank for _, own in found), 0
     spaces = {}
-    for rows, part in found:
-        for root, space in part.spaces.items():
-            spaces[(0,) * start + root + (0,) * (rank - start - part.rank)] = space @ rows
-        start += part.rank
-    torus = field.stack_rows([part.torus @ rows for rows, part in found], n)
-    return RestrictedRootSpaces(torus, field.stack_rows([part.centralizer @ rows for rows, part in found], n), spaces)
+    for rows, own in found:
+        for root, space in own.spaces.items():
+            spaces[(0,) * start + root + (0,) * (rank - start - own.rank)] = space @ rows
+        start += own.rank
+    torus = field.stack_rows([own.torus @ rows for rows, own in found], n)
+    return RestrictedRootSpaces(torus, field.stack_rows([own.centralizer @ rows for rows, own in found], n), spaces)
 
 
-def _of_simple(algebra: LieAlgebra) -> RestrictedRootSpaces:
+def _of_simple(algebra: LieAlgebra, part: SimplePart) -> RestrictedRootSpaces:
     """The decomposition of an algebra that is simple over its field."""
     torus = maximal_split_torus(algebra)
     if not torus.nrows:
@@ -106,7 +106,7 @@ def _of_simple(algebra: LieAlgebra) -> RestrictedRootSpaces:
     cartan = torus.field.matrix([[2 * x / inner[j][j] for j, x in enumerate(row)] for row in inner])
     doubled = [tuple(2 * x for x in values[i]) for i in simple]
     multiplicities = [(sizes[i], weights[v].nrows if v in weights else 0) for i, v in zip(simple, doubled, strict=True)]
-    order = _numbering(algebra.real_forms(), _integers(cartan), multiplicities)
+    order = _numbering(part.real_forms(), _integers(cartan), multiplicities)
     coefficients = torus.field.matrix(values) @ chosen.select(rows=order).inverse()
     roots = [tuple(row) for row in _integers(coefficients)]
     return RestrictedRootSpaces(

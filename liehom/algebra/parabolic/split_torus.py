@@ -59,7 +59,10 @@ def maximal_split_torus(algebra: LieAlgebra) -> ExactMatrix:
     """
     field, n = exact_field(algebra, "split tori"), algebra.dimension
     killing = as_exact(algebra.killing_form())
-    torus = field.zeros(0, n)
+    cartan = as_exact(cartan_subalgebra(algebra).basis)
+    rows = [cartan.select(rows=[i]) for i in range(cartan.nrows)]
+    split = [x for x in rows if (x @ killing @ x.T).trace() > 0 and eigenvalues(algebra, x) is not None]
+    torus = short_basis(field.stack_rows(split, n))  # elements of a Cartan subalgebra commute
     while True:
         centralizer = as_exact(algebra.centralizer(torus).basis) if torus.nrows else field.identity(n)
         rest = centralizer
@@ -137,7 +140,7 @@ def _split_element(
 ) -> ExactMatrix | None:
     """A row of `rest` that is diagonalizable over the field, or a row basis of several that commute, or None."""
     projection = _projection(killing, torus)
-    for x in _short_elements(algebra, centralizer, torus, rest):
+    for x in _short_elements(centralizer, rest):
         in_time()
         y = x if projection is None else x - x @ projection
         if (y @ killing @ y.T).trace() > 0 and eigenvalues(algebra, y) is not None:
@@ -163,13 +166,8 @@ def _projection(killing: ExactMatrix, torus: ExactMatrix) -> ExactMatrix | None:
     return dual @ (torus @ dual).inverse() @ torus
 
 
-def _short_elements(
-    algebra: LieAlgebra, centralizer: ExactMatrix, torus: ExactMatrix, rest: ExactMatrix
-) -> Iterator[ExactMatrix]:
-    """Rows of the centralizer that may be split: first of a Cartan subalgebra, then a basis, then sums of two."""
-    if not torus.nrows:
-        cartan = as_exact(cartan_subalgebra(algebra).basis)
-        yield from (cartan.select(rows=[i]) for i in range(cartan.nrows))
+def _short_elements(centralizer: ExactMatrix, rest: ExactMatrix) -> Iterator[ExactMatrix]:
+    """Rows of the centralizer that may be split: basis elements, then sums of two."""
     rows = [basis.select(rows=[i]) for basis in (centralizer.row_space(), rest) for i in range(basis.nrows)]
     yield from rows
     pairs = [(rows[i], rows[j]) for j in range(len(rows)) for i in range(j)]
