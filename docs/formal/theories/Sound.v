@@ -71,13 +71,12 @@ move/mxrankS; have := f x x0; rewrite /row_full => /eqP -> h.
 by move: Wd; rewrite ltnNge h.
 Qed.
 
-(** Kind dominance, its linear algebra: W is invariant under all rho i except those in C, and dim W + #C < d. *)
-Lemma dominance_sound m (W : 'M[F]_(m, d)) (C : {set 'I_k}) :
-  W != 0 -> (forall i, i \notin C -> (W *m rho i <= W)%MS) -> (\rank W + #|C| < d)%N -> ~ full.
+(** Kind dominance, its linear algebra: W is invariant under all rho i except those in C, and dim W + #C < d. Then every
+    x in W is a witness. *)
+Lemma dominance_at m (W : 'M[F]_(m, d)) (C : {set 'I_k}) (x : 'rV[F]_d) :
+  (x <= W)%MS -> (forall i, i \notin C -> (W *m rho i <= W)%MS) -> (\rank W + #|C| < d)%N -> ~~ row_full (span_at x).
 Proof.
-move=> W0 inv lt f.
-have [x xW x0] := nonzero_row W0.
-set U := (W + \sum_(i in C) <<x *m rho i>>)%MS.
+move=> xW inv lt; set U := (W + \sum_(i in C) <<x *m rho i>>)%MS.
 have sU : (span_at x <= U)%MS.
   apply: span_sub; first exact: submx_trans xW (addsmxSl _ _).
   move=> i; case iC: (i \in C).
@@ -91,7 +90,14 @@ have rU : (\rank U <= \rank W + #|C|)%N.
   - by rewrite mxrank0.
   - move=> A a B b Aa Bb; apply: leq_trans (mxrank_adds_leqif _ _) _; exact: leq_add.
   - by move=> i _; rewrite genmxE; apply: rank_leq_row.
-have := f x x0; rewrite /row_full => /eqP r; have := mxrankS sU; rewrite r => dU.
+apply/negP; rewrite /row_full => /eqP r; have := mxrankS sU; rewrite r => dU.
 by move: (leq_trans dU rU); rewrite leqNgt lt.
+Qed.
+
+Lemma dominance_sound m (W : 'M[F]_(m, d)) (C : {set 'I_k}) :
+  W != 0 -> (forall i, i \notin C -> (W *m rho i <= W)%MS) -> (\rank W + #|C| < d)%N -> ~ full.
+Proof.
+move=> W0 inv lt f; have [x xW x0] := nonzero_row W0.
+by case/negP: (dominance_at xW inv lt); apply: f.
 Qed.
 End Sound.
