@@ -167,3 +167,123 @@ rewrite /f mulmx_sumr; apply: summx_sub => g gj; rewrite -scalemxAr; have [lt | 
 by rewrite S_low ?scale0r ?sub0mx // ltn_neqAle ge andbT eq_sym.
 Qed.
 End Top.
+
+(** The terms of s that satisfy a come first. *)
+Definition first (T : Type) (a : pred T) (s : seq T) : seq T := filter a s ++ filter (predC a) s.
+
+Lemma first_prod (F : fieldType) (a : pred F) (s : seq F) :
+  \prod_(z <- first a s) ('X - z%:P) = \prod_(z <- s) ('X - z%:P) :> {poly F}.
+Proof. by apply: perm_big; rewrite /first perm_filterC. Qed.
+
+Lemma nth_first (T : eqType) (x0 : T) (a : pred T) (s : seq T) (i : nat) : (i < size s)%N ->
+  nth x0 (first a s) i \in s /\ a (nth x0 (first a s) i) = (i < count a s)%N.
+Proof.
+move=> lt; rewrite /first nth_cat size_filter; case: ltnP => ic.
+  have : nth x0 (filter a s) i \in filter a s by rewrite mem_nth // size_filter.
+  by rewrite mem_filter => /andP [-> ->].
+have : nth x0 (filter (predC a) s) (i - count a s) \in filter (predC a) s.
+  by rewrite mem_nth // size_filter ltn_subLR // count_predC.
+by rewrite mem_filter => /andP [/negbTE -> ->].
+Qed.
+
+Lemma size_eigenvalues (F : fieldType) n (A : 'M[F]_n) (s : seq F) :
+  char_poly A = \prod_(z <- s) ('X - z%:P) -> size s = n.
+Proof. by move=> e; have := size_char_poly A; rewrite e size_prod_XsubC => -[]. Qed.
+
+(** Theorem 4, soundness, on V. s and t are the eigenvalues of A and of M, with multiplicity. *)
+Theorem dominance_matrices_sound (R : rcfType) k d (rho : 'I_k -> 'M[R]_d) (A : 'M[R]_d) l (B : 'I_l -> 'M[R]_d)
+    (M : 'M[R]_l) (cut eps : R) (s t : seq R[i]) :
+  0 < eps ->
+  (forall q, exists u : 'I_l -> R, rho q = \sum_j u j *: B j) ->
+  (forall j, B j *m A - A *m B j = \sum_g M j g *: B g) ->
+  char_poly (map_mx (ComplexField.real_complex_rmorphism R) A) = \prod_(z <- s) ('X - z%:P) ->
+  char_poly (map_mx (ComplexField.real_complex_rmorphism R) M) = \prod_(z <- t) ('X - z%:P) ->
+  (forall z, z \in s -> ~~ (cut - eps <= complex.Re z <= cut)) ->
+  let top := count (fun z => (cut < complex.Re z)%R) s in
+  let lowering := count (fun z => (complex.Re z <= - eps)%R) t in
+  (0 < top)%N -> (top + lowering < d)%N -> ~ full rho.
+Proof.
+move=> eps0 rhoB adB es et gap top lowering top0 lt full_rho; set toC := ComplexField.real_complex_rmorphism R in es et.
+pose a z := (cut < complex.Re z)%R; pose b z := (- eps < complex.Re z)%R.
+have sz_s := size_eigenvalues es; have sz_t := size_eigenvalues et.
+have [U [T [Uu UA T_tri]]] : exists U T, [/\ U \in unitmx, U *m map_mx toC A = T *m U & triangular T (first a s)].
+  by apply: triangular_form; rewrite first_prod.
+have [Z [S [Zu ZM S_tri]]] : exists Z S, [/\ Z \in unitmx, Z *m map_mx toC M = S *m Z & triangular S (first b t)].
+  by apply: triangular_form; rewrite first_prod.
+have s_top (i : 'I_d) : (i < top)%N -> cut < complex.Re (first a s)`_i.
+  move=> ip; have [|_ e] := @nth_first _ 0 a s i; first by rewrite sz_s.
+  by rewrite -[cut < _]/(a _) e.
+have s_low (i : 'I_d) : (top <= i)%N -> complex.Re (first a s)`_i < cut - eps.
+  move=> pi; have [|mem e] := @nth_first _ 0 a s i; first by rewrite sz_s.
+  have le : complex.Re (first a s)`_i <= cut by rewrite leNgt -[cut < _]/(a _) e -leqNgt.
+  by have := gap _ mem; rewrite le andbT -ltNge.
+have t_high (j : 'I_l) : (j < count b t)%N -> - eps < complex.Re (first b t)`_j.
+  move=> jr; have [|_ e] := @nth_first _ 0 b t j; first by rewrite sz_t.
+  by rewrite -[_ < _]/(b _) e.
+have s_top' (i : 'I_d) : (i < top)%N -> cut - eps <= complex.Re (first a s)`_i.
+  by move/s_top => c; rewrite ltW // (lt_trans _ c) // ltr_subl_addr ltr_addl.
+have pd : (top <= d)%N by rewrite -sz_s count_size.
+have [|x x0 xW] := top_real Uu UA T_tri s_low s_top' (erefl (map_mx toC A)); first by rewrite top0 pd.
+pose B' j := \sum_g Z j g *: map_mx toC (B g).
+have comb (N : 'M_l) i : \sum_g N i g *: B' g = \sum_g (N *m Z) i g *: map_mx toC (B g).
+  rewrite /B'; under eq_bigr do rewrite scaler_sumr; rewrite exchange_big; apply: eq_bigr => g _.
+  by rewrite mxE scaler_suml; apply: eq_bigr => e _; rewrite scalerA.
+have combB i : map_mx toC (B i) = \sum_g (invmx Z) i g *: B' g.
+  rewrite comb mulVmx // (bigD1 i) //= big1 ?addr0 => [|g gi]; first by rewrite mxE eqxx scale1r.
+  by rewrite mxE eq_sym (negPf gi) scale0r.
+have map_comb (u : 'I_l -> R) : map_mx toC (\sum_j u j *: B j) = \sum_j toC (u j) *: map_mx toC (B j).
+  by rewrite (raddf_sum (map_mx_additive toC _ _)); apply: eq_bigr => j _; rewrite /= map_mxZ.
+have adB' j : B' j *m map_mx toC A - map_mx toC A *m B' j = \sum_g S j g *: B' g.
+  rewrite comb -ZM /B' mulmx_suml mulmx_sumr -sumrB.
+  rewrite (eq_bigr (fun g => \sum_e (Z j g * toC (M g e)) *: map_mx toC (B e))) => [|g _]; last first.
+    rewrite -scalemxAl -scalemxAr -scalerBr -!map_mxM -map_mxB adB map_comb scaler_sumr.
+    by apply: eq_bigr => e _; rewrite scalerA.
+  rewrite exchange_big; apply: eq_bigr => g _; rewrite mxE scaler_suml; apply: eq_bigr => e _.
+  by rewrite mxE.
+have inv := top_invariant Uu UA T_tri s_low S_tri adB'.
+pose C := [set j : 'I_l | (count b t <= j)%N].
+have card_C : (#|C| = lowering)%N.
+  rewrite cardsE -sum1_card; transitivity (\sum_(count b t <= j < l) 1)%N; first by rewrite big_geq_mkord.
+  rewrite sum_nat_const_nat muln1 -sz_t -(count_predC b t) addKn.
+  by apply: eq_count => z /=; rewrite /b -leNgt.
+have bad : ~~ row_full (span_at B' (map_mx toC x)).
+  apply: (@dominance_at _ _ _ _ _ (top_mx top U) C) => //.
+    move=> j; rewrite inE -ltnNge => jr; apply: (inv (count b t)) => // i j' ip jr'.
+    have ReD (x1 x2 : R[i]) : complex.Re (x1 + x2) = complex.Re x1 + complex.Re x2 by case: x1 x2 => ? ? [? ?].
+    by rewrite ReD; apply: ltW; apply: ltr_add; [apply: s_top | apply: t_high].
+  by rewrite rank_top // card_C.
+case/negP: bad; rewrite -sub1mx.
+have : row_full (span_at (fun q => map_mx toC (rho q)) (map_mx toC x)) by apply: map_span_full (full_rho x x0).
+rewrite -sub1mx => /submx_trans; apply; apply: span_sub => [|q]; first exact: addsmxSl.
+have [u ->] := rhoB q; apply/span_atP; exists (fun g => \sum_j toC (u j) * (invmx Z) j g), 0; rewrite scale0r addr0.
+congr (_ *m _); rewrite map_comb [RHS](eq_bigr (fun g => \sum_j (toC (u j) * (invmx Z) j g) *: B' g)) => [|g _]; last first.
+  by rewrite scaler_suml.
+rewrite [RHS]exchange_big; apply: eq_bigr => j _; rewrite combB scaler_sumr.
+by apply: eq_bigr => g _; rewrite scalerA.
+Qed.
+
+(** Kind dominance for a pair over F, over every real closed R: X in h, and a family B that spans rho(h). *)
+Theorem dominance_pair_sound (F : realFieldType) (R : rcfType) (f : {rmorphism F -> R}) n k d (c : 'I_n -> 'M[F]_n)
+    (h : 'M[F]_(k, n)) (Q : 'M[F]_(n, d)) (E : 'M[F]_(d, n)) (X : 'rV[F]_n) (a : F) l (B : 'I_l -> 'M[F]_d) (M : 'M[F]_l)
+    (cut eps : F) (s t : seq R[i]) :
+  increasing f -> valid_pair c h Q E -> 0 < eps ->
+  (forall q, exists u : 'I_l -> F, rho c h Q E q = \sum_j u j *: B j) ->
+  (forall j, B j *m isotropy c Q E X - isotropy c Q E X *m B j = \sum_g M j g *: B g) ->
+  char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f (isotropy c Q E X - a%:M))) =
+    \prod_(z <- s) ('X - z%:P) ->
+  char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f M)) = \prod_(z <- t) ('X - z%:P) ->
+  (forall z, z \in s -> ~~ (f cut - f eps <= complex.Re z <= f cut)) ->
+  let top := count (fun z => (f cut < complex.Re z)%R) s in
+  let lowering := count (fun z => (complex.Re z <= - f eps)%R) t in
+  (0 < top)%N -> (top + lowering < d)%N -> ~ full_pair (map_pair f c) (map_mx f h).
+Proof.
+move=> inc ok eps0 rhoB adB es et gap top lowering top0 lt; have [clR coR _] := map_valid_pair f ok.
+move/(full_pairP clR coR).
+have map_comb (u : 'I_l -> F) : map_mx f (\sum_j u j *: B j) = \sum_j f (u j) *: map_mx f (B j).
+  by rewrite (raddf_sum (map_mx_additive f _ _)); apply: eq_bigr => j _; rewrite /= map_mxZ.
+apply: (dominance_matrices_sound (inc _ eps0) _ _ es et gap top0 lt) => [q | j].
+  have [u eu] := rhoB q; exists (fun j => f (u j)).
+  by rewrite -map_rho eu map_comb.
+rewrite -!map_mxM -map_mxB mulmxBr mulmxBl scalar_mxC opprB addrA subrK adB.
+by rewrite map_comb; apply: eq_bigr => g _; rewrite mxE.
+Qed.
