@@ -109,7 +109,9 @@ def highest_weight_module(
     CatalogError
         If there is no such type.
 
-    Notes ----- V(lambda) exists, and a vector of a weight other than lambda is zero in it if all e_j annihilate it. The
+    Notes
+    -----
+    V(lambda) exists, and a vector of a weight other than lambda is zero in it if all e_j annihilate it. The
     recursion of `admissible_lattice` therefore computes the matrices of e_i and f_i in V(lambda), and the brackets of
     the Chevalley basis determine those of the other elements. The matrices are integer because the basis spans the
     lattice that all e_i^k / k! and f_i^k / k! preserve. A representation has dim g dense matrices, 0.13 GB for the

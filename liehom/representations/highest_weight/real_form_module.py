@@ -88,7 +88,9 @@ def real_module_type(form: RealForm | str, weight: Sequence[int]) -> str:
     CatalogError
         If there is no such real form.
 
-    Notes ----- Let lambda' be the image of lambda under the automorphism of the Vogan diagram. The commutant is 'C' if
+    Notes
+    -----
+    Let lambda' be the image of lambda under the automorphism of the Vogan diagram. The commutant is 'C' if
     lambda' differs from -w_0(lambda). Otherwise lambda - w_0(lambda) = sum_i n_i alpha_i, and with n the sum of n_i
     over the nodes that are not painted the commutant is 'R' for even n and 'H' for odd n.
 
