@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from liehom.atlas.entry import Entry
 from liehom.atlas.families.affine import affine_pairs
+from liehom.atlas.families.isotropy_irreducible import isotropy_irreducible_pairs
 from liehom.atlas.families.low_dimensional import low_dimensional_pairs
 from liehom.atlas.families.maximal import maximal_pairs
 from liehom.atlas.families.parabolic import parabolic_pairs
@@ -19,6 +20,7 @@ from liehom.parallel import ExecutorLike
 FAMILIES: dict[str, Callable[[], Iterable[Recipe]]] = {
     "symmetric": symmetric_pairs,
     "group": group_pairs,
+    "isotropy-irreducible": isotropy_irreducible_pairs,
     "parabolic": parabolic_pairs,
     "maximal": maximal_pairs,
     "affine": affine_pairs,

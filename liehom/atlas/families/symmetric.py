@@ -5,6 +5,9 @@ dimension of a Cartan subspace of q, which is a maximal abelian subspace of semi
 dimension. It is also the rank of the compact symmetric space u / u^s, that is the real rank of the real form with the
 Cartan involution s. If g is complex, s is complex linear and u^s corresponds to a real form of real rank r, the rank is
 2 r; if s is the conjugation by a real form, it is the rank of g as a complex algebra.
+
+The range condition [h, eta] + R eta = q holds for generic eta if and only if the rank is 1; see
+docs/theory/fullness.md, section 8.
 """
 
 from __future__ import annotations
@@ -39,7 +42,7 @@ TRIES = 20
 """Random elements of q that `symmetric_rank` tries."""
 
 
-def symmetric_pairs(max_rank: int = 4, max_rank_of_rank_one: int = 6) -> Iterator[Recipe]:
+def symmetric_pairs(max_rank: int = 4, max_rank_of_rank_one: int = 8) -> Iterator[Recipe]:
     """All symmetric pairs of simple real algebras of complex rank at most 4, and those of rank one beyond.
 
     Parameters
@@ -63,7 +66,7 @@ def symmetric_pairs(max_rank: int = 4, max_rank_of_rank_one: int = 6) -> Iterato
     Notes
     -----
     The pairs are those of M. Berger, Les espaces symetriques noncompacts (1957), for these algebras. There are 301 of
-    rank at most 4, one for each conjugacy class of involutions, and 74 of rank one for algebras of rank 5 and 6. The
+    rank at most 4, one for each conjugacy class of involutions, and 172 of rank one for algebras of rank 5 to 8. The
     pairs (s + s, s) of a simple algebra s, whose algebra is not simple, are in `group_pairs`.
 
     Examples

@@ -4,6 +4,7 @@ import pickle
 import re
 from collections import Counter
 
+import numpy as np
 import pytest
 
 import liehom as lh
@@ -23,10 +24,10 @@ SAMPLE = ["su(2,2)/sl(2,C)+R", "so(6,2)/u(3,1)", "sp(8,R)/sp(4,C)", "sp(2,2)/gl(
 
 
 def test_numbers_of_pairs_and_names():
-    assert len(RECIPES) == 375
+    assert len(RECIPES) == 473
     assert sum(recipe.make is symmetric_pair for recipe in RECIPES.values()) == 301
     assert len(SMALL) == len(list(symmetric_pairs(2, 0))) == 41
-    assert Counter(recipe.known["rank"] for recipe in RECIPES.values()) == {1: 142, 2: 89, 3: 61, 4: 73, 6: 5, 8: 5}
+    assert Counter(recipe.known["rank"] for recipe in RECIPES.values()) == {1: 240, 2: 89, 3: 61, 4: 73, 6: 5, 8: 5}
     assert all(str(parse(name)) == name for name in RECIPES)
 
 
@@ -67,12 +68,22 @@ def _check(recipe):
         assert (kind.noncompact, kind.compact) == (positive, negative)
     assert recipe.known["riemannian"] == (positive == 0)
     assert symmetric_rank(pair) == recipe.known["rank"]
+    assert _satisfies_range_condition(pair) == (recipe.known["rank"] == 1)
     ideals, center = _ideals(bottom)
     inner = isotropy.as_algebra()
     assert inner.center().dimension == center
     assert inner.real_form() == join_real_forms(ideals)
     # the table of a constructed pair satisfies the Jacobi identity, and h is closed
     lh.Pair(lh.LieAlgebra(algebra.table), isotropy.basis)
+
+
+def _satisfies_range_condition(pair):
+    """Whether [h, eta] + R eta = q for a random eta, which is then so for generic eta."""
+    matrices = pair.isotropy_matrices()
+    eta = np.random.default_rng(1).integers(-9, 10, (pair.dimension, 1))
+    column = pair.field.matrix(eta.tolist())
+    rows = pair.field.stack_rows([column.T, *((m @ column).T for m in matrices)], pair.dimension)
+    return rows.rank() == pair.dimension
 
 
 def _signature(form):
