@@ -108,6 +108,7 @@ if TYPE_CHECKING:
     from liehom.budget import Limits as Limits
     from liehom.budget import current_limits as current_limits
     from liehom.budget import limits as limits
+    from liehom.catalog import full_pairs as full_pairs
     from liehom.catalog import pair as pair
     from liehom.correctors import MomentumMap as MomentumMap
     from liehom.correctors import OneExponential as OneExponential
@@ -293,7 +294,7 @@ _NAMES = {
         "strictly_upper_triangular su u upper_triangular"
     ),
     "liehom.budget": "Limits current_limits limits",
-    "liehom.catalog": "pair",
+    "liehom.catalog": "full_pairs pair",
     "liehom.correctors": (
         "MomentumMap OneExponential Step chi closed_form correction flow_series "
         "moving_frame_field order_condition step_series"

@@ -35,7 +35,7 @@ BELOW: dict[str, tuple[str, ...]] = {
     "correctors": ("homogeneous", "series"),
     "integrators": ("correctors", "parallel"),
     "instances": ("integrators",),
-    "catalog": ("homogeneous",),
+    "catalog": ("fullness",),
     "atlas": ("catalog", "fullness", "parallel"),
     "io": ("catalog", "fullness", "integrators"),
     "plotting": ("io",),

@@ -82,8 +82,8 @@ def iter_sweep(
     ...     print(number, entry)
     ...     if number == 1:
     ...         break
-    0 so(3)/so(2): full: h acts on g/h = R^2 as so(2), compact and transitive on the sphere; checked at one point
-    1 so(4)/so(3): full: h acts on g/h = R^3 as so(3), compact and transitive on the sphere; checked at one point
+    0 so(3)/so(2): full: S^2 = SO(3)/SO(2), where h acts on g/h = R^2 as so(2), ...
+    1 so(4)/so(3): full: S^3 = SO(4)/SO(3), where h acts on g/h = R^3 as so(3), ...
     """
     check_count("buffersize", buffersize, 1)
     records = _opened(store, seed, verify, facts)

@@ -8,13 +8,15 @@ commutative     field(c0,...,c_(n-1)): Q[t]/(t^n + ... + c0) on itself; diag(...
 triangular      upper(n), strict(n)
 from others     dual(X), tensor(X,Y), blocks(X,Y,...), copies(k,X), Sk(X), Lk(X); sym(n): so(n) on Sym(n)
 with scalars    X+R, X+u(1), X+sp(1), X+sl(1,Q(a,b)), X+spiral(a,b): scalars that commute with X, spiral(a,b) being
-                the one matrix a + bJ with J the complex structure
+                the one matrix a + bJ with J the complex structure, for fractions times their common denominator
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 
@@ -27,7 +29,7 @@ from liehom.algebra.matrices.named_matrices import (
     exceptional_matrices,
 )
 from liehom.budget import small_integer
-from liehom.catalog.names import Expression, Item, Sum, Term, terms
+from liehom.catalog.names import Expression, Item, Sum, Term, Value, terms
 from liehom.errors import CatalogError
 from liehom.typing import IntegerArray
 
@@ -146,14 +148,51 @@ def _scalars(first: Term, extra: Term, size: int) -> IntegerArray:
 
 def _spiral_scalar(extra: Term, unit: IntegerArray) -> IntegerArray:
     """The matrix a + b J, shape (1, N, N), for the complex structure J."""
-    growth, frequency = extra.integers()
+    growth, frequency = _cleared(extra)
     if not frequency:
         raise CatalogError(f"{extra} is a real multiple of the identity; write R")
     return growth * np.eye(unit.shape[1], dtype=np.int64) + frequency * unit
 
 
+def _cleared(term: Term) -> list[int]:
+    """The rational parameters of a term times their common denominator."""
+    values = [Fraction(x) for x in term.items if isinstance(x, int | Fraction)]
+    if len(values) != len(term.items):
+        raise CatalogError(
+            f"{term} is not a linear Lie algebra over the rationals; with a square root it is read in "
+            "names affine(X+spiral(sqrt(a),b)) only"
+        )
+    den = math.lcm(*(x.denominator for x in values))
+    return [int(x * den) for x in values]
+
+
+def irrational_spiral(tree: Expression) -> tuple[IntegerArray, IntegerArray, Value, Value] | None:
+    """The parts X, J, a, b of a name X+spiral(sqrt(a),b), or None for other names; X is empty in spiral(sqrt(a),b).
+
+    Examples
+    --------
+    >>> from liehom.catalog.names import parse_expression
+    >>> X, J, a, b = irrational_spiral(parse_expression("su(3)+spiral(sqrt(2),1)"))
+    >>> len(X), J.shape, a, b
+    (8, (6, 6), 2, 1)
+    """
+    *first, last = terms(tree)
+    if last.head != "spiral" or len(last.items) != 2 or len(first) > 1:
+        return None
+    root, frequency = last.items
+    if not isinstance(root, Term) or root.head != "sqrt" or len(root.items) != 1 or isinstance(frequency, Term | Sum):
+        return None
+    (square,) = root.items
+    if isinstance(square, Term | Sum) or square <= 0 or not frequency:
+        raise CatalogError(f"{last} needs a positive rational number in the square root and a frequency that is not 0")
+    if not first:
+        return np.zeros((0, 2, 2), dtype=np.int64), families.complex_structure(1), square, frequency
+    matrices = _term_matrices(first[0])
+    return matrices, _scalars(first[0], Term("u", (1,)), matrices.shape[1])[0], square, frequency
+
+
 def _expression(item: Item) -> Expression:
-    if isinstance(item, int):
+    if isinstance(item, int | Fraction):
         raise CatalogError(f"expected a linear Lie algebra, got the number {item}")
     return item
 
@@ -179,7 +218,7 @@ def _so_star(term: Term) -> IntegerArray:
 
 
 def _spiral(term: Term) -> IntegerArray:
-    values = term.integers()
+    values = _cleared(term)
     if len(values) < 2:
         raise CatalogError(f"spiral takes the growth and at least one frequency, got {term}")
     growth, *frequencies = values

@@ -3,8 +3,9 @@
     pair    =  sum '/' sum  |  term                 so(4)/so(3), sp(3)/sp(2)+sp(1), affine(g2), sym(4;3,1)
     sum     =  term { '+' term }
     term    =  head [ '(' items [ ';' values ] ')' ]  |  'A' digit ',' digits [ '(' values ')' ]
-    items   =  item { ',' item },   item = integer | sum
-    values  =  value { ',' value },  value = integer | integer '/' integer (a fraction only in bianchi and A4,2)
+    items   =  item { ',' item },   item = value | sum
+    values  =  value { ',' value }
+    value   =  integer  |  integer '/' integer         (a fraction only in spiral, sqrt, bianchi and A4,2)
     head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
             |  'P{' digits { ',' digits } '}'
 
@@ -41,7 +42,7 @@ class Term:
     Attributes
     ----------
     head : str
-    items : tuple of int, Term or Sum
+    items : tuple of int, Fraction, Term or Sum
     after : tuple of int or Fraction
         The values after the semicolon, or those of a name such as A4,2(1/2).
     """
@@ -87,7 +88,7 @@ class Quotient:
 
 Value: TypeAlias = int | Fraction
 Expression: TypeAlias = Term | Sum
-Item: TypeAlias = int | Term | Sum
+Item: TypeAlias = int | Fraction | Term | Sum
 Name: TypeAlias = Term | Sum | Quotient
 
 
@@ -233,9 +234,10 @@ class _Parser:
             return Term(head)
         self.depth += 1
         within("nesting", self.depth, "the parentheses of the name are nested {} deep")
-        items = [self.item()]
+        fractions = head in ("spiral", "sqrt")
+        items = [self.item(fractions)]
         while self.accept(","):
-            items.append(self.item())
+            items.append(self.item(fractions))
         after = self.values(fractions=head == "bianchi") if self.accept(";") else ()
         self.expect(")")
         self.depth -= 1
@@ -273,8 +275,8 @@ class _Parser:
         value = Fraction(top, bottom)
         return value if value.denominator > 1 else int(value)
 
-    def item(self) -> Item:
-        return self.integer() if self.peek().lstrip("-").isdigit() else self.sum()
+    def item(self, fractions: bool) -> Item:
+        return self.value(fractions) if self.peek().lstrip("-").isdigit() else self.sum()
 
     def integer(self) -> int:
         token = self.peek()

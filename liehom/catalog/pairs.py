@@ -13,21 +13,23 @@ G/H             the subalgebra in the table of `special`; otherwise H as diagona
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 
 import numpy as np
 
-from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.algebra import LieAlgebra, Subalgebra, abelian, direct_sum, semidirect_sum
 from liehom.algebra.matrices.named_matrices import linear_lie_algebra
 from liehom.catalog.algebras import affine_algebra, algebra_of
 from liehom.catalog.claims import CLAIMS
-from liehom.catalog.linear import is_linear, linear_matrices
+from liehom.catalog.linear import irrational_spiral, is_linear, linear_matrices
 from liehom.catalog.names import Expression, Quotient, Term, canonical, parse, terms, unknown
 from liehom.catalog.parabolics import parabolic_pair
 from liehom.catalog.special import parabolic_rows, special_rows
 from liehom.catalog.subalgebras import coordinates, placements, preserving
 from liehom.errors import CatalogError
 from liehom.representations import Pair
-from liehom.typing import IntegerArray
+from liehom.scalars import ExactField, number_field
+from liehom.typing import IntegerArray, ScalarLike
 
 _ROTATING = ("e", "iso", "galilei", "bargmann", "schroedinger")
 """Families whose first basis elements are those of so(n) or so(p,q)."""
@@ -94,12 +96,41 @@ def _made(algebra: LieAlgebra, rows: IntegerArray, name: object, *, check: bool 
 
 
 def _affine(tree: Term) -> Pair:
-    if len(tree.items) != 1 or isinstance(tree.items[0], int) or tree.after or not is_linear(tree.items[0]):
+    if len(tree.items) != 1 or isinstance(tree.items[0], int | Fraction) or tree.after or not is_linear(tree.items[0]):
         raise unknown(str(tree), CLAIMS, "pair")
+    spiral = irrational_spiral(tree.items[0])
+    if spiral is not None:
+        matrices, j, square, frequency = spiral
+        return spiral_pair(matrices, j, number_field(f"sqrt({square})"), f"sqrt({square})", frequency, str(tree))
     matrices = linear_matrices(tree.items[0])
     algebra = affine_algebra(matrices, str(tree))
     # no check: the linear part of an affine algebra is a subalgebra
     return _made(algebra, _first(len(matrices), algebra.dimension), tree)
+
+
+def spiral_pair(
+    matrices: IntegerArray,
+    j: IntegerArray,
+    field: ExactField,
+    growth: ScalarLike,
+    frequency: ScalarLike,
+    name: str | None,
+) -> Pair:
+    """X + K (a + bJ) on K^N with the translations, for matrices X that commute with J and a, b in a field K.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> lh.pair("affine(spiral(sqrt(2),1))").field
+    QQ(sqrt(2))
+    """
+    size = j.shape[0]
+    read = [field.from_integers(a.ravel().tolist(), size, size) for a in (*matrices, j)]
+    spiral = field.identity(size).scale(growth) + read.pop().scale(frequency)
+    # no check: the matrices commute with the spiral and are a basis of their span
+    h = direct_sum(linear_lie_algebra(matrices), abelian(1)).over(field)
+    algebra = semidirect_sum(h, [*read, spiral], size=size, name=name, check=False)
+    return _made(algebra, _first(len(matrices) + 1, algebra.dimension), name or "")
 
 
 def _symmetric(tree: Term) -> Pair:

@@ -30,7 +30,7 @@ from liehom.fullness.search.symmetric_forms import decide_by_forms
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.fullness.verdict import Full, NotFull, Verdict
 from liehom.representations import Pair
-from liehom.representations.invariants.intertwiners import commutant, invariant_forms
+from liehom.representations.invariants.intertwiners import invariant_forms
 from liehom.representations.invariants.irreducibility import nilpotent_ideal_rows, split_by_commutant, traceless
 from liehom.scalars import ExactField, ExactMatrix
 
@@ -79,7 +79,7 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
     --------
     >>> import liehom as lh
     >>> print(decide_fullness(lh.pair("so(4)/so(3)")))
-    full: h acts on g/h = R^3 as so(3), compact and transitive on the sphere; checked at one point
+    full: S^3 = SO(4)/SO(3), where h acts on g/h = R^3 as so(3), compact and transitive on the sphere; checked at ...
     >>> decide_fullness(lh.pair("so(3,1)/so(2,1)")).full
     False
     """
@@ -94,10 +94,10 @@ def decide_fullness(pair: Pair, *, seed: int = 0, progress: Progress | None = No
 def _verdict(pair: Pair, seed: int, progress: Progress | None) -> Verdict:
     if not isinstance(pair.field, ExactField):
         return decide_numerically(pair, seed=seed)
+    action = TracelessIsotropyAction(pair)
     if pair.dimension <= 1:
-        reason = {0: "h = g, the space is a point", 1: "g/h has dimension 1, so any eta outside h spans it"}
-        return Full(pair, certificate_writer.trivial(pair.field), reason[pair.dimension])
-    return _decide(TracelessIsotropyAction(pair), seed, progress)
+        return Full(pair, certificate_writer.trivial(pair.field), full_reason(action, compact=True))
+    return _decide(action, seed, progress)
 
 
 def _begin(step: str, progress: Progress | None) -> None:
@@ -126,17 +126,18 @@ def _decide(action: TracelessIsotropyAction, seed: int, progress: Progress | Non
         reason = "a nilpotent ideal of the isotropy algebra annihilates an invariant subspace"
         return _not_full(action, kernel_witness(action, rows), reason)
     _begin("commutant", progress)
-    basis = commutant(action.traceless, action.size, action.field)
-    imaginary = traceless(basis, action.size, action.field)
+    imaginary = traceless(action.commutant(), action.size, action.field)
     split = split_by_commutant(imaginary, action.size, action.field)
-    LOG.debug("commutant of dimension %d, %s", len(basis), "a division algebra" if split is None else "reducible")
+    LOG.debug(
+        "commutant of dimension %d, %s", len(action.commutant()), "a division algebra" if split is None else "reducible"
+    )
     if split is not None:
         return _reducible(action, certificate_of_reduction(action, split))
     _begin("definite form", progress)
     certificate = full_by_positive_form(action, imaginary)
     LOG.debug("definite form: %s", "not found" if certificate is None else "found, so the pair is full")
     if certificate is not None:
-        return Full(action.pair, certificate, full_reason(action, len(basis), compact=False))
+        return Full(action.pair, certificate, full_reason(action, compact=False))
     return _by_dominance(action, seed, progress)
 
 
@@ -162,8 +163,7 @@ def _sample(action: TracelessIsotropyAction, rng: random.Random) -> tuple[ExactM
 def _by_forms(action: TracelessIsotropyAction, symmetric: Sequence[ExactMatrix], x: ExactMatrix) -> Verdict:
     certificate = decide_by_forms(action, symmetric, x)
     if certificate.full:
-        dimension = len(commutant(action.traceless, action.size, action.field))
-        return Full(action.pair, certificate, full_reason(action, dimension, compact=True))
+        return Full(action.pair, certificate, full_reason(action, compact=True))
     kind = f"{len(symmetric)} independent symmetric forms"
     if len(symmetric) == 1:
         kind = "a symmetric form with {} positive, {} negative and {} zero squares".format(*symmetric[0].signature())

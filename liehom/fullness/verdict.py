@@ -24,7 +24,7 @@ class Full:
     certificate : Certificate
         Of kind 'trivial' or 'full'.
     reason : str
-        One sentence. Names of groups in it follow from dimensions; the certificate does not depend on them.
+        One sentence, with the row of the classification; the certificate does not depend on it.
 
     Examples
     --------

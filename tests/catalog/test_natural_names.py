@@ -90,7 +90,7 @@ def test_full_with_a_spiral() -> None:
         ("A4,2", "1 parameter"),
         ("A4,2(1/0)", "positive denominator at position 7"),
         ("so(1/2)", r"expected '\)' at position 4"),
-        ("spiral(1/2,1)", "expected"),
+        ("diag(1/2,1)", "expected"),
         ("A4,2(so(3))", "expected an integer"),
         ("galelei(3)", "galilei"),
     ],

@@ -57,7 +57,7 @@ def json_of(result: Result) -> dict[str, Any]:
 
 # -- fullness --------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
-    ("file", "code", "says"), [(FULL, 0, "full: h acts"), (NOT_FULL, 1, "not full: "), (FLOAT, 3, "numerical")]
+    ("file", "code", "says"), [(FULL, 0, "full: S^3 = SO(4)"), (NOT_FULL, 1, "not full: "), (FLOAT, 3, "numerical")]
 )
 def test_fullness_says_why_and_exits_with_the_verdict(file: str, code: int, says: str) -> None:
     result = liehom("fullness", file)

@@ -11,6 +11,32 @@ from collections.abc import Iterator
 from typing import Any
 
 LISTED = "failure reports list all maximal invariant subspaces, over real number fields too"
+NAMED = "the sentence of a full verdict names the row of the classification"
+FULL = (
+    *("so(4)/so(3)", "so(12)/so(11)", "su(4)/u(3)", "sp(2,1)/sp(2)+sp(1)", "f4/spin(9)", "g2/su(3)", "so(8)/spin(7)"),
+    *("sl(3,C)/P1", "so(6,1)/P", "su(1,1)/P", "affine(form(1,2,5))", "affine(sp(2)+sp(1)+R)", "affine(sp(4,C)+u(1))"),
+    *("affine(spin(7))", "affine(sl(2,Q(-1,-3)))", "affine(spiral(1,1))", "0/0", "sym(4;3,1)"),
+    *(
+        f"{name}, random basis"
+        for name in (
+            *(
+                "so(5)/so(4)",
+                "su(3)/u(2)",
+                "su(2,1)/u(2)",
+                "sp(1,1)/sp(1)+sp(1)",
+                "sl(3)/P1",
+                "sl(2,C)/P1",
+                "so(4,1)/P",
+            ),
+            *("affine(u(2))", "affine(sl(2,C))", "affine(gl(3))", "affine(sp(4,R))", "e(3)/so(3)", "affine(gl(1,H))"),
+            "sym(3;2,1)",
+        )
+    ),
+    *("so(4)/so(3) over sqrt(2)", "su(2,1)/u(2) over sqrt(2)", "sl(3)/P1 over sqrt(5)"),
+    *("affine(gl(1,C)) over cbrt(2)", "affine(su(2)) over heptagon"),
+    *(f"diag(1, ..., 1 * sqrt(2)) of size {n}" for n in (2, 3, 4)),
+)
+"""Decisions of pairs that are full."""
 MACHINE_CODE = "machine code makes every step, also the first and the last: round-off, and calls of psi"
 INTENDED = (
     {
@@ -18,6 +44,7 @@ INTENDED = (
         for name in ("so(4)/so(3)", "so(3,1)/so(2,1)")
         for key in ("verdict", "eta_numerical", "smallest_singular_value", "gap")
     }
+    | {f"decisions: [{name}] [verdict] ": NAMED for name in FULL}
     | {
         f"decisions: [{name}] [{key}] ": LISTED
         for name in (

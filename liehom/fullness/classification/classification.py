@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isqrt
 from typing import Any, final
 
 from liehom.errors import FormatError, InternalError, LiehomError, displayed
 from liehom.fullness.certificates.certificate_fields import number_field_json, read_number_field
-from liehom.fullness.classification.rows import SPIRAL, Key, Row, row_of
+from liehom.fullness.classification.rows import SPIRAL, Key, Row, row_of, square_root
 from liehom.fullness.classification.verify import verify_key
 from liehom.representations import Pair
-from liehom.scalars import QQ, ExactField, NumberField, Scalar, Subspace
-from liehom.scalars.fields.rational import ExactNumber
+from liehom.scalars import QQ, ExactField, NumberField, Subspace
 
 FORMAT, VERSION = "liehom-classification", 1
 
@@ -61,7 +59,7 @@ class Classification:
         """Catalogue name of the quotients of g and h by the ideal; None for a spiral whose c^2 is irrational."""
         if self.key.centre != SPIRAL:
             return self.row.name
-        text = _root(self.key.parameter)
+        text = square_root(self.key.parameter)
         return None if text is None else self.row.name.replace("(c,1)", f"({text},1)")
 
     @property
@@ -69,7 +67,7 @@ class Classification:
         """The homogeneous space, a string such as 'S^6 = G2/SU(3)'."""
         if self.key.centre != SPIRAL:
             return self.row.space
-        text = _root(self.key.parameter)
+        text = square_root(self.key.parameter)
         return f"{self.row.space}, " + (f"c = {text}" if text is not None else f"c^2 = {self.key.parameter}")
 
     def verify(self, pair: Pair) -> bool:
@@ -133,20 +131,3 @@ def _read_key(field: ExactField, data: Mapping[str, Any]) -> Key:
     if any(isinstance(x, (bool, float)) for x in key) or row_of(key) is None:
         raise FormatError(f"the key {displayed(tuple(key))} is in no row of the classification")
     return key
-
-
-def _root(square: Scalar) -> str | None:
-    """The positive root of a positive rational number, as the catalogue writes it; None for other numbers.
-
-    Examples
-    --------
-    >>> _root(QQ.convert("4/9")), _root(QQ.convert("1/2"))
-    ('2/3', 'sqrt(1/2)')
-    """
-    number = square.rational() if isinstance(square, ExactNumber) else square
-    if number is None:
-        return None
-    p, q = int(number.p), int(number.q)
-    if isqrt(p) ** 2 == p and isqrt(q) ** 2 == q:
-        return QQ.format(QQ.convert(isqrt(p)) / isqrt(q))
-    return f"sqrt({QQ.format(number)})"

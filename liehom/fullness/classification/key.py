@@ -1,18 +1,15 @@
 """The key of a full pair, computed over its field by linear algebra and one sign.
 
 Let L0 be the traceless part of rho(h) on V = g/h. For a full pair of dimension d >= 2 it is reductive and irreducible,
-so its commutant is R, C = R + RJ or H, and its centre is 0 or RJ. The centre of L0 is RJ if and only if the commutant
-is C and J lies in L0. Then S = [L0, L0] is the orthogonal complement of J in L0 for the trace form; otherwise S = L0.
+so its commutant is R, C = R + RJ or H, and its centre is 0 or RJ. The centre is RJ if and only if the commutant is C
+and tr(A J) is not 0 for some A in L0. Then S = [L0, L0] is {A in L0 : tr(A J) = 0}; otherwise S = L0.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from liehom.algebra import Subalgebra
-from liehom.errors import SingularError
 from liehom.fullness.classification.effective import effective_pair, isotropy_kernel, largest_ideal
-from liehom.fullness.classification.rows import SPIRAL, Key
+from liehom.fullness.classification.rows import SPIRAL, Key, rows
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import commutant
@@ -51,42 +48,42 @@ def _small_key(d: int, dimension: int) -> Key:
 
 
 def _isotropy_part(action: TracelessIsotropyAction, dimension: int) -> tuple[int, int, str, Scalar | None]:
-    """The part (s, e, centre, parameter of a spiral) of the key; `dimension` is that of rho(h)."""
+    """The part (s, e, centre, c^2 of a spiral) of the key; `dimension` is that of rho(h)."""
     basis, scalars = action.commutant(), dimension > action.dimension
-    centre = _central(action, basis) if len(basis) == 2 else None
-    if centre is None:
+    i, weight, j = _central(action) if len(basis) == 2 else (0, action.field.zero, basis[0])
+    if weight == 0:
         return action.dimension, len(basis), "R" if scalars else "", None
-    j, coefficients = centre
-    e = len(commutant(_trace_orthogonal(action.traceless, j), action.size, action.field))
+    s, norm = action.dimension - 1, (j @ j).trace()
+    e = _commutant_dimension(action, j)
     if scalars:
-        return action.dimension - 1, e, "C", None
-    # rho(h) has one element whose traceless part is J: its trace is d times the real part
-    traces = (action.matrices[i].trace() for i in action.members)
-    real = sum((c * t for c, t in zip(coefficients, traces, strict=True)), action.field.zero) / action.size
-    if real == 0:
-        return action.dimension - 1, e, "J", None
-    return action.dimension - 1, e, SPIRAL, -real * real / (j @ j)[0, 0]
+        return s, e, "C", None
+    # rho(h) has one element J + t. Traces vanish on S, so they are proportional to tr(A J) on L0
+    t = action.matrices[action.members[i]].trace() * norm / weight / action.size
+    return (s, e, "J", None) if t == 0 else (s, e, SPIRAL, -t * t * action.size / norm)
 
 
-def _central(action: TracelessIsotropyAction, basis: Sequence[ExactMatrix]) -> tuple[ExactMatrix, list[Scalar]] | None:
-    """J of the commutant R + RJ and its coefficients in the basis of L0, or None if J is not in L0."""
+def _central(action: TracelessIsotropyAction) -> tuple[int, Scalar, ExactMatrix]:
+    """An index i with tr(A_i J) != 0, the trace, and J, for a commutant R + RJ; the trace 0 if J is not in L0.
+
+    If the centre of L0 is 0, then L0 = [L0, L0] and all these traces vanish; if it is RJ, then tr(J J) does not.
+    """
+    (j,) = traceless(action.commutant(), action.size, action.field)
     square = action.size**2
-    (j,) = traceless(basis, action.size, action.field)
-    row = j.reshape(1, square)
     flat = action.field.stack_rows([a.reshape(1, square) for a in action.traceless], square)
-    both = action.field.stack_rows([flat, row], square)
-    if int(both.modulo().rank()) > action.dimension:
-        return None
-    try:
-        return j, flat.T.solve(row.T).entries()
-    except SingularError:
-        return None
+    weights = (flat @ j.T.reshape(square, 1)).entries()
+    i = next((i for i, weight in enumerate(weights) if weight != 0), 0)
+    return i, weights[i], j
 
 
-def _trace_orthogonal(matrices: Sequence[ExactMatrix], j: ExactMatrix) -> list[ExactMatrix]:
-    """The matrices A - (tr(A J) / tr(J J)) J: they span the orthogonal complement of J in a span that contains J."""
-    norm = (j @ j).trace()
-    return [combination([a, j], [1, -(a @ j).trace() / norm]) for a in matrices]
+def _commutant_dimension(action: TracelessIsotropyAction, j: ExactMatrix) -> int:
+    """Dimension e of the commutant of S = {A in L0 : tr(A J) = 0}, for L0 = S + RJ: 2 or 4."""
+    d, s, norm = action.size, action.dimension - 1, (j @ j).trace()
+    possible = {row.key.e for row in rows(d) if (row.key.s, row.key.centre) == (s, "J")}
+    if len(possible) == 1:
+        return possible.pop()
+    # su(2m) and sl(m,H)
+    inside = [combination([a, j], [1, -(a @ j).trace() / norm]) for a in action.traceless]
+    return len(commutant(inside, d, action.field))
 
 
 def _letter(effective: Pair, *, is_faithful: bool) -> tuple[str, int | None]:

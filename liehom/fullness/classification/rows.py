@@ -12,10 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from math import isqrt
 from typing import NamedTuple, final
 
 from liehom.algebra.matrices.matrix_basis import require_size
-from liehom.scalars import Scalar
+from liehom.scalars import QQ, Scalar
+from liehom.scalars.fields.rational import ExactNumber
 
 SPIRAL = "J+c"
 """Centre of the rows that form families with the parameter c^2."""
@@ -109,6 +111,24 @@ def row_of(key: Key) -> Row | None:
     """
     plain = key._replace(parameter=None) if key.centre == SPIRAL else key
     return _by_key(key.d).get(plain)
+
+
+def square_root(square: Scalar) -> str | None:
+    """The positive root of a positive rational number, as the catalogue writes it; None for an irrational number.
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> square_root(QQ.convert("4/9")), square_root(QQ.convert("1/2"))
+    ('2/3', 'sqrt(1/2)')
+    """
+    number = square.rational() if isinstance(square, ExactNumber) else square
+    if number is None:
+        return None
+    p, q = int(number.p), int(number.q)
+    if isqrt(p) ** 2 == p and isqrt(q) ** 2 == q:
+        return QQ.format(QQ.convert(isqrt(p)) / isqrt(q))
+    return f"sqrt({QQ.format(number)})"
 
 
 @cache
