@@ -211,6 +211,7 @@ _NOT_FULL = (
     _Row("g2(2)/su(2,1)", 14, 8, "indefinite form, null cone"),
     _Row("g2(2)/sl(3)", 14, 8, "two invariant subspaces"),
     _Row("g2(2)/P1", 14, 9, "reducible"),
+    _Row("su(2,2)/P{1,3}", 15, 10, "contact: reducible"),
     _Row("spin(4,3)/g2(2)", 21, 14, "indefinite form, null cone"),
     _Row("spin(9)/spin(7)", 36, 21, "the 15-sphere: reducible"),
     _Row("e6(-26)/f4", 78, 52, "symmetric space of rank 2"),
