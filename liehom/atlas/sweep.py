@@ -71,7 +71,7 @@ def iter_sweep(
 
     Notes
     -----
-    With a store a pair that is given twice is decided once. In memory are then some 140 bytes for each stored entry,
+    With a store a pair that is given twice is decided once. In memory are then some 150 bytes for each stored entry,
     and the pairs in flight. Without a store only pairs in flight are compared with each other.
 
     Examples

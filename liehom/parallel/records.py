@@ -46,7 +46,7 @@ class Records(Store):
 
     Notes
     -----
-    In memory are a digest of 16 bytes and the place of each shard in the files, some 140 bytes for both.
+    In memory are a digest of 16 bytes and the place of each shard in the files, some 150 bytes for both.
 
     Examples
     --------

@@ -142,6 +142,7 @@ def _root(modulus: tuple[int, ...], p: int) -> int | None:
     return int(roots[0]) if len(roots) else None
 
 
+@lru_cache(maxsize=1 << 12)
 def _is_prime(candidate: int) -> bool:
     return candidate % 2 == 1 and all(candidate % f for f in range(3, isqrt(candidate) + 1, 2))
 
