@@ -29,6 +29,6 @@ sed -n 's/^Print Assumptions \(.*\)\.$/theorem  \1:/p' Assumptions.v | paste -d'
 
 cd ocaml
 coqc -w none -R ../theories Liehom Extraction.v
-ocamlfind ocamlopt -package zarith,yojson -linkpkg integer.ml checker.mli checker.ml reader.ml propose.ml halfplane.ml \
+ocamlfind ocamlopt -package zarith,yojson -linkpkg integer.ml checker.mli checker.ml reader.ml propose.ml halfplane.ml dominance.ml \
     certificates.ml main.ml -o ../liehom-check
 echo "program $build/liehom-check"

@@ -167,7 +167,9 @@ def of_program(cases: Iterable[Case]) -> list[str]:
 
 
 def _short(outcome: str) -> str:
-    return outcome if outcome.startswith("accepted") else outcome.split(":")[0].replace("malformed", "rejected")
+    if outcome.startswith(("accepted", "unsupported")):
+        return outcome
+    return outcome.split(":")[0].replace("malformed", "rejected")
 
 
 def compared(cases: list[Case]) -> tuple[collections.Counter[str], list[tuple[Case, str, str]]]:
@@ -178,7 +180,7 @@ def compared(cases: list[Case]) -> tuple[collections.Counter[str], list[tuple[Ca
         theirs = of_library(*case[1:])
         verdicts = [_short(theirs), _short(ours)]
         seen[" / ".join(verdicts)] += 1
-        if verdicts[0] != verdicts[1] and verdicts[1] != "unsupported":
+        if verdicts[0] != verdicts[1] and not verdicts[1].startswith("unsupported"):
             different.append((case, theirs, ours))
     return seen, different
 
@@ -194,7 +196,7 @@ def main() -> None:
         seen, different = compared(cases)
         print(f"{title}: {seen.total()} cases, library / program")
         for outcome, number in sorted(seen.items()):
-            print(f"  {outcome:40} {number}")
+            print(f"  {outcome:60} {number}")
         for (what, pair, certificate), theirs, ours in different[:20]:
             print(f"  {what}, {certificate.get('kind')}: {theirs} / {ours}", json.dumps([pair, certificate])[:600])
 

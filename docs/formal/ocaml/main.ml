@@ -19,7 +19,9 @@ let rec proposed pair (t : Checker.coordinates_hint) certificate =
     let right = Halfplane.(count (characteristic (Array.of_list (List.map Array.of_list matrix))) cut) in
     require (0 < right && right < t.codimension) "the eigenvalues are on one side of the cut";
     [Checker.CommutantCertificate (Propose.commutant t matrix complement)]
-  | Certificates.Dominance _ -> Reader.unsupported "the kind dominance"
+  | Certificates.Dominance { element; cut; eps } ->
+    let isotropies = Checker.isotropies t (Checker.adjoint pair t) in
+    [Checker.WitnessCertificate (Dominance.witness pair t isotropies element cut eps)]
 
 let run pair_json certificate_json =
   try
