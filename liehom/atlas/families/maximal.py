@@ -21,17 +21,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from liehom.algebra import RealForm, SatakeDiagram, Subalgebra, simple_real_forms
+from liehom.algebra import RealForm, SatakeDiagram, simple_real_forms
 from liehom.algebra.roots.dynkin import isomorphisms
 from liehom.algebra.roots.vogan import gram_to_cartan
-from liehom.atlas.families.irreducible_subalgebras import cross_product_pair, linear_pair, module_pair
+from liehom.atlas.families.irreducible_subalgebras import complexified, module_pair
+from liehom.atlas.families.isotropy_irreducible import isotropy_irreducible_pair
 from liehom.atlas.families.parabolic import parabolic_pairs_of
 from liehom.atlas.families.symmetric import symmetric_pairs_of
 from liehom.atlas.recipe import Recipe
 from liehom.catalog import pair
 from liehom.errors import InputError
 from liehom.representations import Pair
-from liehom.scalars import as_exact
 
 FAMILY = "maximal"
 LARGEST = 30
@@ -79,12 +79,11 @@ def maximal_pairs(max_dimension: int = LARGEST) -> Iterator[Recipe]:
         for recipe in symmetric_pairs_of(form):
             if recipe.known["maximal"]:
                 yield replace(recipe, family=FAMILY, known={**recipe.known, "kind": "symmetric"})
-        for name, make, arguments in OTHERS.get(form.name, ()):
-            yield Recipe(name, FAMILY, make, (name, *arguments), {"kind": "other", "maximal": True})
+        yield from _others(form)
 
 
 def complexified_pair(name: str, real: str) -> Pair:
-    """The complexification, regarded as real, of a pair of the catalogue or of `OTHERS`.
+    """The complexification, regarded as real, of a pair of the catalogue.
 
     Parameters
     ----------
@@ -98,14 +97,7 @@ def complexified_pair(name: str, real: str) -> Pair:
     >>> complexified_pair("g2(C)/sl(3,C)", "g2(2)/sl(3)").dimension
     12
     """
-    found = next((other for others in OTHERS.values() for other in others if other[0] == real), None)
-    inner = pair(real) if found is None else found[1](real, *found[2])
-    algebra = inner.algebra.complexification(name=name.partition("/")[0]).algebra
-    rows = as_exact(inner.subalgebra.basis)
-    none = rows.field.zeros(*rows.shape)
-    blocks = [rows.field.stack_columns([rows, none], rows.nrows), rows.field.stack_columns([none, rows], rows.nrows)]
-    # no check: x and i x for the basis elements x of a subalgebra
-    return Pair(algebra, Subalgebra(algebra, rows.field.stack_rows(blocks, algebra.dimension), check=False), name=name)
+    return complexified(pair(real), name)
 
 
 def _parabolic(form: RealForm) -> Iterator[Recipe]:
@@ -117,6 +109,15 @@ def _parabolic(form: RealForm) -> Iterator[Recipe]:
             yield replace(recipe, family=FAMILY, known={**recipe.known, "kind": "parabolic"})
 
 
+def _others(form: RealForm) -> Iterator[Recipe]:
+    """The maximal subalgebras of one real form that are neither parabolic nor symmetric."""
+    known = {"kind": "other", "maximal": True}
+    for name in _IRREDUCIBLE.get(form.name, "").split():
+        yield Recipe(name, FAMILY, isotropy_irreducible_pair, (name,), known)
+    for name, make, arguments in _REDUCIBLE.get(form.name, ()):
+        yield Recipe(name, FAMILY, make, (name, *arguments), known)
+
+
 def _orbits(satake: SatakeDiagram) -> set[int]:
     """The smallest numbers in the orbits of the simple restricted roots under the symmetries of the diagram."""
     simple, sizes = satake.simple_restricted_roots(), satake.restricted_roots()
@@ -126,37 +127,28 @@ def _orbits(satake: SatakeDiagram) -> set[int]:
     return {min(p[i] for p in symmetries) for i in range(len(simple))}
 
 
-OTHERS: dict[str, Others] = {
-    "so(5)": (("so(5)/so(3)_irr", module_pair, ("so(3)", (4,))),),
-    "so(3,2)": (("so(3,2)/sl(2)_irr", module_pair, ("sl(2,R)", (4,))),),
-    "so(5,C)": (("so(5,C)/sl(2,C)_irr", complexified_pair, ("so(3,2)/sl(2)_irr",)),),
-    "so(7)": (("so(7)/g2", pair, ()),),
-    "so(4,3)": (("so(3,4)/g2(2)", pair, ()),),
-    "sp(3)": (
-        ("sp(3)/tensor(so(3),sp(1))", pair, ()),
-        ("sp(3)/su(2)_irr", module_pair, ("so(3)", (5,))),
-    ),
-    "sp(2,1)": (("sp(2,1)/tensor(so(2,1),sp(1))", pair, ()),),
-    "sp(6,R)": (
-        ("sp(6,R)/tensor(sp(2,R),so(3))", pair, ()),
-        ("sp(6,R)/tensor(sp(2,R),so(2,1))", linear_pair, ("tensor(sp(2,R),so(2,1))",)),
-        ("sp(6,R)/sl(2)_irr", module_pair, ("sl(2,R)", (5,))),
-    ),
-    "so(8)": (("so(8)/su(3)_irr", module_pair, ("su(3)", (1, 1))),),
-    "so(4,4)": (("so(4,4)/su(2,1)_irr", module_pair, ("su(2,1)", (1, 1))),),
-    "so(5,3)": (("so(5,3)/sl(3)_irr", module_pair, ("sl(3,R)", (1, 1))),),
-    "g2": (
-        ("g2/su(3)", pair, ()),
-        ("g2/so(3)_irr", cross_product_pair, ("so(3)", (6,))),
-    ),
-    "g2(2)": (
-        ("g2(2)/su(2,1)", pair, ()),
-        ("g2(2)/sl(3)", pair, ()),
-        ("g2(2)/sl(2)_irr", cross_product_pair, ("sl(2,R)", (6,))),
-    ),
-    "g2(C)": (
-        ("g2(C)/sl(3,C)", complexified_pair, ("g2(2)/sl(3)",)),
-        ("g2(C)/sl(2,C)_irr", complexified_pair, ("g2(2)/sl(2)_irr",)),
-    ),
+_IRREDUCIBLE: dict[str, str] = {
+    "so(5)": "sp(2)/S3(su(2))",
+    "so(3,2)": "sp(4,R)/S3(sl(2))",
+    "so(5,C)": "sp(4,C)/S3(sl(2,C))",
+    "so(7)": "so(7)/g2",
+    "so(4,3)": "spin(4,3)/g2(2)",
+    "sp(3)": "sp(3)/tensor(sp(1),so(3))",
+    "sp(2,1)": "sp(2,1)/tensor(sp(1),so(2,1))",
+    "sp(6,R)": "sp(6,R)/tensor(sl(2),so(3)) sp(6,R)/tensor(sl(2),so(2,1))",
+    "so(8)": "so(8)/ad(su(3))",
+    "so(4,4)": "so(4,4)/ad(su(2,1))",
+    "g2": "g2/su(3) g2/principal(so(3))",
+    "g2(2)": "g2(2)/su(2,1) g2(2)/principal(sl(2))",
+    "g2(C)": "g2(C)/principal(sl(2,C))",
 }
-"""By the name of the algebra, the maximal subalgebras that are neither parabolic nor symmetric."""
+"""By the name of the algebra, names of pairs in the family "isotropy-irreducible"."""
+
+_REDUCIBLE: dict[str, Others] = {
+    "so(5,3)": (("so(5,3)/ad(sl(3))", module_pair, ("sl(3,R)", (1, 1))),),
+    "sp(3)": (("sp(3)/S5(su(2))", module_pair, ("so(3)", (5,))),),
+    "sp(6,R)": (("sp(6,R)/S5(sl(2))", module_pair, ("sl(2,R)", (5,))),),
+    "g2(2)": (("g2(2)/sl(3)", pair, ()),),
+    "g2(C)": (("g2(C)/sl(3,C)", complexified_pair, ("g2(2)/sl(3)",)),),
+}
+"""By the name of the algebra, pairs for which g/h is the sum of two irreducible modules."""

@@ -7,8 +7,13 @@ from collections.abc import Callable
 import pytest
 
 import liehom as lh
-from liehom.atlas.families.irreducible_subalgebras import cross_product_pair, linear_pair, module_pair
-from liehom.errors import InputError
+from liehom.atlas.families.irreducible_subalgebras import (
+    classical_hull,
+    complexified,
+    linear_pair,
+    module_pair,
+    principal_pair,
+)
 
 
 @pytest.mark.parametrize(
@@ -23,11 +28,13 @@ from liehom.errors import InputError
         (module_pair, ("sl(2,R)", (5,)), "sp(6,R)", "sl(2,R)"),
         (module_pair, ("sl(2,C)", (4, 0)), "so(5,C)", "sl(2,C)"),
         (module_pair, ("sl(2,C)", (1, 1)), "sl(2,C)", "sl(2,C)"),
+        (module_pair, ("su(3)", (2, 0)), "su(6)", "su(3)"),
+        (module_pair, ("sl(3,R)", (2, 0)), "sl(6,R)", "sl(3,R)"),
         (linear_pair, ("tensor(sp(2,R),so(2,1))",), "sp(6,R)", "sl(2,R) + sl(2,R)"),
         (linear_pair, ("tensor(so(3),sp(1))",), "sp(3)", "so(3) + so(3)"),
         (linear_pair, ("tensor(so(2,1),sp(1))",), "sp(2,1)", "so(3) + sl(2,R)"),
-        (cross_product_pair, ("so(3)", (6,)), "g2", "so(3)"),
-        (cross_product_pair, ("sl(2,R)", (6,)), "g2(2)", "sl(2,R)"),
+        (principal_pair, ("so(3)",), "g2", "so(3)"),
+        (principal_pair, ("sl(2,R)",), "g2(2)", "sl(2,R)"),
     ],
 )
 def test_stabilizer_of_the_invariant_forms(
@@ -39,6 +46,12 @@ def test_stabilizer_of_the_invariant_forms(
     assert pair.algebra.subalgebra(pair.subalgebra.basis) == pair.subalgebra
 
 
-def test_module_without_invariant_form_raises() -> None:
-    with pytest.raises(InputError, match="no invariant bilinear form"):
-        module_pair("sl(3)/sl(3)", "sl(3,R)", (1, 0))
+def test_complexification_is_a_complex_subalgebra() -> None:
+    pair = complexified(lh.pair("g2/su(3)"), "g2(C)/sl(3,C)")
+    assert pair.algebra.real_form() == "g2(C)" and pair.subalgebra.as_algebra().real_form() == "sl(3,C)"
+    assert pair.algebra.subalgebra(pair.subalgebra.basis).dimension == 16
+
+
+def test_hull_of_the_defining_representation_is_the_algebra() -> None:
+    for matrices in (lh.algebra.matrices.so(5), lh.algebra.matrices.su(3), lh.algebra.matrices.sl(3)):
+        assert len(classical_hull(matrices)) == len(matrices)

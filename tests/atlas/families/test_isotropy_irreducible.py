@@ -2,18 +2,12 @@
 
 import re
 
-import numpy as np
 import pytest
 
 import liehom as lh
 from liehom.algebra.roots.real_form_names import canonical_ideals, join_real_forms
-from liehom.atlas.families.isotropy_irreducible import (
-    _in_hull,
-    _integers,
-    _of_complexification,
-    isotropy_irreducible_pair,
-    isotropy_irreducible_pairs,
-)
+from liehom.atlas.families.irreducible_subalgebras import complexified, module_pair
+from liehom.atlas.families.isotropy_irreducible import isotropy_irreducible_pair, isotropy_irreducible_pairs
 from liehom.atlas.families.symmetric import symmetric_rank
 
 RECIPES = {recipe.name: recipe for recipe in isotropy_irreducible_pairs()}
@@ -57,12 +51,11 @@ def test_pair_is_irreducible_not_symmetric_and_has_the_algebras_of_its_name(name
 
 def test_other_real_forms_and_complexifications_are_reducible():
     """Negative controls: V is a sum of two modules over C, and conjugation preserves both."""
-    adjoint = lh.real_module("sl(3,R)", [1, 1]).representation
-    pair = _in_hull(np.stack([_integers(m) for m in adjoint.matrices]))
+    pair = module_pair("so(5,3)/ad(sl(3))", "sl(3,R)", (1, 1))
     assert pair.algebra.real_form() == "so(5,3)"
     assert not pair.isotropy_representation().is_irreducible()
     assert not lh.pair("g2(2)/sl(3)").isotropy_representation().is_irreducible()
-    assert not _of_complexification("g2(2)/su(2,1)").isotropy_representation().is_irreducible()
+    assert not complexified(lh.pair("g2(2)/su(2,1)"), "g2(C)/sl(3,C)").isotropy_representation().is_irreducible()
 
 
 def test_unknown_names_and_dimensions_are_refused():
