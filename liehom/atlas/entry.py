@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any, final
 
 from liehom.catalog import pair as named_pair
@@ -80,15 +80,14 @@ class Entry:
         FormatError
             If an attribute is missing or unknown, or is not of the type stated above.
         """
-        expected = {attribute.name: KINDS[attribute.name] for attribute in fields(cls)}
-        unknown = sorted(set(facts) - set(expected))
-        if unknown or set(expected) - set(facts) - set(OPTIONAL):
-            raise FormatError(f"an entry has the keys {', '.join(expected)}; found {', '.join(map(str, facts))}")
+        if not KINDS.keys() - set(OPTIONAL) <= facts.keys() <= KINDS.keys():
+            raise FormatError(f"an entry has the keys {', '.join(KINDS)}; found {', '.join(map(str, facts))}")
         for key, value in facts.items():
-            if not isinstance(value, expected[key]) or (isinstance(value, bool) and key != "verified"):
+            if not isinstance(value, KINDS[key]) or (isinstance(value, bool) and key != "verified"):
                 raise FormatError(f"{key} of an entry is {shown(repr(value))}, which is not of its type")
         entry = cls(**facts)
-        if entry.certificate is not None and entry.certificate.full is not entry.full:
+        certificate = entry.certificate
+        if certificate is not None and certificate.full is not entry.full:
             raise FormatError(f"the entry of {entry.name} and its certificate do not agree whether it is full")
         return entry
 

@@ -115,7 +115,7 @@ class Records(Store):
         number, offset = divmod(place, OFFSETS)
         try:
             line = self._line(number, offset)
-            found = json.loads(line)
+            found = json.loads(line.decode())
             if found["name"] != name or (self._mark is not None and not self._is_whole(line)):
                 raise ValueError("its checksum does not agree with its contents")
             return {}, json_object(found["facts"])

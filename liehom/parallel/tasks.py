@@ -36,6 +36,8 @@ BATCH_SECONDS = 1.0
 """Processor time after which a worker returns the rest of a batch; a submission costs some thousandths of it."""
 PATIENCE = 0.1
 """Seconds after which an incomplete batch is sent and results that are ready are taken."""
+FIRST_BATCHES = 256
+"""Number of batches of one task, while it is not known what a task takes."""
 LARGEST_BATCH = 64
 """Largest batch, so that the tasks in flight are at least 64 batches."""
 
@@ -181,7 +183,7 @@ class Dispatcher(Generic[Label, Task, Result]):
             check_count("chunksize", chunksize, 1)
         self._function, self._retries = function, retries
         self._pool = None if executor is None else Pool(executor)
-        self._chunksize, self._size = chunksize, chunksize or 1
+        self._chunksize = chunksize
         self._pace: float | None = None  # seconds that a task takes, the mean of the last ones
         self._unsent: deque[tuple[Label, Task]] = deque()
         self._waiting: dict[Future[tuple[list[Result], float]], list[tuple[Label, Task]]] = {}
@@ -269,13 +271,21 @@ class Dispatcher(Generic[Label, Task, Result]):
     def _send_batches(self, pool: Pool, patience: float) -> None:
         """Submit complete batches, and an incomplete one if it has waited for `patience` seconds."""
         while self._unsent and self._broken is None:
-            if len(self._unsent) < self._size and time.monotonic() - self._since < patience:
+            if len(self._unsent) < self._size() and time.monotonic() - self._since < patience:
                 return
             self._send(pool)
 
+    def _size(self) -> int:
+        """Number of tasks in the next batch."""
+        if self._chunksize is not None:
+            return self._chunksize
+        if self._pace is None:  # nothing has finished: one task for each worker, and more if there are many tasks
+            return 1 if len(self._waiting) < FIRST_BATCHES else LARGEST_BATCH // 8
+        return max(1, min(LARGEST_BATCH, int(BATCH_SECONDS / (2 * self._pace + 1e-9))))
+
     def _send(self, pool: Pool) -> None:
         """Submit one batch; a broken executor is remembered."""
-        size = 1 if self._unsent[0][0] in self._losses else self._size
+        size = 1 if self._unsent[0][0] in self._losses else self._size()
         batch = [self._unsent.popleft() for _ in range(min(size, len(self._unsent)))]
         seconds = BATCH_SECONDS if self._chunksize is None else math.inf
         tasks = _Batch(self._function, [task for _, task in batch], remaining_limits(), seconds)
@@ -307,7 +317,6 @@ class Dispatcher(Generic[Label, Task, Result]):
         if self._chunksize is None:
             pace = seconds / len(results)
             self._pace = pace if self._pace is None else 0.9 * self._pace + 0.1 * pace
-            self._size = max(1, min(LARGEST_BATCH, int(BATCH_SECONDS / (2 * self._pace + 1e-9))))
         taken = [(label, result) for (label, _), result in zip(batch, results, strict=False)]
         for label, _ in taken:
             self._losses.pop(label, None)

@@ -192,11 +192,25 @@ def test_batches_of_small_tasks_grow() -> None:
     assert count == 1000 and pool.calls < 100
 
 
+def test_the_first_tasks_go_alone_and_those_of_a_long_queue_do_not() -> None:
+    sizes: list[int] = []
+
+    class Waiting(Immediate):
+        def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            sizes.append(len(args[0].tasks))
+            return Future()
+
+    with Dispatcher[int, int, int](work.square, Waiting()) as dispatcher:
+        for number in range(1056):
+            dispatcher.submit(number, number)
+    assert sizes == [1] * 256 + [8] * 100
+
+
 def test_a_worker_returns_what_it_has_no_time_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("liehom.parallel.tasks.BATCH_SECONDS", 0.0)
     pool = Immediate()
     made = Dispatcher[int, int, int](work.square, pool)
-    made._size = 8  # as after small tasks
+    monkeypatch.setattr(made, "_size", lambda: 8)  # as after small tasks
     assert sorted(dispatched(made, range(32))) == [(x, x * x) for x in range(32)]
     assert pool.calls == 32
 
