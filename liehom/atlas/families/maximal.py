@@ -111,7 +111,7 @@ def _parabolic(form: RealForm) -> Iterator[Recipe]:
 
 def _others(form: RealForm) -> Iterator[Recipe]:
     """The maximal subalgebras of one real form that are neither parabolic nor symmetric."""
-    known = {"kind": "other", "maximal": True}
+    known: dict[str, bool | int | str] = {"kind": "other", "maximal": True}
     for name in _IRREDUCIBLE.get(form.name, "").split():
         yield Recipe(name, FAMILY, isotropy_irreducible_pair, (name,), known)
     for name, make, arguments in _REDUCIBLE.get(form.name, ()):
