@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from liehom.algebra import LieAlgebra, abelian, direct_sum, euclidean, heisenberg, semidirect_sum
 from liehom.algebra.closure.closure import lie_closure
 from liehom.algebra.matrices.named_matrices import linear_lie_algebra
@@ -121,7 +123,7 @@ def algebra_of(tree: Expression) -> LieAlgebra:
         return heisenberg(_single(tree))
     if is_family(tree):
         return family_algebra(tree)
-    if tree.head == "affine" and len(tree.items) == 1 and not isinstance(tree.items[0], int):
+    if tree.head == "affine" and len(tree.items) == 1 and not isinstance(tree.items[0], int | Fraction):
         return affine_algebra(linear_matrices(tree.items[0]), str(tree))
     if tree.head == "sym" and not tree.after:
         return algebra_of(Term("so", tree.items))

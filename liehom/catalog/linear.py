@@ -111,7 +111,7 @@ def _classical(term: Term) -> IntegerArray:
     n, second = term.items[0], term.items[1] if len(term.items) == 2 else 0
     if isinstance(second, int):
         return classical_matrices(term.head, n, second)
-    if isinstance(second, Sum):
+    if isinstance(second, Sum | Fraction):
         raise CatalogError(f"{second} does not denote scalars; expected R, C, H, Q(sqrt(c)) or Q(a,b)")
     ground = _ground(second)
     if second.head != "Q":

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from liehom.budget import limits, parsed_limits
-from liehom.cli import atlas_command, describe_command, numerical_commands, reproduce
+from liehom.cli import atlas_command, classify_commands, describe_command, numerical_commands, reproduce
 from liehom.cli.guard import NO, NUMERICAL, YES, guarded
-from liehom.cli.options import JsonOption, run
+from liehom.cli.options import JsonOption, PairArgument, run
 
 if TYPE_CHECKING:
     from liehom.fullness import Verdict
-    from liehom.representations import Pair
     from liehom.scalars import Field
 
 HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces."
@@ -60,10 +59,6 @@ app: typer.Typer = typer.Typer(
     rich_markup_mode=None,
 )
 
-PairArgument: TypeAlias = Annotated[
-    str, typer.Argument(metavar="PAIR", help="Pair file, or name such as 'so(4)/so(3)'.")
-]
-
 
 def _version(wanted: bool) -> None:
     if wanted:
@@ -104,7 +99,7 @@ def fullness(
 
 
 def _fullness(text: str, out: str | None, as_json: bool) -> int:
-    from liehom.cli.inputs import check_output, pair_argument
+    from liehom.cli.inputs import check_output, pair_argument, pair_facts, pair_line
     from liehom.cli.show import show_answer, show_json
     from liehom.errors import InputError
     from liehom.fullness.decide import decide_fullness
@@ -123,9 +118,9 @@ def _fullness(text: str, out: str | None, as_json: bool) -> int:
     if out is not None:
         dump(verdict.certificate, out)
     if as_json:
-        show_json({**verdict.to_json(), "pair": _facts(text, pair)})
+        show_json({**verdict.to_json(), "pair": pair_facts(text, pair)})
         return code
-    rows = [("pair", _described(text, pair)), *_evidence(verdict)]
+    rows = [("pair", pair_line(text, pair)), *_evidence(verdict)]
     if out is not None:
         rows.append(("written to", out))
     show_answer(str(verdict), rows, code)
@@ -168,20 +163,6 @@ def _definition(field: Field | None) -> str:
     return f"{field.symbol} = {field.to_float(field.generator):.6g}... is the root of {equation} in [{low}, {high}]"
 
 
-def _facts(text: str, pair: Pair) -> dict[str, Any]:
-    return {
-        "name": text,
-        "dimension": pair.algebra.dimension,
-        "subalgebra_dimension": pair.subalgebra.dimension,
-        "field": pair.field.name,
-    }
-
-
-def _described(text: str, pair: Pair) -> str:
-    n, k = pair.algebra.dimension, pair.subalgebra.dimension
-    return f"{text}: dim g = {n}, dim h = {k}, dim g/h = {n - k}, over {pair.field.name}"
-
-
 @app.command()
 def verify(
     pair: PairArgument,
@@ -193,7 +174,7 @@ def verify(
 
 
 def _verify(text: str, file: str, as_json: bool) -> int:
-    from liehom.cli.inputs import file_argument, pair_argument
+    from liehom.cli.inputs import file_argument, pair_argument, pair_facts, pair_line
     from liehom.cli.show import show_answer, show_json
     from liehom.errors import CertificateError, CertificateFormatError
     from liehom.fullness.certificates.certificate import Certificate
@@ -214,9 +195,9 @@ def _verify(text: str, file: str, as_json: bool) -> int:
     claim = "full" if certificate.full else "not full"
     if as_json:
         data = {"verified": failure is None, "full": certificate.full, "kind": certificate.kind, "failure": failure}
-        show_json({**data, "pair": _facts(text, pair)})
+        show_json({**data, "pair": pair_facts(text, pair)})
     else:
-        rows = [("pair", _described(text, pair)), ("certificate", f"{file}, kind {certificate.kind}")]
+        rows = [("pair", pair_line(text, pair)), ("certificate", f"{file}, kind {certificate.kind}")]
         show_answer(f"verified: the certificate proves that the pair is {claim}", rows)
     return YES if failure is None else NO
 
@@ -295,7 +276,7 @@ def range_(
 
 
 def _range(text: str, psi: str | None, as_json: bool) -> int:
-    from liehom.cli.inputs import pair_argument, row_in
+    from liehom.cli.inputs import pair_argument, pair_facts, pair_line, row_in
     from liehom.cli.show import short_vector, show_answer, show_json
     from liehom.homogeneous.range.range_condition import range_condition
 
@@ -310,10 +291,10 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     if as_json:
         data: dict[str, Any] = {"holds": found.holds, "rank": found.rank, "missing": missing}
         data |= {"equilibrium": found.equilibrium, "psi": tested, "message": found.message}
-        show_json({**data, "generic": found.generic, "proved": exact, "pair": _facts(text, pair)})
+        show_json({**data, "generic": found.generic, "proved": exact, "pair": pair_facts(text, pair)})
         return code
     sentence = str(found)
-    rows = [("pair", _described(text, pair)), ("rank", f"{found.rank} of dim g/h = {pair.dimension}")]
+    rows = [("pair", pair_line(text, pair)), ("rank", f"{found.rank} of dim g/h = {pair.dimension}")]
     rows.append(("psi" if row is not None else "sample psi", short_vector(tested)))
     if missing is not None:
         rows.append(("missing", f"the covector {short_vector(missing)} vanishes on h, psi and [h, psi]"))
@@ -321,6 +302,8 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     return code
 
 
+app.command()(classify_commands.classify)
+app.command()(classify_commands.full_pairs)
 app.command()(describe_command.describe)
 app.command()(numerical_commands.integrate)
 app.command()(numerical_commands.order)

@@ -181,3 +181,19 @@ def point_in(representation: Representation, text: str) -> tuple[Representation,
     if representation.field.exact and needed is not None and needed.degree > 1:
         representation = representation.over(needed)
     return representation, raw.numbers(representation.field)
+
+
+def pair_facts(text: str, pair: Pair) -> dict[str, Any]:
+    """JSON object of the pair that an argument denotes: name, dimensions and field."""
+    return {
+        "name": text,
+        "dimension": pair.algebra.dimension,
+        "subalgebra_dimension": pair.subalgebra.dimension,
+        "field": pair.field.name,
+    }
+
+
+def pair_line(text: str, pair: Pair) -> str:
+    """Line about the pair that an argument denotes: name, dimensions and field."""
+    n, k = pair.algebra.dimension, pair.subalgebra.dimension
+    return f"{text}: dim g = {n}, dim h = {k}, dim g/h = {n - k}, over {pair.field.name}"

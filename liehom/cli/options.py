@@ -9,6 +9,9 @@ import typer
 
 from liehom.cli.guard import guarded
 
+PairArgument: TypeAlias = Annotated[
+    str, typer.Argument(metavar="PAIR", help="Pair file, or name such as 'so(4)/so(3)'.")
+]
 JsonOption: TypeAlias = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 

@@ -156,6 +156,8 @@ def _format(data: object) -> str:
     if not isinstance(data, Mapping):
         raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
     stated = data.get("format")
+    if stated == "liehom-classification":
+        raise FormatError("this is a classification, not a pair; liehom.Classification.from_json reads it")
     if stated == "liehom-certificate" or {"full", "proved"} <= data.keys():
         kind = "a certificate" if stated is not None else "a verdict"
         raise FormatError(

@@ -27,6 +27,8 @@ COMMANDS = (
     "verify",
     "isotropy",
     "range",
+    "classify",
+    "full-pairs",
     "describe",
     "integrate",
     "order",

@@ -127,7 +127,7 @@ class Classification:
 def _read_key(field: ExactField, data: Mapping[str, Any]) -> Key:
     key = Key(**data)
     if key.centre == SPIRAL:
-        key = key._replace(parameter=field.convert(key.parameter))
+        key = key._replace(parameter=field.convert(data["parameter"]))
     if any(isinstance(x, (bool, float)) for x in key) or row_of(key) is None:
         raise FormatError(f"the key {displayed(tuple(key))} is in no row of the classification")
     return key

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from liehom.algebra import Subalgebra
 from liehom.representations import Pair
-from liehom.scalars import ExactField, ExactMatrix
+from liehom.scalars import ExactMatrix
+from liehom.scalars.fields.exact_field import as_exact
 from liehom.scalars.spaces.quotient import echelon_quotient
 
 
@@ -22,14 +23,13 @@ def isotropy_kernel(pair: Pair) -> ExactMatrix:
     2
     """
     data, square = pair.subalgebra.quotient(), pair.dimension**2
-    field: ExactField = pair.field  # type: ignore[assignment]  # the pair is exact
+    subspace = as_exact(data.subspace)
     if square == 0 or not pair.subalgebra.dimension:
-        return data.subspace
-    flat = field.stack_rows([a.reshape(1, square) for a in pair.isotropy_matrices()], square)
+        return subspace
+    flat = as_exact(pair.field.stack_rows([a.reshape(1, square) for a in pair.isotropy_matrices()], square))
     if int(flat.modulo().rank()) == flat.nrows:
-        return field.zeros(0, pair.algebra.dimension)
-    kernel: ExactMatrix = flat.left_null_space() @ data.subspace
-    return kernel
+        return subspace.select(rows=[])
+    return flat.left_null_space() @ subspace
 
 
 def largest_ideal(pair: Pair, kernel: ExactMatrix) -> Subalgebra:
@@ -58,7 +58,7 @@ def _staying(pair: Pair, space: ExactMatrix, lift: ExactMatrix) -> ExactMatrix:
     width = blocks[0].nrows * blocks[0].ncols
     if width == 0 or all(block.is_zero() for block in blocks):
         return space
-    flat: ExactMatrix = pair.field.stack_rows([block.reshape(1, width) for block in blocks], width)
+    flat = as_exact(pair.field.stack_rows([block.reshape(1, width) for block in blocks], width))
     return flat.left_null_space() @ space
 
 

@@ -2,7 +2,7 @@
 
 Let L0 be the traceless part of rho(h) on V = g/h. For a full pair of dimension d >= 2 it is reductive and irreducible,
 so its commutant is R, C = R + RJ or H, and its centre is 0 or RJ. The centre is RJ if and only if the commutant is C
-and tr(A J) is not 0 for some A in L0. Then S = [L0, L0] is {A in L0 : tr(A J) = 0}; otherwise S = L0.
+and tr(A J) is not 0 for some A in L0. Then S = [L0, L0] consists of the A in L0 with tr(A J) = 0. Otherwise S = L0.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from liehom.representations import Pair
 from liehom.representations.invariants.intertwiners import commutant
 from liehom.representations.invariants.irreducibility import combination, traceless
 from liehom.scalars import ExactMatrix, Scalar
+from liehom.scalars.fields.exact_field import as_exact
 
 UNKNOWN = "?"
 """Letter of a pair that no letter describes, which the theorem excludes."""
@@ -88,7 +89,7 @@ def _commutant_dimension(action: TracelessIsotropyAction, j: ExactMatrix) -> int
 
 def _letter(effective: Pair, *, is_faithful: bool) -> tuple[str, int | None]:
     """The letter of an effective pair and, in C, the sign; `is_faithful` says whether its isotropy acts faithfully."""
-    form: ExactMatrix = effective.algebra.killing_form()  # type: ignore[assignment]  # the pair is exact
+    form = as_exact(effective.algebra.killing_form())
     degenerate = form.rank() < effective.algebra.dimension
     if degenerate or not is_faithful:
         return ("A" if is_faithful else UNKNOWN) if degenerate else "B", None

@@ -2,9 +2,9 @@
 
 A key is (letter, d, s, e, centre, parameter). With rho the isotropy representation on V = g/h and S the derived algebra
 of rho(h), s is the dimension of S and e the dimension of its commutant in gl(V). The centre of rho(h) is 0 (""), R, RJ,
-C = R + RJ or R(J + c) with c > 0, for a complex structure J. The letters are A: affine spaces, B: |1|-graded g,
-C: compact isotropy in a semisimple g. The parameter is c^2 for the centre R(J + c); in C it is +1 or -1 for a compact
-or non-compact g; otherwise None.
+C = R + RJ or R(J + c) with c > 0, for a complex structure J. The letter is A for affine spaces, B for |1|-graded g and
+C for compact isotropy in a semisimple g. The parameter is c^2 for the centre R(J + c). For the letter C it is +1 or -1
+for a compact or non-compact g. Otherwise it is None.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import NamedTuple, final
 
 from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.scalars import QQ, Scalar
-from liehom.scalars.fields.rational import ExactNumber
+from liehom.scalars.fields.rational import ExactNumber, rational_number
 
 SPIRAL = "J+c"
 """Centre of the rows that form families with the parameter c^2."""
@@ -113,7 +113,7 @@ def row_of(key: Key) -> Row | None:
     return _by_key(key.d).get(plain)
 
 
-def square_root(square: Scalar) -> str | None:
+def square_root(square: Scalar | int | None) -> str | None:
     """The positive root of a positive rational number, as the catalogue writes it; None for an irrational number.
 
     Examples
@@ -122,7 +122,7 @@ def square_root(square: Scalar) -> str | None:
     >>> square_root(QQ.convert("4/9")), square_root(QQ.convert("1/2"))
     ('2/3', 'sqrt(1/2)')
     """
-    number = square.rational() if isinstance(square, ExactNumber) else square
+    number = square.rational() if isinstance(square, ExactNumber) else rational_number(square)
     if number is None:
         return None
     p, q = int(number.p), int(number.q)

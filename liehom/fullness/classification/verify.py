@@ -1,9 +1,9 @@
 """A check of the key of a full pair that shares only scalars and the bracket table with its computation.
 
-What the key says is checked by other definitions. The ideal is largest if the covectors that vanish on h generate a
-space of dimension dim g - dim n under the coadjoint action. S is spanned by the brackets of h. A map T that commutes
-with S is determined by y = T x at a point x whose orbit under S spans V, and y is fixed by the elements of S that
-annihilate x. The centre of rho(h) consists of elements z of h with rho([z, h]) = 0. The letter A is shown by an abelian
+The entries of the key are checked by other definitions. The ideal is largest if the covectors that vanish on h generate
+a space of dimension dim g - dim n under the coadjoint action. S is spanned by the brackets of h. A map T that commutes
+with S is determined by y = T x at a point x that S moves in enough directions. Elements of S that annihilate x
+annihilate y. The centre of rho(h) consists of elements z of h with rho([z, h]) = 0. The letter A is shown by an abelian
 ideal that complements h, the others by a Killing form that is regular modulo a prime.
 """
 
@@ -18,6 +18,7 @@ from liehom.errors import CertificateError, InputError, InternalError, displayed
 from liehom.fullness.classification.rows import Key, row_of
 from liehom.representations import Pair
 from liehom.scalars import ExactField, ExactMatrix, Scalar, Subspace
+from liehom.scalars.fields.exact_field import as_exact
 from liehom.scalars.modular.modular import invariant_hull_rank
 
 PRIME = 5
@@ -53,13 +54,14 @@ def _agree(what: str, said: object, found: object) -> None:
 
 def _check_ideal(pair: Pair, ideal: Subspace) -> None:
     """The subspace is an ideal, lies in h, and no larger ideal does."""
-    g, h, field = pair.algebra, pair.subalgebra, ideal.field
+    g, h = pair.algebra, pair.subalgebra
+    field: ExactField = ideal.field  # type: ignore[assignment]
     if not h.subspace.includes(ideal):
         raise CertificateError("ideal", "it is not contained in h")
     across = ideal.basis.null_space().T
     if g.table.first_nonzero(ideal.basis, field.identity(g.dimension), across) is not None:
         raise CertificateError("ideal", "the subspace is not an ideal of g")
-    rng, covectors = random.Random(3), h.basis.null_space()
+    rng, covectors = random.Random(3), as_exact(h.basis).null_space()
     some = [g.table.adjoint(_random_row(field, g.dimension, rng)) for _ in range(min(3, g.dimension))]
     if invariant_hull_rank(covectors, some) == g.dimension - ideal.dimension:
         return
@@ -90,7 +92,8 @@ class _Effective:
     def __init__(self, pair: Pair, ideal: Subspace) -> None:
         self.field: ExactField = ideal.field  # type: ignore[assignment]
         n, k = pair.algebra.dimension, ideal.dimension
-        whole = self.field.stack_rows([ideal.basis, pair.subalgebra.basis, self.field.identity(n)], n)
+        given = [as_exact(ideal.basis), as_exact(pair.subalgebra.basis)]
+        whole = self.field.stack_rows([*given, self.field.identity(n)], n)
         basis = whole.select(rows=whole.T.echelon()[1])
         self.d, self.r = pair.dimension, pair.subalgebra.dimension - k
         dual, over = basis.inverse().select(columns=range(k, n)), basis.select(rows=range(k, n))
@@ -198,7 +201,7 @@ class _Effective:
 
     def _killing_form(self) -> ExactMatrix:
         """The Killing form, which is compared with its definition at random elements."""
-        form: ExactMatrix = self.algebra.killing_form()  # type: ignore[assignment]  # the field is exact
+        form = as_exact(self.algebra.killing_form())
         x, y = (_random_row(self.field, self.n, self.rng) for _ in range(2))
         if (x @ form @ y.T)[0, 0] != (self.algebra.table.adjoint(x) @ self.algebra.table.adjoint(y)).trace():
             raise InternalError("the Killing form does not agree with its definition; please report this pair")
