@@ -1,4 +1,4 @@
-(** Soundness of the kind commutant: an operator that commutes with rho(h) and has eigenvalues with different real parts.
+(** Soundness of the kind commutant: an operator that commutes with rho(h) and has two real parts in its spectrum.
 
     Source: docs/theory/fullness.md, section 3, "An operator that commutes".
 
@@ -9,8 +9,8 @@
 
     Two criteria follow. [commutant_sound] needs no eigenvalue: T is over F, it is not a scalar, and it is no root of
     a quadratic polynomial of negative discriminant; in particular it suffices that 1, T, T^2 are independent.
-    [commutant_cut_sound] is the statement of the page: some but not all eigenvalues have real part above the cut. It
-    implies the first criterion. *)
+    [commutant_cut_sound] is the statement of the page: some but not all eigenvalues have real part above the cut. Where
+    it applies, so does the first criterion. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp Require Import complex ring.
 From Liehom Require Import Sound Pair Certificate FullSound.
@@ -172,7 +172,8 @@ have comR : commutes (rho (map_pair f c) (map_mx f h) (map_mx f Q) (map_mx f E))
   by move=> p; rewrite -map_rho -!map_mxM com.
 have d0 : (0 < d)%N := leq_ltn_trans (leq0n _) lt.
 have sz : size s = d.
-  by have := size_char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f T)); rewrite eig size_prod_XsubC => -[].
+  have := size_char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f T)).
+  by rewrite eig size_prod_XsubC => -[].
 have rt z : z \in s -> root (char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f T))) z.
   by rewrite eig root_prod_XsubC.
 have /hasP [z zs cz] : has (fun z => cut < complex.Re z) s by rewrite has_count.

@@ -149,7 +149,8 @@ Lemma top_invariant l (B : 'I_l -> 'M[R[i]]_d) (S : 'M[R[i]]_l) (t : seq R[i]) (
   (forall (i : 'I_d) (j : 'I_l), (i < p)%N -> (j < r)%N -> low <= complex.Re (s`_i + t`_j)) ->
   forall j : 'I_l, (j < r)%N -> (W *m B j <= W)%MS.
 Proof.
-move=> [S_low S_diag] adB gap; suff H n (j : 'I_l) : (j < n)%N -> (j < r)%N -> (W *m B j <= W)%MS by move=> j; apply: (H j.+1).
+move=> [S_low S_diag] adB gap.
+suff H n (j : 'I_l) : (j < n)%N -> (j < r)%N -> (W *m B j <= W)%MS by move=> j; apply: (H j.+1).
 elim: n j => // n IH j; rewrite ltnS => jn jr.
 suff rows (i : 'I_d) : (i < p)%N -> (row i U *m B j <= W)%MS.
   apply/row_subP => i; rewrite row_mul row_top -scalemxAl; case: ltnP => ip; last by rewrite scale0r sub0mx.
@@ -256,7 +257,8 @@ case/negP: bad; rewrite -sub1mx.
 have : row_full (span_at (fun q => map_mx toC (rho q)) (map_mx toC x)) by apply: map_span_full (full_rho x x0).
 rewrite -sub1mx => /submx_trans; apply; apply: span_sub => [|q]; first exact: addsmxSl.
 have [u ->] := rhoB q; apply/span_atP; exists (fun g => \sum_j toC (u j) * (invmx Z) j g), 0; rewrite scale0r addr0.
-congr (_ *m _); rewrite map_comb [RHS](eq_bigr (fun g => \sum_j (toC (u j) * (invmx Z) j g) *: B' g)) => [|g _]; last first.
+congr (_ *m _); rewrite map_comb.
+rewrite [RHS](eq_bigr (fun g => \sum_j (toC (u j) * (invmx Z) j g) *: B' g)) => [|g _]; last first.
   by rewrite scaler_suml.
 rewrite [RHS]exchange_big; apply: eq_bigr => j _; rewrite combB scaler_sumr.
 by apply: eq_bigr => g _; rewrite scalerA.
@@ -264,8 +266,8 @@ Qed.
 
 (** Kind dominance for a pair over F, over every real closed R: X in h, and a family B that spans rho(h). *)
 Theorem dominance_pair_sound (F : realFieldType) (R : rcfType) (f : {rmorphism F -> R}) n k d (c : 'I_n -> 'M[F]_n)
-    (h : 'M[F]_(k, n)) (Q : 'M[F]_(n, d)) (E : 'M[F]_(d, n)) (X : 'rV[F]_n) (a : F) l (B : 'I_l -> 'M[F]_d) (M : 'M[F]_l)
-    (cut eps : F) (s t : seq R[i]) :
+    (h : 'M[F]_(k, n)) (Q : 'M[F]_(n, d)) (E : 'M[F]_(d, n)) (X : 'rV[F]_n) (a : F) l (B : 'I_l -> 'M[F]_d)
+    (M : 'M[F]_l) (cut eps : F) (s t : seq R[i]) :
   increasing f -> valid_pair c h Q E -> 0 < eps ->
   (forall q, exists u : 'I_l -> F, rho c h Q E q = \sum_j u j *: B j) ->
   (forall j, B j *m isotropy c Q E X - isotropy c Q E X *m B j = \sum_g M j g *: B g) ->

@@ -3,8 +3,8 @@
     Source: docs/theory/fullness.md, section 2 (Theorem 2) and section 7.
 
     m is the space of P-skew matrices in L = span(rho_i, 1). It is closed under brackets; its basis is the family A of
-    Sphere.v. A matrix K of the certificate with K P + P K^T = a P differs from an element of m by the scalar a/2, so the
-    rank at one point is a rank for m, hence for m at every point, hence for L. *)
+    Sphere.v. A matrix K of the certificate with K P + P K^T = a P differs from an element of m by the scalar a/2. So
+    the rank at one point is a rank for m, hence for m at every point, hence for L. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From Liehom Require Import Sound Pair Certificate Derivative Definite Sphere.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
@@ -118,7 +118,7 @@ Proof.
 move=> clos [Ps Pp KL Kc rk]; pose A := @m_basis F k d rho P.
 have full_x : row_full (span_at A x).
   rewrite -sub1mx; apply: submx_trans (_ : span_at K x <= _)%MS; first by rewrite sub1mx.
-  apply: span_sub => [|j]; first by apply/span_atP; exists (fun=> 0), 1; rewrite scale1r big1 ?mulmx0 ?add0r // => i _; rewrite scale0r.
+  apply: span_sub => [|j]; first exact: addsmxSl.
   have [u eu] := KL j; have [a ea] := Kc j.
   have [||w ew] := @m_basis_span _ _ _ rho P (K j - (a / 2%:R)%:M).
   - by exists u, (- (a / 2%:R)); rewrite eu raddfN.
@@ -136,6 +136,22 @@ apply: span_sub => [|a]; first exact: addsmxSl.
 have [[u [t e]] _] := m_basisP a.
 by apply/span_atP; exists u, t; rewrite /A e mulmxDr mul_mx_scalar.
 Qed.
+
+(** If rho(h) preserves a definite form up to factors, one vector decides: the range condition holds at one x != 0 if
+    and only if the pair is full (Proposition 5 of the page). *)
+Corollary one_point (F : realFieldType) k d (rho : 'I_k -> 'M[F]_d) (P : 'M[F]_d) (x : 'rV[F]_d) :
+  bracket_closed rho -> P^T = P -> positive_definite P -> (forall i, conformal P (rho i)) -> x != 0 ->
+  row_full (span_at rho x) <-> full rho.
+Proof.
+move=> clos Ps Pp Kc x0; split=> [rk | full_rho]; last exact: full_rho.
+apply: (full_matrices_sound clos); split; [exact: Ps | exact: Pp | move=> j | exact: Kc | exact: rk].
+exists (fun i => (i == j)%:R); rewrite (bigD1 j) //= eqxx scale1r big1 ?addr0 // => i ij.
+by rewrite (negPf ij) scale0r.
+Qed.
+
+(** Every morphism from the rational numbers is increasing. *)
+Lemma rat_increasing (R : realFieldType) (f : {rmorphism rat -> R}) : increasing f.
+Proof. by move=> x x0; rewrite (fmorph_eq_rat f) ltr0q. Qed.
 
 (** Change of field. *)
 Section Map.

@@ -5,13 +5,14 @@
 
     Let A be a real matrix, H = V D V^T symmetric, V invertible, D diagonal, and N = (A - c) H + H (A - c)^T positive
     definite. Then A has no eigenvalue with real part c, and as many with real part above c as D has positive entries
-    [count_right]. Proof: let W be spanned by the basis vectors of a triangular form that belong to the eigenvalues to the
-    right. H is positive on W, by induction on the dimension with Schur complements [triangular_positive]. So dim W is at
-    most the number of positive entries of D [positive_index]. The same holds for -A, -H and the eigenvalues to the left,
-    and the numbers add up. [dominance_count_sound] is Theorem 4 with three such counts; no eigenvalue appears in it.
+    [count_right]. Proof: let W be spanned by the basis vectors of a triangular form that belong to the eigenvalues to
+    the right. H is positive on W, by induction on the dimension with Schur complements [triangular_positive]. So dim W
+    is at most the number of positive entries of D [positive_index]. The same holds for -A, -H and the eigenvalues to
+    the left, and the numbers add up. [dominance_count_sound] is Theorem 4 with three such counts; no eigenvalue appears
+    in it.
 
-    Such an H exists whenever no two eigenvalues are mirror images in the line: the solution of N = 1. This is also when
-    the Routh-Hurwitz count of the page returns a number. *)
+    Such an H exists whenever A has no eigenvalue on the line. If moreover no two eigenvalues are mirror images in it,
+    the equation N = 1 has one solution H. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp Require Import complex.
 From Liehom Require Import Sound Pair Certificate Definite FullSound Triangular Dominance.
@@ -59,9 +60,11 @@ pose g := G 0 0; pose gl := dlsubmx G; pose gu := ursubmx G; pose G' := drsubmx 
 have defG : G = block_mx g%:M gu gl G'.
   by rewrite -[LHS]submxK; congr block_mx; rewrite [LHS]mx11_scalar !mxE !lshift0.
 have guE : gu = ctr gl.
-  by apply/matrixP => i j; rewrite !mxE; have := congr1 (fun M : 'M_(1 + n) => M (lshift n i) (rshift 1 j)) Gh; rewrite !mxE.
+  apply/matrixP => i j; rewrite !mxE.
+  by have := congr1 (fun M : 'M_(1 + n) => M (lshift n i) (rshift 1 j)) Gh; rewrite !mxE.
 have G'h : ctr G' = G'.
-  by apply/matrixP => i j; rewrite !mxE; have := congr1 (fun M : 'M_(1 + n) => M (rshift 1 i) (rshift 1 j)) Gh; rewrite !mxE.
+  apply/matrixP => i j; rewrite !mxE.
+  by have := congr1 (fun M : 'M_(1 + n) => M (rshift 1 i) (rshift 1 j)) Gh; rewrite !mxE.
 have g_real : conjc g = g by have := congr1 (fun M : 'M_(1 + n) => M 0 0) Gh; rewrite !mxE.
 pose T' := drsubmx T; pose tl := dlsubmx T.
 have defT : T = block_mx (T 0 0)%:M 0 tl T'.
@@ -80,7 +83,8 @@ have g_pos : 0 < g.
   have e0T : e0 *m T = T 0 0 *: e0.
     by rewrite {1}defT mul_row_block !mul1mx !mul0mx !addr0 scale_row_mx scaler0 scalemx1.
   have e0G : (e0 *m G *m ctr e0) 0 0 = g.
-    by rewrite defG mul_row_block !mul1mx !mul0mx !addr0 ctr_row mul_row_col ctr0 mulmx0 addr0 /ctr trmx1 map_mx1 mulmx1 mxE eqxx.
+    rewrite defG mul_row_block !mul1mx !mul0mx !addr0 ctr_row mul_row_col ctr0 mulmx0 addr0.
+    by rewrite /ctr trmx1 map_mx1 mulmx1 mxE eqxx.
   have -> : e0 *m (T *m G) *m ctr e0 = T 0 0 *: (e0 *m G *m ctr e0) by rewrite mulmxA e0T -!scalemxAl.
   have -> : e0 *m (G *m ctr T) *m ctr e0 = conjc (T 0 0) *: (e0 *m G *m ctr e0).
     rewrite mulmxA -(mulmxA _ (ctr T)) -ctrM e0T.
@@ -206,7 +210,8 @@ Qed.
 
 (** The eigenvalues to the right of c are at most as many as the positive entries of D. *)
 Lemma right_le d (A U T H V : 'M[C]_d) (D : 'rV[R]_d) (s : seq C) (p : nat) (c : R) :
-  U \in unitmx -> U *m A = T *m U -> triangular T s -> (p <= d)%N -> (forall i : 'I_d, (i < p)%N -> c < complex.Re s`_i) ->
+  U \in unitmx -> U *m A = T *m U -> triangular T s ->
+  (p <= d)%N -> (forall i : 'I_d, (i < p)%N -> c < complex.Re s`_i) ->
   H = V *m diag_mx (map_mx (ComplexField.real_complex_rmorphism R) D) *m ctr V -> ctr H = H ->
   positive ((A - (c%:C%C)%:M) *m H + H *m ctr (A - (c%:C%C)%:M)) ->
   (p <= #|[pred i | (0 < D 0 i)%R]|)%N.
@@ -334,8 +339,8 @@ Qed.
 
 (** Kind dominance with three counts proved by forms, over the field F of the pair: no eigenvalue appears. *)
 Theorem dominance_count_sound (F : realFieldType) (R : rcfType) (f : {rmorphism F -> R}) n k d (c : 'I_n -> 'M[F]_n)
-    (h : 'M[F]_(k, n)) (Q : 'M[F]_(n, d)) (E : 'M[F]_(d, n)) (X : 'rV[F]_n) (a : F) l (B : 'I_l -> 'M[F]_d) (M : 'M[F]_l)
-    (cut eps : F) (top r : nat) :
+    (h : 'M[F]_(k, n)) (Q : 'M[F]_(n, d)) (E : 'M[F]_(d, n)) (X : 'rV[F]_n) (a : F) l (B : 'I_l -> 'M[F]_d)
+    (M : 'M[F]_l) (cut eps : F) (top r : nat) :
   increasing f -> valid_pair c h Q E -> 0 < eps ->
   (forall q, exists u : 'I_l -> F, rho c h Q E q = \sum_j u j *: B j) ->
   (forall j, B j *m isotropy c Q E X - isotropy c Q E X *m B j = \sum_g M j g *: B g) ->

@@ -10,8 +10,8 @@
 
     (1) m y + F y = V if and only if det phi(y) != 0 [span_phi].
     (2) The derivative of phi along y X, X in m, is X^T phi + phi X [dphi_along]: G is m-invariant.
-    (3) On the line y = x + t (y1 - x), p(t) = det phi(y) and q(t) = P(y, y) are polynomials. Expand p y' in the y A_a and
-        y; by Jacobi's formula, tr A_a = 0 and P(y A_a, y) = 0, one gets p' q = p n for a polynomial n [det_phi_ode].
+    (3) On the line y = x + t (y1 - x), p(t) = det phi(y) and q(t) = P(y, y) are polynomials. Expand p y' in the y A_a
+        and y. Jacobi's formula, tr A_a = 0 and P(y A_a, y) = 0 give p' q = p n for a polynomial n [det_phi_ode].
     (4) p(0) != 0, so p is not 0, so p(1) = 0 would contradict q(1) = P(y1, y1) != 0 [skew_full]. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From Liehom Require Import Sound Pair Certificate Derivative Definite.
@@ -53,7 +53,8 @@ Hypothesis A_traceless : forall a, \tr (A a) = 0.
 
 Lemma orbit_mx_along c y : B (y *m A c) = B y *m A c + C c *m B y.
 Proof.
-apply/row_matrixP => a; rewrite linearD /= !row_mul !rowK -!mulmxA A_closed mulmxDr mulmx_sumr (mulmx_sum_row (row a (C c))).
+apply/row_matrixP => a; rewrite linearD /= !row_mul !rowK -!mulmxA A_closed.
+rewrite mulmxDr mulmx_sumr (mulmx_sum_row (row a (C c))).
 by congr (_ + _); apply: eq_bigr => e _; rewrite rowK mxE scalemxAr.
 Qed.
 
