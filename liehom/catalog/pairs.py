@@ -92,7 +92,7 @@ def pair_names() -> tuple[str, ...]:
 
 def _made(algebra: LieAlgebra, rows: IntegerArray, name: object, *, check: bool = False) -> Pair:
     matrix = algebra.field.from_integers(rows.ravel().tolist(), len(rows), algebra.dimension)  # type: ignore[attr-defined]
-    return Pair(algebra, Subalgebra(algebra, matrix, check=check), name=str(name))
+    return Pair(algebra, Subalgebra(algebra, matrix, check=check), name=None if name is None else str(name))
 
 
 def _affine(tree: Term) -> Pair:
@@ -130,7 +130,7 @@ def spiral_pair(
     # no check: the matrices commute with the spiral and are a basis of their span
     h = direct_sum(linear_lie_algebra(matrices), abelian(1)).over(field)
     algebra = semidirect_sum(h, [*read, spiral], size=size, name=name, check=False)
-    return _made(algebra, _first(len(matrices) + 1, algebra.dimension), name or "")
+    return _made(algebra, _first(len(matrices) + 1, algebra.dimension), name)
 
 
 def _symmetric(tree: Term) -> Pair:

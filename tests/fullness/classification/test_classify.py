@@ -13,9 +13,16 @@ from hypothesis import strategies as st
 
 import liehom as lh
 from liehom.catalog import CLAIMS
-from liehom.fullness.classification import Key, Row, rows
-from liehom.fullness.classification.classification import Classification
-from tests.fullness.classification.support import expected_key, pair_of, with_ideal
+from liehom.fullness.classification import Classification, Key, Row, rows
+from tests.fullness.classification.support import (
+    classified,
+    expected_key,
+    over_free_nilpotent,
+    over_heisenberg,
+    pair_of,
+    with_module,
+    with_summand,
+)
 from tests.fullness.support import over, scrambled
 from tests.fullness.test_number_fields import CUBIC, ROOT2
 from tests.fullness.test_number_fields import scrambled as scrambled_over
@@ -23,9 +30,17 @@ from tests.sampling import examples
 
 DIMENSIONS = (2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 16)
 ROWS = [row for d in (0, 1, *DIMENSIONS) for row in rows(d)]
-SMALL = [row for row in ROWS if row.key.d <= 8]
-every_row = pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-small_rows = pytest.mark.parametrize("row", SMALL, ids=lambda row: row.name)
+LARGE = 6  # from this dimension on, cases run with --slow only
+
+
+def of_rows(chosen: list[Row]) -> pytest.MarkDecorator:
+    marked = [pytest.param(row, marks=pytest.mark.slow if row.key.d > LARGE else (), id=row.name) for row in chosen]
+    return pytest.mark.parametrize("row", marked)
+
+
+every_row = of_rows(ROWS)
+small_rows = of_rows([row for row in ROWS if row.key.d <= 8])
+affine_rows = of_rows([row for row in ROWS if row.key.letter == "A" and row.key.d >= 2])
 
 
 @every_row
@@ -42,35 +57,99 @@ def test_every_row_is_found_in_its_own_basis(row: Row) -> None:
 @every_row
 def test_every_row_is_found_in_a_scrambled_basis(row: Row, seed: int) -> None:
     pair = scrambled(pair_of(row), random.Random(f"{row.name} {seed}"))
-    found = lh.classify(pair)
+    found = classified(pair)
     assert found.key == expected_key(row)
-    assert found.verify(pair)
+    if row.key.d <= 8:
+        assert found.verify(pair)
+
+
+# -- ideals inside h ---------------------------------------------------------------------------------------
+def is_found(pair: lh.Pair, row: Row, dimension: int, rng: random.Random) -> None:
+    moved = scrambled(pair, rng)
+    found = classified(moved)
+    assert found.key == expected_key(row)
+    assert found.ideal.dimension == dimension
+    if row.key.d <= 8:
+        assert found.verify(moved)
 
 
 @pytest.mark.parametrize("dimension", range(1, 7))
 @every_row
-def test_an_ideal_inside_h_leaves_the_key(row: Row, dimension: int) -> None:
+def test_a_direct_summand_inside_h_leaves_the_key(row: Row, dimension: int) -> None:
     rng = random.Random(f"{row.name} {dimension}")
-    pair = scrambled(with_ideal(pair_of(row), dimension, rng), rng)
-    found = lh.classify(pair)
-    assert found.key == expected_key(row)
-    assert found.ideal.dimension == dimension
-    assert found.verify(pair)
+    is_found(with_summand(pair_of(row), dimension, rng), row, dimension, rng)
 
 
+@every_row
+def test_a_module_inside_h_leaves_the_key(row: Row) -> None:
+    extended = with_module(row) if row.key.d >= 2 else None
+    if extended is None:
+        pytest.skip("the module has more than six dimensions")
+    is_found(extended, row, extended.algebra.dimension - pair_of(row).algebra.dimension, random.Random(row.name))
+
+
+@of_rows([row for row in ROWS if row.key.letter == "A" and 2 <= row.key.d <= 4])
+def test_an_extension_by_bivectors_does_not_split_and_leaves_the_key(row: Row) -> None:
+    extended, d = over_free_nilpotent(pair_of(row)), row.key.d
+    assert extended.algebra.radical().as_algebra().derived_subalgebra().dimension > d
+    is_found(extended, row, d * (d - 1) // 2, random.Random(row.name))
+
+
+@affine_rows
+def test_a_heisenberg_algebra_over_an_affine_pair_leaves_the_key(row: Row) -> None:
+    extended = over_heisenberg(pair_of(row))
+    if extended is None:
+        pytest.skip("no invariant skew form")
+    is_found(extended, row, extended.algebra.dimension - pair_of(row).algebra.dimension, random.Random(row.name))
+
+
+# -- number fields -----------------------------------------------------------------------------------------
 @pytest.mark.parametrize("field", [ROOT2, CUBIC], ids=["sqrt(2)", "cube root of 2"])
 @small_rows
 def test_every_row_is_found_in_a_basis_with_irrational_entries(row: Row, field: Any) -> None:
     pair = scrambled_over(pair_of(row), field, random.Random(row.name))
-    found = lh.classify(pair)
+    found = classified(pair)
     assert found.key == expected_key(row)
     assert found.verify(pair)
 
 
-FULL = [name for name, claim in CLAIMS.items() if claim.full]
+FAMILIES = [row for row in ROWS if row.is_family]
+ROOTS = {"sqrt(2)": (ROOT2, [0, 1]), "1 + sqrt(2)": (ROOT2, [1, 1]), "cube root of 2": (CUBIC, [0, 1])}
 
 
-@pytest.mark.parametrize("name", FULL)
+@pytest.mark.parametrize(("field", "coordinates"), ROOTS.values(), ids=list(ROOTS))
+@of_rows(FAMILIES)
+def test_spirals_with_irrational_c(row: Row, field: Any, coordinates: list[int]) -> None:
+    family = next(x for x in lh.full_pairs(row.key.d) if x.name == row.name)
+    c = coordinates[0] + coordinates[1] * field.generator
+    pair = family.pair(c)  # type: ignore[union-attr]
+    assert lh.classify(pair).key == row.key._replace(parameter=c * c)
+    if row.key.d > 8:
+        return
+    moved = scrambled_over(pair, pair.field, random.Random(row.name))
+    found = classified(moved)
+    assert found.key == row.key._replace(parameter=c * c)
+    assert (found.name is None) == ((c * c).rational() is None)
+    assert found.name is not None or found.space.endswith(f", c^2 = {c * c}")
+    assert found.verify(moved)
+
+
+@pytest.mark.parametrize(
+    ("name", "square"),
+    [("affine(sl(2,Q(sqrt(-2)))+spiral(1,1))", "1/2"), ("affine(sl(3,Q(sqrt(-3)))+spiral(2,1))", "4/3")],
+)
+def test_spirals_over_the_rationals_with_irrational_c(name: str, square: str) -> None:
+    pair = lh.pair(name)
+    found = lh.classify(pair)
+    assert pair.field == lh.QQ
+    assert found.key.parameter == lh.QQ.convert(square)
+    assert found.name is not None
+    assert lh.classify(lh.pair(found.name)).key == found.key
+    assert found.verify(pair)
+
+
+# -- names -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("name", [name for name, claim in CLAIMS.items() if claim.full])
 def test_the_name_denotes_the_same_row(name: str) -> None:
     found = lh.classify(lh.pair(name))
     assert found.name is not None
@@ -91,23 +170,57 @@ def test_a_pair_that_is_not_full_raises_an_error_with_the_verdict(name: str) -> 
 @given(st.sampled_from([row for row in ROWS if row.key.d <= 6]), st.randoms(use_true_random=False))
 def test_the_key_does_not_depend_on_the_basis(row: Row, rng: random.Random) -> None:
     pair = pair_of(row)
-    assert lh.classify(scrambled(pair, rng)).key == lh.classify(pair).key
+    assert classified(scrambled(pair, rng)).key == classified(pair).key
 
 
 @settings(max_examples=examples(40), deadline=None)
 @given(st.sampled_from([row for row in ROWS if row.key.d <= 6]), st.sampled_from([ROOT2, CUBIC]))
 def test_the_key_does_not_depend_on_the_field(row: Row, field: Any) -> None:
     pair = pair_of(row)
-    assert lh.classify(over(pair, field)).key == lh.classify(pair).key
+    assert classified(over(pair, field)).key == classified(pair).key
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(st.sampled_from([row for row in ROWS if row.key.d <= 5]), st.integers(1, 6), st.randoms(use_true_random=False))
+def test_the_ideal_is_the_same_subspace_in_every_basis(row: Row, dimension: int, rng: random.Random) -> None:
+    pair = with_summand(pair_of(row), dimension, rng)
+    n = pair.algebra.dimension
+    moved = scrambled(pair, rng)
+    given_ideal, found = classified(pair).ideal, classified(moved).ideal
+    assert given_ideal == lh.Subspace(pair.field, pair.field.identity(n).select(rows=range(n - dimension, n)), n)
+    assert found.dimension == dimension
+    assert moved.algebra.subalgebra(found.basis).is_ideal()
 
 
 # -- the object --------------------------------------------------------------------------------------------
 @small_rows
 def test_json_and_pickle_restore_a_classification(row: Row) -> None:
     for field in (lh.QQ, ROOT2):
-        found = lh.classify(over(pair_of(row), field))
+        found = classified(over(pair_of(row), field))
         assert Classification.from_json(found.to_json()) == found
         assert pickle.loads(pickle.dumps(found)) == found
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"format": "liehom-pair"},
+        {"version": 2},
+        {"key": None},
+        {"key": {"letter": "A"}},
+        {"key": {"letter": "C", "d": 3, "s": 5, "e": 1, "centre": "", "parameter": 1}},
+        {"key": {"letter": "C", "d": 3.0, "s": 3, "e": 1, "centre": "", "parameter": 1}},
+        {"key": {"letter": "A", "d": 2, "s": 0, "e": 4, "centre": "J+c", "parameter": "x"}},
+        {"ideal": [["1"]]},
+        {"dimension": "six"},
+        {"field": "QQ"},
+    ],
+    ids=str,
+)
+def test_malformed_json_raises_a_format_error(change: dict[str, Any]) -> None:
+    data = lh.classify(lh.pair("so(4)/so(3)")).to_json()
+    with pytest.raises(lh.FormatError):
+        Classification.from_json({**data, **change})
 
 
 def test_a_given_verdict_spares_the_decision(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,6 +240,15 @@ def test_numerical_pairs_and_other_objects_are_rejected() -> None:
         lh.classify("so(4)/so(3)")  # type: ignore[arg-type]
 
 
+def test_a_key_in_no_row_is_reported_as_a_counterexample(monkeypatch: pytest.MonkeyPatch) -> None:
+    pair = lh.pair("so(4)/so(3)")
+    key = Key("C", 3, 5, 1, "", 1)
+    monkeypatch.setattr("liehom.fullness.classifier.key_of", lambda action: (key, pair.subalgebra))
+    with pytest.raises(lh.errors.InternalError, match="counterexample to the theorem"):
+        lh.classify(pair)
+
+
+# -- verification ------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     "change",
     [
@@ -151,25 +273,24 @@ def test_a_wrong_key_is_not_verified(change: dict[str, Any]) -> None:
 @small_rows
 def test_the_key_of_another_row_is_not_verified(row: Row) -> None:
     pair = pair_of(row)
-    found = lh.classify(pair)
+    found = classified(pair)
     for other in rows(row.key.d):
         if other != row:
             with pytest.raises(lh.CertificateError):
                 replace(found, key=expected_key(other)).verify(pair)
 
 
+def test_another_c_is_not_verified() -> None:
+    pair = lh.pair("affine(su(3)+spiral(2/3,1))")
+    found = lh.classify(pair)
+    with pytest.raises(lh.CertificateError, match="parameter"):
+        replace(found, key=found.key._replace(parameter=lh.QQ.convert("4/8"))).verify(pair)
+
+
 def test_a_wrong_ideal_is_not_verified() -> None:
     pair = lh.pair("so(4)/u(2)")
     found = lh.classify(pair)
-    for rows_of_ideal in (found.ideal.basis.select(rows=[0]), pair.subalgebra.basis, pair.field.zeros(0, 6)):
-        wrong = replace(found, ideal=lh.Subspace(pair.field, rows_of_ideal, 6))
+    for basis in (found.ideal.basis.select(rows=[0]), pair.subalgebra.basis, pair.field.zeros(0, 6)):
+        wrong = replace(found, ideal=lh.Subspace(pair.field, basis, 6))
         with pytest.raises(lh.CertificateError, match="ideal"):
             wrong.verify(pair)
-
-
-def test_a_key_in_no_row_is_reported_as_a_counterexample(monkeypatch: pytest.MonkeyPatch) -> None:
-    pair = lh.pair("so(4)/so(3)")
-    key = Key("C", 3, 5, 1, "", 1)
-    monkeypatch.setattr("liehom.fullness.classifier.key_of", lambda action: (key, pair.subalgebra))
-    with pytest.raises(lh.errors.InternalError, match="counterexample to the theorem"):
-        lh.classify(pair)
