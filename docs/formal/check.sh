@@ -30,5 +30,5 @@ sed -n 's/^Print Assumptions \(.*\)\.$/theorem  \1:/p' Assumptions.v | paste -d'
 cd ocaml
 coqc -w none -R ../theories Liehom Extraction.v
 ocamlfind ocamlopt -package zarith,yojson -linkpkg integer.ml checker.mli checker.ml reader.ml propose.ml halfplane.ml dominance.ml \
-    certificates.ml main.ml -o ../liehom-check
+    certificates.ml coq_file.ml main.ml -o ../liehom-check
 echo "program $build/liehom-check"

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import copy
+import json
+import shutil
+import subprocess
+from pathlib import Path
 
 import pytest
 
+import liehom as lh
 from tests.formal import agreement
 
 pytestmark = pytest.mark.skipif(agreement.program() is None, reason="docs/formal/check.sh has not built liehom-check")
@@ -40,6 +45,21 @@ def test_wrong_claims_are_rejected() -> None:
     cases = [("right", sphere, full), ("form", sphere, wrong_form), ("pair", wrong_pair, full)]
     outcomes = [outcome.split(":")[0] for outcome in agreement.of_program(cases)]
     assert outcomes == ["accepted", "rejected", "rejected"]
+
+
+@pytest.mark.skipif(shutil.which("coqc") is None, reason="Coq is not installed")
+def test_coq_itself_computes_the_check(tmp_path: Path) -> None:
+    pair = lh.pair("so(3)/so(2)")
+    (tmp_path / "pair.json").write_text(json.dumps(lh.to_json(pair)))
+    (tmp_path / "certificate.json").write_text(json.dumps(lh.decide_fullness(pair).certificate.to_json()))
+    program = agreement.program()
+    command = [program, "--coq", "pair.json", "certificate.json"]
+    source = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True).stdout
+    assert "Theorem verdict (R : rcfType) : pair_is_full R pair." in source
+    (tmp_path / "verdict.v").write_text(source)
+    theories = ["-w", "none", "-R", program.parent / "theories", "Liehom"]
+    done = subprocess.run(["coqc", *theories, "verdict.v"], cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True)
+    assert done.stdout.strip() == "Closed under the global context"
 
 
 @pytest.mark.slow

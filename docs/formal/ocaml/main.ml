@@ -1,4 +1,6 @@
-(* liehom-check PAIR.json CERTIFICATE.json, or liehom-check --lines: JSON lines with the keys pair and certificate. *)
+(* liehom-check PAIR.json CERTIFICATE.json: the outcome of the check.
+   liehom-check --coq PAIR.json CERTIFICATE.json: a Coq file that proves it without the translation to OCaml.
+   liehom-check --lines: the outcomes for JSON lines with the keys pair and certificate. *)
 
 type outcome =
   | Accepted of string
@@ -23,20 +25,28 @@ let rec proposed pair (t : Checker.coordinates_hint) certificate =
     let isotropies = Checker.isotropies t (Checker.adjoint pair t) in
     [Checker.WitnessCertificate (Dominance.witness pair t isotropies element cut eps)]
 
-let run pair_json certificate_json =
+(* The outcome that [finish] finds for the pair, the coordinates and the certificates to check. *)
+let run finish pair_json certificate_json =
   try
     let pair = Reader.pair pair_json in
     let coordinates = Propose.coordinates pair in
     let given = Certificates.certificate pair.Checker.dimension coordinates.Checker.codimension certificate_json in
-    let all = proposed pair coordinates given in
-    if List.for_all (Checker.check Propose.oracle pair coordinates) all then
-      Accepted (if Checker.claims_full (List.hd all) then "full" else "not full")
-    else Rejected "a check fails"
+    finish pair coordinates (proposed pair coordinates given)
   with
   | Reader.Malformed s -> Malformed s
   | Reader.Unsupported s -> Unsupported s
   | Propose.Impossible s -> Rejected s
   | Halfplane.Symmetric -> Rejected "two eigenvalues are symmetric about the cut"
+
+let outcome pair coordinates certificates =
+  if List.for_all (Checker.check Propose.oracle pair coordinates) certificates then
+    Accepted (if Checker.claims_full (List.hd certificates) then "full" else "not full")
+  else Rejected "a check fails"
+
+let coq_file pair coordinates certificates =
+  match Coq_file.file Propose.oracle pair coordinates (List.hd certificates) with
+  | Some text -> print_string text; Accepted ""
+  | None -> Rejected "a check fails"
 
 let sentence = function
   | Accepted s -> "accepted: " ^ s
@@ -54,7 +64,7 @@ let lines () =
       let line = input_line stdin in
       let outcome =
         match read (fun () -> Yojson.Safe.from_string line) with
-        | Ok (`Assoc members) -> run (List.assoc "pair" members) (List.assoc "certificate" members)
+        | Ok (`Assoc members) -> run outcome (List.assoc "pair" members) (List.assoc "certificate" members)
         | Ok _ -> Malformed "a line is not an object"
         | Error e -> e
       in
@@ -62,16 +72,27 @@ let lines () =
     done
   with End_of_file -> ()
 
-let () =
+let files finish pair certificate =
+  let file name = read (fun () -> Yojson.Safe.from_file name) in
+  match file pair, file certificate with Ok p, Ok c -> run finish p c | Error e, _ | _, Error e -> e
+
+let main () =
   match Array.to_list Sys.argv with
   | [_; "--lines"] -> lines ()
+  | [_; "--coq"; pair; certificate] ->
+    let found = files coq_file pair certificate in
+    if code found > 0 then prerr_endline (sentence found);
+    exit (code found)
   | [_; pair; certificate] ->
-    let file name = read (fun () -> Yojson.Safe.from_file name) in
-    let outcome =
-      match file pair, file certificate with Ok p, Ok c -> run p c | Error e, _ | _, Error e -> e
-    in
-    print_endline (sentence outcome);
-    exit (code outcome)
+    let found = files outcome pair certificate in
+    print_endline (sentence found);
+    exit (code found)
   | _ ->
-    prerr_endline "usage: liehom-check PAIR.json CERTIFICATE.json | liehom-check --lines";
+    prerr_endline "usage: liehom-check [--coq] PAIR.json CERTIFICATE.json | liehom-check --lines";
+    exit 2
+
+let () =
+  try main ()
+  with Sys_error s ->
+    prerr_endline s;
     exit 2

@@ -42,6 +42,15 @@ Record oracle := Oracle {
   divide : polynomial -> polynomial -> Z * polynomial;
   bezout : polynomial -> polynomial -> polynomial * polynomial * Z}.
 
+(** An oracle from lists of questions and answers. *)
+Fixpoint find A (none : A) (table : seq (polynomial * polynomial * A)) (f g : polynomial) : A :=
+  if table is (a, b, answer) :: rest then
+    if psame a f && psame b g then answer else find none rest f g
+  else none.
+Definition answers (quotients : seq (polynomial * polynomial * (Z * polynomial)))
+    (combinations : seq (polynomial * polynomial * (polynomial * polynomial * Z))) : oracle :=
+  Oracle (find (Z0, [::]) quotients) (find ([::], [::], Z0) combinations).
+
 (** The scalar product of two polynomials of vectors. *)
 Fixpoint product (v w : seq vector) : polynomial :=
   if v is a :: v' then padd (map (vdot a) w) (Z0 :: product v' w) else [::].
