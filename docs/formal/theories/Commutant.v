@@ -16,6 +16,8 @@ From mathcomp Require Import complex ring.
 From Liehom Require Import Sound Pair Certificate FullSound.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
 Import Order.TTheory GRing.Theory Num.Theory. Local Open Scope ring_scope.
+(** The real numbers in R[i]. *)
+Local Notation inC R := (ComplexField.real_complex_rmorphism R).
 
 (** T acts on V and commutes with every rho_p. *)
 Definition commutes (F : fieldType) k d (rho : 'I_k -> 'M[F]_d) (T : 'M[F]_d) := forall p, T *m rho p = rho p *m T.
@@ -60,7 +62,7 @@ End Schur.
 Section RealClosed.
 Variables (R : rcfType) (k d : nat) (rho : 'I_k -> 'M[R]_d).
 Hypothesis full_rho : full rho.
-Local Notation toC := (ComplexField.real_complex_rmorphism R).
+Local Notation toC := (inC R).
 
 (** A real polynomial in T that annihilates a complex vector is singular. *)
 Lemma complex_singular (S : 'M[R]_d) (v : 'rV[R[i]]_d) : v != 0 -> v *m map_mx toC S = 0 -> S \notin unitmx.
@@ -162,7 +164,7 @@ Qed.
 Theorem commutant_cut_sound (F : realFieldType) (R : rcfType) (f : {rmorphism F -> R}) n k d (c : 'I_n -> 'M[F]_n)
     (h : 'M[F]_(k, n)) (Q : 'M[F]_(n, d)) (E : 'M[F]_(d, n)) (T : 'M[F]_d) (cut : R) (s : seq R[i]) :
   valid_pair c h Q E -> commutes (rho c h Q E) T ->
-  char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f T)) = \prod_(z <- s) ('X - z%:P) ->
+  char_poly (map_mx (inC R) (map_mx f T)) = \prod_(z <- s) ('X - z%:P) ->
   (0 < count (fun z => (cut < complex.Re z)%R) s < d)%N ->
   ~ full_pair (map_pair f c) (map_mx f h).
 Proof.
@@ -172,9 +174,9 @@ have comR : commutes (rho (map_pair f c) (map_mx f h) (map_mx f Q) (map_mx f E))
   by move=> p; rewrite -map_rho -!map_mxM com.
 have d0 : (0 < d)%N := leq_ltn_trans (leq0n _) lt.
 have sz : size s = d.
-  have := size_char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f T)).
+  have := size_char_poly (map_mx (inC R) (map_mx f T)).
   by rewrite eig size_prod_XsubC => -[].
-have rt z : z \in s -> root (char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f T))) z.
+have rt z : z \in s -> root (char_poly (map_mx (inC R) (map_mx f T))) z.
   by rewrite eig root_prod_XsubC.
 have /hasP [z zs cz] : has (fun z => cut < complex.Re z) s by rewrite has_count.
 have /allPn [w ws cw] : ~~ all (fun z => cut < complex.Re z) s by rewrite all_count sz neq_ltn lt.

@@ -17,6 +17,8 @@ From mathcomp Require Import complex ring.
 From Liehom Require Import Sound Pair Certificate FullSound Triangular.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
 Import Order.TTheory GRing.Theory Num.Theory. Local Open Scope ring_scope.
+(** The real numbers in R[i]. *)
+Local Notation inC R := (ComplexField.real_complex_rmorphism R).
 
 (** A row of T U for triangular T. *)
 Lemma triangular_row (F : fieldType) n m (T : 'M[F]_n) s (U : 'M[F]_(n, m)) (i : 'I_n) : triangular T s ->
@@ -101,7 +103,7 @@ Lemma row_A (i : 'I_d) : row i U *m A = s`_i *: row i U + \sum_(l < d | (l < i)%
 Proof. by rewrite -row_mul UA (triangular_row _ _ T_tri). Qed.
 
 (** W contains a real vector, if A is real. *)
-Lemma top_conj (A0 : 'M[R]_d) : A = map_mx (ComplexField.real_complex_rmorphism R) A0 ->
+Lemma top_conj (A0 : 'M[R]_d) : A = map_mx (inC R) A0 ->
   forall i : 'I_d, (i < p)%N -> (map_mx (conjc_rmorphism R) (row i U) <= W)%MS.
 Proof.
 move=> eA; have A_conj : map_mx (conjc_rmorphism R) A = A.
@@ -112,25 +114,25 @@ rewrite -{1}A_conj -map_mxM row_A map_mxD map_mxZ (raddf_sum (map_mx_additive _ 
 by under [X in _ + X - _]eq_bigr do rewrite map_mxZ; rewrite subrr sub0mx.
 Qed.
 
-Lemma top_real (A0 : 'M[R]_d) : A = map_mx (ComplexField.real_complex_rmorphism R) A0 -> (0 < p <= d)%N ->
-  exists2 x : 'rV[R]_d, x != 0 & (map_mx (ComplexField.real_complex_rmorphism R) x <= W)%MS.
+Lemma top_real (A0 : 'M[R]_d) : A = map_mx (inC R) A0 -> (0 < p <= d)%N ->
+  exists2 x : 'rV[R]_d, x != 0 & (map_mx (inC R) x <= W)%MS.
 Proof.
 move=> eA /andP [p0 pd]; pose i0 := Ordinal (leq_trans p0 pd).
 have wW := top_row (i := i0) p0; have cW := top_conj eA (i := i0) p0.
 set w := row i0 U in wW cW; set w' := map_mx (conjc_rmorphism R) w in cW.
 pose x := map_mx (@complex.Re R) w; pose y := map_mx (@complex.Im R) w.
 have two : (2%:R : R[i]) != 0 by rewrite pnatr_eq0.
-have double (z : 'rV[R]_d) : (map_mx (ComplexField.real_complex_rmorphism R) (z + z) <= W)%MS ->
-    (map_mx (ComplexField.real_complex_rmorphism R) z <= W)%MS.
+have double (z : 'rV[R]_d) : (map_mx (inC R) (z + z) <= W)%MS ->
+    (map_mx (inC R) z <= W)%MS.
   set f := map_mx _ => zW; have -> : f z = 2%:R^-1 *: f (z + z).
     by rewrite /f map_mxD -[X in _ *: X]mulr2n -scaler_nat scalerK.
   exact: scalemx_sub.
-have xW : (map_mx (ComplexField.real_complex_rmorphism R) x <= W)%MS.
-  apply: double; suff -> : map_mx (ComplexField.real_complex_rmorphism R) (x + x) = w + w' by apply: addmx_sub.
+have xW : (map_mx (inC R) x <= W)%MS.
+  apply: double; suff -> : map_mx (inC R) (x + x) = w + w' by apply: addmx_sub.
   apply/rowP => j; rewrite !mxE; case: (U i0 j) => a b /=; apply/eqP; rewrite eq_complex /=.
   by apply/andP; split; apply/eqP; ring.
-have yW : (map_mx (ComplexField.real_complex_rmorphism R) y <= W)%MS.
-  apply: double; suff -> : map_mx (ComplexField.real_complex_rmorphism R) (y + y) = (0 +i* (-1))%C *: (w - w').
+have yW : (map_mx (inC R) y <= W)%MS.
+  apply: double; suff -> : map_mx (inC R) (y + y) = (0 +i* (-1))%C *: (w - w').
     by apply/scalemx_sub/addmx_sub; rewrite ?eqmx_opp.
   apply/rowP => j; rewrite !mxE; case: (U i0 j) => a b /=; apply/eqP; rewrite eq_complex /=.
   by apply/andP; split; apply/eqP; ring.
@@ -197,14 +199,14 @@ Theorem dominance_matrices_sound (R : rcfType) k d (rho : 'I_k -> 'M[R]_d) (A : 
   0 < eps ->
   (forall q, exists u : 'I_l -> R, rho q = \sum_j u j *: B j) ->
   (forall j, B j *m A - A *m B j = \sum_g M j g *: B g) ->
-  char_poly (map_mx (ComplexField.real_complex_rmorphism R) A) = \prod_(z <- s) ('X - z%:P) ->
-  char_poly (map_mx (ComplexField.real_complex_rmorphism R) M) = \prod_(z <- t) ('X - z%:P) ->
+  char_poly (map_mx (inC R) A) = \prod_(z <- s) ('X - z%:P) ->
+  char_poly (map_mx (inC R) M) = \prod_(z <- t) ('X - z%:P) ->
   (forall z, z \in s -> ~~ (cut - eps <= complex.Re z <= cut)) ->
   let top := count (fun z => (cut < complex.Re z)%R) s in
   let lowering := count (fun z => (complex.Re z <= - eps)%R) t in
   (0 < top)%N -> (top + lowering < d)%N -> ~ full rho.
 Proof.
-move=> eps0 rhoB adB es et gap top lowering top0 lt full_rho; set toC := ComplexField.real_complex_rmorphism R in es et.
+move=> eps0 rhoB adB es et gap top lowering top0 lt full_rho; set toC := inC R in es et.
 pose a z := (cut < complex.Re z)%R; pose b z := (- eps < complex.Re z)%R.
 have sz_s := size_eigenvalues es; have sz_t := size_eigenvalues et.
 have [U [T [Uu UA T_tri]]] : exists U T, [/\ U \in unitmx, U *m map_mx toC A = T *m U & triangular T (first a s)].
@@ -271,9 +273,9 @@ Theorem dominance_pair_sound (F : realFieldType) (R : rcfType) (f : {rmorphism F
   increasing f -> valid_pair c h Q E -> 0 < eps ->
   (forall q, exists u : 'I_l -> F, rho c h Q E q = \sum_j u j *: B j) ->
   (forall j, B j *m isotropy c Q E X - isotropy c Q E X *m B j = \sum_g M j g *: B g) ->
-  char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f (isotropy c Q E X - a%:M))) =
+  char_poly (map_mx (inC R) (map_mx f (isotropy c Q E X - a%:M))) =
     \prod_(z <- s) ('X - z%:P) ->
-  char_poly (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f M)) = \prod_(z <- t) ('X - z%:P) ->
+  char_poly (map_mx (inC R) (map_mx f M)) = \prod_(z <- t) ('X - z%:P) ->
   (forall z, z \in s -> ~~ (f cut - f eps <= complex.Re z <= f cut)) ->
   let top := count (fun z => (f cut < complex.Re z)%R) s in
   let lowering := count (fun z => (complex.Re z <= - f eps)%R) t in

@@ -18,6 +18,8 @@ From mathcomp Require Import complex.
 From Liehom Require Import Sound Pair Certificate Definite FullSound Triangular Dominance.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
 Import Order.TTheory GRing.Theory Num.Theory. Local Open Scope ring_scope.
+(** The real numbers in R[i]. *)
+Local Notation inC R := (ComplexField.real_complex_rmorphism R).
 
 Section Hermitian.
 Variable R : rcfType.
@@ -152,7 +154,7 @@ Qed.
 
 (** The value of a diagonal form. *)
 Lemma form_diag n (V : 'M[C]_n) (D : 'rV[R]_n) (x : 'rV[C]_n) :
-  form (V *m diag_mx (map_mx (ComplexField.real_complex_rmorphism R) D) *m ctr V) x x =
+  form (V *m diag_mx (map_mx (inC R) D) *m ctr V) x x =
   \sum_i (D 0 i)%:C%C * ((x *m V) 0 i * conjc ((x *m V) 0 i)).
 Proof.
 rewrite form_restrict /form mul_mx_diag mxE; apply: eq_bigr => i _.
@@ -167,7 +169,7 @@ Proof. by rewrite mulf_eq0 conjc_eq0 orbb. Qed.
 
 (** The rank of a positive form on a subspace is at most the number of positive entries of the diagonal. *)
 Lemma positive_index m n (W : 'M[C]_(m, n)) (V : 'M[C]_n) (D : 'rV[R]_n) :
-  positive (W *m (V *m diag_mx (map_mx (ComplexField.real_complex_rmorphism R) D) *m ctr V) *m ctr W) ->
+  positive (W *m (V *m diag_mx (map_mx (inC R) D) *m ctr V) *m ctr W) ->
   (m <= #|[pred i | (0 < D 0 i)%R]|)%N.
 Proof.
 move=> pos; pose K : 'M[C]_n := diag_mx (\row_i (0 < D 0 i)%R%:R).
@@ -192,9 +194,9 @@ Qed.
 
 (** A symmetric positive definite matrix is positive on complex vectors. *)
 Lemma positive_real n (N : 'M[R]_n) : N^T = N -> positive_definite N ->
-  positive (map_mx (ComplexField.real_complex_rmorphism R) N).
+  positive (map_mx (inC R) N).
 Proof.
-move=> Ns Np x x0; have [U [D [Uu D0 ->]]] := definite_factors Ns Np; set toC := ComplexField.real_complex_rmorphism R.
+move=> Ns Np x x0; have [U [D [Uu D0 ->]]] := definite_factors Ns Np; set toC := inC R.
 have -> : map_mx toC (U *m diag_mx D *m U^T) = map_mx toC U *m diag_mx (map_mx toC D) *m ctr (map_mx toC U).
   rewrite !map_mxM map_diag_mx; congr (_ *m _); apply/matrixP => i j; rewrite !mxE /=.
   by rewrite oppr0.
@@ -212,7 +214,7 @@ Qed.
 Lemma right_le d (A U T H V : 'M[C]_d) (D : 'rV[R]_d) (s : seq C) (p : nat) (c : R) :
   U \in unitmx -> U *m A = T *m U -> triangular T s ->
   (p <= d)%N -> (forall i : 'I_d, (i < p)%N -> c < complex.Re s`_i) ->
-  H = V *m diag_mx (map_mx (ComplexField.real_complex_rmorphism R) D) *m ctr V -> ctr H = H ->
+  H = V *m diag_mx (map_mx (inC R) D) *m ctr V -> ctr H = H ->
   positive ((A - (c%:C%C)%:M) *m H + H *m ctr (A - (c%:C%C)%:M)) ->
   (p <= #|[pred i | (0 < D 0 i)%R]|)%N.
 Proof.
@@ -246,10 +248,10 @@ Definition right_count (F : realFieldType) d (A : 'M[F]_d) (c : F) (m : nat) :=
     positive_definite ((A - c%:M) *m H + H *m (A - c%:M)^T) & #|[pred i | 0 < (D : 'rV[F]_d) 0 i]| = m].
 
 Theorem count_right (R : rcfType) d (A : 'M[R]_d) (c : R) (m : nat) (s : seq R[i]) : right_count A c m ->
-  char_poly (map_mx (ComplexField.real_complex_rmorphism R) A) = \prod_(z <- s) ('X - z%:P) ->
+  char_poly (map_mx (inC R) A) = \prod_(z <- s) ('X - z%:P) ->
   count (fun z => (c < complex.Re z)%R) s = m /\ (forall z, z \in s -> complex.Re z != c).
 Proof.
-move=> [H [V [D [Vu defH Np <-]]]] es; set toC := ComplexField.real_complex_rmorphism R in es *.
+move=> [H [V [D [Vu defH Np <-]]]] es; set toC := inC R in es *.
 have sz := size_eigenvalues es.
 have ctr_real a b (M : 'M[R]_(a, b)) : ctr (map_mx toC M) = map_mx toC M^T.
   by apply/matrixP => i j; rewrite !mxE /= oppr0.
@@ -348,8 +350,8 @@ Theorem dominance_count_sound (F : realFieldType) (R : rcfType) (f : {rmorphism 
   right_count M (- eps) r -> (0 < top)%N -> (top + (l - r) < d)%N -> ~ full_pair (map_pair f c) (map_mx f h).
 Proof.
 move=> inc ok eps0 rhoB adB /(map_right_count inc) ct /(map_right_count inc) cg /(map_right_count inc) cM top0 lt.
-have [s es] := eigenvalues_exist (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f (isotropy c Q E X - a%:M))).
-have [t et] := eigenvalues_exist (map_mx (ComplexField.real_complex_rmorphism R) (map_mx f M)).
+have [s es] := eigenvalues_exist (map_mx (inC R) (map_mx f (isotropy c Q E X - a%:M))).
+have [t et] := eigenvalues_exist (map_mx (inC R) (map_mx f M)).
 have [n_top _] := count_right ct es; have [n_gap on_gap] := count_right cg es; have [n_M _] := count_right cM et.
 apply: (dominance_pair_sound (a := a) (cut := cut) inc ok eps0 rhoB adB es et) => [z zs||].
 - apply/negP => /andP [low high]; have : z \in filter (fun z => (f (cut - eps) < complex.Re z)%R) s.
