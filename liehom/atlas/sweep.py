@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import hashlib
 import os
 import re
@@ -156,7 +155,7 @@ def sweep(
     distinct = list({task.key: task for task in tasks}.values())
     made = _Sweep(executor, _opened(store, seed, verify), retries, recheck, False, None, BUFFERSIZE, progress)
     found = {distinct[number].key: entry for number, entry in made.entries(distinct)}
-    return Atlas(tuple(_as_given(found[task.key], task) for task in tasks))
+    return Atlas(tuple(found[task.key] for task in tasks))
 
 
 @final
@@ -179,7 +178,7 @@ class _Sweep:
         )
         self.records, self.ordered, self.buffersize, self.progress = records, ordered, buffersize, progress
         self.recheck = recheck or (records is not None and not records.has_checksums)
-        self.sharing: dict[str, list[tuple[int, _Task]]] = {}  # by key: where each pair in flight was given
+        self.sharing: dict[str, list[int]] = {}  # numbers of each pair in flight, by key
         self.waiting: dict[int, Entry] = {}
         self.returned = 0
 
@@ -199,9 +198,9 @@ class _Sweep:
                 self.waiting[number] = entry
                 yield from self._released()
             elif task.key in self.sharing:
-                self.sharing[task.key].append((number, task))
+                self.sharing[task.key].append(number)
             else:
-                self.sharing[task.key] = [(number, task)]
+                self.sharing[task.key] = [number]
                 self.dispatcher.submit((number, task.key), task)
             while self.dispatcher.due or number + 1 - self.returned >= self.buffersize:
                 yield from self._arrived()
@@ -218,7 +217,7 @@ class _Sweep:
         for batch in self.dispatcher.arrived():
             self._save(batch)
             for (_, key), entry in batch:
-                self.waiting.update((number, _as_given(entry, task)) for number, task in self.sharing.pop(key))
+                self.waiting.update((number, entry) for number in self.sharing.pop(key))
                 if self.progress is not None:
                     self.progress(entry)
         yield from self._released()
@@ -300,14 +299,7 @@ def _stored_entry(arrays: object, facts: Mapping[str, Any], *, task: _Task, rech
     entry = Entry.from_json(facts)
     if recheck and entry.proved:
         entry.verify(_constructed(task))
-    return _as_given(entry, task)
-
-
-def _as_given(entry: Entry, task: _Task) -> Entry:
-    """The entry of a pair with the family of this recipe, as the same pair may be in several families."""
-    if not isinstance(task.pair, Recipe) or task.pair.family == entry.family:
-        return entry
-    return dataclasses.replace(entry, family=task.pair.family, facts={**entry.facts, **task.pair.known})
+    return entry
 
 
 def _decided(task: _Task) -> Entry:

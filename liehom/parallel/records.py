@@ -14,6 +14,7 @@ import os
 import re
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO, final
 
@@ -72,7 +73,7 @@ class Records(Store):
                 self._places[_digest(name)] = OFFSETS * number + offset
 
     def __contains__(self, name: str) -> bool:
-        return _digest(json.dumps(name).encode()) in self._places or name in self._other_names
+        return _digest_of(name) in self._places or name in self._other_names
 
     def __enter__(self) -> Records:
         return self
@@ -103,13 +104,13 @@ class Records(Store):
                 line = f'{{"name": {json.dumps(name)}, "facts": {json.dumps(facts)}'.encode()
                 line += b"}\n" if self._mark is None else self._end(line)
                 self._writable().write(line)
-                self._places[_digest(json.dumps(name).encode())] = OFFSETS * self._number + self._size
+                self._places[_digest_of(name)] = OFFSETS * self._number + self._size
                 self._size, self._lines = self._size + len(line), self._lines + 1
             if self._output is not None:
                 self._output.flush()
 
     def load(self, name: str) -> Shard:
-        place = self._places.get(_digest(json.dumps(name).encode()))
+        place = self._places.get(_digest_of(name))
         if place is None:
             return self._others.load(name)
         number, offset = divmod(place, OFFSETS)
@@ -188,3 +189,8 @@ class Records(Store):
 
 def _digest(name: bytes) -> bytes:
     return hashlib.blake2b(name, digest_size=16).digest()
+
+
+@lru_cache(maxsize=64)  # a name is looked for, and then read
+def _digest_of(name: str) -> bytes:
+    return _digest(json.dumps(name).encode())
