@@ -86,6 +86,18 @@ def test_readme_begins_with_two_commands_of_one_line() -> None:
     assert "pytest" in tests
 
 
+def test_the_picture_of_the_readme_has_both_versions() -> None:
+    shown = re.findall(r'(?:src|srcset)="([^"]+)"', read("README.md"))
+    assert [Path(file).stem.rpartition("_")[2] for file in shown] == ["dark", "light"]
+    assert all((ROOT / file).is_file() for file in shown)
+
+
+def test_links_of_the_readme_lead_to_files() -> None:
+    links = re.findall(r"\]\(([^)#]+)\)", read("README.md"))
+    assert links
+    assert [link for link in links if not (ROOT / link).is_file()] == []
+
+
 def test_the_gate_runs_the_command_of_the_readme() -> None:
     gate = read(".ci", "run")
     assert "README.md" in gate
@@ -103,9 +115,9 @@ def expected_value(line: str) -> str | None:
     return promised
 
 
-def run_block(block: str, namespace: dict[str, Any]) -> int:
-    """Execute a block of a page and compare values with the comments behind them; how many were compared."""
-    compared = 0
+def run_block(block: str, namespace: dict[str, Any], shown: str = "") -> int:
+    """Execute a block, compare values with the comments behind them and prints with `shown`; how many were compared."""
+    compared, everything = 0, ""
     lines = block.splitlines()
     for statement in ast.parse(block).body:
         source = textwrap.dedent("\n".join(lines[statement.lineno - 1 : statement.end_lineno]))
@@ -115,12 +127,16 @@ def run_block(block: str, namespace: dict[str, Any]) -> int:
                 value = eval(source, namespace)
             else:
                 exec(source, namespace)
-                continue
+        everything += printed.getvalue()
+        if not isinstance(statement, ast.Expr):
+            continue
         promised = expected_value(lines[(statement.end_lineno or statement.lineno) - 1])
         if promised is not None:
             assert (printed.getvalue().strip() or repr(value)) == promised, source
             compared += 1
-    return compared
+    if shown:
+        assert doctest.OutputChecker().check_output(shown, everything, doctest.ELLIPSIS), everything
+    return compared + bool(shown)
 
 
 def pages_with(language: str) -> list[str]:
@@ -130,9 +146,14 @@ def pages_with(language: str) -> list[str]:
 
 
 @pytest.mark.parametrize("page", pages_with("python"))
-def test_python_on_the_page_runs_and_gives_what_it_says(page: str) -> None:
+def test_python_on_the_page_runs_and_gives_what_it_says(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # pages write files
     namespace: dict[str, Any] = {}
-    compared = sum(run_block(block, namespace) for block in blocks(read(page), "python"))
+    printing = r"^```python\n(.*?)^```(?:\n+```text\n(.*?)^```)?"  # a text block right behind is what the block prints
+    found = re.findall(printing, read(page), flags=re.MULTILINE | re.DOTALL)
+    compared = sum(run_block(block, namespace, shown) for block, shown in found)
     assert compared >= {"README.md": 2, "docs/getting-started.md": 2}.get(page, 0)
 
 

@@ -7,7 +7,10 @@ A page shows a picture, in a light and a dark version, by
     ```
 
 where `name` is the name of a function that `picture` decorates. It is called in the style of the version, with the
-colours of lines, and returns a figure.
+colours of lines, and returns a figure. Pictures of the README are files of the repository; from its root this
+writes both versions again:
+
+    PYTHONPATH=.:docs python -m pictures orbits_on_the_sphere docs/_static
 """
 
 from __future__ import annotations
@@ -38,7 +41,8 @@ def picture(function: Callable[[Sequence[str]], Any]) -> Callable[[Sequence[str]
 def load() -> None:
     """Import the modules of this folder, which register their functions."""
     for module in pkgutil.iter_modules([str(Path(__file__).resolve().parent)]):
-        importlib.import_module(f"{__name__}.{module.name}")
+        if module.name != "__main__":
+            importlib.import_module(f"{__name__}.{module.name}")
 
 
 def draw(app: object = None) -> None:
@@ -50,10 +54,15 @@ def draw(app: object = None) -> None:
         for kind, colours in (("light", COLOURS), ("dark", DARK_COLOURS)):
             file = FOLDER / f"{name}_{kind}.svg"
             if not file.exists() or file.stat().st_mtime < source:
-                with style(dark=kind == "dark"):
-                    figure = function(colours)
-                    figure.patch.set_alpha(0.0)
-                    figure.savefig(file, metadata=UNDATED[".svg"])
+                write(name, file, colours, dark=kind == "dark")
+
+
+def write(name: str, file: Path, colours: Sequence[str], *, dark: bool) -> None:
+    """Write one version of a picture."""
+    with style(dark=dark):
+        figure = DRAWN[name](colours)
+        figure.patch.set_alpha(0.0)
+        figure.savefig(file, metadata=UNDATED[".svg"])
 
 
 class Picture(SphinxDirective):
