@@ -141,7 +141,8 @@ apply/row_matrixP => i; rewrite [LHS]rowE [RHS]rowE; set x := delta_mx 0 i : 'rV
 have inh r : (row r h <= h)%MS by apply: row_sub.
 have [w ->] : exists w, x = w *m Q by exists (x *m E); rewrite -mulmxA EQ mulmx1.
 have act r y : y *m Q *m isotropy c Q E (row r h) = bracket c (row r h) y *m Q by rewrite (bracketQ hc hq) ?inh.
-rewrite mulmxBr [X in _ = X - _]mulmxA [X in _ = _ - X]mulmxA !act -(bracketQ hc hq) ?hc //.
+rewrite -[LHS](bracketQ hc hq w (hc p q)) mulmxBr (mulmxA _ (isotropy _ _ _ _)) (act q) (act p).
+rewrite [X in _ = _ - X]mulmxA (act p) (act q).
 by rewrite -mulmxBl jac addrK.
 Qed.
 
