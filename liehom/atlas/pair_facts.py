@@ -17,7 +17,7 @@ from liehom.representations import Pair
 Fact: TypeAlias = bool | int | str | list[int | str | None] | dict[str, str] | None
 """A fact as a JSON value."""
 
-SECONDS = 20.0
+SECONDS = 60.0
 """Default limit for each fact."""
 
 

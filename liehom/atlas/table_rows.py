@@ -16,20 +16,20 @@ from liehom.disk import write_atomically
 from liehom.errors import FormatError
 
 COLUMNS = (
-    "family",
     "pair",
+    "family",
     "dim g",
     "dim h",
     "dim g/h",
     "full",
     "letter",
     "row",
-    "reason",
     "range",
     "orbit",
     "degree",
     "open orbits",
     "rank",
+    "reason",
 )
 """Names of the cells of a row. In all of them None is a question without an answer for this pair."""
 
@@ -50,22 +50,22 @@ def table_row(entry: Entry) -> list[str | int | bool | None]:
     --------
     >>> import liehom as lh
     >>> table_row(next(lh.atlas.build(["parabolic"])))[:6]
-    ['parabolic', 'sl(2)/P{1}', 3, 2, 1, True]
+    ['sl(2)/P{1}', 'parabolic', 3, 2, 1, True]
     """
     facts, g, h = entry.facts, entry.dimension, entry.subalgebra_dimension
     missing = facts.get("missing", {})
     return [
-        entry.family,
         entry.name,
+        entry.family,
         g,
         h,
         None if g is None or h is None else g - h,
         entry.full,
         (facts.get("key") or [None])[0],
         facts.get("space"),
-        entry.reason.partition(";")[0],
         *(MISSING if name in missing else facts.get(name) for name in FACTS),
         facts.get("rank"),
+        entry.reason.partition(";")[0],
     ]
 
 
@@ -101,7 +101,7 @@ def write_table(path: str | os.PathLike[str], made: Mapping[str, Any]) -> None:
     head = {key: value for key, value in made.items() if key != "rows"}
     rows = ",\n".join(json.dumps(cells, ensure_ascii=False, separators=(",", ":")) for cells in made["rows"])
     text = json.dumps(head, ensure_ascii=False, separators=(",", ":"))[:-1] + ',"rows":[\n' + rows + "\n]}\n"
-    write_atomically(path, text.encode())
+    write_atomically(path, text.replace("<", "\\u003c").encode())  # so that a script element of a page can hold it
 
 
 def write_entries(path: str | os.PathLike[str], entries: Iterable[Entry]) -> dict[str, Any]:

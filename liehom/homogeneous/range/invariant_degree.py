@@ -12,11 +12,10 @@ from __future__ import annotations
 
 import random
 
-from liehom.errors import FieldError, UndecidedError
+from liehom.errors import UndecidedError
 from liehom.homogeneous.range.range_condition import pencil, range_condition
-from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, relative_invariant
+from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, relative_invariant, require_rational
 from liehom.representations import Pair
-from liehom.scalars import QQ
 from liehom.scalars.spaces.line_minors import rank_losses_on_line
 
 LINES = 3
@@ -49,8 +48,7 @@ def invariant_degree(pair: Pair) -> int | None:
     >>> [invariant_degree(lh.pair(name)) for name in ("so(12)/so(11)", "sl(12)/P1", "affine(S2(gl(4)))")]
     [2, 0, 4]
     """
-    if not pair.field.exact or pair.field != QQ:
-        raise FieldError(f"the relative invariant is computed over QQ only, not over {pair.field.name}")
+    require_rational(pair)
     generic = range_condition(pair)
     if pair.dimension == 0 or not generic:
         return None

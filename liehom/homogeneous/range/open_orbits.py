@@ -5,22 +5,27 @@ orbit (docs/theory/fullness.md, Proposition 6).  Let f be the relative invariant
 real zeros of f and a set of codimension at least 2, which separates nothing.  So the number is that of the components
 of f != 0, which is counted if f is a product of linear and quadratic forms in independent variables.
 
-If rho(h) + R is a complex vector space, the complement of U is a complex algebraic set, of real codimension at least 2.
+If rho(h) + R is a complex vector space, for a complex structure J of g/h that commutes with h, the complement of U is a
+complex algebraic set, of real codimension at least 2. If rho(h) is one, and its own generic rank is d, such a set
+contains the complement of U. In both cases U is connected.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import random
+from collections.abc import Iterator, Sequence
 from math import prod
 from typing import Protocol, cast
 
 from liehom.errors import UndecidedError
 from liehom.homogeneous.range.invariant_degree import invariant_degree
-from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, relative_invariant
+from liehom.homogeneous.range.range_condition import range_condition
+from liehom.homogeneous.range.relative_invariant import MAX_DIMENSION, relative_invariant, require_rational
 from liehom.representations import Pair
-from liehom.representations.invariants.intertwiners import invariant_forms
+from liehom.representations.invariants.intertwiners import commutant, invariant_forms
 from liehom.representations.invariants.irreducibility import traceless
 from liehom.scalars import QQ, ExactMatrix, Scalar
+from liehom.typing import ScalarLike
 
 
 class Polynomial(Protocol):
@@ -55,18 +60,19 @@ def open_orbit_count(pair: Pair) -> int:
     >>> [open_orbit_count(lh.pair(name)) for name in ("so(3,1)/so(2,1)", "affine(so(2,2))", "sl(3)/so(3)")]
     [3, 2, 0]
     """
-    degree, d = invariant_degree(pair), pair.dimension
+    require_rational(pair)
+    d = pair.dimension
     if d == 0:
         return 1
-    if degree is None:
+    if not range_condition(pair):
         return 0
-    if degree == 0:
+    matrices = cast(list[ExactMatrix], pair.isotropy_matrices())
+    reduced = traceless(matrices, d, QQ)
+    if _is_complex(matrices, reduced, d):
         return 1
-    if degree == 1:
-        return 2
-    reduced = traceless(cast(list[ExactMatrix], pair.isotropy_matrices()), d, QQ)
-    if _is_complex(reduced, d):
-        return 1
+    degree = invariant_degree(pair) or 0
+    if degree < 2:
+        return 1 + degree
     if degree == 2:
         for form in invariant_forms(reduced, d, QQ).symmetric:
             if form.rank() > 1:  # it divides the relative invariant, and has its degree
@@ -74,25 +80,43 @@ def open_orbit_count(pair: Pair) -> int:
     return _of_factors(pair, degree)
 
 
-def _is_complex(reduced: Sequence[ExactMatrix], d: int) -> bool:
-    """Whether L0 + R is closed under the multiplication by a central element J of L0 with J^2 a negative scalar."""
-    if not reduced:
-        return False
-    span = [QQ.identity(d), *reduced]
-    rows = _flat(span, d)
-    brackets = [_flat([a @ b - b @ a for b in reduced], d).reshape(1, len(reduced) * d * d) for a in reduced]
-    central = QQ.stack_rows(brackets, len(reduced) * d * d).T.null_space()
-    for coefficients in central.to_rows():
-        j = sum((m.scale(c) for c, m in zip(coefficients, reduced, strict=True)), QQ.zeros(d, d))
+def _is_complex(matrices: Sequence[ExactMatrix], reduced: Sequence[ExactMatrix], d: int) -> bool:
+    """Whether rho(h) + R, or rho(h) if its generic rank is d, is closed under the multiplication by a J as above."""
+    rng = random.Random(d)
+    point = QQ.matrix([[rng.randint(-9, 9) for _ in range(d)]]).T
+    spans = [span for span in ([QQ.identity(d), *reduced], matrices) if _rank([m @ point for m in span]) == d]
+    return any(
+        _rank([*span, *(j @ m for m in span)]) == _rank(span) for j in _complex_structures(reduced, d) for span in spans
+    )
+
+
+def _complex_structures(reduced: Sequence[ExactMatrix], d: int) -> Iterator[ExactMatrix]:
+    """Matrices J that commute with L0, J^2 a negative scalar: in the center of L0, or in a commutant of dimension 2."""
+    rng = random.Random(d)
+    probes = [_combined([rng.randint(-9, 9) for _ in reduced], reduced) for _ in range(2)] if reduced else []
+    brackets = [QQ.stack_rows([(a @ b - b @ a).reshape(1, d * d) for b in probes], d * d) for a in reduced]
+    rows = [b.reshape(1, 2 * d * d) for b in brackets]
+    # what commutes with two random elements
+    candidates = [_combined(c, reduced) for c in QQ.stack_rows(rows, 2 * d * d).T.null_space().to_rows()]
+    commuting = commutant(reduced, d, QQ)
+    if len(commuting) == 2:
+        candidates += [c - QQ.identity(d).scale(c.trace() / d) for c in commuting]
+    for j in candidates:
         square = j @ j
-        if square == QQ.identity(d).scale(square[0, 0]) and square[0, 0] < 0:
-            return QQ.stack_rows([rows, _flat([j @ m for m in span], d)], d * d).rank() == rows.nrows
-    return False
+        is_structure = square == QQ.identity(d).scale(square[0, 0]) and square[0, 0] < 0
+        if is_structure and all(j @ m == m @ j for m in reduced):
+            yield j
 
 
-def _flat(matrices: Sequence[ExactMatrix], d: int) -> ExactMatrix:
-    made: ExactMatrix = QQ.stack_rows([m.reshape(1, d * d) for m in matrices], d * d)
-    return made
+def _rank(matrices: Sequence[ExactMatrix]) -> int:
+    """The dimension of the span."""
+    size = matrices[0].nrows * matrices[0].ncols if matrices else 0
+    return QQ.stack_rows([m.reshape(1, size) for m in matrices], size).rank()
+
+
+def _combined(coefficients: Sequence[ScalarLike], matrices: Sequence[ExactMatrix]) -> ExactMatrix:
+    nonzero = [(c, m) for c, m in zip(coefficients, matrices, strict=True) if c != 0]
+    return sum((m.scale(c) for c, m in nonzero), QQ.zeros(*matrices[0].shape))
 
 
 def _of_factors(pair: Pair, degree: int) -> int:

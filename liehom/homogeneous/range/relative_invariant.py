@@ -15,7 +15,7 @@ from typing import Any, cast, final
 from liehom.errors import FieldError, InputError
 from liehom.homogeneous.range.range_condition import pencil, range_condition
 from liehom.representations import Pair
-from liehom.scalars import QQ, ExactField, ExactMatrix, Scalar
+from liehom.scalars import QQ, ExactMatrix, Scalar
 from liehom.scalars.spaces.linear_forms import LinearForms
 from liehom.typing import VectorLike
 
@@ -106,8 +106,7 @@ def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> Relati
     >>> print(relative_invariant(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0])))
     x0^2 + x1^2 - x2^2
     """
-    if not isinstance(pair.field, ExactField) or pair.field != QQ:
-        raise FieldError(f"the relative invariant is computed over QQ only, not over {pair.field.name}")
+    require_rational(pair)
     d = pair.dimension
     if d > max_dimension:
         raise InputError(f"g/h has dimension {d}; the relative invariant is computed up to {max_dimension}")
@@ -132,3 +131,9 @@ def _generic_minor(forms: LinearForms, rng: random.Random) -> Any:
 
 def _signed(polynomial: Any) -> Any:
     return polynomial if polynomial.leading_coefficient() > 0 else -polynomial
+
+
+def require_rational(pair: Pair) -> None:
+    """Raise `FieldError` if a pair is not over QQ."""
+    if pair.field != QQ:
+        raise FieldError(f"relative invariants are computed over QQ only, not over {pair.field.name}")

@@ -1,0 +1,126 @@
+"""docs/atlas.md: the data of its table is that of the library, its counts are those of the data, its script works."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import shutil
+import subprocess
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import liehom as lh
+from liehom.atlas.table_rows import COLUMNS, COUNTS, MISSING, table_row
+from tests.sampling import examples
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = (DOCS / "atlas.md").read_text(encoding="utf-8")
+FILE = DOCS / "_static" / "atlas.json"
+DATA = json.loads(FILE.read_text(encoding="utf-8"))
+ROWS = [dict(zip(COLUMNS, cells, strict=True)) for cells in DATA["rows"]]
+BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
+
+
+def test_the_file_is_small_and_has_the_columns() -> None:
+    assert FILE.stat().st_size < 1_000_000
+    assert DATA["columns"] == list(COLUMNS)
+
+
+@pytest.mark.parametrize("family", lh.atlas.FAMILIES)
+def test_the_file_has_all_pairs_and_a_sample_is_computed_again(family: str) -> None:
+    recipes = list(lh.atlas.recipes([family]))
+    stored = {row["pair"]: row for row in ROWS if row["family"] == family}
+    assert list(stored) == [recipe.name for recipe in recipes]
+    small = [recipe for recipe in recipes if stored[recipe.name]["dim g"] <= 30]
+    sample = random.Random(family).sample(small, examples(6))
+    for _, entry in lh.atlas.iter_sweep(sample, facts=True):
+        assert dict(zip(COLUMNS, table_row(entry), strict=True)) == stored[entry.name]
+
+
+def test_counts_of_the_page_are_those_of_its_rows() -> None:
+    by_family = {family: [row for row in ROWS if row["family"] == family] for family in lh.atlas.FAMILIES}
+    assert list(DATA["counts"]) == list(by_family)
+    for family, rows in by_family.items():
+        full = Counter(row["full"] for row in rows)
+        counted: dict[str, Any] = {
+            "pairs": len(rows),
+            "full": full[True],
+            "not full": full[False],
+            "undecided": full[None],
+        }
+        counted |= {letter: sum(row["letter"] == letter for row in rows) for letter in "ABC"}
+        counted["range holds"] = sum(row["range"] is True for row in rows)
+        counted["facts missing"] = sum(MISSING in row.values() for row in rows)
+        assert {key: DATA["counts"][family][key] for key in COUNTS} == counted
+        cells = re.search(rf"^\| {family} \| (.*) \|$", PAGE, flags=re.MULTILINE)
+        assert cells is not None
+        assert [int(n) for n in cells[1].split(" | ")[:-1]] == [counted[key] for key in COUNTS]
+
+
+def test_every_pair_is_decided_and_every_full_one_has_a_row() -> None:
+    for row in ROWS:
+        assert row["full"] in (True, False)
+        assert (row["letter"] in ("A", "B", "C")) is row["full"]
+        if row["full"]:
+            assert row["range"] is True
+            assert row["orbit"] == row["dim g/h"]
+            assert row["open orbits"] == (2 if row["dim g/h"] == 1 else 1)
+
+
+def test_the_proposition_on_symmetric_pairs_holds_in_the_table() -> None:
+    rows = [row for row in ROWS if row["rank"] is not None and row["family"] in ("symmetric", "group")]
+    ranks = Counter(row["rank"] for row in rows)
+    for row in rows:
+        assert row["orbit"] == row["dim g/h"] - row["rank"] + 1
+        assert row["range"] is (row["rank"] == 1)
+        if row["rank"] == 1:
+            assert row["degree"] == 2
+            assert (row["open orbits"] == 1) is row["full"]
+    for rank, count in ranks.items():
+        holds = count if rank == 1 else 0
+        assert f"| {rank} | {count} | {holds} | {count - holds} |" in PAGE
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(BROWSER is None, reason="no browser")
+def test_the_script_searches_filters_and_sorts(tmp_path: Path) -> None:
+    """The script in a page of its own, with a second script that uses the controls and prints what is shown."""
+    uses = """
+    const rows = () => [...document.querySelectorAll(".atlas-box tbody tr")].map((tr) => tr.cells[0].textContent);
+    const [family, full] = document.querySelectorAll("select");
+    const choose = (select, value) => { select.value = value; select.dispatchEvent(new Event("change")); };
+    const box = document.querySelector("input");
+    const search = (text) => { box.value = text; box.dispatchEvent(new Event("input")); };
+    const out = {};
+    out.first = rows().length;
+    choose(family, "symmetric"); choose(full, "yes"); out.full = rows();
+    search("so(3) S^2"); out.found = rows();
+    search(""); document.querySelectorAll("th button")[4].click(); out.sorted = rows();
+    document.querySelectorAll("th button")[4].click(); out.reversed = rows();
+    out.sort = document.querySelectorAll("th")[4].getAttribute("aria-sort");
+    choose(family, ""); choose(full, ""); document.querySelector(".atlas-more").click(); out.all = rows().length;
+    document.body.replaceChildren(JSON.stringify(out));
+    """
+    data = FILE.read_text(encoding="utf-8")
+    head = f'<meta charset="utf-8"><script type="application/json" id="atlas-data">{data}</script>'
+    script = (DOCS / "_static" / "atlas.js").read_text(encoding="utf-8")
+    page = f'{head}<div id="atlas"></div><script>{script}</script><script>{uses}</script>'
+    (tmp_path / "page.html").write_text(page, encoding="utf-8")
+    flags = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking"
+    words = [str(BROWSER), *flags.split(), "--disable-component-update", "--disable-sync", "--virtual-time-budget=8000"]
+    words += [f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", (tmp_path / "page.html").as_uri()]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True)
+    out = json.loads(re.search(r"<body>(.*)</body>", done.stdout, flags=re.DOTALL)[1])  # type: ignore[index]
+    assert out["first"] == 300
+    assert out["all"] == len(ROWS)
+    full = {row["pair"]: row["dim g/h"] for row in ROWS if row["family"] == "symmetric" and row["full"]}
+    assert out["full"] == list(full)
+    assert "so(3)/so(2)" in out["found"]
+    assert set(out["found"]) <= set(full)
+    assert [full[name] for name in out["sorted"]] == sorted(full.values())
+    assert [full[name] for name in out["reversed"]] == sorted(full.values(), reverse=True)
+    assert out["sort"] == "descending"
