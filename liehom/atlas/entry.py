@@ -80,7 +80,7 @@ class Entry:
         FormatError
             If an attribute is missing or unknown, or is not of the type stated above.
         """
-        if not KINDS.keys() - set(OPTIONAL) <= facts.keys() <= KINDS.keys():
+        if not KINDS.keys() - set(OPTIONAL) <= set(facts) <= KINDS.keys():
             raise FormatError(f"an entry has the keys {', '.join(KINDS)}; found {', '.join(map(str, facts))}")
         for key, value in facts.items():
             if not isinstance(value, KINDS[key]) or (isinstance(value, bool) and key != "verified"):
