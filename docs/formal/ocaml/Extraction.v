@@ -5,7 +5,7 @@
     compared, added once, and increased by one. Booleans, lists and pairs are those of OCaml. *)
 From Coq Require Import ZArith Extraction.
 From mathcomp Require Import all_ssreflect.
-From Liehom Require Import CheckerAlgebra CheckerPair CheckerWitness CheckerFull CheckerCommutant Checker.
+From Liehom Require Import CheckerAlgebra CheckerPair CheckerWitness CheckerFull CheckerCommutant CheckerDominance Checker.
 
 Extraction Language OCaml.
 

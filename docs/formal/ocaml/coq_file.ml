@@ -28,14 +28,21 @@ let coordinates t =
      matrix t.basis; matrix t.change; number t.factor; matrix t.quotient; matrix t.section; matrix t.dual;
      number t.denominator]
 
+let factors f =
+  call "Factors"
+    [matrix f.upper; matrix f.upper_inverse; number f.upper_factor; polynomial f.pivots; number f.pivots_factor]
+
+let count c =
+  call "CountHint"
+    [matrix c.frame; matrix c.frame_inverse; number c.frame_factor; polynomial c.signature; factors c.positivity]
+
 let certificate = function
   | TrivialCertificate -> "TrivialCertificate"
   | FullCertificate (f, h) ->
     call "FullCertificate"
       [call "FullData" [matrix f.form; matrix f.elements; vector f.point];
        call "FullHint"
-         [matrix h.upper; matrix h.upper_inverse; number h.upper_factor; polynomial h.pivots; number h.pivots_factor;
-          matrix h.left_inverse; number h.rank_factor]]
+         [factors h.definite; matrix h.left_inverse; number h.rank_factor]]
   | WitnessCertificate w ->
     call "WitnessCertificate"
       [call "Witness" [polynomial w.minpoly; fraction w.low; fraction w.high; matrix w.eta; matrix w.phi]]
@@ -45,6 +52,13 @@ let certificate = function
       [call "Commutant"
          [matrix c.operator; items (both index index) c.positions;
           Printf.sprintf "(%s, %s, %s)" (number s) (number x) (number y)]]
+
+  | DominanceCertificate w ->
+    call "DominanceCertificate"
+      [call "Dominance"
+         [vector w.element; number w.shift; number w.cut; number w.eps; items index w.family;
+          matrix w.family_coordinates; number w.family_factor; matrix w.bracket_matrix; index w.top_count;
+          index w.high_count; count w.at_cut; count w.below_cut; count w.on_image]]
 
 (* The answers of an oracle that a check asks for, as lists of questions and answers. *)
 let recorded oracle check =
@@ -72,7 +86,7 @@ let file oracle p t c =
     Some
       (Printf.sprintf
          "From Coq Require Import ZArith.\nFrom mathcomp Require Import all_ssreflect ssrnum.\n\
-          From Liehom Require Import CheckerPair CheckerWitness CheckerFull CheckerCommutant Checker.\n\
+          From Liehom Require Import CheckerPair CheckerWitness CheckerFull CheckerCommutant CheckerDominance Checker.\n\
           \nDefinition pair : pair_data := %s.\n\nDefinition coordinates : coordinates_hint := %s.\n\n\
           Definition proof : certificate := %s.\n\nDefinition proposals : oracle := %s.\n\n\
           Lemma accepted : check proposals pair coordinates proof = true.\nProof. vm_compute. reflexivity. Qed.\n\n\

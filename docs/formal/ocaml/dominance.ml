@@ -1,6 +1,4 @@
-(* From a certificate of kind dominance to a witness: every vector of the top space of the element is one. An eigenvector
-   for a real eigenvalue above the cut is taken, over the field Q(theta) that the eigenvalue generates. Untrusted: the
-   checker verifies the witness. The counts of the certificate are compared as well, see halfplane.ml. *)
+(* Proposals for a certificate of kind dominance: forms that count eigenvalues. Untrusted. *)
 
 module Big = Z
 open Checker
@@ -27,7 +25,7 @@ let adjoint_on_image d isotropy rho =
       Array.of_list (List.map (fun place -> bracket.(place)) places))
     basis
 
-(* The element as a matrix on V, after the checks of the certificate. *)
+(* The checks of the certificate, see halfplane.ml. *)
 let checked (t : coordinates_hint) isotropy element cut eps =
   let d = t.codimension in
   let require holds what = if not holds then impossible what in
@@ -50,134 +48,117 @@ let checked (t : coordinates_hint) isotropy element cut eps =
   require (Halfplane.count spectrum (Q.sub cut eps) = top) "an eigenvalue is between cut - eps and cut";
   let adjoint = adjoint_on_image d isotropy rho in
   let lowering = Array.length adjoint - Halfplane.(count (characteristic adjoint) (Q.neg eps)) in
-  require (top + lowering < d) "too many directions leave the top space";
-  (traceless, spectrum)
+  require (top + lowering < d) "too many directions leave the top space"
 
-let value f x = Array.fold_right (fun c total -> Q.add c (Q.mul x total)) f Q.zero
+exception No_form
 
-(* Number of distinct real roots in (low, high), ends that are no roots (Sturm). *)
-let real_roots f =
-  let rec chain a b = if b = [||] then [a] else a :: chain b (Array.map Q.neg (snd (Poly.divide a b))) in
-  let all = chain f (Halfplane.derivative f) in
-  let changes x = Halfplane.variations (List.map (fun p -> Q.sign (value p x)) all) in
-  fun low high -> changes low - changes high
-
-(* An interval of at most this width with the largest real root of a squarefree f, if that is above the cut. *)
-let largest_root f cut width =
-  let count = real_roots f in
-  let lead = f.(Array.length f - 1) in
-  let bound = Array.fold_left (fun b c -> Q.max b (Q.abs (Q.div c lead))) Q.one f in
-  let rec narrow low high =
-    if count low high = 1 && Q.leq (Q.sub high low) width then Some (low, high)
-    else
-      let rec middle a b = (* a number between a and b that is not a root *)
-        let m = Q.div (Q.add a b) (Q.of_int 2) in
-        if Q.sign (value f m) = 0 then middle a m else m
-      in
-      let m = middle low high in
-      if count m high > 0 then narrow m high else narrow low m
-  in
-  let high = Q.add bound (Q.of_int 2) in
-  if Q.lt high cut || count cut high = 0 then None else narrow cut high
-
-(* Arithmetic modulo f; a zero divisor splits f. *)
-exception Split of Q.t array
-
-type modulus = { f : Q.t array }
-
-let reduce m a = snd (Poly.divide a m.f)
-let times m a b = reduce m (Poly.multiply a b)
-let inverse m a =
-  let g, _, v = Poly.bezout m.f a in
-  if Array.length g > 1 then raise (Split g);
-  reduce m (Array.map (fun c -> Q.div c g.(0)) v)
-
-(* A nonzero vector v with (row) v = 0 for all rows, over Q[t]/f. *)
-let null_vector m rows columns =
-  let rows = Array.map Array.copy rows in
-  let count = Array.length rows in
-  let pivots = ref [] and rank = ref 0 in
-  for column = 0 to columns - 1 do
-    let chosen = ref (-1) in
-    for i = count - 1 downto !rank do
-      if rows.(i).(column) <> [||] then chosen := i
-    done;
-    if !chosen >= 0 then begin
-      let row = rows.(!chosen) in
-      rows.(!chosen) <- rows.(!rank);
-      let factor = inverse m row.(column) in
-      let row = Array.map (times m factor) row in
-      rows.(!rank) <- row;
-      for i = 0 to count - 1 do
-        let c = rows.(i).(column) in
-        if i <> !rank && c <> [||] then
-          rows.(i) <- Array.map2 (fun x y -> Poly.combine x (times m c y) Q.sub) rows.(i) row
+(* A solution H of S H + H S^T = 1 in floats, rounded to integers after scaling; S is divided by its size. *)
+let lyapunov (s : Q.t array array) =
+  let d = Array.length s in
+  let size = Array.fold_left (Array.fold_left (fun m x -> Q.max m (Q.abs x))) Q.one s in
+  let a = Array.map (Array.map (fun x -> Q.to_float (Q.div x size))) s in
+  let place i j = let i, j = max i j, min i j in (i * (i + 1) / 2) + j in
+  let count = d * (d + 1) / 2 in
+  let rows = Array.init count (fun _ -> Array.make (count + 1) 0.) in
+  for i = 0 to d - 1 do
+    for j = 0 to i do
+      let row = rows.(place i j) in
+      for k = 0 to d - 1 do
+        row.(place k j) <- row.(place k j) +. a.(i).(k);
+        row.(place i k) <- row.(place i k) +. a.(j).(k)
       done;
-      pivots := column :: !pivots;
-      incr rank
-    end
+      if i = j then row.(count) <- 1.
+    done
   done;
-  let pivots = List.rev !pivots in
-  match List.find_opt (fun j -> not (List.mem j pivots)) (List.init columns Fun.id) with
-  | None -> None
-  | Some free ->
-    let out = Array.make columns [||] in
-    out.(free) <- [| Q.one |];
-    List.iteri (fun r pivot -> out.(pivot) <- Array.map Q.neg rows.(r).(free)) pivots;
-    Some out
+  for column = 0 to count - 1 do
+    let best = ref column in
+    for i = column + 1 to count - 1 do
+      if abs_float rows.(i).(column) > abs_float rows.(!best).(column) then best := i
+    done;
+    let row = rows.(!best) in
+    rows.(!best) <- rows.(column);
+    rows.(column) <- row;
+    for i = column + 1 to count - 1 do
+      let factor = rows.(i).(column) /. row.(column) in
+      if factor <> 0. then
+        for j = column to count do
+          rows.(i).(j) <- rows.(i).(j) -. (factor *. row.(j))
+        done
+    done
+  done;
+  let h = Array.make count 0. in
+  for i = count - 1 downto 0 do
+    let total = ref rows.(i).(count) in
+    for j = i + 1 to count - 1 do
+      total := !total -. (rows.(i).(j) *. h.(j))
+    done;
+    h.(i) <- !total /. rows.(i).(i)
+  done;
+  let scale = 1e12 /. Array.fold_left (fun m x -> max m (abs_float x)) 1e-300 h in
+  let rounded x =
+    let y = Float.round (x *. scale) in
+    if Float.is_nan y || Float.is_integer y = false then raise No_form
+    else Q.of_float y
+  in
+  Array.init d (fun i -> Array.init d (fun j -> rounded h.(place i j)))
 
-let constant x = if Q.sign x = 0 then [||] else [| x |]
+(* The number of eigenvalues of A with real part above c, and what proves it. *)
+let counted a c =
+  let d = Array.length a in
+  let s = minus a (scaled_by c (identity d)) in
+  match triangular_factors (fun sign -> sign <> 0) (lyapunov s) with
+  | None -> raise No_form
+  | Some found ->
+    let f = integral_factors found in
+    let frame = of_matrix d f.upper in
+    let signs = Array.of_list (List.map Q.of_bigint f.pivots) in
+    let h = product (Array.map (Array.mapi (fun j x -> Q.mul signs.(j) x)) frame) (transpose frame) in
+    let half = product s h in
+    let positive = minus half (scaled_by Q.minus_one (transpose half)) in
+    (List.length (List.filter (fun x -> Z.sign x > 0) f.pivots),
+     { frame = f.upper; frame_inverse = f.upper_inverse; frame_factor = f.upper_factor; signature = f.pivots;
+       positivity = (try definite_factors positive with Impossible _ -> raise No_form) })
 
-(* Row vector of polynomials times a matrix of numbers. *)
-let through row a =
-  Array.init (Array.length a.(0)) (fun j ->
-      let total = ref [||] in
-      Array.iteri (fun i x -> total := Poly.combine !total (Array.map (Q.mul a.(i).(j)) x) Q.add) row;
-      Poly.trim !total)
+(* Coordinates of columns in a basis of columns, which come first. *)
+let in_basis basis columns =
+  let size = List.length basis in
+  let reduced, _, _ = echelon (transpose (Array.of_list (basis @ columns))) (size + List.length columns) in
+  transpose (Array.map (fun row -> Array.sub row size (List.length columns)) (Array.sub reduced 0 size))
 
-(* Coefficient vectors of integers of a vector of polynomials. *)
-let coefficients size row : vector list =
-  let s = common_factor row in
-  List.init size (fun k ->
-      sparse_row (Array.map (fun p -> if k < Array.length p then p.(k) else Q.zero) row) s)
-
-let witness (p : pair_data) (t : coordinates_hint) isotropies element cut eps : witness =
+let certificate (t : coordinates_hint) isotropies given cut eps : dominance =
   let d = t.codimension in
   let isotropy = Array.of_list (List.map (of_matrix d) isotropies) in
-  let traceless, spectrum = checked t isotropy element cut eps in
-  let squarefree = fst (Poly.divide spectrum (Halfplane.gcd spectrum (Halfplane.derivative spectrum))) in
-  let s = Q.of_bigint (common_factor traceless) in
-  let low, high =
-    match largest_root squarefree cut (Q.inv (Q.mul (Q.of_int 2) s)) with
-    | Some ends -> ends
-    | None -> raise (Reader.Unsupported "a dominance certificate without a real eigenvalue above the cut")
+  checked t isotropy given cut eps;
+  let flat a = Array.concat (Array.to_list a) in
+  let all = List.map flat (Array.to_list isotropy) in
+  let _, _, family = if all = [] then ([||], [||], []) else echelon (transpose (Array.of_list all)) (List.length all) in
+  let basis = List.map (fun j -> isotropy.(j)) family in
+  let family_coordinates, family_factor = integral (in_basis (List.map flat basis) all) in
+  (* the element z with integral isotropy K; K is a multiple of rho(X) *)
+  let row, multiple = integral [| Array.of_list given |] in
+  let k = of_matrix d (isotropy_of t isotropies (List.hd row)) in
+  let unit = Q.of_bigint (Z.mul multiple (Z.mul t.scale (Z.mul t.denominator t.denominator))) in
+  let shift = Q.div (trace k) (Q.of_int d) and cut = Q.mul unit cut and eps = Q.mul unit eps in
+  let bracket = in_basis (List.map flat basis) (List.map (fun b -> flat (minus (product b k) (product k b))) basis) in
+  let propose cut eps =
+    let more = Z.lcm (common_factor bracket) (common_factor [| [| shift; cut; eps |] |]) in
+    let times x = Q.mul (Q.of_bigint more) x in
+    let shift = times shift and cut = times cut and eps = times eps in
+    let a = minus (scaled_by (Q.of_bigint more) k) (scaled_by shift (identity d)) in
+    let bracket = scaled_by (Q.of_bigint more) bracket in
+    let top_count, at_cut = counted a cut in
+    let _, below_cut = counted a (Q.sub cut eps) in
+    let high_count, on_image = counted bracket (Q.neg eps) in
+    if top_count + Array.length bracket - high_count >= d then raise No_form;
+    { element = vscale more (List.hd row); shift = shift.Q.num; cut = cut.Q.num; eps = eps.Q.num; family;
+      family_coordinates; family_factor; bracket_matrix = fst (integral bracket); top_count; high_count; at_cut;
+      below_cut; on_image }
   in
-  let rec attempt f =
-    let m = { f } in
-    let theta = reduce m [| Q.zero; Q.one |] in
-    try
-      let shifted =
-        Array.mapi
-          (fun i row -> Array.mapi (fun j x -> Poly.combine (constant x) (if i = j then theta else [||]) Q.sub) row)
-          (transpose traceless)
-      in
-      let x = match null_vector m shifted d with Some x -> x | None -> impossible "no eigenvector" in
-      let moved = Array.map (fun a -> Array.map (reduce m) (through x a)) isotropy in
-      let psi =
-        match null_vector m (Array.append [| x |] moved) d with
-        | Some psi -> psi
-        | None -> impossible "the rank is full at the eigenvector"
-      in
-      let size = Array.length f - 1 in
-      let ends (e : Q.t) : fraction = (e.Q.num, e.Q.den) in
-      { minpoly = snd (cleared (Array.to_list f)); low = ends low; high = ends high;
-        eta = coefficients size (through x (of_matrix p.dimension t.section));
-        phi = coefficients size (through psi (transpose (of_matrix d t.quotient))) }
-    with Split g ->
-      let other = fst (Poly.divide f g) in
-      attempt (if Q.sign (value g low) * Q.sign (value g high) < 0 then g else other)
+  (* there may be no form if two eigenvalues are mirror images in a line; then the gap is made smaller *)
+  let rec first = function
+    | [] -> raise (Reader.Unsupported "a count of eigenvalues")
+    | (u, v) :: rest ->
+      let part x = if x = 0 then Q.zero else Q.div eps (Q.of_int x) in
+      (try propose (Q.sub cut (part u)) (Q.sub eps (Q.add (part u) (part v))) with No_form -> first rest)
   in
-  (* an eigenvalue that is rational has the denominator s at most *)
-  let candidate = Q.div (Q.of_bigint (Z.fdiv (Q.mul s high).Q.num (Q.mul s high).Q.den)) s in
-  let rational = Q.gt candidate low && Q.sign (value squarefree candidate) = 0 in
-  attempt (if rational then [| Q.neg candidate; Q.one |] else squarefree)
+  first [(0, 0); (1009, 1013); (101, 103); (11, 13)]

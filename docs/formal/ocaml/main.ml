@@ -23,7 +23,7 @@ let rec proposed pair (t : Checker.coordinates_hint) certificate =
     [Checker.CommutantCertificate (Propose.commutant t matrix complement)]
   | Certificates.Dominance { element; cut; eps } ->
     let isotropies = Checker.isotropies t (Checker.adjoint pair t) in
-    [Checker.WitnessCertificate (Dominance.witness pair t isotropies element cut eps)]
+    [Checker.DominanceCertificate (Dominance.certificate t isotropies element cut eps)]
 
 (* The outcome that [finish] finds for the pair, the coordinates and the certificates to check. *)
 let run finish pair_json certificate_json =

@@ -157,14 +157,14 @@ let of_sparse columns (row : vector) =
 
 let of_matrix columns (rows : matrix) = Array.of_list (List.map (of_sparse columns) rows)
 
-(* P = L D L^T with L unit lower triangular and D positive, or None. *)
-let positive_factors (p : Q.t array array) =
+(* P = L D L^T with L unit lower triangular and D of accepted signs, or None. *)
+let triangular_factors accepted (p : Q.t array array) =
   let d = Array.length p in
   let rest = Array.map Array.copy p in
   let lower = Array.init d (fun i -> Array.init d (fun j -> if i = j then Q.one else Q.zero)) in
   try
     for i = 0 to d - 1 do
-      if Q.sign rest.(i).(i) <= 0 then raise Exit;
+      if not (accepted (Q.sign rest.(i).(i))) then raise Exit;
       for a = i + 1 to d - 1 do
         let factor = Q.div rest.(a).(i) rest.(i).(i) in
         lower.(a).(i) <- factor;
@@ -177,12 +177,9 @@ let positive_factors (p : Q.t array array) =
     Some (lower, Array.init d (fun i -> rest.(i).(i)))
   with Exit -> None
 
-let full_hint (p : pair_data) (t : coordinates_hint) (f : full_data) : full_hint =
-  let d = t.codimension in
-  let form = of_matrix d (metric p t f) in
-  let lower, diagonal =
-    match positive_factors form with Some found -> found | None -> impossible "the form is not positive definite"
-  in
+(* U, its inverse with a factor, and D with a factor such that factor P = U D U^T, in integers. *)
+let integral_factors (lower, diagonal) =
+  let d = Array.length diagonal in
   (* columns of L without denominators: L = L' / m, D = D' / m^2 *)
   let factors = Array.init d (fun j -> common_factor [| Array.map (fun row -> row.(j)) lower |]) in
   let upper = Array.map (Array.mapi (fun j x -> Q.mul (Q.of_bigint factors.(j)) x)) lower in
@@ -191,12 +188,22 @@ let full_hint (p : pair_data) (t : coordinates_hint) (f : full_data) : full_hint
   let _, inverse, _ = echelon upper d in
   let upper_inverse, upper_factor = integral inverse in
   let upper, _ = integral upper in
+  { upper; upper_inverse; upper_factor; pivots; pivots_factor }
+
+let definite_factors form =
+  match triangular_factors (fun sign -> sign > 0) form with
+  | Some found -> integral_factors found
+  | None -> impossible "a form is not positive definite"
+
+let full_hint (p : pair_data) (t : coordinates_hint) (f : full_data) : full_hint =
+  let d = t.codimension in
+  let definite = definite_factors (of_matrix d (metric p t f)) in
   let x = vmul f.point t.quotient in
   let images = List.map (fun k -> vmul x k) (motions t (isotropies t (adjoint p t)) f) in
   let reduced, multipliers, _ = echelon (of_matrix d (x :: images)) d in
   if Array.length reduced < d then impossible "eta and its images do not span";
   let left_inverse, rank_factor = integral multipliers in
-  { upper; upper_inverse; upper_factor; pivots; pivots_factor; left_inverse; rank_factor }
+  { definite; left_inverse; rank_factor }
 
 let product (a : Q.t array array) (b : Q.t array array) =
   let columns = if b = [||] then 0 else Array.length b.(0) in

@@ -4,7 +4,7 @@
     the property that the kind of the certificate claims, over every real closed field. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
-From Liehom Require Import Sound Pair Certificate FullSound CheckerAlgebra CheckerPair CheckerWitness CheckerFull CheckerCommutant.
+From Liehom Require Import Sound Pair Certificate FullSound CheckerAlgebra CheckerPair CheckerWitness CheckerFull CheckerCommutant CheckerDominance.
 Set Implicit Arguments. Unset Strict Implicit. Unset Printing Implicit Defensive.
 Import Order.Theory GRing.Theory Num.Theory. Local Open Scope ring_scope.
 
@@ -13,13 +13,14 @@ Inductive certificate :=
   | TrivialCertificate
   | FullCertificate of full_data & full_hint
   | WitnessCertificate of witness
-  | CommutantCertificate of commutant.
+  | CommutantCertificate of commutant
+  | DominanceCertificate of dominance.
 
 (** Whether the certificate claims that the pair is full, or else that it is not. *)
 Definition claims_full (c : certificate) : bool :=
   match c with
   | TrivialCertificate | FullCertificate _ _ => true
-  | WitnessCertificate _ | CommutantCertificate _ => false
+  | WitnessCertificate _ | CommutantCertificate _ | DominanceCertificate _ => false
   end.
 
 Definition check (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certificate) : bool :=
@@ -31,12 +32,14 @@ Definition check (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certif
   | FullCertificate f i => check_full p t isos f i
   | WitnessCertificate w => check_witness o p t ads w
   | CommutantCertificate w => check_commutant t isos w
+  | DominanceCertificate w => check_dominance p t isos w
   end.
 
 Theorem check_sound (o : oracle) (p : pair_data) (t : coordinates_hint) (c : certificate) (R : rcfType) :
   check o p t c -> if claims_full c then pair_is_full R p else ~ pair_is_full R p.
 Proof.
-case: c => [|f i|w|w] /andP [cc] /=; [| | exact: check_witness_sound | exact: check_commutant_sound].
+case: c => [|f i|w|w|w] /andP [cc] /=;
+  [| | exact: check_witness_sound | exact: check_commutant_sound | exact: check_dominance_sound].
   move=> /Nat.leb_le/ssrnat.leP d1; have [[cl co _] <-] := check_coordinates_sound R cc.
   by apply/(full_pairP cl co); apply: trivial_sound.
 move=> cf; have [valid <-] := check_coordinates_sound R cc.

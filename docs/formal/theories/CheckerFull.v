@@ -11,11 +11,22 @@ Import Order.Theory GRing.Theory Num.Theory. Local Open Scope ring_scope.
 (** ** Functions *)
 Record full_data := FullData {form : matrix; elements : matrix; point : vector}.
 
-Record full_hint := FullHint {
+Record factors := Factors {
   upper : matrix; upper_inverse : matrix; upper_factor : Z; (** U V = factor *)
-  pivots : seq Z; pivots_factor : Z;                        (** factor P = U D U^T *)
-  left_inverse : matrix; rank_factor : Z                    (** C rows = factor *)
+  pivots : seq Z; pivots_factor : Z                         (** factor P = U D U^T *)
 }.
+Record full_hint := FullHint {definite : factors; left_inverse : matrix; rank_factor : Z (** C rows = factor *)}.
+
+Definition diagonal (l : seq Z) : matrix := [seq [:: (j, nth Z0 l j)] | j <- iota 0 (size l)].
+
+(** A matrix of size d is positive definite. *)
+Definition check_definite (d : nat) (i : factors) (P : matrix) : bool :=
+  [&& Z.ltb Z0 (pivots_factor i), ~~ Z.eqb (upper_factor i) Z0, Nat.eqb (size (pivots i)) d,
+      all (Z.ltb Z0) (pivots i)
+    & [&& Nat.eqb (size (upper i)) d, Nat.eqb (size (upper_inverse i)) d,
+          msame (mmul (upper i) (upper_inverse i)) (mid (upper_factor i) d)
+        & msame (mscale (pivots_factor i) P)
+            (mmul (mmul (upper i) (diagonal (pivots i))) (mtranspose d d (upper i)))]].
 
 Section Check.
 Variables (p : pair_data) (t : coordinates_hint) (isos : seq matrix) (f : full_data) (i : full_hint).
@@ -27,17 +38,7 @@ Let q := denominator t.
 Definition metric : matrix := mmul (mmul (section t) (form f)) (mtranspose d n (section t)).
 
 (** The isotropy of the elements, times a factor. *)
-Definition motions : seq matrix := [seq combine (vmul z (dual t)) isos | z <- elements f].
-
-Definition diagonal (l : seq Z) : matrix := [seq [:: (j, nth Z0 l j)] | j <- iota 0 (size l)].
-
-Definition check_definite (P : matrix) : bool :=
-  [&& Z.ltb Z0 (pivots_factor i), ~~ Z.eqb (upper_factor i) Z0, Nat.eqb (size (pivots i)) d,
-      all (Z.ltb Z0) (pivots i)
-    & [&& Nat.eqb (size (upper i)) d, Nat.eqb (size (upper_inverse i)) d,
-          msame (mmul (upper i) (upper_inverse i)) (mid (upper_factor i) d)
-        & msame (mscale (pivots_factor i) P)
-            (mmul (mmul (upper i) (diagonal (pivots i))) (mtranspose d d (upper i)))]].
+Definition motions : seq matrix := [seq isotropy_of t isos z | z <- elements f].
 
 (** K P + P K^T is a multiple of P, by comparison with the first entries. *)
 Definition check_conformal (P K : matrix) : bool :=
@@ -54,12 +55,55 @@ Definition check_full : bool :=
   let orbit := x :: [seq vmul x K | K <- Ks] in
   [&& Nat.leb 2 d, Nat.eqb (size (form f)) n, msame (form f) (mtranspose n n (form f)),
       msame (mscale (Z.mul q q) (form f)) (mmul (mmul (quotient t) P) (mtranspose n d (quotient t)))
-    & [&& check_definite P, mzero (mmul (elements f) (quotient t)), all (check_conformal P) Ks,
+    & [&& check_definite d (definite i) P, mzero (mmul (elements f) (quotient t)), all (check_conformal P) Ks,
           ~~ Z.eqb (rank_factor i) Z0
         & msame (mmul (left_inverse i) orbit) (mid (rank_factor i) d)]].
 End Check.
 
 (** ** Soundness *)
+Section Definite.
+Variable F : realFieldType.
+Local Notation num := (num F).
+
+Lemma mat_diagonal d l : size l = d -> mat F d d (diagonal l) = diag_mx (\row_j num (nth Z0 l j)).
+Proof.
+move=> sl; apply/matrixP => a b; rewrite !mxE (nth_map 0%N) ?size_iota ?sl // nth_iota ?sl //= addr0.
+by case: (a =P b) => [->|ne]; [rewrite eqxx mulr1n | case: eqP => // e; case: ne; apply: val_inj].
+Qed.
+
+Lemma mat_unit d (U V : matrix) x : (size V <= d)%N -> ~~ Z.eqb x Z0 -> msame (mmul U V) (mid x d) ->
+  mat F d d U \in unitmx.
+Proof.
+move=> sV x0 /(@mat_same F d d); rewrite mat_id (mat_mul _ _ _ _ sV) => e.
+have/mulmx1_unit [] : mat F d d U *m ((num x)^-1 *: mat F d d V) = 1%:M => //.
+by rewrite -scalemxAr e scale_scalar_mx mulVf // num_eq0.
+Qed.
+
+Lemma mat_form d (U : matrix) l : size U = d -> size l = d ->
+  mat F d d (mmul (mmul U (diagonal l)) (mtranspose d d U))
+    = mat F d d U *m diag_mx (\row_j num (nth Z0 l j)) *m (mat F d d U)^T.
+Proof.
+move=> sU sl; rewrite (mat_mul (m := d) _ _ _) ?size_map ?size_iota //.
+by rewrite (mat_mul (m := d) _ _ _) ?size_map ?size_iota ?sl // mat_transpose (mat_diagonal sl).
+Qed.
+
+Lemma check_definite_sound d i P : check_definite d i P ->
+  (mat F d d P)^T = mat F d d P /\ positive_definite (mat F d d P).
+Proof.
+case/and5P => s0 u0 /Nat.eqb_eq sp pos /and4P [/Nat.eqb_eq sU /Nat.eqb_eq sV UV PD].
+set U := mat F d d (upper i); set D : 'rV[F]_d := (num (pivots_factor i))^-1 *: \row_j num (nth Z0 (pivots i) j).
+have s0' : 0 < num (pivots_factor i) by rewrite num_gt0.
+suff fac : positive_factors (mat F d d P) U D.
+  by split; [apply: positive_factors_sym fac | apply: positive_factors_definite fac].
+split; first by apply: mat_unit UV => //; rewrite sV.
+  move=> j; rewrite !mxE mulr_gt0 ?invr_gt0 // num_gt0.
+  by move/(all_nthP Z0): pos; apply; rewrite sp.
+move/(@mat_same F d d): PD; rewrite mat_scale (mat_form sU sp) -/U => /(congr1 (fun x => (num (pivots_factor i))^-1 *: x)).
+rewrite scalerA mulVf ?gt_eqF // scale1r => ->.
+by rewrite /D linearZ /= -scalemxAr -scalemxAl.
+Qed.
+End Definite.
+
 Section Sound.
 Variables (F : realFieldType) (p : pair_data) (t : coordinates_hint) (f : full_data) (i : full_hint).
 Local Notation num := (num F).
@@ -76,70 +120,24 @@ Definition eta_of : 'rV[F]_n := vec F n (point f).
 
 Lemma size_P : (size (section t) <= d)%N -> (size P <= d)%N. Proof. by rewrite !size_map. Qed.
 
-Lemma mat_diagonal l : size l = d -> mat F d d (diagonal l) = diag_mx (\row_j num (nth Z0 l j)).
-Proof.
-move=> sl; apply/matrixP => a b; rewrite !mxE (nth_map 0%N) ?size_iota ?sl // nth_iota ?sl //= addr0.
-by case: (a =P b) => [->|ne]; [rewrite eqxx mulr1n | case: eqP => // e; case: ne; apply: val_inj].
-Qed.
-
-Lemma check_definite_sound : check_definite t i P -> P_of^T = P_of /\ positive_definite P_of.
-Proof.
-case/and5P => s0 u0 /Nat.eqb_eq sp pos /and4P [/Nat.eqb_eq sU /Nat.eqb_eq sV UV PD].
-have sU' : (size (upper i) <= d)%N by rewrite sU.
-have sV' : (size (upper_inverse i) <= d)%N by rewrite sV.
-set U := mat F d d (upper i); set D : 'rV[F]_d := (num (pivots_factor i))^-1 *: \row_j num (nth Z0 (pivots i) j).
-have s0' : 0 < num (pivots_factor i) by rewrite num_gt0.
-suff fac : positive_factors P_of U D.
-  by split; [apply: positive_factors_sym fac | apply: positive_factors_definite fac].
-split.
-- move/(@mat_same F d d): UV; rewrite mat_id (mat_mul _ _ _ _ sV') -/U => e.
-  have/mulmx1_unit [] : U *m ((num (upper_factor i))^-1 *: mat F d d (upper_inverse i)) = 1%:M => //.
-  by rewrite -scalemxAr e scale_scalar_mx mulVf // num_eq0.
-- move=> j; rewrite !mxE mulr_gt0 ?invr_gt0 // num_gt0.
-  by move/(all_nthP Z0): pos; apply; rewrite sp.
-move/(@mat_same F d d): PD; rewrite mat_scale.
-rewrite (mat_mul (m := d) _ _ _) ?size_map ?size_iota // (mat_mul (m := d) _ _ _) ?size_map ?size_iota ?sp //.
-rewrite mat_transpose (mat_diagonal sp) -/U -/P_of => /(congr1 (fun x => (num (pivots_factor i))^-1 *: x)).
-rewrite scalerA mulVf ?gt_eqF // scale1r => ->.
-by rewrite /D linearZ /= -scalemxAr -scalemxAl.
-Qed.
-
 Hypothesis cc : check_coordinates p t ads isos.
 Let sp : check_spaces p t. Proof. by case/and3P: cc. Qed.
-
-Lemma size_motion j : (size (nth [::] (motions t isos f) j) <= d)%N.
-Proof.
-case: (ltnP j s) => js; last by rewrite nth_default // size_map.
-rewrite (nth_map [::]) //; apply: size_combine; apply/allP => A /(nthP [::]) [r rk <-].
-by rewrite (size_isos sp) in rk; apply: (size_isotropy sp (Ordinal rk)).
-Qed.
-
-Lemma motion_sound j : (j < s)%N ->
-  (vec F n (nth [::] (elements f) j) <= G)%MS ->
-  mat F d d (nth [::] (motions t isos f) j)
-    = (num (denominator t) * size_of F t) *: isotropy c Q E (vec F n (nth [::] (elements f) j)).
-Proof.
-move=> js /submxP [u zu]; rewrite (nth_map [::]) // (mat_combine _ _ _ (k := k)) ?(size_isos sp) //.
-rewrite zu isotropy_h scaler_sumr; apply: eq_bigr => r _; rewrite isos_sound //.
-have <- : vec F k (vmul (nth [::] (elements f) j) (dual t)) 0 r
-    = coef F (vmul (nth [::] (elements f) j) (dual t)) r by rewrite mxE.
-rewrite (vec_mul _ _ _ (size_S sp)) zu -mulmxA GS // mul_mx_scalar mxE !scalerA.
-by congr (_ *: _); rewrite mulrAC.
-Qed.
 
 Theorem check_full_certificate :
   check_full p t isos f i -> full_certificate c G Q E P_of z_of eta_of.
 Proof.
-case/and5P => _ _ _ _ /and5P [/check_definite_sound [Psym Ppos] hz conf r0 span].
+case/and5P => _ _ _ _ /and5P [/(check_definite_sound F) [Psym Ppos] hz conf r0 span].
 have zG j : (row j z_of <= G)%MS.
   case: (h_kerQ F sp) => hk Gh; rewrite Gh hk (submx_trans (row_sub _ _)) //; apply/sub_kermxP.
   by move/(@mat_zero F s d): hz; rewrite (mat_mul _ _ _ _ (size_Q sp)).
 have motion (j : 'I_s) : mat F d d (nth [::] (motions t isos f) j)
     = (num (denominator t) * size_of F t) *: isotropy c Q E (row j z_of).
-  by rewrite /z_of row_mat motion_sound // -row_mat.
+  by rewrite (nth_map [::]) // /z_of row_mat isotropy_of_sound // -row_mat.
 have factor0 : num (denominator t) * size_of F t != 0.
   by rewrite mulf_neq0 ?(size_of_neq0 F sp) // (denominator_neq0 F sp).
 have sm : size (motions t isos f) = s by rewrite size_map.
+have size_motion (j : 'I_s) : (size (nth [::] (motions t isos f) j) <= d)%N.
+  by rewrite (nth_map [::]) // size_isotropy_of.
 split=> //; first by apply/row_subP.
   move=> j; move/(all_nthP [::]): conf => /(_ j); rewrite sm ltn_ord => /(_ isT) /andP [b0 /(@mat_same F d d)].
   rewrite !mat_scale mat_add mat_transpose (mat_mul _ _ _ _ (size_P (size_E sp))) motion -/P_of.
@@ -154,7 +152,7 @@ move/(@mat_same F d d): span; rewrite (mat_mul _ _ _ _ so) mat_id => e.
 set S := span_at _ _; have inS : (mat F s.+1 d orbit <= S)%MS.
   apply/row_subP => j; rewrite row_mat; case: (unliftP 0 j) => [j'|] ->; last first.
     by rewrite /= ex addsmxSl.
-  rewrite lift0 /= (nth_map [::]) ?sm // (vec_mul _ _ _ (size_motion _)) motion ex -scalemxAr scalemx_sub //; apply: submx_trans (addsmxSr _ _).
+  rewrite lift0 /= (nth_map [::]) ?sm // (vec_mul _ _ _ (size_motion j')) motion ex -scalemxAr scalemx_sub //; apply: submx_trans (addsmxSr _ _).
   by apply: (sumsmx_sup j') => //; rewrite genmxE.
 rewrite -sub1mx; have r0' : num (rank_factor i) != 0 by rewrite num_eq0.
 have -> : 1%:M = (num (rank_factor i))^-1 *: (num (rank_factor i))%:M :> 'M[F]_d.

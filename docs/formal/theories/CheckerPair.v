@@ -116,6 +116,9 @@ Definition check_spaces : bool :=
             & msame (mmul (section t) (quotient t)) (mid (denominator t) d) &&
               msame (mmul (basis t) (dual t)) (mid (denominator t) k)]]].
 
+(** The isotropy of an element of h, times scale and the cube of denominator. *)
+Definition isotropy_of (isos : seq matrix) (z : vector) : matrix := combine (vmul z (dual t)) isos.
+
 (** For all j: [h_p, e_j] Q = Q_j R_p, so h is closed. *)
 Definition check_closed (ads isos : seq matrix) : bool :=
   all (fun a => msame (mscale (denominator t) (mmul a.1 (quotient t))) (mmul (quotient t) a.2)) (zip ads isos).
@@ -320,6 +323,28 @@ Qed.
 
 Lemma size_isotropy (r : 'I_k) : (size (nth [::] isos r) <= d)%N.
 Proof. by rewrite (nth_map [::]) ?size_ads // !size_map size_E. Qed.
+
+Lemma size_isotropy_of z : (size (isotropy_of t isos z) <= d)%N.
+Proof.
+apply: size_combine; apply/allP => A /(nthP [::]) [r rk <-].
+by rewrite size_isos in rk; apply: (size_isotropy (Ordinal rk)).
+Qed.
+
+Lemma isotropy_of_sound z : (vec F n z <= G_of)%MS ->
+  mat F d d (isotropy_of t isos z) = (num (denominator t) * size_of) *: isotropy c_of Q_of E_of (vec F n z).
+Proof.
+case/submxP => u zu; rewrite (mat_combine _ _ _ (k := k)) ?size_isos //.
+rewrite zu isotropy_h scaler_sumr; apply: eq_bigr => r _; rewrite isos_sound //.
+have <- : vec F k (vmul z (dual t)) 0 r = coef F (vmul z (dual t)) r by rewrite mxE.
+rewrite (vec_mul _ _ _ size_S) zu -mulmxA GS // mul_mx_scalar mxE !scalerA.
+by congr (_ *: _); rewrite mulrAC.
+Qed.
+
+Lemma in_h z : vzero (vmul z (quotient t)) -> (vec F n z <= G_of)%MS.
+Proof.
+move/(vec_zero F d); rewrite (vec_mul _ _ _ size_Q) => zQ.
+by case: h_kerQ => hk Gh; rewrite Gh hk; apply/sub_kermxP.
+Qed.
 
 Hypothesis closed_h : check_closed t ads isos.
 
