@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -11,15 +10,6 @@ import pytest
 import liehom as lh
 from liehom.atlas.table_rows import COLUMNS, COUNTS, MISSING, table_row
 from liehom.errors import FormatError, InputError
-
-
-@pytest.mark.parametrize("family", lh.atlas.FAMILIES)
-def test_names_are_unique_in_a_family_and_recipes_name_it(family: str) -> None:
-    recipes = list(lh.atlas.recipes([family]))
-    names = Counter(recipe.name for recipe in recipes)
-    assert names
-    assert max(names.values()) == 1
-    assert {recipe.family for recipe in recipes} == {family}
 
 
 def test_an_unknown_family_raises() -> None:

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 from collections import Counter
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,20 +26,33 @@ ROWS = [dict(zip(COLUMNS, cells, strict=True)) for cells in DATA["rows"]]
 BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
 
 
+@cache
+def entries() -> dict[tuple[str, str], lh.atlas.Entry]:
+    return {(entry.family, entry.name): entry for entry in lh.atlas.read_entries(DOCS / "_static" / "atlas.jsonl")}
+
+
 def test_the_file_is_small_and_has_the_columns() -> None:
     assert FILE.stat().st_size < 1_000_000
     assert DATA["columns"] == list(COLUMNS)
 
 
 @pytest.mark.parametrize("family", lh.atlas.FAMILIES)
-def test_the_file_has_all_pairs_and_a_sample_is_computed_again(family: str) -> None:
+def test_the_file_has_all_pairs_once_and_a_sample_is_computed_again(family: str) -> None:
     recipes = list(lh.atlas.recipes([family]))
+    assert {recipe.family for recipe in recipes} == {family}
     stored = {row["pair"]: row for row in ROWS if row["family"] == family}
     assert list(stored) == [recipe.name for recipe in recipes]
     small = [recipe for recipe in recipes if stored[recipe.name]["dim g"] <= 30]
     sample = random.Random(family).sample(small, examples(6))
-    for _, entry in lh.atlas.iter_sweep(sample, facts=True):
+    for number, entry in lh.atlas.iter_sweep(sample, facts=True):
         assert dict(zip(COLUMNS, table_row(entry), strict=True)) == stored[entry.name]
+        assert entries()[family, entry.name].verify(sample[number].pair())
+
+
+def test_the_rows_are_those_of_the_entries_with_certificates() -> None:
+    assert lh.atlas.table(entries().values()) == DATA
+    assert all(entry.verified for entry in entries().values())
+    assert (DOCS / "_static" / "atlas.jsonl").stat().st_size < 5_000_000
 
 
 def test_counts_of_the_page_are_those_of_its_rows() -> None:
