@@ -135,7 +135,7 @@ def run_block(block: str, namespace: dict[str, Any], shown: str = "") -> int:
             assert (printed.getvalue().strip() or repr(value)) == promised, source
             compared += 1
     if shown:
-        assert doctest.OutputChecker().check_output(shown, everything, doctest.ELLIPSIS), everything
+        assert doctest.OutputChecker().check_output(shown, everything.rstrip() + "\n", doctest.ELLIPSIS), everything
     return compared + bool(shown)
 
 
@@ -269,6 +269,23 @@ def test_there_are_public_names() -> None:
 
     assert {"LieAlgebra", "Pair", "decide_fullness", "verify_certificate"} <= set(public_names())
     assert all(hasattr(liehom, name) for name in public_names())
+
+
+@pytest.mark.parametrize("page", ["tasks", "which-step", "coming-from", "faq", "glossary"])
+def test_names_in_tables_and_answers_exist(page: str) -> None:
+    names = set(re.findall(r"\blh\.((?:[a-zA-Z]\w*\.)*[a-zA-Z]\w*)", read("docs", f"{page}.md")))
+    assert names
+    for name in names:
+        assert resolve(f"liehom.{name}") is not None
+
+
+def test_names_of_methods_in_the_list_of_tasks_exist() -> None:
+    import liehom as lh
+
+    owners = {"g": lh.LieAlgebra, "rho": lh.Representation, "verdict": lh.NotFull}
+    found = re.findall(r"`(g|rho|verdict)\.(\w+)", read("docs", "tasks.md"))
+    assert {owner for owner, _ in found} == set(owners)
+    assert [f"{o}.{name}" for o, name in found if not hasattr(owners[o], name) and name != "certificate"] == []
 
 
 def test_public_names_are_explained_with_an_example() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from tests.benchmarks import gpu, straight_line
+from tests.benchmarks import gpu, straight_line, which_step
 from tests.benchmarks import integration_measure as measure
 from tests.benchmarks.integration_growth import slope
 from tests.benchmarks.integration_long import long_runs
@@ -202,6 +202,12 @@ def test_the_page_shows_the_figures() -> None:
     assert re.fullmatch(r"20\d\d-\d\d-\d\d", data["conditions"]["date"])
     for problem in problems():
         assert (DOCS / "_static" / picture_name(problem)).read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_the_costs_of_steps_are_those_of_the_figures() -> None:
+    text = (DOCS / "which-step.md").read_text(encoding="utf-8")
+    shown_costs = text.partition("<!-- costs: begin -->")[2].partition("<!-- costs: end -->")[0]
+    assert shown_costs.strip() == "\n".join(which_step.lines()).strip()
 
 
 def test_numbers_are_shown_with_two_digits() -> None:
