@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, final
 
+from liehom.algebra.matrices.matrix_basis import require_size
 from liehom.errors import FormatError, InternalError, LiehomError, displayed
 from liehom.fullness.certificates.certificate_fields import number_field_json, read_number_field
 from liehom.fullness.classification.rows import SPIRAL, Key, Row, row_of, square_root
@@ -106,15 +107,24 @@ class Classification:
         Raises
         ------
         FormatError
-            If a part of the object is malformed, or the key is in no row.
+            If a part of the object is missing or malformed, the key is in no row, or the key is that of another name,
+            space or isotropy.
         """
         if not isinstance(data, Mapping) or data.get("format") != FORMAT or data.get("version") != VERSION:
             raise FormatError(f"expected a JSON object with format {FORMAT!r} and version {VERSION}")
         try:
             field = read_number_field(data["field"]) if "field" in data else QQ
-            return cls(_read_key(field, data["key"]), Subspace(field, data["ideal"], data["dimension"]))
-        except (LiehomError, KeyError, TypeError) as error:
+            require_size("dimension", data["dimension"], 0)
+            found = cls(_read_key(field, data["key"]), Subspace(field, data["ideal"], data["dimension"]))
+            said = {part: data[part] for part in ("name", "space", "isotropy")}
+        except KeyError as error:
+            raise FormatError(f"not a classification: {error} is missing") from None
+        except (LiehomError, TypeError) as error:
             raise FormatError(f"not a classification: {error}") from None
+        for part, value in (("name", found.name), ("space", found.space), ("isotropy", found.row.isotropy)):
+            if said[part] != value:
+                raise FormatError(f"{part} is {displayed(said[part])}, by the key it is {displayed(value)}")
+        return found
 
     def __str__(self) -> str:
         inside = f", up to an ideal of dimension {self.ideal.dimension} inside h" if self.ideal.dimension else ""
@@ -127,7 +137,10 @@ class Classification:
 def _read_key(field: ExactField, data: Mapping[str, Any]) -> Key:
     key = Key(**data)
     if key.centre == SPIRAL:
-        key = key._replace(parameter=field.convert(data["parameter"]))
+        square = field.convert(data["parameter"])
+        if field.sign(square) <= 0:
+            raise FormatError(f"c^2 must be positive, got {displayed(square)}")
+        key = key._replace(parameter=square)
     if any(isinstance(x, (bool, float)) for x in key) or row_of(key) is None:
         raise FormatError(f"the key {displayed(tuple(key))} is in no row of the classification")
     return key

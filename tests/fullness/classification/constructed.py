@@ -241,6 +241,8 @@ def stabilizer_of_form(tensor: dict[tuple[int, ...], Any], n: int, degree: int) 
         return [QQ.matrix([values], (1, len(values)))]
 
     return solutions(QQ, n, conditions)
+
+
 def random_change(field: Any, n: int, rng: random.Random) -> Matrix:
     return random_invertible(field, n, lambda: rng.choice((0, 0, 1, -1, 2, -3)))
 
@@ -415,8 +417,9 @@ def truncated_polynomials(pair: lh.Pair, degree: int) -> lh.Pair:
     }
     g = lh.LieAlgebra(constants, field, dimension=degree * n)
     bottom = field.identity(degree * n).select(rows=range(n, degree * n))
-    top = field.stack_columns([pair.subalgebra.basis, field.zeros(pair.subalgebra.dimension, n * (degree - 1))],
-                              pair.subalgebra.dimension)
+    top = field.stack_columns(
+        [pair.subalgebra.basis, field.zeros(pair.subalgebra.dimension, n * (degree - 1))], pair.subalgebra.dimension
+    )
     return lh.Pair(g, field.stack_rows([top, bottom], degree * n))
 
 

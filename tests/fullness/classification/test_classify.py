@@ -232,6 +232,31 @@ def test_malformed_json_raises_a_format_error(change: dict[str, Any]) -> None:
         Classification.from_json({**data, **change})
 
 
+MALFORMED = [("key", part, value) for part in Key._fields for value in ([], {}, float("nan"), "x", 10**400, -2)]
+MALFORMED += [("dimension", value) for value in (None, True, 1.5, float("nan"), float("inf"), -1, 10**400, "3", [])]
+MALFORMED += [("ideal", value) for value in (None, 1, "x", [1], [["1", "x", "0"]], [["1"]])]
+MALFORMED += [("name", "so(3)/so(2)"), ("space", "a point"), ("isotropy", 1), ("field", "x"), ("key", None)]
+
+
+@pytest.mark.parametrize("change", MALFORMED, ids=lambda change: " ".join(map(str, change))[:40])
+def test_a_changed_part_is_an_error_of_the_format(change: tuple[Any, ...]) -> None:
+    pair = lh.pair("affine(spiral(2,3))")
+    data: Any = lh.classify(pair).to_json()
+    *path, last, value = change
+    part = data[path[0]] if path else data
+    part[last] = value
+    with pytest.raises(lh.FormatError):
+        Classification.from_json(data)
+
+
+@pytest.mark.parametrize("part", ["key", "name", "space", "isotropy", "dimension", "ideal"])
+def test_a_missing_part_is_named(part: str) -> None:
+    data = lh.classify(lh.pair("so(4)/u(2)")).to_json()
+    del data[part]
+    with pytest.raises(lh.FormatError, match=f"'{part}' is missing"):
+        Classification.from_json(data)
+
+
 def test_a_given_verdict_spares_the_decision(monkeypatch: pytest.MonkeyPatch) -> None:
     pair = lh.pair("so(4)/so(3)")
     verdict = lh.decide_fullness(pair)
