@@ -57,7 +57,7 @@ class Classification:
 
     @property
     def name(self) -> str | None:
-        """Catalogue name of the quotients of g and h by the ideal; None for a spiral whose c^2 is irrational."""
+        """Catalogue name of the quotients of g and h by the ideal; None for a spiral whose c no name can hold."""
         if self.key.centre != SPIRAL:
             return self.row.name
         text = square_root(self.key.parameter)

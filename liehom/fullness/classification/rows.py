@@ -16,6 +16,7 @@ from math import isqrt
 from typing import NamedTuple, final
 
 from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.budget import MAX_PARAMETER_DIGITS
 from liehom.scalars import QQ, Scalar
 from liehom.scalars.fields.rational import ExactNumber, rational_number
 
@@ -114,7 +115,9 @@ def row_of(key: Key) -> Row | None:
 
 
 def square_root(square: Scalar | int | None) -> str | None:
-    """The positive root of a positive rational number, as the catalogue writes it; None for an irrational number.
+    """The positive root of a positive rational number, as the catalogue writes it; None if no name can hold it.
+
+    Names hold roots of rational numbers, written with numbers of a bounded number of digits.
 
     Examples
     --------
@@ -127,8 +130,11 @@ def square_root(square: Scalar | int | None) -> str | None:
         return None
     p, q = int(number.p), int(number.q)
     if isqrt(p) ** 2 == p and isqrt(q) ** 2 == q:
-        return QQ.format(QQ.convert(isqrt(p)) / isqrt(q))
-    return f"sqrt({QQ.format(number)})"
+        p, q = isqrt(p), isqrt(q)
+        text = QQ.format(QQ.convert(p) / q)
+    else:
+        text = f"sqrt({QQ.format(number)})"
+    return text if len(str(max(p, q))) <= MAX_PARAMETER_DIGITS else None
 
 
 @cache

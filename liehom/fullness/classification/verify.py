@@ -20,6 +20,7 @@ from liehom.representations import Pair
 from liehom.scalars import ExactField, ExactMatrix, Scalar, Subspace
 from liehom.scalars.fields.exact_field import as_exact
 from liehom.scalars.modular.modular import invariant_hull_rank
+from liehom.scalars.spaces.quotient import echelon_quotient
 
 PRIME = 5
 """Number of the prime, which is not the one of the computation."""
@@ -92,11 +93,8 @@ class _Effective:
     def __init__(self, pair: Pair, ideal: Subspace) -> None:
         self.field: ExactField = ideal.field  # type: ignore[assignment]
         n, k = pair.algebra.dimension, ideal.dimension
-        given = [as_exact(ideal.basis), as_exact(pair.subalgebra.basis)]
-        whole = self.field.stack_rows([*given, self.field.identity(n)], n)
-        basis = whole.select(rows=whole.T.echelon()[1])
         self.d, self.r = pair.dimension, pair.subalgebra.dimension - k
-        dual, over = basis.inverse().select(columns=range(k, n)), basis.select(rows=range(k, n))
+        over, dual = self._bases(as_exact(ideal.basis), as_exact(pair.subalgebra.basis))
         self.algebra = LieAlgebra(pair.algebra.table.changed(over, dual), check=False)  # n is an ideal
         self.n, self.rng = n - k, random.Random(n)
         one = self.field.identity(self.n)
@@ -105,6 +103,22 @@ class _Effective:
         self.rho: list[ExactMatrix] = [block.T for block in blocks]
         self.flat = _flat(self.field, self.rho, self.d)
         self.derived = self._derived()
+
+    def _bases(self, ideal: ExactMatrix, h: ExactMatrix) -> tuple[ExactMatrix, ExactMatrix]:
+        """A basis of a complement of the ideal, first in h, and the coordinates in it; no matrix is inverted.
+
+        In reduced echelon form the pivots of h include those of the ideal. The rows of h with the other pivots complete
+        the ideal to h, and unit vectors complete h to g.
+        """
+        modulo, outside = echelon_quotient(ideal), echelon_quotient(h)
+        free, others = modulo.lift.echelon()[1], set(outside.lift.echelon()[1])  # unit vectors off the pivots
+        pivots = [j for j in range(h.ncols) if j not in others]
+        inside = outside.subspace.select(rows=[i for i, pivot in enumerate(pivots) if pivot in set(free)])
+        coordinates = modulo.projection.select(columns=[i for i, j in enumerate(free) if j not in others])
+        return (
+            self.field.stack_rows([inside, outside.lift], h.ncols),
+            self.field.stack_columns([coordinates, outside.projection], h.ncols),
+        )
 
     def _derived(self) -> list[ExactMatrix]:
         """A basis of S: the images of all brackets of h."""

@@ -16,7 +16,7 @@ import liehom as lh
 from liehom.fullness.classification import Key, rows
 from liehom.scalars import QQ
 from tests.fullness.support import random_invertible
-from tests.fullness.test_number_fields import ROOT2, element
+from tests.fullness.test_number_fields import element
 
 Matrix = Any
 

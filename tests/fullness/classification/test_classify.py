@@ -232,6 +232,19 @@ def test_malformed_json_raises_a_format_error(change: dict[str, Any]) -> None:
         Classification.from_json({**data, **change})
 
 
+@pytest.mark.parametrize(
+    "c", ["5000", "1/5000", "sqrt(5000)", "99999999/7", "123456789123456789123/2", "sqrt(10000000000000000019)"]
+)
+def test_a_name_is_given_only_if_it_can_be_read(c: str) -> None:
+    (family,) = (x for x in lh.full_pairs(2) if not isinstance(x, lh.Pair))
+    pair = family.pair(c)
+    found = lh.classify(pair)
+    assert found.verify(pair)
+    assert (found.name is None) == (len(c) > 18)
+    if found.name is not None:
+        assert lh.classify(lh.pair(found.name)).key == found.key
+
+
 MALFORMED = [("key", part, value) for part in Key._fields for value in ([], {}, float("nan"), "x", 10**400, -2)]
 MALFORMED += [("dimension", value) for value in (None, True, 1.5, float("nan"), float("inf"), -1, 10**400, "3", [])]
 MALFORMED += [("ideal", value) for value in (None, 1, "x", [1], [["1", "x", "0"]], [["1"]])]

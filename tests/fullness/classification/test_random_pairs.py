@@ -28,7 +28,7 @@ CENTRES = ("", "R", "J", "C", "J+c")
 
 
 def ugly(pair: lh.Pair, rng: random.Random) -> lh.Pair:
-    """The pair in a random basis; up to dimension 16 with numbers of 12 or 20 digits."""
+    """The pair in a random basis; in small dimensions with numbers of 12 or 20 digits."""
     n, field = pair.algebra.dimension, pair.field
     if field != QQ:
         pair = scrambled_over(pair, field, rng) if n <= 12 else scrambled(pair, rng)
@@ -37,7 +37,7 @@ def ugly(pair: lh.Pair, rng: random.Random) -> lh.Pair:
         return pair.change_of_basis(change)
     else:
         pair = scrambled(pair, rng)
-    if n > 16:
+    if n > (16 if field == QQ else 8):
         return pair
     sizes = [QQ.convert(rng.randint(1, 10**20)) for _ in range(n)]
     return pair.change_of_basis(make.diagonal(field, sizes))
