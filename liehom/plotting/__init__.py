@@ -1,12 +1,18 @@
-"""Plots of measured orders, trajectories, strata and failure cones, by matplotlib (the extra `liehom[plot]`).
+"""Plots of orders, trajectories, strata, failure cones, roots and diagrams, by matplotlib (the extra `liehom[plot]`).
 
 `canvas` makes figures, colours and files, and is the one module that loads matplotlib; `convergence_plot` draws errors
-over step sizes, `trajectory_plot` solutions, `strata_plot` failure cones, eigenvalues and Weyl chambers. A figure
-belongs to the caller: no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists the
-functions.
+over step sizes, `trajectory_plot` solutions, `strata_plot` failure cones, eigenvalues and Weyl chambers, `root_plot`
+roots and weights, `diagram_plot` Dynkin, Satake and Vogan diagrams and bracket tables. A figure belongs to the caller:
+no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists the functions.
 """
 
 from liehom.plotting.convergence_plot import plot_convergence as plot_convergence
+from liehom.plotting.diagram_plot import plot_bracket_table as plot_bracket_table
+from liehom.plotting.diagram_plot import plot_dynkin as plot_dynkin
+from liehom.plotting.diagram_plot import plot_satake as plot_satake
+from liehom.plotting.diagram_plot import plot_vogan as plot_vogan
+from liehom.plotting.root_plot import plot_root_system as plot_root_system
+from liehom.plotting.root_plot import plot_weights as plot_weights
 from liehom.plotting.strata_plot import plot_eigenvalues as plot_eigenvalues
 from liehom.plotting.strata_plot import plot_failure_cone as plot_failure_cone
 from liehom.plotting.strata_plot import plot_weyl_chamber as plot_weyl_chamber

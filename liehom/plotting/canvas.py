@@ -114,6 +114,38 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axes:
+    """The axes that the caller gives, or else new square ones, in the plane or, for dimension 3, in space.
+
+    Raises
+    ------
+    InputError
+        If the given axes have another dimension.
+    """
+    solid = dimension == 3
+    if ax is None:
+        return new_figure(size, size).add_subplot(**({"projection": "3d", "proj_type": "ortho"} if solid else {}))
+    if solid != (ax.name == "3d"):
+        remedy = "in space: add_subplot(projection='3d')" if solid else "in the plane"
+        raise InputError(f"this picture has dimension {dimension}, which needs axes {remedy}")
+    return ax
+
+
+def current_colours() -> tuple[str, ...]:
+    """`DARK_COLOURS` if text is light in the current style, as on a dark page, otherwise `COLOURS`."""
+    return DARK_COLOURS if _is_dark() else COLOURS
+
+
+def paper_colour() -> str:
+    """The colour, 'white' or 'black', that contrasts with `current_colours`."""
+    return "black" if _is_dark() else "white"
+
+
+def _is_dark() -> bool:
+    red, green, blue = matplotlib_module("colors").to_rgb(matplotlib_module("").rcParams["text.color"])
+    return bool(red + green + blue > 1.5)
+
+
 def figure_of(axes: Axes) -> Figure:
     """Figure that the axes of the caller belong to.
 

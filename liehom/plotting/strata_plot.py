@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from liehom.algebra.roots.root_system import RootSystem, root_system
+from liehom.algebra.roots.root_system import root_system
 from liehom.errors import InputError, displayed
 from liehom.fullness import decide_fullness, failure_report
 from liehom.homogeneous import FailureSet, RelativeInvariant, adjoint_strata, symmetric_strata
-from liehom.plotting.canvas import COLOURS, GREY, matplotlib_module, new_figure, style_unless
+from liehom.plotting.canvas import COLOURS, GREY, axes_of_dimension, matplotlib_module, new_figure, style_unless
+from liehom.plotting.root_plot import simple_root_coordinates
 from liehom.plotting.trajectory_plot import AZIMUTH, ELEVATION, AnyAxes, draw_sphere
 from liehom.representations import Pair
 from liehom.scalars import Matrix
@@ -61,12 +62,8 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
         found = f"a pair with dim g/h = {pair.dimension}" if isinstance(pair, Pair) else repr(pair)
         raise InputError(f"the failure cone is drawn for pairs with dim g/h = 2 or 3; got {found}")
     report = failure_report(pair)
-    solid = pair.dimension == 3
     with style_unless(ax):
-        if ax is None:
-            ax = new_figure(4.6, 4.6).add_subplot(**({"projection": "3d", "proj_type": "ortho"} if solid else {}))
-        if solid != (ax.name == "3d"):
-            raise InputError(f"dim g/h is {pair.dimension}, which needs axes {'in space' if solid else 'in the plane'}")
+        ax = axes_of_dimension(ax, pair.dimension, 4.6)
         _prepare(ax)
         drawn = 0
         for part in report.parts:
@@ -251,7 +248,7 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
     system = root_system(kind)
     if system.rank != 2:
         raise InputError(f"a Weyl chamber is drawn for rank 2; {kind} has rank {system.rank}")
-    simple = _simple_roots(system)
+    simple = simple_root_coordinates(system)
     roots = np.array(system.roots, dtype=float) @ simple
     weights = np.linalg.inv(simple).T  # dual to the simple roots: the edges of the chamber
     edges = 1.5 * abs(roots).max() * weights / np.linalg.norm(weights, axis=1)[:, None]
@@ -274,14 +271,6 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
         ax.set_axis_off()
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.04), ncols=2, fontsize=8)
     return ax
-
-
-def _simple_roots(system: RootSystem) -> Array:
-    """Two vectors of the plane with the Cartan matrix and lengths of the system, the first to the right."""
-    gram = np.array(system.cartan, dtype=float) * np.array(system.norms, dtype=float) / 2
-    first = np.sqrt(gram[0, 0])
-    along = gram[0, 1] / first
-    return np.array([[first, 0.0], [along, np.sqrt(gram[1, 1] - along**2)]])
 
 
 def _structure(kind: str, vanishing: tuple[int, ...]) -> str:
