@@ -92,6 +92,22 @@ def test_the_picture_of_the_readme_has_both_versions() -> None:
     assert all((ROOT / file).is_file() for file in shown)
 
 
+def test_the_picture_of_the_readme_shows_what_its_caption_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Energies along the drawn orbits: Euler's step loses them, the corrected step does not."""
+    import numpy as np
+
+    import liehom as lh
+
+    monkeypatch.syspath_prepend(str(DOCS))
+    orbits = importlib.import_module("pictures.orbits")
+    drift = {}
+    for step in (lh.Euler(), lh.Corrected(lh.Euler(), order=4)):
+        y = lh.integrate(orbits.FIELD, (0, 30), orbits.STARTS, step=step, dt=0.25).y
+        drift[step.order] = np.ptp(np.sum(y**2 / np.array([1.0, 2.0, 3.0])[:, None], axis=1), axis=-1)
+    assert drift[1].min() > 0.05
+    assert drift[4].max() < 1e-3
+
+
 def test_links_of_the_readme_lead_to_files() -> None:
     links = re.findall(r"\]\(([^)#]+)\)", read("README.md"))
     assert links
