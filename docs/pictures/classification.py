@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 import liehom as lh
 from liehom.plotting.canvas import DASHES, GREY, new_figure
+from liehom.plotting.diagram_plot import node_places, plot_dynkin
+from liehom.plotting.root_plot import simple_root_coordinates
 from pictures import picture
 
-NODE = 0.13
-"""The radius of a node of a diagram, at which its bonds end."""
+CLASS_B = {"A7": {0, 1, 5, 6}, "B6": {0}, "C6": set(), "D6": {0}, "E6": {0, 5}, "E7": set()}
+"""The nodes of coefficient 1 whose gradings are rows of class B."""
 
 ROWS_OF_THE_PLANE = {
     "similarities\nC": (0.0, 4),
@@ -63,8 +65,7 @@ def spirals(colours: Sequence[str]) -> Any:
 def draw_weights(axes: Any, kind: str, top: tuple[int, ...], colours: Sequence[str]) -> None:
     """The weights of a module of rank 2, those of the form lambda - beta joined to lambda."""
     system = lh.root_system(kind)
-    gram = [[system.inner(a, b) for b in system.simple_roots] for a in system.simple_roots]
-    simple = np.linalg.cholesky(np.array(gram, dtype=float))
+    simple = simple_root_coordinates(system)
     fundamental = np.linalg.inv(np.array(system.cartan, dtype=float)) @ simple
     start = np.array(top) @ fundamental
     up = np.array([[start[1], start[0]], [-start[0], start[1]]]) / np.linalg.norm(start)  # turns lambda upwards
@@ -94,55 +95,26 @@ def weights_of_the_proof(colours: Sequence[str]) -> Any:
     return figure
 
 
-def diagrams() -> Iterator[tuple[str, list[tuple[float, float]], list[tuple[int, int, int]], list[int], set[int]]]:
-    """(name, places, bonds (i, j, lines), coefficients of the highest root, nodes that are rows of class B)."""
-    line = [(float(i), 0.0) for i in range(7)]
-    chain = [(i, i + 1, 1) for i in range(6)]
-    yield "A₇", line, chain, [1] * 7, {0, 1, 5, 6}
-    yield "B₆", line[:6], [*chain[:4], (4, 5, 2)], [1, 2, 2, 2, 2, 2], {0}
-    yield "C₆", line[:6], [*chain[:4], (5, 4, 2)], [2, 2, 2, 2, 2, 1], set()
-    yield "D₆", [*line[:4], (4.0, 0.4), (4.0, -0.4)], [*chain[:3], (3, 4, 1), (3, 5, 1)], [1, 2, 2, 2, 1, 1], {0}
-    yield "E₆", [*line[:5], (2.0, 0.8)], [*chain[:4], (2, 5, 1)], [1, 2, 3, 2, 1, 2], {0, 4}
-    yield "E₇", [*line[:6], (2.0, 0.8)], [*chain[:5], (2, 6, 1)], [2, 3, 4, 3, 2, 1, 2], set()
-
-
-def draw_bond(axes: Any, start: Any, end: Any, lines: int) -> None:
-    """A bond between the rims of two nodes; a double bond has an arrow to its end, the short root."""
-    along = (end - start) / np.linalg.norm(end - start)
-    across = np.array([-along[1], along[0]])
-    for shift in (0.0,) if lines == 1 else (-0.06, 0.06):
-        x, y = (np.array([start + NODE * along, end - NODE * along]) + shift * across).T
-        axes.plot(x, y, color=GREY, linewidth=1.2)
-    if lines == 2:
-        axes.plot(*(start + end) / 2, marker=">" if along[0] > 0 else "<", color=GREY, markersize=8)
-
-
 @picture
 def nodes_of_coefficient_one(colours: Sequence[str]) -> Any:
     """Dynkin diagrams with the coefficients of the highest root; full where the grading is a row of class B."""
-    figure = new_figure(5.2, 5.4)
-    axes = blank(figure.add_subplot())
-    height = 0.0
-    for name, places, bonds, marks, rows in diagrams():
-        height -= 0.45 + max(y for _, y in places)
-        axes.text(-0.9, height, name, va="center", fontsize=12)
-        spots = [np.array([x, height + y]) for x, y in places]
-        for i, j, lines in bonds:
-            draw_bond(axes, spots[i], spots[j], lines)
-        for i, (x, y) in enumerate(spots):
-            one = marks[i] == 1
-            colour = colours[0] if i in rows else colours[1] if one else GREY
-            shape = "s" if one and i not in rows else "o"
-            axes.plot(x, y, shape, color=colour, markersize=10, fillstyle="full" if one else "none")
-            aside = y > height or y < height
-            axes.text(
-                *((x + 0.28, y - 0.02) if aside else (x, y - 0.3)), str(marks[i]), ha="center", va="center", fontsize=9
-            )
-        height -= 0.5 + max(-y for _, y in places)
+    figure = new_figure(5.2, 6.0)
+    heights = [1.45 + np.ptp(node_places(kind)[:, 1]) for kind in CLASS_B]
+    for axes, (kind, rows) in zip(
+        figure.subplots(len(CLASS_B), 1, height_ratios=heights), CLASS_B.items(), strict=True
+    ):
+        marks = lh.root_system(kind).highest_roots[0]
+        plot_dynkin(kind, axes, labels=marks)
+        axes.set(xlim=(-1.2, 6.5), title="")
+        axes.text(-0.9, 0.0, kind, va="center", fontsize=12)
+        for i, (mark, node) in enumerate(zip(marks, axes.patches, strict=True)):
+            colour = colours[0] if i in rows else colours[1]
+            if mark == 1:
+                node.set(edgecolor=colour, facecolor=colour if i in rows else "none", linewidth=2.4)
     axes.plot([], [], "o", color=colours[0], markersize=9, label="coefficient 1, a row of class B")
-    axes.plot([], [], "s", color=colours[1], markersize=9, label="coefficient 1, not full")
-    axes.plot([], [], "o", color=GREY, markersize=9, fillstyle="none", label="other coefficients")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02))
+    ring = {"markersize": 9, "fillstyle": "none", "markeredgewidth": 2.4}
+    axes.plot([], [], "o", color=colours[1], label="coefficient 1, not full", **ring)
+    figure.legend(loc="outside lower center", ncols=2)
     return figure
 
 

@@ -21,8 +21,8 @@ def dynkin_diagrams(colours: Sequence[str]) -> Any:
 
 @picture
 def satake_diagrams(colours: Sequence[str]) -> Any:
-    figure = new_figure(5.6, 3.4)
-    left, right = figure.subplots(1, 2)
+    figure = new_figure(5.6, 2.2)
+    left, right = figure.subplots(1, 2, width_ratios=(3.4, 5.4))  # as many units as wide
     lh.plotting.plot_satake("su(4,2)", left)
     lh.plotting.plot_vogan("su(4,2)", right)
     left.set_title("Satake diagram of su(4,2)")
@@ -33,7 +33,7 @@ def satake_diagrams(colours: Sequence[str]) -> Any:
 @picture
 def root_systems(colours: Sequence[str]) -> Any:
     """One in the plane and one in space."""
-    figure = new_figure(7.6, 4.0)
+    figure = new_figure(7.6, 4.2)
     lh.plotting.plot_root_system("G2", figure.add_subplot(1, 2, 1))
     lh.plotting.plot_root_system("B3", figure.add_subplot(1, 2, 2, projection="3d", proj_type="ortho"))
     return figure
@@ -42,7 +42,7 @@ def root_systems(colours: Sequence[str]) -> Any:
 @picture
 def weight_diagrams(colours: Sequence[str]) -> Any:
     """One in the plane and one in space."""
-    figure = new_figure(7.6, 4.0)
+    figure = new_figure(7.6, 4.2)
     lh.plotting.plot_weights("A2", (3, 1), figure.add_subplot(1, 2, 1))
     lh.plotting.plot_weights("A3", (1, 0, 1), figure.add_subplot(1, 2, 2, projection="3d", proj_type="ortho"))
     return figure

@@ -1,9 +1,9 @@
 """Plots of orders, trajectories, strata, failure cones, roots and diagrams, by matplotlib (the extra `liehom[plot]`).
 
-`canvas` makes figures, colours and files, and is the one module that loads matplotlib; `convergence_plot` draws errors
-over step sizes, `trajectory_plot` solutions, `strata_plot` failure cones, eigenvalues and Weyl chambers, `root_plot`
-roots and weights, `diagram_plot` Dynkin, Satake and Vogan diagrams and bracket tables. A figure belongs to the caller:
-no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists the functions.
+`canvas` makes figures, colours and files, and is the one module that loads matplotlib. `convergence_plot` draws errors
+over step sizes and `trajectory_plot` solutions. `strata_plot` draws failure cones, eigenvalues and Weyl chambers,
+`root_plot` roots and weights, and `diagram_plot` Dynkin, Satake and Vogan diagrams and bracket tables. A figure belongs
+to the caller: no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists the functions.
 """
 
 from liehom.plotting.convergence_plot import plot_convergence as plot_convergence

@@ -11,7 +11,7 @@ from liehom.algebra.roots.root_system import root_system
 from liehom.errors import InputError, displayed
 from liehom.fullness import decide_fullness, failure_report
 from liehom.homogeneous import FailureSet, RelativeInvariant, adjoint_strata, symmetric_strata
-from liehom.plotting.canvas import COLOURS, GREY, axes_of_dimension, matplotlib_module, new_figure, style_unless
+from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, matplotlib_module, new_figure, style_unless
 from liehom.plotting.root_plot import simple_root_coordinates
 from liehom.plotting.trajectory_plot import AZIMUTH, ELEVATION, AnyAxes, draw_sphere
 from liehom.representations import Pair
@@ -63,12 +63,13 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
         raise InputError(f"the failure cone is drawn for pairs with dim g/h = 2 or 3; got {found}")
     report = failure_report(pair)
     with style_unless(ax):
+        colours = current_colours()
         ax = axes_of_dimension(ax, pair.dimension, 4.6)
         _prepare(ax)
         drawn = 0
         for part in report.parts:
             for curve in _curves(part, pair.dimension):
-                _draw(ax, curve, COLOURS[0])
+                _draw(ax, curve, colours[0])
                 drawn += 1
         ax.set_title(_title(pair, report.generic.holds, drawn), loc="left")
     return ax
@@ -198,18 +199,19 @@ def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]
     given = np.array([list(point) for point in points], dtype=float).reshape(-1, 3)
     corners = np.array([[0.0, 1.0], [-np.sqrt(3) / 2, -0.5], [np.sqrt(3) / 2, -0.5]])
     with style_unless(ax):
+        colours = current_colours()
         ax = new_figure(4.8, 4.4).add_subplot() if ax is None else ax
         closed = corners[[0, 1, 2, 0]]
-        ax.fill(*corners.T, color=COLOURS[0], alpha=0.15, linewidth=0)
+        ax.fill(*corners.T, color=colours[0], alpha=0.15, linewidth=0)
         ax.plot(*closed.T, color=GREY, linewidth=0.9)
         kinds = {len(s.label): s for s in symmetric_strata(3)}
         for corner, opposite in zip(corners, -corners / 2, strict=True):
-            ax.plot(*np.array([corner, opposite]).T, color=COLOURS[1], linewidth=2.2)
-        ax.plot(0, 0, "o", color=COLOURS[2], markersize=8, zorder=4)
+            ax.plot(*np.array([corner, opposite]).T, color=colours[1], linewidth=2.2)
+        ax.plot(0, 0, "o", color=colours[2], markersize=8, zorder=4)
         for number, name, colour in ((3, "a > b > c", 0), (2, "two equal", 1), (1, "a = b = c", 2)):
             stratum = kinds[number]
             text = f"{name}: isotropy {stratum.structure}, orbits of dimension {stratum.orbit_dimension}"
-            ax.plot([], [], color=COLOURS[colour], linewidth=6 if number == 3 else 2.2, label=text)
+            ax.plot([], [], color=colours[colour], linewidth=6 if number == 3 else 2.2, label=text)
         for corner, text in zip(corners, ("(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)"), strict=True):
             ax.annotate(text, corner, 1.14 * corner - (0, 0.02), ha="center", va="center")
         if given.size:
@@ -253,19 +255,20 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
     weights = np.linalg.inv(simple).T  # dual to the simple roots: the edges of the chamber
     edges = 1.5 * abs(roots).max() * weights / np.linalg.norm(weights, axis=1)[:, None]
     with style_unless(ax):
+        colours = current_colours()
         ax = new_figure(4.8, 4.8).add_subplot() if ax is None else ax
         for root in roots:
             ax.annotate("", root, (0, 0), arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 1.2})
         for node, root in enumerate(simple):
             ax.annotate(f"$\\alpha_{node}$", 1.13 * root, ha="center", va="center")
         corner = edges.sum(axis=0) * 0.62
-        ax.fill(*np.array([(0, 0), edges[0], edges[1]]).T, color=COLOURS[0], alpha=0.15, linewidth=0)
-        ax.plot([], [], color=COLOURS[0], alpha=0.4, linewidth=6, label=f"inside: {_structure(kind, ())}")
+        ax.fill(*np.array([(0, 0), edges[0], edges[1]]).T, color=colours[0], alpha=0.15, linewidth=0)
+        ax.plot([], [], color=colours[0], alpha=0.4, linewidth=6, label=f"inside: {_structure(kind, ())}")
         for node in (0, 1):
             other = 1 - node  # the wall on which this simple root vanishes is the edge dual to the other one
             text = f"$\\alpha_{node} = 0$: {_structure(kind, (node,))}"
-            ax.plot(*np.array([(0, 0), edges[other]]).T, color=COLOURS[1 + node], linewidth=2.2, label=text)
-        ax.plot(0, 0, "o", color=COLOURS[3], label=f"0: {_structure(kind, (0, 1))}", zorder=4)
+            ax.plot(*np.array([(0, 0), edges[other]]).T, color=colours[1 + node], linewidth=2.2, label=text)
+        ax.plot(0, 0, "o", color=colours[3], label=f"0: {_structure(kind, (0, 1))}", zorder=4)
         size = 1.2 * max(abs(roots).max(), abs(edges).max(), abs(corner).max())
         ax.set(aspect="equal", xlim=(-size, size), ylim=(-size, size), title=f"{kind}: isotropy in the adjoint action")
         ax.set_axis_off()
