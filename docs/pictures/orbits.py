@@ -44,15 +44,15 @@ def orbits_on_the_sphere(colours: Sequence[str]) -> Any:
     """Left Euler's step, right the same step corrected to order 4; the exact orbits are thin."""
     times = np.linspace(0, 30, 500)
     exact = lh.integrate(FIELD, (0, 30), STARTS, t_eval=times, rtol=1e-8).y
-    figure = new_figure(7.6, 4.0)
+    figure = new_figure(5.6, 3.05)
     steps = {"Euler()": lh.Euler(), "Corrected(Euler(), order=4)": lh.Corrected(lh.Euler(), order=4)}
     for axes, (title, step) in zip(figure.subplots(1, 2), steps.items(), strict=True):
         _sphere(axes)
         found = lh.integrate(FIELD, (0, 30), STARTS, step=step, dt=0.25, t_eval=times).y
         for k, colour in enumerate(colours[:3]):
-            _curve(axes, found[k], color=colour, linewidth=1.5)
+            _curve(axes, found[k], color=colour, linewidth=1.3)
             _curve(axes, exact[k], color=colours[6], linewidth=0.8, zorder=1.5)
-            axes.plot(*(SCREEN @ STARTS[k]), "o", color=colour, markersize=5)
+            axes.plot(*(SCREEN @ STARTS[k]), "o", color=colour, markersize=4)
         axes.set_title(title, loc="center")
         axes.set_aspect("equal")
         axes.set_axis_off()
@@ -64,7 +64,7 @@ def first_orbit(colours: Sequence[str]) -> Any:
     """The picture of the last block of the first steps, in the colours of the page."""
     sol = lh.integrate(FIELD, (0, 30), [0.8, 0.0, 0.6], step=lh.Corrected(lh.Euler(), order=4), dt=0.25)
     figure = lh.plotting.plot_trajectory(sol)
-    figure.set_size_inches(4.6, 4.8)
+    figure.set_size_inches(4.2, 4.4)
     named = dict(zip(COLOURS, colours, strict=True))
     for line in figure.axes[0].lines:
         line.set_color(named.get(line.get_color(), line.get_color()))
