@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 
 from liehom.atlas.entry import Entry
 from liehom.disk import write_atomically
-from liehom.errors import FormatError
+from liehom.errors import FormatError, displayed
 
 COLUMNS = (
     "pair",
@@ -133,11 +133,15 @@ def read_entries(path: str | os.PathLike[str]) -> Iterator[Entry]:
     Raises
     ------
     FormatError
-        If a line is not an entry.
+        If the file cannot be read, or a line is not an entry.
     """
-    with open(path, encoding="utf-8") as file:
-        for number, line in enumerate(file, 1):
-            try:
-                yield Entry.from_json(json.loads(line))
-            except (ValueError, TypeError, FormatError) as error:
-                raise FormatError(f"line {number} of {path} is not an entry of the atlas: {error}") from None
+    shown = displayed(str(path))
+    try:
+        with open(path, "rb") as file:
+            for number, line in enumerate(file, 1):
+                try:
+                    yield Entry.from_json(json.loads(line))
+                except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FormatError) as error:
+                    raise FormatError(f"line {number} of {shown} is not an entry of the atlas: {error}") from None
+    except OSError as error:
+        raise FormatError(f"{shown} cannot be read: {error.strerror}") from None

@@ -73,6 +73,17 @@ def test_rows_are_filtered(built: Path) -> None:
     assert "dim g/h" in RUN.invoke(app, words[:-1]).stdout
 
 
-def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "other.jsonl").write_text("[]\n", encoding="utf-8")
-    assert RUN.invoke(app, ["atlas", "show", str(tmp_path / "other.jsonl")]).exit_code == 2
+@pytest.mark.parametrize(
+    "content", [b"[]\n", b"\xff\xfe\n", b"[" * 100_000, b"{}", b'{"name": 1, "verdict": null}', None]
+)
+def test_a_file_of_something_else_is_refused_in_one_line(tmp_path: Path, content: bytes | None) -> None:
+    if content is not None:
+        (tmp_path / "other.jsonl").write_bytes(content)
+    done = RUN.invoke(app, ["atlas", "show", str(tmp_path / "other.jsonl")])
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+    assert "other.jsonl" in done.stderr
+
+
+def test_a_folder_is_no_file_of_entries(tmp_path: Path) -> None:
+    assert RUN.invoke(app, ["atlas", "show", str(tmp_path)]).exit_code == 2

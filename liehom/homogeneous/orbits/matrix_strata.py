@@ -77,7 +77,7 @@ def skew_strata(k: int) -> list[Stratum]:
     Parameters
     ----------
     k : int
-        At least 1.
+        At least 2.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def skew_strata(k: int) -> list[Stratum]:
     <stratum (2,): orbits of dimension 2 in 1 parameter, isotropy so(3) + R>
     <stratum (): orbits of dimension 0 in 0 parameters, isotropy so(3) + so(3)>
     """
-    k = require_size(k)
+    k = require_size(k, 2)
     matrices = exterior_power(standard_matrices(f"so({k})"), 2)
     rho = Representation(so(k), [m.tolist() for m in matrices], size=comb(k, 2), check=False)
     found = []
@@ -153,7 +153,7 @@ def binary_form_strata(n: int) -> list[Stratum]:
     <stratum (x^4,): orbits of dimension 2 in 0 parameters, isotropy R>
     <stratum (0,): orbits of dimension 0 in 0 parameters, isotropy sl(2,R)>
     """
-    n = require_size(n)
+    n = require_size(n, what="degree of the forms")
     matrices = symmetric_power(standard_matrices("sl(2)"), n)
     rho = Representation(sl(2), [m.tolist() for m in matrices], size=n + 1, check=False)
     power = [int(i == 0) for i in range(n + 1)]

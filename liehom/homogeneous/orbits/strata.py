@@ -227,10 +227,10 @@ def ordered(strata: list[Stratum]) -> list[Stratum]:
     return sorted(strata, key=lambda s: (-s.orbit_dimension, -s.dimension, s.label))
 
 
-def require_size(k: object) -> int:
-    """The size of matrices or degree of forms, an integer at least 1; `InputError` otherwise."""
-    if isinstance(k, bool) or not isinstance(k, int) or k < 1:
-        raise InputError(f"the size of the matrices is an integer at least 1, got {k!r}")
+def require_size(k: object, least: int = 1, what: str = "size of the matrices") -> int:
+    """The size of matrices or degree of forms, an integer at least `least`; `InputError` otherwise."""
+    if isinstance(k, bool) or not isinstance(k, int) or k < least:
+        raise InputError(f"the {what} is an integer at least {least}, got {k!r}")
     return k
 
 
