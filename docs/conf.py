@@ -10,11 +10,14 @@ from typing import Any
 
 from docutils import nodes
 from docutils.utils.math import MathError
-from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.util import logging
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]  # the pages document this tree, whatever is installed
+
+import formulas  # noqa: E402 - found by the path that is set above
+
+LOG = logging.getLogger(__name__)
 
 project = "liehom"
 author = "liehom authors"
@@ -53,22 +56,28 @@ html_math_renderer = "mathml"
 
 
 def mathml(visitor: Any, node: nodes.Element, *, display: bool) -> None:
-    """Write a formula as MathML; one that cannot be translated is a warning, which the strict build refuses."""
-    formula = node.astext().replace("\\dots", "\\ldots")
+    """Write a formula as MathML; a fault in it is a warning, which the strict build refuses."""
+    formula = node.astext()
     try:
-        markup = tex2mathml(formula, as_block=display)
-        # the set difference is missing in common fonts; "ad x" needs a space where "ad(x)" does not
-        markup = re.sub(
-            r"<mo>&ApplyFunction;</mo>(?!\s*<mo[^>]*>\()", '<mspace width="0.2em"/>', markup.replace("\u29f5", "\\")
-        )
-        visitor.body.append(markup)
+        wrong = formulas.faults(formula)
+        visitor.body.append(formulas.translate(formula, display=display))
     except MathError as error:
-        logging.getLogger(__name__).warning("formula %r: %s", formula, error, location=node)
+        wrong = [str(error)]
+    for fault in wrong:
+        LOG.warning("formula %r: %s", formula, fault, location=node)
     raise nodes.SkipNode
 
 
+def refuse_apostrophes(app: Any, doctree: nodes.document) -> None:
+    """A warning for each letter of the text whose prime is an apostrophe."""
+    for text in doctree.findall(nodes.Text):
+        if not isinstance(text.parent, (nodes.literal, nodes.math, nodes.raw, nodes.FixedTextElement)):
+            for match in formulas.APOSTROPHE.finditer(text.astext()):
+                LOG.warning("%s needs a prime: $%s'$, or ′ in text", match[0], match[1], location=text.parent)
+
+
 def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Bars and stars in the text of a docstring are norms and arguments, not markup; code is left alone."""
+    """In the text of a docstring bars and stars are not markup, and x' has a prime; code is left alone."""
     inside = False
     for i, line in enumerate(lines):
         text = line.strip()
@@ -81,7 +90,7 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
                 else re.sub(
                     r"\||\*\*(?=\w)|(?<![\w*])\*(?=\w+(?:[^\w*]|$))(?!\S[^*]*\S\*(?!\w))",
                     lambda bar: "".join(f"\\{c}" for c in bar[0]),
-                    part,
+                    formulas.APOSTROPHE.sub(lambda prime: prime[1] + "\u2032" * len(prime[2]), part),
                 )
                 for part in parts
             )
@@ -90,6 +99,7 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
+    app.connect("doctree-read", refuse_apostrophes)
     import pictures  # found by the path that is set above
 
     app.connect("builder-inited", pictures.draw)
