@@ -140,8 +140,10 @@ def read_entries(path: str | os.PathLike[str]) -> Iterator[Entry]:
         with open(path, "rb") as file:
             for number, line in enumerate(file, 1):
                 try:
-                    yield Entry.from_json(json.loads(line))
-                except (ValueError, TypeError, KeyError, AttributeError, RecursionError, FormatError) as error:
+                    entry = Entry.from_json(json.loads(line))
+                    table_row(entry)  # fails if the facts are malformed
+                except (ValueError, TypeError, LookupError, AttributeError, RecursionError, FormatError) as error:
                     raise FormatError(f"line {number} of {shown} is not an entry of the atlas: {error}") from None
+                yield entry
     except OSError as error:
         raise FormatError(f"{shown} cannot be read: {error.strerror}") from None

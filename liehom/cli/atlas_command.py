@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any, TypeAlias
 
 import typer
 
 from liehom.cli.guard import YES
 from liehom.cli.options import JsonOption, run
+from liehom.errors import InputError, displayed
 
 FamilyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Family, once or more often (default: all families).")
@@ -98,10 +100,13 @@ def show(
     """Print rows of the table of a file; with --json the entries with their certificates."""
 
     def action() -> int:
+        from liehom.atlas import FAMILIES
         from liehom.atlas.table_rows import COLUMNS, read_entries, table_row
         from liehom.cli.inputs import file_argument
         from liehom.cli.show import show_json, show_table
 
+        _require("family", family or (), FAMILIES)
+        _require("letter", (letter.upper(),) if letter else (), "ABC")
         rows, entries = [], []
         for entry in read_entries(file_argument(file)):
             cells = table_row(entry)
@@ -120,6 +125,13 @@ def show(
         return YES
 
     run(action)
+
+
+def _require(what: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise `InputError` for a value of an option that nothing has."""
+    for value in given:
+        if value not in set(known):
+            raise InputError(f"there is no {what} {displayed(value)}; expected one of {', '.join(known)}")
 
 
 def _text(cell: str | int | bool | None) -> str:

@@ -87,3 +87,18 @@ def test_a_file_of_something_else_is_refused_in_one_line(tmp_path: Path, content
 
 def test_a_folder_is_no_file_of_entries(tmp_path: Path) -> None:
     assert RUN.invoke(app, ["atlas", "show", str(tmp_path)]).exit_code == 2
+
+
+@pytest.mark.parametrize("options", [["--letter", "Z"], ["--letter", "ab"], ["--family", "nofamily"]])
+def test_an_option_that_no_pair_has_is_refused(built: Path, options: list[str]) -> None:
+    done = RUN.invoke(app, ["atlas", "show", str(built / "atlas.jsonl"), *options])
+    assert done.exit_code == 2
+    assert "expected one of" in done.stderr
+
+
+def test_malformed_facts_are_refused(built: Path, tmp_path: Path) -> None:
+    lines = (built / "atlas.jsonl").read_text(encoding="utf-8").splitlines()
+    entry = next(made for made in map(json.loads, lines) if made["verdict"]["full"])
+    entry["facts"]["key"] = -1
+    (tmp_path / "other.jsonl").write_text(json.dumps(entry) + "\n", encoding="utf-8")
+    assert RUN.invoke(app, ["atlas", "show", str(tmp_path / "other.jsonl")]).exit_code == 2
