@@ -4,6 +4,7 @@ The layers, in reading order; each imports only those above it in this list:
 
 `errors`           exceptions, with what was found, what was expected and a remedy.
 `immutable`        classes whose attributes are set once.
+`display`          classes that notebooks show as formulas, cards and tables.
 `budget`           how large an input may be, how long a computation may take.
 `disk`             files that are written whole, checksums.
 `pytrees`          numbers and arrays in nested containers.

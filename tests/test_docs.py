@@ -24,7 +24,7 @@ DOCS = ROOT / "docs"
 PACKAGE = Path(str(importlib.import_module("liehom").__file__)).parent
 MAPPED = ("paper-map.md", "notation.md")
 BUILTIN = {"ArithmeticError", "AttributeError", "TypeError", "ValueError"}
-NO_API_PAGE = {"immutable", "__init__", "__main__", "cli", "errors", "compatibility"}
+NO_API_PAGE = {"display", "immutable", "__init__", "__main__", "cli", "errors", "compatibility"}
 """Besides them: docs/command-line.md on cli, docs/errors.md on errors, docs/formats.md on compatibility."""
 
 

@@ -23,8 +23,9 @@ BELOW: dict[str, tuple[str, ...]] = {
     "budget": ("errors",),
     "disk": ("errors",),
     "parallel": ("budget", "disk", "typing"),
+    "display": (),
     "immutable": (),
-    "scalars": ("budget", "errors", "immutable", "typing"),
+    "scalars": ("budget", "display", "errors", "immutable", "typing"),
     "algebra": ("scalars",),
     "representations": ("algebra",),
     "pauli": ("representations",),
@@ -124,6 +125,12 @@ CLASS_FILES = (
     "liehom.representations.core.pair",
 )
 
+# what a notebook asks of an object of any layer: the methods of its base import the renderer when they are called
+RENDERERS = {
+    ("liehom.display", "liehom.io.html_format"),
+    ("liehom.display", "liehom.io.latex_format"),
+}
+
 MAX_MODULES = 14
 
 # libraries behind one door: only modules that start with one of these names may import them
@@ -146,7 +153,7 @@ CHECKER = (
     "liehom.fullness.certificates.certificate_fields",
     "liehom.fullness.checker",
 )
-CHECKER_MAY_IMPORT = (*CHECKER, "liehom.scalars", "liehom.errors", "liehom.budget")
+CHECKER_MAY_IMPORT = (*CHECKER, "liehom.scalars", "liehom.errors", "liehom.budget", "liehom.display")
 
 MAX_FILE_LINES = 450
 MAX_FUNCTION_LINES = 60
@@ -250,9 +257,17 @@ def test_imports_point_downward() -> None:
         f"{where(module, line)}: {layer(module)} imports {name}"
         for module in modules()
         for name, line in imports(module)
-        if name.split(".")[0] == "liehom" and layer(name) not in reachable(layer(module))
+        if name.split(".")[0] == "liehom"
+        and layer(name) not in reachable(layer(module))
+        and (module, name) not in RENDERERS
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_renderers_are_imported_when_a_notebook_asks() -> None:
+    found = {(module, name) for module in modules() for name in internal(module) if (module, name) in RENDERERS}
+    assert found == RENDERERS
+    assert not internal("liehom.display", typing=False, local=False), "at load time nothing is imported"
 
 
 def test_only_the_scalars_and_the_command_line_know_their_libraries() -> None:
@@ -277,11 +292,12 @@ def place(module: str) -> int | None:
 def edges(module: str) -> Iterator[tuple[str, int]]:
     """The imports of liehom in a module, lazy ones and those for type checkers included.
 
-    Left out: what a class file imports inside its methods or for type checkers, the one way upwards.
+    Left out are the two ways upwards: the imports of a class file inside its methods or for type checkers, and the
+    renderers of notebooks.
     """
     door = module in CLASS_FILES
     for name, line in imports(module, typing=not door, local=not door):
-        if name in modules() and name != "liehom":
+        if name in modules() and name != "liehom" and (module, name) not in RENDERERS:
             yield name, line
 
 

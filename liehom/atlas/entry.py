@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, final
 
 from liehom.catalog import pair as named_pair
+from liehom.display import DisplayedTable
 from liehom.errors import FormatError, InputError, shown
 from liehom.fullness import Certificate, verify_certificate
 from liehom.representations import Pair
@@ -149,7 +150,7 @@ class Entry:
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class Atlas:
+class Atlas(DisplayedTable):
     """The entries of a sweep in the order of the given pairs, the result of `sweep`.
 
     Attributes

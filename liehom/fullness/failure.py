@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, final
 
+from liehom.display import Displayed
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
 from liehom.homogeneous import FailureSet, RangeCondition, failure_cone, range_condition
@@ -24,7 +25,7 @@ UNKNOWN = "unknown: the report was written by liehom 0.1.0"
 
 @final
 @dataclass(frozen=True, slots=True)
-class FailureReport:
+class FailureReport(Displayed):
     """Whether the range condition holds for generic psi, and certified subsets of the cone on which it fails.
 
     Attributes

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias, final
 
+from liehom.display import Displayed
 from liehom.errors import CertificateError, UndecidedError
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.checker.verify import verify_certificate
@@ -15,7 +16,7 @@ from liehom.scalars import Field, Scalar
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class Full:
+class Full(Displayed):
     """The pair is full: rank [rho(h) x, x] = d for every x != 0 in g/h.
 
     Attributes
@@ -63,7 +64,7 @@ class Full:
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class NotFull:
+class NotFull(Displayed):
     """The pair is not full: some eta outside h has rank [h, [h, eta], eta] < dim g.
 
     Attributes
@@ -146,7 +147,7 @@ class NotFull:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class _Numerical:
+class _Numerical(Displayed):
     """Fields and methods of the numerical verdicts; each states its `full` and its `tolerance`."""
 
     pair: Pair

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from liehom.disk import check_target, write_atomically
+from liehom.display import DisplayedTable
 from liehom.errors import FormatError, InputError
 
 Cell: TypeAlias = Any
@@ -19,7 +20,7 @@ Cell: TypeAlias = Any
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Table(DisplayedTable):
     """Named columns and rows of strings and numbers.
 
     Parameters
@@ -72,6 +73,9 @@ class Table:
         lines = ["| " + " | ".join(cells) + " |" for cells in (self.columns, *map(_shown_row, self.rows))]
         lines.insert(1, "|" + "---|" * len(self.columns))
         return "\n".join(lines)
+
+    def _cells(self) -> list[list[str]]:
+        return [list(self.columns), *map(_shown_row, self.rows)]
 
 
 @dataclass(frozen=True, slots=True)

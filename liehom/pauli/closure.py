@@ -10,6 +10,7 @@ from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.algebra.roots.real_form_names import join_real_forms
 from liehom.budget import current_limits, within
+from liehom.display import Displayed
 from liehom.errors import InputError
 from liehom.pauli.identification import WordIdeal, word_ideals
 from liehom.pauli.symplectic import closed_words, real_matrix, word_table
@@ -19,7 +20,7 @@ from liehom.scalars import Scalar
 
 
 @final
-class DynamicalLieAlgebra:
+class DynamicalLieAlgebra(Displayed):
     """The real Lie algebra that Hermitian sums of Pauli words generate, made by `closure`.
 
     Attributes

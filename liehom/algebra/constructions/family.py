@@ -15,6 +15,7 @@ from liehom.algebra.constructions.parametric_constants import Brackets, Paramete
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.names import by_index, is_named
 from liehom.algebra.core.tables import ConstantsLike, field_of_values
+from liehom.display import Displayed
 from liehom.errors import InputError, JacobiError, ShapeError, StructureError, UndecidedError
 from liehom.immutable import Immutable
 from liehom.scalars import Field, Scalar
@@ -48,7 +49,7 @@ class Generic:
 
 
 @final
-class LieAlgebraFamily(Immutable):
+class LieAlgebraFamily(Displayed, Immutable):
     """Lie algebras of one dimension whose structure constants are rational functions of parameters, over QQ.
 
     Parameters

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
+from liehom.display import Displayed
 from liehom.errors import HomomorphismError, InputError, ShapeError
 from liehom.immutable import Immutable
 from liehom.scalars import Matrix
@@ -19,7 +20,7 @@ from liehom.typing import VectorLike
 
 
 @final
-class Homomorphism(Immutable):
+class Homomorphism(Displayed, Immutable):
     """A homomorphism of Lie algebras over the same field.
 
     Parameters

@@ -20,6 +20,7 @@ from liehom.algebra.core.names import RowsLike, by_index, coefficients, is_named
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
 from liehom.budget import within
+from liehom.display import Displayed
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.immutable import Immutable
 from liehom.scalars import ExactMatrix, Field, FloatField, Matrix, Scalar, Subspace
@@ -44,7 +45,7 @@ SHOWN_TERMS = 8
 
 
 @final
-class LieAlgebra(Immutable):
+class LieAlgebra(Displayed, Immutable):
     """A real Lie algebra in a basis e_0, ..., e_{n-1}.
 
     Parameters

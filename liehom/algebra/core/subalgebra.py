@@ -15,6 +15,7 @@ import numpy as np
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.names import RowsLike, coefficients
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.display import Displayed
 from liehom.errors import (
     DependentRowsError,
     InputError,
@@ -41,7 +42,7 @@ GENERATED = "the dimension of a generated subalgebra or ideal"
 
 
 @final
-class Subalgebra(Immutable):
+class Subalgebra(Displayed, Immutable):
     """A subalgebra h of g, given by the rows of a basis.
 
     Parameters

@@ -25,6 +25,7 @@ from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.algebra.roots.satake import SatakeDiagram
 from liehom.algebra.roots.vogan import VoganDiagram
 from liehom.budget import within
+from liehom.display import Displayed
 from liehom.errors import CatalogError, displayed
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 @final
 @dataclass(frozen=True, slots=True)
-class RealForm:
+class RealForm(Displayed):
     """A simple real Lie algebra up to isomorphism, the result of `RealForm.of_name` and `real_forms`.
 
     Attributes

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from liehom.algebra.roots.dynkin import CartanMatrix, cartan_matrix, diagram_components, dynkin_diagram, join_types
 from liehom.budget import within
+from liehom.display import Displayed
 from liehom.errors import InputError, ShapeError
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ Root = tuple[int, ...]
 
 @final
 @dataclass(frozen=True, slots=True)
-class RootSystem:
+class RootSystem(Displayed):
     """The reduced root system with a given Cartan matrix.
 
     Parameters

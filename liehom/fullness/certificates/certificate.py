@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+from liehom.display import Displayed
 from liehom.errors import CertificateError, displayed
 from liehom.fullness.certificates.certificate_fields import (
     READERS,
@@ -38,7 +39,7 @@ FORMAT, VERSION = "liehom-certificate", 1
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Certificate:
+class Certificate(Displayed):
     """Data that prove a pair full or not full; `verify_certificate` checks them.
 
     Parameters

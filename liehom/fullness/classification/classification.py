@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, final
 
 from liehom.algebra.matrices.matrix_basis import require_size
+from liehom.display import Displayed
 from liehom.errors import FormatError, InternalError, LiehomError, displayed
 from liehom.fullness.certificates.certificate_fields import number_field_json, read_number_field
 from liehom.fullness.classification.rows import SPIRAL, Key, Row, row_of, square_root
@@ -19,7 +20,7 @@ FORMAT, VERSION = "liehom-classification", 1
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class Classification:
+class Classification(Displayed):
     """The row of a full pair in the classification, a result of `classify`.
 
     Attributes

@@ -18,6 +18,7 @@ from liehom.algebra import Subalgebra
 from liehom.algebra.roots.compact_form import compact_form
 from liehom.algebra.roots.real_form_names import canonical_real_form
 from liehom.algebra.roots.root_system import RootSystem, root_system
+from liehom.display import Displayed
 from liehom.errors import CertificateError, InputError
 from liehom.homogeneous.orbits.levi_classes import levi_classes
 from liehom.homogeneous.orbits.structure_name import reductive_name, structure_name
@@ -27,7 +28,7 @@ from liehom.scalars import QQ, Scalar
 
 @final
 @dataclass(frozen=True, slots=True)
-class Stratum:
+class Stratum(Displayed):
     """The set of points of a representation whose isotropy subalgebras are conjugate to a given one.
 
     Attributes

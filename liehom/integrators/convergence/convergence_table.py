@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, final
 
+from liehom.display import DisplayedTable
+
 MARGIN = 10.0
 """Smallest ratio of an error of the method to the accuracy of the reference and to round-off."""
 NAN = math.nan
@@ -25,7 +27,7 @@ class ConvergenceRow(NamedTuple):
 
 @final
 @dataclass(frozen=True, slots=True, repr=False)
-class ConvergenceTable:
+class ConvergenceTable(DisplayedTable):
     """Errors for several step sizes, and the slopes between them; the result of `observed_order`.
 
     Attributes

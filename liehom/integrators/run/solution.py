@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.disk import check_target, checksum, write_atomically
+from liehom.display import Displayed
 from liehom.errors import FormatError, OrderWarning
 from liehom.integrators.run.checkpoint import MARK, UNREADABLE
 from liehom.integrators.run.dense import DenseSolution
@@ -32,7 +33,7 @@ FORMAT = "liehom-solution 2"
 
 @final
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Solution:
+class Solution(Displayed):
     """The result of `integrate`; its entries are attributes, and items as in a dictionary.
 
     Attributes

@@ -17,6 +17,7 @@ from typing import Any, TypeVar, final
 import numpy as np
 import numpy.typing as npt
 
+from liehom.display import Displayed
 from liehom.errors import FieldError, InputError, ShapeError
 from liehom.integrators.tableaux.order_conditions import Violation, order_checks
 from liehom.integrators.tableaux.rooted_trees import MAX_ORDER, checked_order
@@ -32,7 +33,7 @@ TOLERANCE = 1e-13
 
 @final
 @dataclasses.dataclass(frozen=True, slots=True, init=False, repr=False)
-class Tableau:
+class Tableau(Displayed):
     """The coefficients of a Runge-Kutta method, whose order is proved when they are given.
 
     Parameters

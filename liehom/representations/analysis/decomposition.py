@@ -15,6 +15,7 @@ import numpy as np
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.structure_constants import StructureConstants
+from liehom.display import Displayed
 from liehom.errors import CertificateError, NotCompletelyReducibleError
 from liehom.representations.analysis.commutant_type import COMMUTANT_DIMENSIONS, CommutantType
 from liehom.representations.analysis.complete_reducibility import socle
@@ -124,7 +125,7 @@ class IsotypicComponent:
 
 @final
 @dataclass(frozen=True, slots=True)
-class Decomposition:
+class Decomposition(Displayed):
     """A representation as a direct sum of irreducible representations over the reals.
 
     Attributes

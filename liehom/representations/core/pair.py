@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.display import Displayed
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.immutable import Immutable
 from liehom.scalars import Field, Matrix
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @final
-class Pair(Immutable):
+class Pair(Displayed, Immutable):
     """A pair (g, h) of a Lie algebra and a subalgebra.
 
     Parameters

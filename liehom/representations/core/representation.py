@@ -15,6 +15,7 @@ import numpy.typing as npt
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.algebra.closure.closure import Completion, lie_closure, square_matrices
 from liehom.algebra.closure.complex_matrices import as_real_matrices
+from liehom.display import Displayed
 from liehom.errors import InputError, RepresentationError, ShapeError, UndecidedError, displayed
 from liehom.immutable import Immutable
 from liehom.representations.core.coordinates import (
@@ -53,7 +54,7 @@ if TYPE_CHECKING:
 
 
 @final
-class Representation(Immutable):
+class Representation(Displayed, Immutable):
     """A representation of a Lie algebra on K^N.
 
     Parameters

@@ -15,6 +15,7 @@ from liehom.algebra import LieAlgebra, StructureConstants
 from liehom.algebra.matrices.matrix_basis import require_room
 from liehom.algebra.roots.chevalley import chevalley, chevalley_constants
 from liehom.algebra.roots.root_system import RootSystem
+from liehom.display import Displayed
 from liehom.errors import RepresentationError
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, add_multiple, lattice_of
@@ -29,7 +30,7 @@ OTHER_WAYS = "liehom.representations.admissible_lattice gives the generators spa
 
 @final
 @dataclass(frozen=True, slots=True)
-class HighestWeightModule:
+class HighestWeightModule(Displayed):
     """The irreducible module of a split semisimple algebra with a given highest weight; see `highest_weight_module`.
 
     Attributes

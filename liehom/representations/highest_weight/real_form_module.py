@@ -16,6 +16,7 @@ from liehom.algebra.roots.compact_form import real_form_of
 from liehom.algebra.roots.real_form import RealForm
 from liehom.algebra.roots.root_system import RootSystem
 from liehom.algebra.roots.vogan import VoganDiagram
+from liehom.display import Displayed
 from liehom.errors import InputError, RepresentationError, ShapeError
 from liehom.representations.core.representation import Representation
 from liehom.representations.highest_weight.admissible_lattice import AdmissibleLattice, Vector, add_multiple, lattice_of
@@ -33,7 +34,7 @@ from liehom.representations.invariants.generator_proof import SparseStack, faili
 
 @final
 @dataclass(frozen=True, slots=True)
-class RealModule:
+class RealModule(Displayed):
     """An irreducible real module of a real form; see `real_module`.
 
     Attributes

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from liehom.display import Typeset
 from liehom.errors import FieldError, ShapeError, displayed
 from liehom.typing import ScalarLike, VectorLike
 
@@ -70,7 +71,7 @@ def rows_of(rows: MatrixLike) -> list[list[Any]]:
     return table
 
 
-class Matrix(ABC):
+class Matrix(Typeset, ABC):
     """An immutable matrix over a field: the interface of exact and numerical matrices.
 
     Vectors are rows: a subspace is given by the rows of a matrix, and ``null_space`` returns rows. Iteration gives the

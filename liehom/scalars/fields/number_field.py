@@ -15,6 +15,7 @@ from typing import Any, TypeAlias, final
 
 import flint
 
+from liehom.display import Typeset
 from liehom.errors import FieldError
 from liehom.immutable import Immutable
 from liehom.scalars.fields import grammar
@@ -299,7 +300,7 @@ class NumberField(ExactField, Immutable):
 
 
 @final
-class AlgebraicNumber(ExactNumber, Immutable):
+class AlgebraicNumber(ExactNumber, Typeset, Immutable):
     """An element of a real number field, constructed by arithmetic or ``field.convert``.
 
     Comparisons are those of the real embedding of the field.

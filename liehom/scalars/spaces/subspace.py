@@ -10,6 +10,7 @@ from typing import Any, final
 
 import numpy as np
 
+from liehom.display import Displayed
 from liehom.errors import ShapeError
 from liehom.immutable import Immutable
 from liehom.scalars.fields.exact_field import as_exact
@@ -20,7 +21,7 @@ NEARLY_LONGEST = 0.999  # fraction of the longest vector from which the first in
 
 
 @final
-class Subspace(Immutable):
+class Subspace(Displayed, Immutable):
     """The span of rows in K^n, with a canonical basis.
 
     Parameters
