@@ -115,7 +115,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axes:
-    """The axes that the caller gives, or else new square ones, in the plane or, for dimension 3, in space.
+    """The axes that the caller gives, or else new ones: low for dimension 1, square for 2, in space for 3.
 
     Raises
     ------
@@ -124,7 +124,9 @@ def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axe
     """
     solid = dimension == 3
     if ax is None:
-        return new_figure(size, size).add_subplot(**({"projection": "3d", "proj_type": "ortho"} if solid else {}))
+        return new_figure(size, 0.4 * size if dimension == 1 else size).add_subplot(
+            **({"projection": "3d", "proj_type": "ortho"} if solid else {})
+        )
     if solid != (ax.name == "3d"):
         remedy = "in space: add_subplot(projection='3d')" if solid else "in the plane"
         raise InputError(f"this picture has dimension {dimension}, which needs axes {remedy}")

@@ -200,11 +200,13 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
             ax.add_collection(collection(boxes, facecolor=filled, edgecolor=paper_colour(), linewidth=0.4))
         points = 72 / ax.figure.dpi * min(ax.bbox.width, ax.bbox.height) / (n + 2)  # the side of a cell
         for sign, marker in ((1, "+"), (-1, "_")):
-            chosen = [
-                (x, y - 0.16, _ink(colours[k])) for (x, y, _, k), s in zip(strips, signs, strict=True) if s == sign
-            ]
-            xs, ys, inks = zip(*chosen, strict=True) if chosen else ((), (), None)
-            ax.scatter(xs, ys, s=(0.4 * points) ** 2, marker=marker, c=inks, linewidth=max(0.7, points / 16), zorder=3)
+            chosen = [strip for strip, s in zip(strips, signs, strict=True) if s == sign]
+            places = np.array([(x, y - 0.16) for x, y, _, _ in chosen]).reshape(-1, 2)
+            sizes = [(points * min(0.4, 0.8 * width)) ** 2 for _, _, width, _ in chosen]
+            inks = [_ink(colours[k]) for *_, k in chosen] or None
+            ax.scatter(
+                places[:, 0], places[:, 1], s=sizes, marker=marker, c=inks, linewidth=max(0.7, points / 16), zorder=3
+            )
         _write_terms(ax, algebra, strips, colours, points)
         ax.set(aspect="equal", xlim=(-2.1, n - 0.4), ylim=(n - 0.4, -2.1))
         ax.set_xticks(range(n), algebra.basis_names, rotation=90 if max(map(len, algebra.basis_names)) > 2 else 0)
@@ -212,7 +214,7 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
         ax.tick_params(length=0, labelsize=float(np.clip(200 / n, 5, 9)), labeltop=True, labelbottom=False)
         ax.grid(visible=False)
         ax.spines[:].set_visible(False)
-        ax.set_title(f"{algebra.name or 'Lie algebra'}: [row, column] by colour and sign", loc="left")
+        ax.set_title(f"{algebra.name or 'Lie algebra'}: [row, column]", loc="left")
     return ax
 
 
@@ -290,7 +292,10 @@ def _draw_diagram(
         _draw_arrow(ax, places, i, j, bool(cartan[i][j]))
     size = float(np.clip(20 * unit, 4, 9))
     for i, label in enumerate(range(len(places)) if labels is None else labels):
-        near = [j for j in range(len(places)) if (cartan[i][j] and i != j) or (i, j) in arrows or (j, i) in arrows]
+        # no label towards bonds, arrows, and the other line of a folded diagram
+        facing = (places[:, 0] == places[i, 0]) & (abs(places[:, 1] - places[i, 1]) <= 1)
+        joined = [(i, j) in arrows or (j, i) in arrows or cartan[i][j] != 0 for j in range(len(places))]
+        near = (facing | np.array(joined)) & (np.arange(len(places)) != i)
         x, y = places[i] + _label_shift(places[near] - places[i])
         ax.text(x, y, str(label), ha="center", va="center", fontsize=size)
     if full:
@@ -387,7 +392,8 @@ def _write_terms(ax: Axes, algebra: LieAlgebra, strips: Sequence[Strip], colours
     size = float(np.clip(0.28 * points, 0, 9))
     for x, y, width, k in strips:
         i, j = int(y), round(x)
-        coefficient = algebra.field.show(constants[min(i, j), max(i, j), k]).lstrip("-")
-        text = algebra.basis_names[k] if coefficient == "1" else f"{coefficient}·{algebra.basis_names[k]}"
+        value, name = constants[min(i, j), max(i, j), k], algebra.basis_names[k]
+        one = abs(algebra.field.to_float(value)) == 1.0
+        text = name if one else f"{algebra.field.show(value).lstrip('-')}·{name}"
         if size >= 4 and 0.62 * size * len(text) < width * points:
             ax.text(x, y + 0.27, text, color=_ink(colours[k]), fontsize=size, ha="center", va="center", zorder=4)

@@ -62,7 +62,7 @@ def plot_root_system(kind: str | RootSystem, ax: Axes | None = None) -> Axes:
     simple = simple_root_coordinates(system)
     norms = np.array([system.norm(root) for root in system.roots])
     with style_unless(ax):
-        ax = axes_of_dimension(ax, max(system.rank, 2))
+        ax = axes_of_dimension(ax, system.rank)
         colours = current_colours()
         for k, norm in enumerate(sorted(set(norms.tolist()))):
             roots = _padded(system.root_matrix()[norms == norm] @ simple)
@@ -118,7 +118,7 @@ def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes
     points = _padded(np.array(list(weights), dtype=float) @ np.linalg.inv(cartan) @ simple_root_coordinates(system))
     times = np.array(list(weights.values()))
     with style_unless(ax):
-        ax = axes_of_dimension(ax, max(system.rank, 2))
+        ax = axes_of_dimension(ax, system.rank)
         index = {weight: i for i, weight in enumerate(weights)}
         for root in np.array([a for a in system.positive_roots if system.norm(a) == 2]) @ np.array(system.cartan):
             lower = [
@@ -208,7 +208,8 @@ def _beside(point: Array, gap: float) -> Array:
 def _finish(ax: Axes, points: Array, title: str) -> None:
     """Equal scales around the points, no frame, title and legend."""
     size = 1.15 * max(float(abs(points).max()), 0.5) + 0.1
-    limits = {"xlim": (-size, size), "ylim": (-size, size)}
+    low = size if points[:, 1].any() else 0.2 * size  # less for points on a line
+    limits = {"xlim": (-size, size), "ylim": (-low, low)}
     anywhere: AnyAxes = ax
     if ax.name == "3d":
         anywhere.view_init(elev=VIEW[0], azim=VIEW[1])
