@@ -163,7 +163,10 @@ def _cleared(term: Term) -> list[int]:
             "names affine(X+spiral(sqrt(a),b)) only"
         )
     den = math.lcm(*(x.denominator for x in values))
-    return [int(x * den) for x in values]
+    cleared = [int(x * den) for x in values]
+    if any(abs(x) >= 2**62 for x in cleared):
+        raise CatalogError(f"{term} has too large numbers over a common denominator; make the pair by liehom.affine_of")
+    return cleared
 
 
 def irrational_spiral(tree: Expression) -> tuple[IntegerArray, IntegerArray, Value, Value] | None:

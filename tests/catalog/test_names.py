@@ -165,3 +165,12 @@ def test_what_is_too_large_is_refused_at_once(name: str) -> None:
     """No array is made, so that no memory is needed."""
     with pytest.raises(LimitError, match=r"raise it by `with liehom.limits\("):
         lh.catalog.algebra(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["spiral(1/{p},1/{q},1/{r})", "spiral({p}/{q},{p}/{r})", "su(3)+spiral({p}/{q},{q}/{r})"]
+)
+def test_fractions_whose_common_denominator_is_too_large_are_refused(name: str) -> None:
+    numbers = {"p": 999999999999999989, "q": 999999999999999967, "r": 999999999999999877}
+    with pytest.raises(lh.CatalogError, match="too large numbers"):
+        lh.pair(f"affine({name.format(**numbers)})")
