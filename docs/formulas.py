@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from xml.etree import ElementTree
 
 from docutils.utils.math import MathError
-from docutils.utils.math.latex2mathml import tex2mathml
+from docutils.utils.math.latex2mathml import accents, tex2mathml
 
 Node = ElementTree.Element
 NAMESPACE = ' xmlns="http://www.w3.org/1998/Math/MathML"'
@@ -76,6 +76,11 @@ def faults_of_tree(tree: Node) -> list[str]:
 def repaired(formula: str, *, display: bool = False) -> Node:
     """The translation by docutils as a tree, with its repairs."""
     tree = translated(formula, display=display)
+    for node in [*tree.iter()]:
+        if node.tag == "munderover" and node[2].tag == "mo" and node[2].text in accents.values():
+            index_beside_accent(node)
+        elif node.text == "′":
+            node.set("class", "prime")  # larger than other exponents, see the style sheet
     for row in [*rows(tree)]:  # the groups that come in are not looked at again
         pair_bars(row)
     for row in [*rows(tree)]:
@@ -92,6 +97,15 @@ def translated(formula: str, *, display: bool = False) -> Node:
     # the set difference is missing in common fonts
     markup = markup.replace(NAMESPACE, "").replace("&ApplyFunction;", APPLY).replace("\u29f5", "\\")
     return ElementTree.fromstring(re.sub(r">\s*\n\s*<", "><", markup))
+
+
+def index_beside_accent(node: Node) -> None:
+    """Move an index from below a letter with an accent to its lower right."""
+    letter, index, accent = node
+    accented = ElementTree.Element("mover", accent="true")
+    accented.extend([letter, accent])
+    node.tag = "msub"
+    node[:] = [accented, index]
 
 
 def raised(match: re.Match[str]) -> str:

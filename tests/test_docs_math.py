@@ -53,7 +53,9 @@ FAULTY = {
 
 
 def inner(formula: str) -> str:
-    return re.sub(r"</?math[^>]*>| (stretchy|form|lspace|rspace|mathvariant)=\"\w*\"", "", formulas.translate(formula))
+    return re.sub(
+        r"</?math[^>]*>| (stretchy|form|lspace|rspace|mathvariant|class)=\"\w*\"", "", formulas.translate(formula)
+    )
 
 
 @pytest.mark.parametrize("formula", SOUND)
@@ -74,6 +76,12 @@ def test_prime_is_a_superscript_together_with_the_exponent_that_follows() -> Non
     assert inner("x'") == "<msup><mi>x</mi><mi>′</mi></msup>"
     assert inner("x''^*").count("′") == 2 and inner("x'^*").startswith("<msup><mi>x</mi><mrow><mi>′</mi>")
     assert inner(r"\text{it's}") == "<mtext>it's</mtext>"
+
+
+def test_index_of_a_letter_with_an_accent_is_at_its_lower_right() -> None:
+    found = re.sub(r" \w+=\"\w*\"", "", inner(r"\tilde K_{n}"))
+    assert found == "<msub><mover><mi>K</mi><mo>~</mo></mover><mi>n</mi></msub>"
+    assert "munderover" in inner(r"\sum_{i}^n x") or "msubsup" in inner(r"\sum_{i}^n x")
 
 
 def test_named_operator_is_set_apart_but_not_from_its_parenthesis() -> None:
