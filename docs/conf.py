@@ -96,9 +96,22 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
             )
 
 
+def table_of_modules(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Lines "`module`   what it holds" of the package's docstring become a table with links."""
+    entry = re.compile(r"`(\w+)` {2,}(\S.*)")
+    matches = [entry.fullmatch(line) for line in lines]
+    if what == "module" and any(matches):
+        first = next(i for i, match in enumerate(matches) if match)
+        table = [".. list-table::", "   :widths: auto", ""]
+        for match in filter(None, matches):
+            table += [f"   * - :py:mod:`{match[1]} <{name}.{match[1]}>`", f"     - {match[2]}"]
+        lines[first:] = [*table, "", *(line for i, line in enumerate(lines) if i > first and not matches[i])]
+
+
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
+    app.connect("autodoc-process-docstring", table_of_modules, priority=950)
     app.connect("doctree-read", refuse_apostrophes)
     import pictures  # found by the path that is set above
 
