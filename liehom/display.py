@@ -48,7 +48,7 @@ class Displayed(Typeset):
 
 
 class DisplayedTable(Displayed):
-    """Tables; `_cells` and `_notes` of a derived class are what is shown.
+    """Tables; `_caption`, `_cells` and `_notes` of a derived class are what is shown.
 
     Examples
     --------
@@ -63,6 +63,10 @@ class DisplayedTable(Displayed):
     """
 
     __slots__ = ()
+
+    def _caption(self) -> str:
+        """Line above the table."""
+        return ""
 
     def _cells(self) -> list[list[str]]:
         """Strings of the cells, the head of the table first."""

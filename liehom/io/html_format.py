@@ -208,7 +208,8 @@ def _table_of(table: DisplayedTable) -> str:
     notes = list(table._notes())
     if len(body) > SHOWN_TABLE_ROWS:
         notes.insert(0, f"... and {len(body) - SHOWN_TABLE_ROWS} further rows")
-    return f"<table>{''.join(rows)}</table>" + "".join(f"<p>{_text(note)}</p>" for note in notes[:SHOWN_LINES])
+    caption = f"<p><b>{_text(table._caption())}</b></p>" if table._caption() else ""
+    return f"{caption}<table>{''.join(rows)}</table>" + "".join(f"<p>{_text(note)}</p>" for note in notes[:SHOWN_LINES])
 
 
 def _row(tag: str, cells: Iterable[str]) -> str:

@@ -74,6 +74,9 @@ class Table(DisplayedTable):
         lines.insert(1, "|" + "---|" * len(self.columns))
         return "\n".join(lines)
 
+    def _caption(self) -> str:
+        return self.title
+
     def _cells(self) -> list[list[str]]:
         return [list(self.columns), *map(_shown_row, self.rows)]
 

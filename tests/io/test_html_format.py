@@ -223,6 +223,14 @@ def test_tables_show_their_cells(name: str) -> None:
     for cell in (cell for row in table._cells() for cell in row):
         assert cell in page.text
     assert page.seen.count("tr") == len(table._cells())
+    assert page.text.startswith(table._caption())
+
+
+def test_a_convergence_table_names_its_method() -> None:
+    table = sample("ConvergenceTable")
+    assert isinstance(table, DisplayedTable)
+    assert table._caption().startswith("Euler")
+    assert str(table).startswith(table._caption())
 
 
 def test_long_tables_say_how_many_rows_are_left_out() -> None:

@@ -104,16 +104,10 @@ class ConvergenceTable(DisplayedTable):
         return tuple(ConvergenceRow(*row) for row in zip(*columns, self.floors, strict=True))
 
     def __str__(self) -> str:
-        count = f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
-        precision = "" if self.precision == "float64" else f", {self.precision}"
-        head = (
-            f"{self.step} with {self.exponential}, clock {self.clock}, "
-            f"t = {self.t_span[0]:.6g} to {self.t_span[1]:.6g}{count}{precision}"
-        )
         cells = self._cells()
         widths = [max(len(row[i]) for row in cells) for i in range(len(cells[0]))]
         lines = ["  ".join(f"{x:>{w}}" for x, w in zip(row, widths, strict=True)).rstrip() for row in cells]
-        return "\n".join([head, *lines, *self._notes()])
+        return "\n".join([self._caption(), *lines, *self._notes()])
 
     def __repr__(self) -> str:
         return str(self)
@@ -147,6 +141,14 @@ class ConvergenceTable(DisplayedTable):
         """
         rows = [",".join("" if math.isnan(x) else repr(float(x)) for x in row) for row in self.rows]
         return "\n".join([",".join(ConvergenceRow._fields), *rows]) + "\n"
+
+    def _caption(self) -> str:
+        count = f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""
+        precision = "" if self.precision == "float64" else f", {self.precision}"
+        return (
+            f"{self.step} with {self.exponential}, clock {self.clock}, "
+            f"t = {self.t_span[0]:.6g} to {self.t_span[1]:.6g}{count}{precision}"
+        )
 
     def _cells(self) -> list[list[str]]:
         body = []
