@@ -10,8 +10,8 @@ from liehom.catalog.algebras import algebra as algebra
 from liehom.catalog.algebras import representation as representation
 from liehom.catalog.claims import CLAIMS as CLAIMS
 from liehom.catalog.claims import Claim as Claim
-from liehom.catalog.full_pairs import SpiralFamily as SpiralFamily
-from liehom.catalog.full_pairs import full_pairs as full_pairs
+from liehom.catalog.classified_pairs import SpiralFamily as SpiralFamily
+from liehom.catalog.classified_pairs import full_pairs as full_pairs
 from liehom.catalog.names import parse as parse
 from liehom.catalog.pairs import pair as pair
 from liehom.catalog.pairs import pair_names as pair_names

@@ -8,6 +8,7 @@ import dataclasses
 import functools
 import json
 import pickle
+import re
 import shutil
 import subprocess
 import sys
@@ -42,6 +43,13 @@ CLASSES = read("classes.json")
 same_machine = not compare.environment({"header": read("header.json")}, {"header": record.header()})
 
 
+def as_0_1_0_says_it(answer: Any) -> str:
+    """The repr of an answer, without the row of the classification, which sentences of full verdicts now name."""
+    text = in_words_of_0_1_0(repr(answer)).replace("affine space R^1 under 0, where any eta", "any eta")
+    text = text.replace("any eta outside h spans g/h", "g/h has dimension 1, so any eta outside h spans it")
+    return re.sub(r"[A-Z^0-9]+ = [A-Za-z0-9()+]+/[A-Za-z0-9()+]+, where (?=h acts)", "", text)
+
+
 # -- pickles -----------------------------------------------------------------------------------------------
 def test_every_object_has_its_pickle() -> None:
     assert PICKLES.keys() == OBJECTS.keys()
@@ -57,7 +65,7 @@ def test_a_pickled_object_answers_as_a_new_one(name: str) -> None:
         return
     answer = ask(found)
     if same_machine or not name.startswith(FLOATS):
-        assert in_words_of_0_1_0(repr(answer)) == in_words_of_0_1_0(repr(ask(make())))
+        assert as_0_1_0_says_it(answer) == as_0_1_0_says_it(ask(make()))
     assert repr(ask(pickle.loads(pickle.dumps(found)))) == repr(answer)
 
 
@@ -272,7 +280,7 @@ def test_a_store_of_an_atlas_is_read(tmp_path: Path) -> None:
     decided: list[Any] = []
     atlas = lh.atlas.sweep(ATLAS, store=store, progress=decided.append)
     assert not decided
-    assert in_words_of_0_1_0(atlas.to_json()) == in_words_of_0_1_0(lh.atlas.sweep(ATLAS).to_json())
+    assert as_0_1_0_says_it(atlas.to_json()) == as_0_1_0_says_it(lh.atlas.sweep(ATLAS).to_json())
     assert all(entry.verify() for entry in atlas)
 
 

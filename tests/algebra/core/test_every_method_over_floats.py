@@ -103,6 +103,7 @@ REFUSED: dict[str, Question] = {
     "is_simple": lambda g: g.is_simple(),
     "levi_decomposition": lambda g: g.levi_decomposition(),
     "nilradical": lambda g: g.nilradical(),
+    "parabolic_subalgebra": lambda g: g.parabolic_subalgebra([0]),
     "rank": lambda g: g.rank(),
     "real_form": lambda g: g.real_form(),
     "real_forms": lambda g: g.real_forms(),

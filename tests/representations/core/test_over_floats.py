@@ -123,7 +123,13 @@ def agree(found: Any, expected: Any) -> None:
 
 def test_every_public_method_is_in_a_table() -> None:
     assert public(lh.Representation) <= ANSWERS.keys() | REFUSED.keys()
-    assert public(lh.Pair) <= OF_PAIRS.keys()
+    assert public(lh.Pair) <= OF_PAIRS.keys() | {"is_primitive"}
+
+
+def test_whether_a_pair_over_floats_is_primitive_is_left_to_exact_numbers() -> None:
+    assert isinstance(PAIR.is_primitive(), bool)
+    with pytest.raises(UndecidedError, match="rationalize"):
+        lh.Pair(PAIR.algebra.over(lh.RR), PAIR.subalgebra.basis.to_numpy().tolist()).is_primitive()
 
 
 @pytest.mark.parametrize("name", ANSWERS)
