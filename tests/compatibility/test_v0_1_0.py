@@ -44,10 +44,11 @@ same_machine = not compare.environment({"header": read("header.json")}, {"header
 
 
 def as_0_1_0_says_it(answer: Any) -> str:
-    """The repr of an answer, without the row of the classification, which sentences of full verdicts now name."""
+    """The repr of an answer, without the space and the algebra in sentences of full verdicts."""
     text = in_words_of_0_1_0(repr(answer)).replace("affine space R^1 under 0, where any eta", "any eta")
     text = text.replace("any eta outside h spans g/h", "g/h has dimension 1, so any eta outside h spans it")
-    return re.sub(r"[A-Z^0-9]+ = [A-Za-z0-9()+]+/[A-Za-z0-9()+]+, where (?=h acts)", "", text)
+    sentence = r"([A-Z^0-9]+ = [^'\"]+, where )?h acts on g/h = R\^\d as [^'\"]+?, (?=compact|transitive)"
+    return re.sub(sentence, "", text)
 
 
 # -- pickles -----------------------------------------------------------------------------------------------
