@@ -19,11 +19,7 @@ import importlib
 import pkgutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
-
-from docutils import nodes
-from docutils.parsers.rst import directives
-from sphinx.util.docutils import SphinxDirective
+from typing import Any
 
 from liehom.plotting.canvas import COLOURS, DARK_COLOURS, UNDATED, style
 
@@ -63,24 +59,3 @@ def write(name: str, file: Path, colours: Sequence[str], *, dark: bool) -> None:
         figure = DRAWN[name](colours)
         figure.patch.set_alpha(0.0)
         figure.savefig(file, metadata=UNDATED[".svg"])
-
-
-class Picture(SphinxDirective):
-    """The directive ``picture``: both versions of a picture, of which the page shows one."""
-
-    required_arguments = 1
-    option_spec: ClassVar = {"alt": directives.unchanged_required, "width": directives.unchanged}
-
-    def run(self) -> list[nodes.Node]:
-        name = self.arguments[0]
-        if name not in DRAWN or not self.options.get("alt"):
-            raise self.error(f"{name!r} is not a function of docs/pictures, or has no alt text")
-        return [
-            nodes.image(
-                uri=f"/_pictures/{name}_{kind}.svg",
-                alt=self.options["alt"],
-                classes=[f"only-{kind}"],
-                **({"width": self.options["width"]} if "width" in self.options else {}),
-            )
-            for kind in ("light", "dark")
-        ]
