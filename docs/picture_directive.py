@@ -1,4 +1,4 @@
-"""The directive ``picture`` of the pages, beside docs/pictures so that pictures can be drawn without Sphinx."""
+"""The directive ``picture`` of the pages, apart from docs/pictures, so that pictures can be drawn without Sphinx."""
 
 from __future__ import annotations
 
