@@ -339,12 +339,12 @@ def _catalog(name: str | None, as_json: bool) -> int:
 
 
 @app.command()
-def demo(json: JsonOption = False) -> None:
-    """Show a tour: fullness with verified certificates, isotropy, integration, a plot."""
+def demo(plot: numerical_commands.PlotOption = None, json: JsonOption = False) -> None:
+    """Show a tour: fullness with verified certificates, isotropy, integration."""
 
     def action() -> int:
         from liehom.cli.demo import run_demo
 
-        return run_demo(json)
+        return run_demo(plot, json)
 
     run(action)

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import liehom.io
 from liehom.cli.guard import YES
 from liehom.cli.inputs import examples_folder
-from liehom.cli.problem_options import can_plot
+from liehom.cli.problem_options import check_plot_file
 from liehom.cli.run_order import measured, table_json
 from liehom.cli.show import show_json, show_table
-from liehom.errors import FormatError
 from liehom.fullness.decide import decide_fullness
 from liehom.fullness.verdict import NotFull
 from liehom.homogeneous.range.range_condition import range_condition
@@ -41,11 +40,11 @@ RUNS: tuple[tuple[str, int, str], ...] = (
     ("sym3_generic", 4, "the same, eigenvalues 1, 2, 3"),
 )
 SPAN, SIZES = (0.0, 2.0), (0.1, 0.05, 0.025, 0.0125)
-PLOT_FILE = "liehom-demo.png"
 
 
-def run_demo(as_json: bool) -> int:
-    """Decide, verify and integrate the example files, print the results and plot the errors; returns the exit code."""
+def run_demo(plot: str | None, as_json: bool) -> int:
+    """Decide, verify and integrate the example files, print the results, draw the errors; returns the exit code."""
+    check_plot_file(plot)
     folder = examples_folder()
     start = time.perf_counter()
     if as_json:
@@ -53,14 +52,15 @@ def run_demo(as_json: bool) -> int:
         tables = _convergence(folder)
         integration = [{"file": f"{name}.json", **table_json(table)} for name, table in tables]
         found = {"examples": str(folder), "verdicts": verdicts, "integration": integration}
-        show_json({**found, "picture": _plot([table for _, table in tables])[0]})
+        _plot([table for _, table in tables], plot)
+        show_json({**found, "picture": plot})
         return YES
     print(f"Files from {folder}\n")
     _tour_of_verdicts(folder)
     _tour_of_a_certificate(folder)
     _tour_of_isotropy(folder)
     _tour_of_the_range_condition(folder)
-    _tour_of_integration(folder)
+    _tour_of_integration(folder, plot)
     print(f"\nDone in {time.perf_counter() - start:.1f} s. Next: liehom fullness FILE, liehom catalog, liehom --help")
     return YES
 
@@ -137,7 +137,7 @@ def _convergence(folder: Path) -> list[tuple[str, ConvergenceTable]]:
     return tables
 
 
-def _tour_of_integration(folder: Path) -> None:
+def _tour_of_integration(folder: Path, plot: str | None) -> None:
     from liehom.integrators.propagator import without_order_warning
 
     print(
@@ -153,21 +153,17 @@ def _tour_of_integration(folder: Path) -> None:
     with without_order_warning():
         report = problem.integrate(t_span=SPAN).report
     _print_indented("\n".join(str(report).splitlines()[1:3]))
-    print(_plot([table for _, table in tables])[1])
+    _plot([table for _, table in tables], plot)
+    print(f"Plot of these errors: {plot}" if plot else "liehom demo --plot errors.png  draws these errors")
 
 
 def _print_indented(text: str) -> None:
     print("".join(f"  {line}\n" for line in text.splitlines()))
 
 
-def _plot(tables: list[ConvergenceTable]) -> tuple[str | None, str]:
-    """Plot the errors; returns the path, or None if no plot is written, and a sentence for the user."""
-    if not can_plot():
-        return None, "No plot of this: matplotlib is missing (pip install 'liehom[plot]')"
-    from liehom.plotting import plot_convergence
+def _plot(tables: list[ConvergenceTable], path: str | None) -> None:
+    """Draw the errors, if there is a path."""
+    if path is not None:
+        from liehom.plotting import plot_convergence
 
-    try:
-        plot_convergence(tables, PLOT_FILE, labels=[label for _, _, label in RUNS])
-    except FormatError as error:
-        return None, f"No plot of this: {error}"
-    return PLOT_FILE, f"Plot of these errors: {PLOT_FILE}"
+        plot_convergence(tables, path, labels=[label for _, _, label in RUNS])

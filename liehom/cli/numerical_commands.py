@@ -45,7 +45,7 @@ def integrate(
     file: FileArgument,
     out: Annotated[
         str | None,
-        typer.Option(metavar="OUT.npz", help="File for t, y and the report (default: the name of FILE with .npz)."),
+        typer.Option(metavar="OUT.npz", help="File for t, y and the report (default: none)."),
     ] = None,
     plot: PlotOption = None,
     t_span: SpanOption = None,

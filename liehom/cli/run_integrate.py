@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.cli.guard import NO, YES
@@ -43,28 +42,27 @@ class Output:
     max_steps: int | None = None
     engine: str = "numpy"
 
-    def checked(self, file: str) -> Output:
-        """The options with the name of the .npz file; raises an error if a file could not be written later."""
-        out = f"{Path(file).stem}.npz" if self.out is None else self.out
-        check_target(out, force=self.force)
+    def check(self, file: str) -> None:
+        """Raise an error if a file could not be written later."""
+        if self.out is not None:
+            check_target(self.out, force=self.force)
         check_plot_file(self.plot)
         if self.checkpoint is not None:
             check_target(self.checkpoint, force=True)
-        targets = [os.path.abspath(path) for path in (out, self.plot, self.checkpoint) if path is not None]
+        targets = [os.path.abspath(path) for path in (self.out, self.plot, self.checkpoint) if path is not None]
         if len(set(targets)) < len(targets) or os.path.abspath(file) in targets:
             raise FormatError("the problem, --out, --plot and --checkpoint must be different files")
         if self.max_steps is not None and self.max_steps < 1:
             raise InputError(f"--max-steps is {self.max_steps}, expected a number from 1")
-        return replace(self, out=out)
 
 
-def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
+def run_integrate(file: str, given: ProblemOptions, output: Output) -> int:
     """Integrate, write the files, print the table and the report; returns the exit code."""
     import numpy as np
 
     from liehom.integrators.propagator import without_order_warning
 
-    output = wanted.checked(file)
+    output.check(file)
     problem = problem_of(file, given)
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
     options["engine"] = output.engine
@@ -76,7 +74,8 @@ def run_integrate(file: str, given: ProblemOptions, wanted: Output) -> int:
             solution = problem.integrate(checkpoint=output.checkpoint, **options)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(_how_to_continue(output.checkpoint)) from None
-    save_solution(solution, str(output.out), force=output.force)
+    if output.out is not None:
+        save_solution(solution, output.out, force=output.force)
     if output.plot is not None:
         _draw(solution, output.plot)
     drift = invariant_drift(problem.representation, solution.y)
@@ -166,7 +165,7 @@ def _print_table(solution: Solution, drift: Array | None, output: Output) -> Non
     steps = f"{solution.n_steps} step" + ("" if solution.n_steps == 1 else "s")
     print(f"\n{steps}. {solution.message}")
     print(solution.report)
-    print(f"t, y and report: {output.out}")
+    print(f"t, y and report: {output.out or 'not written, --out OUT.npz writes them'}")
     if output.plot is not None:
         print(f"plot: {output.plot}")
 
@@ -181,7 +180,7 @@ def _zero_unsigned(x: float) -> float:
 
 
 def _print_json(file: str, solution: Solution, drift: Array | None, output: Output) -> None:
-    """Print the rows of the table and the summary as JSON; the .npz file has the whole arrays."""
+    """Print the rows of the table and the summary as JSON; the .npz file of --out has the whole arrays."""
     rows = _shown_rows(solution.y.shape[-1])
     show_json(
         {

@@ -325,29 +325,22 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_demo_runs_on_the_example_files_and_ends_with_a_plot(elsewhere: Path) -> None:
-    result = liehom("demo")
+    result = liehom("demo", "--plot", "errors.png")
     assert result.exit_code == 0, result.output
     for expected in ("g2_su3", "not full", "witness, verified", "QQ(sqrt(2))", "equilibrium", "diag(1, 1, 2)"):
         assert expected in result.stdout
     assert "Corrected(Euler(), order=4)" in result.stdout
     assert "order 4 NOT reached: the order stays 1" in result.stdout
-    assert "Plot of these errors: liehom-demo.png" in result.stdout
-    assert (elsewhere / "liehom-demo.png").read_bytes().startswith(b"\x89PNG")
+    assert "Plot of these errors: errors.png" in result.stdout
+    assert (elsewhere / "errors.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_demo_without_matplotlib_says_how_to_get_it(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("liehom.cli.demo.can_plot", lambda: False)
-    result = liehom("demo")
-    assert result.exit_code == 0, result.output
-    assert "pip install 'liehom[plot]'" in result.stdout
-    assert list(elsewhere.iterdir()) == []
-
-
-def test_demo_in_a_folder_where_no_plot_can_be_written(elsewhere: Path) -> None:
-    (elsewhere / "liehom-demo.png").mkdir()
-    result = liehom("demo")
-    assert result.exit_code == 0, result.output
-    assert "No plot of this" in result.stdout
+def test_demo_says_before_any_work_that_no_plot_can_be_drawn(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert liehom("demo", "--plot", "no/such/folder/errors.png").exit_code == 2
+    monkeypatch.setattr("liehom.cli.problem_options.can_plot", lambda: False)
+    result = liehom("demo", "--plot", "errors.png")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "pip install 'liehom[plot]'" in result.stderr
 
 
 def test_demo_json(elsewhere: Path) -> None:
@@ -357,7 +350,8 @@ def test_demo_json(elsewhere: Path) -> None:
     assert [file for file, *_ in orders] == ["rigid_body.json", "rigid_body.json", "sym3_generic.json"]
     assert [round(orbit) for _, orbit, _ in orders] == [1, 4, 1]
     assert all(abs(orbit - trajectory) < 0.1 for _, orbit, trajectory in orders)
-    assert data["picture"] == "liehom-demo.png"
+    assert data["picture"] is None
+    assert list(elsewhere.iterdir()) == []  # nothing without --plot
 
 
 # -- time from the shell, interpreter included -----------------------------------------------------------

@@ -67,8 +67,10 @@ def test_integrate_prints_a_table_and_the_report() -> None:
     assert lines[0].split() == ["t", "m0", "m1", "m2", "drift", "of", "invariants"]
     assert lines[11].split()[0] == "10"
     assert "orbits captured to order 4 at every step (base order 1)" in result.stdout
-    assert lines[-1] == "t, y and report: rigid_body.npz"
-    assert written() == ["rigid_body.npz"]
+    assert lines[-1] == "t, y and report: not written, --out OUT.npz writes them"
+    assert written() == []
+    assert liehom("integrate", RIGID, "--out", "run.npz").stdout.splitlines()[-1] == "t, y and report: run.npz"
+    assert written() == ["run.npz"]
 
 
 def test_the_file_has_what_the_library_computes() -> None:
@@ -81,13 +83,14 @@ def test_the_file_has_what_the_library_computes() -> None:
 
 
 def test_integrate_json_is_one_object() -> None:
-    data = json_of(liehom("integrate", RIGID, "--json"))
+    data = json_of(liehom("integrate", RIGID, "--json", "--out", "run.npz"))
     assert data["success"] is True
-    assert data["out"] == "rigid_body.npz"
+    assert data["out"] == "run.npz"
+    assert json_of(liehom("integrate", RIGID, "--json")) == data | {"out": None}
     assert data["report"]["order"] == 6
     assert (len(data["t"]), len(data["y"]), len(data["y"][0])) == (11, 11, 3)
     assert max(data["drift"]) < 1e-13
-    assert written() == ["rigid_body.npz"]
+    assert written() == ["run.npz"]
 
 
 def test_a_correction_that_fails_is_said() -> None:
@@ -143,7 +146,7 @@ def test_a_run_that_stops_early_is_exit_1_and_keeps_what_it_has() -> None:
     result = liehom("integrate", file, "--max-steps", "50")
     assert result.exit_code == 1
     assert "\n50 steps. The end was not reached" in result.stdout
-    data = json_of(liehom("integrate", file, "--max-steps", "50", "--json", "--force"))
+    data = json_of(liehom("integrate", file, "--max-steps", "50", "--json", "--out", "variant.npz"))
     assert (data["success"], data["n_steps"]) == (False, 50)
     with np.load("variant.npz") as kept:
         assert kept["y"].shape == (3, 51)
@@ -213,7 +216,7 @@ def test_plots_are_drawn(suffix: str, begins: bytes) -> None:
     result = liehom("order", RIGID, "--plot", picture, "--t-span", "0", "1", "--dt", "0.1,0.05")
     assert result.exit_code == 0, result.output
     assert Path(picture).read_bytes().startswith(begins)
-    assert written() == [picture, "rigid_body.npz"]
+    assert written() == [picture]
 
 
 @pytest.mark.parametrize("file", [RIGID, SYM3, SPIN])
@@ -240,9 +243,9 @@ def test_plots_of_unusual_runs(words: tuple[str, ...]) -> None:
 # -- files -----------------------------------------------------------------------------------------------
 def test_a_file_that_is_there_is_not_overwritten() -> None:
     Path("rigid_body.npz").write_text("mine")
-    refused(liehom("integrate", RIGID), "rigid_body.npz", "there already")
+    refused(liehom("integrate", RIGID, "--out", "rigid_body.npz"), "rigid_body.npz", "there already")
     assert Path("rigid_body.npz").read_text() == "mine"
-    assert liehom("integrate", RIGID, "--force").exit_code == 0
+    assert liehom("integrate", RIGID, "--out", "rigid_body.npz", "--force").exit_code == 0
     assert Path("rigid_body.npz").read_bytes()[:2] == b"PK"
 
 
@@ -256,7 +259,7 @@ def test_a_file_that_is_there_is_not_overwritten() -> None:
         ("--plot", "picture"),
         ("--checkpoint", "no/such/folder/state.npz"),
         ("--out", "same.png", "--plot", "./same.png"),
-        ("--checkpoint", "rigid_body.npz"),
+        ("--out", "same.npz", "--checkpoint", "./same.npz"),
         ("--out", "variant.json", "--force"),
         ("--max-steps", "0"),
     ],
@@ -269,7 +272,6 @@ def test_places_where_nothing_can_be_written_are_refused_before_the_work(
 
     monkeypatch.setattr(Run, "execute", works)
     file = variant()
-    words = tuple(word if word != "rigid_body.npz" else "variant.npz" for word in words)
     before = Path(file).read_bytes()
     refused(liehom("integrate", file, *words))
     assert Path(file).read_bytes() == before
@@ -299,15 +301,15 @@ def interrupted_after(steps: int, monkeypatch: pytest.MonkeyPatch, *words: str) 
 
 
 def test_an_interrupted_run_continues_from_its_checkpoint(monkeypatch: pytest.MonkeyPatch) -> None:
-    words = ("integrate", RIGID, "--base", "euler", "--order", "3", "--checkpoint", "state.npz")
+    words = ("integrate", RIGID, "--base", "euler", "--order", "3", "--out", "one.npz", "--checkpoint", "state.npz")
     result = interrupted_after(40, monkeypatch, *words)
     assert (result.exit_code, result.stdout) == (130, "")
     assert result.stderr == "liehom: interrupted; the state is in state.npz: the same command continues from it\n"
     assert written() == ["state.npz"]
     assert liehom(*words).exit_code == 0
-    assert written() == ["rigid_body.npz"]
-    assert liehom(*words[:-2], "--out", "whole.npz").exit_code == 0
-    with np.load("rigid_body.npz") as one, np.load("whole.npz") as other:
+    assert written() == ["one.npz"]
+    assert liehom(*words[:-4], "--out", "whole.npz").exit_code == 0
+    with np.load("one.npz") as one, np.load("whole.npz") as other:
         assert np.array_equal(one["t"], other["t"])
         assert np.array_equal(one["y"], other["y"])
 
