@@ -105,6 +105,7 @@ CLASSES: dict[str, str] = {
 
 ATTRIBUTES: dict[str, dict[str, str]] = {
     "liehom.algebra.root_system:RootSystem": {"_places": "_index"},
+    "liehom.fullness.verdict:Full": {"reason": "_reason"},
 }
 """Attributes with another name, 'old module:old name' -> {old: new}."""
 

@@ -19,7 +19,6 @@ from liehom.fullness.certificates import certificate_writer
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.certificates.witnesses import eta_of_witness, numerical_eta, numerical_eta_of_commutant
 from liehom.fullness.numerical import decide_numerically
-from liehom.fullness.reasons import full_reason
 from liehom.fullness.search.dominance import Dominant, find_dominant
 from liehom.fullness.search.eigenvector_witness import eigenvector_witness
 from liehom.fullness.search.enumeration import enumerate_dominant
@@ -96,7 +95,7 @@ def _verdict(pair: Pair, seed: int, progress: Progress | None) -> Verdict:
         return decide_numerically(pair, seed=seed)
     action = TracelessIsotropyAction(pair)
     if pair.dimension <= 1:
-        return Full(pair, certificate_writer.trivial(pair.field), full_reason(action, compact=True))
+        return Full(pair, certificate_writer.trivial(pair.field))
     return _decide(action, seed, progress)
 
 
@@ -137,7 +136,7 @@ def _decide(action: TracelessIsotropyAction, seed: int, progress: Progress | Non
     certificate = full_by_positive_form(action, imaginary)
     LOG.debug("definite form: %s", "not found" if certificate is None else "found, so the pair is full")
     if certificate is not None:
-        return Full(action.pair, certificate, full_reason(action, compact=False))
+        return Full(action.pair, certificate)
     return _by_dominance(action, seed, progress)
 
 
@@ -163,7 +162,7 @@ def _sample(action: TracelessIsotropyAction, rng: random.Random) -> tuple[ExactM
 def _by_forms(action: TracelessIsotropyAction, symmetric: Sequence[ExactMatrix], x: ExactMatrix) -> Verdict:
     certificate = decide_by_forms(action, symmetric, x)
     if certificate.full:
-        return Full(action.pair, certificate, full_reason(action, compact=True))
+        return Full(action.pair, certificate)
     kind = f"{len(symmetric)} independent symmetric forms"
     if len(symmetric) == 1:
         kind = "a symmetric form with {} positive, {} negative and {} zero squares".format(*symmetric[0].signature())

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, cast, final
 
 from liehom.display import Displayed
 from liehom.errors import CertificateError, UndecidedError
 from liehom.fullness.certificates.certificate import Certificate
 from liehom.fullness.checker.verify import verify_certificate
 from liehom.fullness.failure import FailureReport, failure_report
+from liehom.fullness.reasons import full_reason
 from liehom.representations import Pair
 from liehom.scalars import Field, Scalar
 
@@ -24,8 +25,6 @@ class Full(Displayed):
     pair : Pair
     certificate : Certificate
         Of kind 'trivial' or 'full'.
-    reason : str
-        One sentence, with the row of the classification; the certificate does not depend on it.
 
     Examples
     --------
@@ -37,12 +36,19 @@ class Full(Displayed):
 
     pair: Pair
     certificate: Certificate
-    reason: str
+    _reason: str | None = field(default=None, compare=False)
 
     @property
     def full(self) -> Literal[True]:
         """Whether the pair is full: True."""
         return True
+
+    @property
+    def reason(self) -> str:
+        """One sentence, with the row of the classification: computed when it is first read, cached, not certified."""
+        if self._reason is None:
+            object.__setattr__(self, "_reason", full_reason(self.pair, self.certificate))
+        return cast("str", self._reason)
 
     def verify(self) -> bool:
         """True if the independent checker verifies the certificate; otherwise raises `CertificateError`."""

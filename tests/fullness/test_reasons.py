@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import pytest
 
 import liehom as lh
@@ -43,3 +45,12 @@ def test_a_key_in_no_row_does_not_lose_the_verdict(monkeypatch: pytest.MonkeyPat
     verdict = lh.decide_fullness(pair)
     assert verdict.full
     assert "in no row of the classification, please report it" in verdict.reason
+
+
+def test_the_sentence_is_computed_when_it_is_first_read() -> None:
+    verdict = lh.decide_fullness(lh.pair("so(4)/so(3)"))
+    assert verdict._reason is None
+    unread = pickle.loads(pickle.dumps(verdict))
+    assert verdict.reason is verdict.reason
+    assert unread == verdict and hash(unread) == hash(verdict)
+    assert unread.reason == verdict.reason
