@@ -2,7 +2,7 @@
 
 `rows` is the table, `effective` finds the largest ideal of g inside h, `key` computes the key, `classification` holds
 the result, and `verify` checks a key with linear algebra of its own. Names of rows are strings here, which
-`catalog` above reads. `reasons` uses `rows` and `key` for the sentence of a verdict; everyone else uses `liehom.classify`.
+`catalog` above reads. `reasons` uses `rows` and `key` for the sentence of a verdict; all others use `liehom.classify`.
 The theorem and its proof are in docs/theory/classification.md.
 """
 
