@@ -1,9 +1,10 @@
-"""Plots of orders, trajectories, strata, failure cones, roots and diagrams, by matplotlib (the extra `liehom[plot]`).
+"""Plots of orders, errors, trajectories, strata, failure cones, roots and diagrams, by matplotlib (`liehom[plot]`).
 
 `canvas` makes figures, colours and files, and is the one module that loads matplotlib. `convergence_plot` draws errors
-over step sizes and `trajectory_plot` solutions. `strata_plot` draws failure cones, eigenvalues and Weyl chambers,
-`root_plot` roots and weights, and `diagram_plot` Dynkin, Satake and Vogan diagrams and bracket tables. A figure belongs
-to the caller: no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists the functions.
+over step sizes, `drift_plot` errors of first integrals over time, and `trajectory_plot` solutions. `strata_plot` draws
+failure cones, eigenvalues and Weyl chambers, `root_plot` roots and weights, and `diagram_plot` Dynkin, Satake and Vogan
+diagrams and bracket tables. A figure belongs to the caller: no window is opened, and no setting of matplotlib is
+changed. docs/api/plotting.md lists the functions.
 """
 
 from liehom.plotting.convergence_plot import plot_convergence as plot_convergence
@@ -11,6 +12,7 @@ from liehom.plotting.diagram_plot import plot_bracket_table as plot_bracket_tabl
 from liehom.plotting.diagram_plot import plot_dynkin as plot_dynkin
 from liehom.plotting.diagram_plot import plot_satake as plot_satake
 from liehom.plotting.diagram_plot import plot_vogan as plot_vogan
+from liehom.plotting.drift_plot import plot_energy_drift as plot_energy_drift
 from liehom.plotting.root_plot import plot_root_system as plot_root_system
 from liehom.plotting.root_plot import plot_weights as plot_weights
 from liehom.plotting.strata_plot import plot_eigenvalues as plot_eigenvalues

@@ -1,0 +1,178 @@
+r"""Plots of the error of a first integral over time, for several solutions.
+
+    error at t = max over the components of |F(y(t)) - F(y(t_0))| / |F(y(t_0))|
+
+The largest error so far shows whether an error stays bounded or grows. In logarithmic axes a drift proportional to time
+is a line of slope 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralSource
+from liehom.errors import InputError, ShapeError
+from liehom.integrators import Solution
+from liehom.plotting.canvas import DASHES, MARKERS, current_colours, new_figure, style_unless
+from liehom.plotting.trajectory_plot import MAX_TRAJECTORIES
+from liehom.typing import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+HAIRLINE = 1e-17
+"""The error at which exact values are drawn, since a logarithmic axis has no 0."""
+DECADES = 2.0
+"""Powers of ten between the first and the last time from which on the axis of time is logarithmic."""
+MARKED = 6
+"""Markers on a curve."""
+
+
+class _Values(NamedTuple):
+    """Times since the beginning (n,), changes of F (n, k), and the value of F (k,) from which they are counted."""
+
+    times: Array
+    changes: Array
+    initial: Array
+
+
+def plot_energy_drift(
+    solutions: Solution | Mapping[str, Solution] | Sequence[Solution],
+    F: IntegralSource,
+    ax: Axes | None = None,
+    *,
+    labels: Sequence[str] | None = None,
+    largest_so_far: bool = True,
+    value: npt.ArrayLike | None = None,
+) -> Axes:
+    """Draw the error of an energy or another first integral over time, one curve for each solution.
+
+    Parameters
+    ----------
+    solutions : Solution, mapping of labels to solutions, or sequence of solutions
+        Solutions of `integrate`, of which the stored points are used. Of an ensemble, the first 50 trajectories are
+        drawn in one color.
+    F : callable, str, sympy expression, or list of these
+        The first integral as for `liehom.Conserving`: a function of points of shape (..., N), or a string such as
+        ``"m0**2 + m1**2/2"``. Of several integrals the largest error counts.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw in; by default new ones.
+    labels : sequence of str, optional
+        One label for each solution (default: the keys of the mapping, or the steps).
+    largest_so_far : bool, optional
+        Draw the largest error up to each time (default). False draws the errors themselves, which oscillate.
+    value : float or array of shape (k,), optional
+        The exact value of F, in place of its value at the first stored point of each trajectory. It is needed if
+        `t_eval` did not contain the initial time.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axis of errors is logarithmic. The axis of time is logarithmic too if `largest_so_far` is True and the
+        stored times span at least two powers of ten. Errors are relative to the initial value of F, or absolute if
+        that is 0; the label of the axis says which. A curve without error is drawn at 1e-17.
+
+    Raises
+    ------
+    InputError, ShapeError
+        If matplotlib is not installed, `solutions` are not solutions, F is not a function of m, or there are not as
+        many labels as solutions.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
+    >>> steps = {"Heun": lh.Heun(), "midpoint": lh.SphericalMidpoint()}
+    >>> runs = {name: lh.integrate(field, (0, 50), [0.6, 0.0, 0.8], step=s, dt=0.5) for name, s in steps.items()}
+    >>> ax = plot_energy_drift(runs, "m0**2/2 + m1**2/4 + m2**2/6")  # doctest: +SKIP
+    """
+    named = [(label, _trajectories(solution, F, value)) for label, solution in _named(solutions, labels)]
+    relative = all(bool(part.initial.any()) for _, parts in named for part in parts)
+    times = [part.times for _, parts in named for part in parts]
+    logarithmic = largest_so_far and _decades(times) >= DECADES
+    with style_unless(ax):
+        if ax is None:
+            ax = new_figure(6.4, 4.2).add_subplot()
+        colours = current_colours()
+        for k, (label, parts) in enumerate(named):
+            for i, part in enumerate(parts):
+                error = np.maximum(_error(part, relative), HAIRLINE)
+                ax.plot(
+                    part.times[1:], (np.maximum.accumulate(error) if largest_so_far else error)[1:],
+                    color=colours[k % len(colours)], linestyle=DASHES[k % len(DASHES)],
+                    marker=MARKERS[k % len(MARKERS)], markersize=5,
+                    markevery=_places(part.times[1:], (k + 0.5) / len(named), logarithmic),
+                    linewidth=1.5 if len(parts) == 1 else 0.8, label=None if i else label,
+                )  # fmt: skip
+        ax.set_yscale("log")
+        if logarithmic:
+            ax.set_xscale("log")
+        ax.set_xlabel("time since the initial point")
+        what = "largest error so far" if largest_so_far else "error"
+        ax.set_ylabel(f"{what}, {'relative' if relative else 'absolute'}")
+        ax.legend(loc="best", handlelength=3.0)
+    return ax
+
+
+def _named(
+    solutions: Solution | Mapping[str, Solution] | Sequence[Solution], labels: Sequence[str] | None
+) -> list[tuple[str, Solution]]:
+    """Solutions with their labels."""
+    found: object = solutions
+    if isinstance(solutions, Solution):
+        chosen = [solutions]
+    elif isinstance(solutions, Mapping):
+        chosen, labels = list(solutions.values()), list(solutions) if labels is None else labels
+    else:
+        chosen = list(solutions) if isinstance(solutions, Sequence) else []
+    if not chosen or not all(isinstance(solution, Solution) for solution in chosen):
+        raise InputError(f"expected solutions as liehom.integrate returns them, got {found!r}")
+    names = [solution.report.step for solution in chosen] if labels is None else [str(label) for label in labels]
+    if len(names) != len(chosen):
+        raise InputError(f"there are {len(chosen)} solutions and {len(names)} labels")
+    return list(zip(names, chosen, strict=True))
+
+
+def _trajectories(solution: Solution, F: IntegralSource, value: npt.ArrayLike | None) -> list[_Values]:
+    """The values of F along each of the first trajectories of a solution."""
+    y = np.asarray(solution.y)
+    times = np.broadcast_to(np.asarray(solution.t), (*y.shape[:-2], y.shape[-1]))
+    integral = FirstIntegral(F, y.shape[-2])
+    found = []
+    for t, points in zip(times.reshape(-1, y.shape[-1])[:MAX_TRAJECTORIES], y.reshape(-1, *y.shape[-2:]), strict=False):
+        there = np.isfinite(t) & np.isfinite(points).all(axis=0)
+        values = np.asarray(integral(np.moveaxis(points[:, there], 0, -1)), dtype=float)
+        try:
+            initial = values[0] if value is None else np.broadcast_to(np.asarray(value, dtype=float), values[0].shape)
+        except ValueError:
+            raise ShapeError(f"value has shape {np.shape(value)}, F has {values.shape[-1]} components") from None
+        found.append(_Values(np.abs(t[there] - t[there][0]), values - initial, initial))
+    return found
+
+
+def _error(part: _Values, relative: bool) -> Array:
+    """Largest error of the components, (n,); a component that is initially 0 is compared with the largest one."""
+    scale = np.abs(part.initial)
+    scale = np.where(scale > 0, scale, scale.max()) if relative else np.ones_like(scale)
+    largest: Array = (np.abs(part.changes) / scale).max(axis=-1)
+    return largest
+
+
+def _decades(times: Sequence[Array]) -> float:
+    """Powers of ten between the first and the last time after the initial one."""
+    found = np.concatenate([t[t > 0] for t in times])
+    return float(np.log10(found.max() / found.min())) if found.size else 0.0
+
+
+def _places(t: Array, offset: float, logarithmic: bool) -> list[int]:
+    """Indices of markers, evenly spread over the axis of time; offsets keep those of several curves apart."""
+    if len(t) < 2:
+        return list(range(len(t)))
+    low, high = t[0], t[-1]
+    shares = (np.arange(MARKED) + offset) / MARKED
+    wanted = low * (high / low) ** shares if logarithmic else low + (high - low) * shares
+    return sorted({int(i) for i in np.minimum(np.searchsorted(t, wanted), len(t) - 1)})
