@@ -113,10 +113,12 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
     app.connect("autodoc-process-docstring", table_of_modules, priority=950)
     app.connect("doctree-read", refuse_apostrophes)
-    import picture_directive  # found by the path that is set above
+    import page_tree  # found by the path that is set above
+    import picture_directive
     import pictures
 
     app.connect("builder-inited", pictures.draw)
+    app.connect("html-page-context", page_tree.Navigation(), priority=100)
     app.add_directive("picture", picture_directive.Picture)
     app.add_html_math_renderer(
         "mathml",
