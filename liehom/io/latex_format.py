@@ -11,6 +11,7 @@ from itertools import islice
 from typing import Any
 
 from liehom.algebra import Homomorphism, LieAlgebra, RealForm, RootSystem, Subalgebra
+from liehom.algebra.core.names import LinearCombination
 from liehom.display import Displayed, DisplayedTable
 from liehom.errors import InputError, shown
 from liehom.fullness import (
@@ -46,8 +47,9 @@ def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
     Parameters
     ----------
     obj : LieAlgebra, Subalgebra, Representation, Pair, verdict, RootSystem, Matrix, number, ...
-        A Killing form, for example, is a matrix: ``latex(g.killing_form())``. A table (`ConvergenceTable`, `Atlas`)
-        becomes an array. An object without a formula, such as a `Tableau`, becomes its `repr` as text.
+        A Killing form, for example, is a matrix: ``latex(g.killing_form())``. An element is what ``g.show(x)``
+        returns. A table (`ConvergenceTable`, `Atlas`) becomes an array. An object without a formula, such as a
+        `Tableau`, becomes its `repr` as text.
     table : bool
         For an algebra: the square table of all brackets, instead of the list of nonzero brackets.
     most : int, optional
@@ -76,6 +78,8 @@ def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
     \begin{pmatrix}
     -\frac{1}{2} & 1
     \end{pmatrix}
+    >>> print(latex(lh.heisenberg(1).show([1, 0, "-1/2"])))
+    x_{1} - \frac{1}{2} z
     >>> print(latex(lh.decide_fullness(lh.pair("so(4)/so(3)"))))
     \mathfrak{so}(4)/\mathfrak{so}(3) \text{ is full}
     >>> print(latex(lh.so(4), most=1))
@@ -90,6 +94,8 @@ def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
         return _matrix(obj, most)
     if isinstance(obj, Subalgebra):
         return _span(obj, most)
+    if isinstance(obj, LinearCombination):
+        return _combination(obj.field, obj.values, [_symbol(x) for x in obj.names])
     if isinstance(obj, Representation):
         names = [_symbol(x) for x in obj.algebra.basis_names[:most]]
         lines = [rf"\rho({x}) &= {_matrix(a, most)}" for x, a in zip(names, obj.matrices, strict=False)]

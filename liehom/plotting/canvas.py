@@ -6,8 +6,10 @@ in their markers or dashes.
 
 from __future__ import annotations
 
+import io
 import os
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -109,9 +111,28 @@ def style_unless(ax: Axes | None) -> AbstractContextManager[object]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Figure of this size in inches, in no window and not registered with pyplot."""
-    figure: Figure = matplotlib_module("figure").Figure(figsize=(width, height), layout="constrained")
-    return figure
+    """Figure of this size in inches, in no window and not registered with pyplot.
+
+    A notebook shows it, or any of its axes, as a picture if it is the last line of a cell.
+    """
+    figure: Any = matplotlib_module("figure").Figure(figsize=(width, height), layout="constrained")
+    # IPython asks for this method; matplotlib has it only for figures that are registered with pyplot
+    figure._repr_svg_ = partial(_svg, figure)
+    figure.add_axobserver(_share_svg)
+    made: Figure = figure
+    return made
+
+
+def _share_svg(figure: Any) -> None:
+    for axes in figure.axes:
+        axes._repr_svg_ = figure._repr_svg_
+
+
+def _svg(figure: Figure) -> str:
+    file = io.StringIO()
+    with style():
+        figure.savefig(file, format="svg", metadata=UNDATED[".svg"])
+    return file.getvalue()
 
 
 def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axes:

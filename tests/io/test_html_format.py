@@ -51,9 +51,10 @@ SAMPLES: dict[str, Callable[[], object]] = {
     "DynamicalLieAlgebra": lambda: pauli.closure(["XX", "ZI", "IZ"]),
     "ExactMatrix": lambda: lh.so(3).killing_form(),
     "FloatMatrix": lambda: lh.RR.matrix([[0.5, 1.0]]),
+    "LinearCombination": lambda: lh.so(3).show([1, "-1/2", 0]),
     "AlgebraicNumber": lambda: lh.number_field("sqrt(2)").convert("sqrt(2)/2 - 1"),
 }
-FORMULAS_ONLY = {"ExactMatrix", "FloatMatrix", "AlgebraicNumber"}
+FORMULAS_ONLY = {"ExactMatrix", "FloatMatrix", "LinearCombination", "AlgebraicNumber"}
 EVERY = pytest.mark.parametrize("name", SAMPLES)
 CARDS = pytest.mark.parametrize("name", sorted(SAMPLES.keys() - FORMULAS_ONLY))
 VOID = {"br", "hr", "img"}
@@ -155,7 +156,7 @@ def test_the_controls_find_what_is_not_balanced() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(FORMULAS_ONLY))
-def test_matrices_and_numbers_are_shown_as_formulas_alone(name: str) -> None:
+def test_matrices_elements_and_numbers_are_shown_as_formulas_alone(name: str) -> None:
     assert not hasattr(sample(name), "_repr_html_")
 
 
@@ -244,6 +245,13 @@ def test_formulas_of_named_objects() -> None:
     assert lh.latex(lh.pair("so(4,1)/so(4)")) == r"\mathfrak{so}(4,1)/\mathfrak{so}(4)"
     assert lh.latex(lh.root_system("B2")).startswith(r"B_{2} \colon\; \begin{pmatrix}")
     assert lh.latex(lh.RealForm.of_name("e6(-26)")) == r"\mathfrak{e}_{6}(-26)"
+
+
+def test_formulas_of_elements() -> None:
+    g = lh.heisenberg(1).over(lh.number_field("sqrt(2)"))
+    assert lh.latex(g.show(["-1/2", 0, "1 + sqrt(2)"])) == r"-\frac{1}{2} x_{1} + \left(1 + \sqrt{2}\right) z"
+    assert lh.latex(g.show([0, 0, 0])) == "0"
+    assert lh.latex(g.over(lh.RR).show([0.5, 0.0, -1e-9])) == r"0.5 x_{1} - 1\cdot10^{-9} z"
 
 
 def test_most_cuts_and_none_does_not() -> None:

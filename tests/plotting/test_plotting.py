@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -284,3 +285,24 @@ def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) 
     for draw in (lambda: plot_convergence(table()), lambda: plot_trajectory(solution(2))):
         with pytest.raises(InputError, match=r"liehom\[plot\]"):
             draw()
+
+
+# -- notebooks -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("picture", ["figure", "axes", "axes in space"])
+def test_a_notebook_shows_figures_and_axes_as_pictures(picture: str) -> None:
+    formatters = pytest.importorskip("IPython.core.formatters")
+    shown = {
+        "figure": lambda: plot_trajectory(solution(2)),
+        "axes": lambda: lh.plotting.plot_dynkin("G2"),
+        "axes in space": lambda: lh.plotting.plot_root_system("A3"),
+    }[picture]()
+    data, _ = formatters.DisplayFormatter().format(shown)
+    assert data["image/svg+xml"].count("<svg") == 1
+    copied = pickle.loads(pickle.dumps(shown))
+    assert copied._repr_svg_().count("<svg") == 1
+
+
+def test_axes_of_the_caller_are_shown_as_the_caller_shows_them() -> None:
+    ax = Figure().add_subplot()
+    assert lh.plotting.plot_dynkin("G2", ax) is ax
+    assert not hasattr(ax, "_repr_svg_")

@@ -16,7 +16,14 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.algebra.core.jacobi import prove_jacobi
-from liehom.algebra.core.names import RowsLike, by_index, coefficients, is_named, linear_combination
+from liehom.algebra.core.names import (
+    LinearCombination,
+    RowsLike,
+    by_index,
+    coefficients,
+    is_named,
+    linear_combination,
+)
 from liehom.algebra.core.structure_constants import StructureConstants
 from liehom.algebra.core.tables import ConstantsLike, constants_from, field_of_constants
 from liehom.budget import within
@@ -220,7 +227,9 @@ class LieAlgebra(Displayed, Immutable):
         return matrix
 
     def show(self, x: ElementLike) -> str:
-        """An element as a linear combination of the names of basis elements.
+        """An element as a linear combination of the names of basis elements, a string.
+
+        A notebook shows it as a formula, and `liehom.latex` returns the LaTeX.
 
         Examples
         --------
@@ -229,8 +238,7 @@ class LieAlgebra(Displayed, Immutable):
         >>> g.show(g.bracket("x1", "y1")), g.show([1, 0, "-1/2"]), g.show([0, 0, 0])
         ('z', 'x1 - 1/2*z', '0')
         """
-        terms = linear_combination(self.field, self.basis_names, self.row(x).row(0))
-        return " + ".join(terms).replace("+ -", "- ") or "0"
+        return LinearCombination(self.field, self.basis_names, self.row(x).row(0))
 
     def bracket(self, x: ElementLike, y: ElementLike) -> npt.NDArray[Any]:
         """The bracket [x, y] of two elements (see `row`), as a numpy array of field elements.

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, TypeAlias
 
+from liehom.display import Typeset
 from liehom.errors import InputError, ShapeError, StructureError, displayed
 from liehom.scalars import Field, Scalar
 from liehom.scalars.fields.field import MatrixLike
@@ -132,3 +133,35 @@ def linear_combination(field: Field, names: Sequence[str], values: Iterable[Scal
             sign = "" if value == "1" else "-" if value == "-1" else f"({value})*" if " " in value else f"{value}*"
             terms.append(f"{sign}{name}")
     return terms
+
+
+class LinearCombination(Typeset, str):
+    """String of an element as a linear combination of names, which a notebook shows as a formula.
+
+    Elements themselves are numpy arrays, so that they can be used everywhere; an array does not know the names.
+
+    Attributes
+    ----------
+    field : Field
+    names : sequence of str
+    values : sequence of scalars
+
+    Examples
+    --------
+    >>> from liehom.scalars import QQ
+    >>> LinearCombination(QQ, ["x", "y"], [QQ.convert(1), QQ.convert("-1/2")])
+    'x - 1/2*y'
+    """
+
+    field: Field
+    names: Sequence[str]
+    values: Sequence[Scalar]
+
+    def __new__(cls, field: Field, names: Sequence[str], values: Sequence[Scalar]) -> LinearCombination:
+        text = " + ".join(linear_combination(field, names, values)).replace("+ -", "- ") or "0"
+        made = super().__new__(cls, text)
+        made.field, made.names, made.values = field, names, values
+        return made
+
+    def __getnewargs__(self) -> tuple[Field, Sequence[str], Sequence[Scalar]]:  # type: ignore[override]
+        return self.field, self.names, self.values

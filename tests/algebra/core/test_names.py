@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -86,6 +87,16 @@ def test_elements_are_shown_by_name() -> None:
     assert g.over(lh.number_field("sqrt(2)")).show([0, "1 + sqrt(2)", "-sqrt(2)"]) == "(1 + sqrt(2))*e - sqrt(2)*f"
     assert g.show({"f": 1}) == g.show("f") == "f"
     assert g.over(lh.RR).show([0.5, 0.0, -1.0]) == "0.5*h - 1.0*f"
+
+
+def test_a_shown_element_is_a_string_and_survives_pickling() -> None:
+    g = lh.LieAlgebra(SL2)
+    shown = g.show([1, -1, 0])
+    assert isinstance(shown, str)
+    assert repr(shown) == "'h - e'"
+    loaded = pickle.loads(pickle.dumps(shown))
+    assert loaded == shown
+    assert lh.latex(loaded) == lh.latex(shown) == "h - e"
 
 
 def test_a_failing_jacobi_identity_is_shown_by_names() -> None:
