@@ -55,6 +55,7 @@ class DisplayedTable(Displayed):
     >>> class Squares(DisplayedTable):
     ...     def _cells(self) -> list[list[str]]:
     ...         return [["n", "n^2"], ["2", "4"]]
+    ...
     >>> print(Squares()._repr_latex_())
     $\\displaystyle \\begin{array}{ll}
     \\text{n} & \\text{n\\textasciicircum{}2} \\\\ \\hline

@@ -113,6 +113,7 @@ def write_entries(path: str | os.PathLike[str], entries: Iterable[Entry]) -> dic
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     made = write_entries(f"{folder}/atlas.jsonl", lh.atlas.build(["parabolic"]))
     ...     entries = list(read_entries(f"{folder}/atlas.jsonl"))
+    ...
     >>> made["counts"]["parabolic"]["pairs"] == len(entries)
     True
     """

@@ -129,6 +129,7 @@ class Submanifold:
         >>> def torus(q):
         ...     r = 2 + np.cos(q[..., 1])
         ...     return np.stack([r * np.cos(q[..., 0]), r * np.sin(q[..., 0]), np.sin(q[..., 1])], axis=-1)
+        ...
         >>> Submanifold.embedded(torus, 2)
         <submanifold: image of torus in R^3>
         """
@@ -192,6 +193,7 @@ def geodesic_curvature(curve: Jet, submanifold: Submanifold) -> Jet:
     >>> def torus(q):
     ...     r = 2 + np.cos(q[..., 1])
     ...     return np.stack([r * np.cos(q[..., 0]), r * np.sin(q[..., 0]), np.sin(q[..., 1])], axis=-1)
+    ...
     >>> surface = Submanifold.embedded(torus, 2)
     >>> start, along = np.array([0.0, np.pi / 2]), np.eye(2)
     >>> curves = [lh.Jet(np.stack([start, direction, 0 * direction])) for direction in along]
@@ -233,6 +235,7 @@ def curvature_defect(flow: Jet, step: Jet, submanifold: Submanifold) -> Values:
     >>> def defect(step):
     ...     local = step.at(action, Generator(field, 2), m, np.zeros(1))
     ...     return float(np.abs(curvature_defect(flow, lh.step_series(action, local, m, 2), surface)).max())
+    ...
     >>> defect(lh.Euler()) > 0.1, defect(lh.Corrected(lh.Euler(), 2)) < 1e-13
     (True, True)
     """

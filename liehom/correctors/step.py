@@ -240,6 +240,7 @@ class OneExponential(Step, ABC):
     ...     def generator(self, action, psi, m, t, h):
     ...         middle = action.act(h / 2 * psi(m, t), m)
     ...         return h * psi(middle, t + h / 2)
+    ...
     >>> Midpoint().one_exponential
     True
     """

@@ -77,6 +77,7 @@ class Engine(Protocol):
     ...     def solve(self, problem):
     ...         self.calls += 1
     ...         return NumpyEngine().solve(problem)
+    ...
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
     >>> propagator = lh.Propagator(field, engine=Counting())
     >>> [propagator((0, 1), y0).status for y0 in np.eye(2)], propagator.engine.calls

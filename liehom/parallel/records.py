@@ -56,6 +56,7 @@ class Records(Store):
     >>> path = os.path.join(tempfile.mkdtemp(), "runs")
     >>> with Records(open_store(path, "abc")) as records:
     ...     records.append([("so(3)", {"dimension": 3}), ("so(4)", {"dimension": 6})])
+    ...
     >>> records = Records(open_store(path, "abc"))
     >>> "so(5)" in records, sorted(records.names()), records.load("so(4)")
     (False, ['so(3)', 'so(4)'], ({}, {'dimension': 6}))

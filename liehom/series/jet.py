@@ -136,6 +136,7 @@ class Jet(NDArrayOperatorsMixin):
         >>> slope = y * y
         >>> for k in range(3):
         ...     y.extend(slope.coefficient(k) / (k + 1))
+        ...
         >>> y.coefficients
         array([1., 1., 1., 1.])
         """

@@ -84,6 +84,7 @@ def scalar_while_loop(
     >>> def heron(x):
     ...     new = (x[0] + a / x[0]) * 0.5
     ...     return [new], tape.compare("lt", tape.constant(1e-12), tape.call("abs", new - x[0]))
+    ...
     >>> root, = scalar_while_loop(tape, [a], heron, 50)
     >>> round(float(evaluate_with_jax([root], {0: 2.0})[0]), 5)
     1.41421

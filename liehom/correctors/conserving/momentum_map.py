@@ -102,6 +102,7 @@ class MomentumMap:
     >>> J = MomentumMap(field.representation, g.subalgebra([[0, 0, 1]]))
     >>> def change(step):
     ...     return float(np.ptp(J(lh.integrate(field, (0, 10), [0.6, 0.48, 0.64], step=step, dt=0.1).y.T)))
+    ...
     >>> change(lh.Heun()) > 1e-6, change(lh.Conserving(lh.Heun(), J)) < 1e-14
     (True, True)
     """

@@ -55,6 +55,7 @@ class CustomExponential(Exponential):
     >>> def tangent(x, m):  # rotation by 2 arctan(x/2)
     ...     turned = x * m[..., ::-1] * [-1, 1]
     ...     return m + (turned - x * x * m / 2) / (1 + x * x / 4)
+    ...
     >>> CustomExponential(rho, tangent, "my Cayley").name
     'my Cayley'
     """

@@ -65,6 +65,7 @@ class Exponential(ABC):
     ...     def act(self, x, m):
     ...         first, last = x * [0.5, 0, 0], x * [0, 1, 1]
     ...         return self.exp(first, self.exp(last, self.exp(first, m)))
+    ...
     >>> lh.Action(rho, Split())
     <action by split of <representation 'defining' of <Lie algebra so(3) of dimension 3 over QQ> on QQ^3>>
     """

@@ -106,6 +106,7 @@ class SE3Body(Body):
     >>> def wrench(s):
     ...     down = -9.81 * s.attitude[..., 2, :]
     ...     return np.concatenate([-0.1 * s.velocity[..., :3], down + np.array([0.0, 0.0, 9.81])], axis=-1)
+    ...
     >>> body = lh.SE3Body([0.02, 0.02, 0.04], wrench)
     >>> sol = body.integrate((0, 1), body.start(velocity=[0, 0, 0.3, 0, 0, 0]), dt=0.05)
     >>> bool(np.abs(body.position(sol)).max() < 1e-12), body.pose(sol).shape

@@ -117,6 +117,7 @@ def integrate_ensemble(
     >>> starts = np.random.default_rng(0).normal(size=(20, 3))
     >>> with ThreadPoolExecutor(2) as pool:
     ...     sol = integrate_ensemble(field, (0, 1), starts, executor=pool, chunk=5, t_eval=[0.5, 1])
+    ...
     >>> sol.y.shape, np.array_equal(sol.y, integrate_ensemble(field, (0, 1), starts, chunk=5, t_eval=[0.5, 1]).y)
     ((20, 3, 2), True)
     """
@@ -179,6 +180,7 @@ def ensemble_parts(
     >>> starts = np.array([[1.0, 0.0], [0.6, 0.8], [0.0, 1.0]])
     >>> for part in ensemble_parts(field, (0, 1), starts, chunk=2, dt=0.25):
     ...     print(part.first, part.last, part.solution.y.shape)
+    ...
     0 1 (1, 2, 5)
     1 3 (2, 2, 5)
     """

@@ -30,6 +30,7 @@ def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
     >>> def solve(y):
     ...     return lh.integrate(field, (0, 1), y, dt=0.25)
+    ...
     >>> made = merged([solve([[1.0, 0.0]]), solve([[0.6, 0.8], [0.0, 1.0]])], sampled=False)
     >>> made.y.shape, made.n_steps.tolist(), made.success
     ((3, 2, 5), [4, 4, 4], True)

@@ -57,6 +57,7 @@ def warn_of_stiffness(
     >>> with warnings.catch_warnings(record=True) as found:
     ...     warnings.simplefilter("always")
     ...     sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=lh.RKMK("rk45"))
+    ...
     >>> found[0].category.__name__, bool(found[0].message.rate > 900)
     ('StiffnessWarning', True)
     """

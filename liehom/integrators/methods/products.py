@@ -112,6 +112,7 @@ class ProductStep(Step, ABC):
     >>> class Halves(ProductStep):
     ...     order = 2
     ...     scheme = Scheme(((0, "1/2"), (0, "0 1/2; 0 1/2")))
+    ...
     >>> Halves().one_exponential
     False
     """

@@ -223,6 +223,7 @@ def unsolvable(local: LocalStep, h: Array, where: BooleanArray, error: Exception
     ...     if np.any(h > 1):
     ...         raise ConvergenceError("too large")
     ...     return np.zeros((3, 2))
+    ...
     >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros((3, 2)), point=point)
     >>> h, where = np.array([0.5, 2.0, 0.7]), np.array([True, True, True])
     >>> unsolvable(local, h, where).tolist()

@@ -33,6 +33,7 @@ class Progress:
     >>> with Progress(seen.append) as progress:
     ...     progress.update(lambda: 0.5)
     ...     progress.update(lambda: 1.0, last=True)
+    ...
     >>> seen[-1]
     1.0
     """

@@ -45,6 +45,7 @@ class StepStatistics:
     >>> local = LocalStep(lh.Action(lh.defining(lh.so(2))), np.zeros((2, 2)))
     >>> for k in (3, 2):
     ...     statistics.take({"iterations": (np.array([k, 1]), "max")}, local, np.zeros(2), local.m, yes)
+    ...
     >>> statistics.arrays()["max.iterations"].tolist()
     [3.0, 1.0]
     """

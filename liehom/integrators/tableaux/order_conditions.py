@@ -68,6 +68,7 @@ def order_checks(
     >>> for violation, largest in order_checks([[0.0, 0.0], [0.5, 0.0]], [0.0, 1.0], RR, 1e-13):
     ...     if violation is not None:
     ...         break
+    ...
     >>> print(violation.tree, largest == 1 / 6)
     [τ, τ] True
     """

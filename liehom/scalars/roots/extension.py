@@ -262,6 +262,7 @@ def real_factors(f: Polynomial, name: str = "a") -> list[RealFactor]:
     >>> from liehom.scalars import QQ
     >>> for factor in real_factors(Polynomial(QQ, [1, 0, 0, 0, 1])):
     ...     print(factor.extension.field, factor.polynomial)
+    ...
     QQ(sqrt(2)) (1)*t**0 + (sqrt(2))*t**1 + (1)*t**2
     QQ(sqrt(2)) (1)*t**0 + (-sqrt(2))*t**1 + (1)*t**2
     >>> [factor.extension.field.degree for factor in real_factors(Polynomial(QQ, [-2, 0, 0, 1]))]
