@@ -1,4 +1,4 @@
-"""Bases of the classes that notebooks show as formulas, cards and tables.
+"""Tables as CSV and LaTeX, and bases of the classes that notebooks show as formulas, cards and tables.
 
 IPython asks an object for its methods ``_repr_latex_`` and ``_repr_html_``. The classes of all layers inherit them from
 here. The renderers know every class and are therefore above all of them, in `liehom.io`. The two imports below, made
@@ -7,8 +7,68 @@ when a notebook asks, are the only ones outside the class files that point upwar
 
 from __future__ import annotations
 
+import csv
+import io
+from collections.abc import Iterable, Sequence
+
 SHOWN_LINES = 8
 """Lines of brackets, and rows and columns of matrices, that a notebook shows."""
+
+_SPECIAL = {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
+
+
+def comma_separated(rows: Iterable[Sequence[str | int | float]]) -> str:
+    """Rows as lines of comma-separated values, the head of the table first.
+
+    Examples
+    --------
+    >>> comma_separated([("dt", "error"), (0.1, "1,5")])
+    'dt,error\\n0.1,"1,5"\\n'
+    """
+    target = io.StringIO()
+    csv.writer(target, lineterminator="\n").writerows(rows)
+    return target.getvalue()
+
+
+def escaped_latex(text: str) -> str:
+    r"""A string as LaTeX prints it in text mode.
+
+    Examples
+    --------
+    >>> print(escaped_latex("50% of a_b ^ c"))
+    50\% of a\_b \textasciicircum{} c
+    """
+    return "".join(_SPECIAL.get(c, f"\\{c}" if c in "&%$#_{}" else c) for c in text)
+
+
+def latex_table(cells: Sequence[Sequence[str]], caption: str = "") -> str:
+    r"""Table environment of LaTeX, for text mode, that needs no package.
+
+    Parameters
+    ----------
+    cells : sequence of sequences of str
+        Cells in LaTeX, the head of the table first.
+    caption : str, optional
+        Caption in LaTeX.
+
+    Examples
+    --------
+    >>> print(latex_table([("dt", "error"), ("0.1", "$10^{-7}$")], "Errors"))
+    \begin{table}
+    \caption{Errors}
+    \begin{tabular}{ll}
+    \hline
+    dt & error \\
+    \hline
+    0.1 & $10^{-7}$ \\
+    \hline
+    \end{tabular}
+    \end{table}
+    """
+    head, *body = [" & ".join(row) + r" \\" for row in cells]
+    begin = [r"\begin{table}", *([rf"\caption{{{caption}}}"] if caption else [])]
+    rows = [rf"\begin{{tabular}}{{{'l' * len(cells[0])}}}", r"\hline", head, r"\hline", *body, r"\hline"]
+    return "\n".join([*begin, *rows, r"\end{tabular}", r"\end{table}"])
 
 
 class Typeset:

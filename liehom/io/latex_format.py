@@ -12,7 +12,7 @@ from typing import Any
 
 from liehom.algebra import Homomorphism, LieAlgebra, RealForm, RootSystem, Subalgebra
 from liehom.algebra.core.names import LinearCombination
-from liehom.display import Displayed, DisplayedTable
+from liehom.display import Displayed, DisplayedTable, escaped_latex
 from liehom.errors import InputError, shown
 from liehom.fullness import (
     Certificate,
@@ -37,8 +37,6 @@ SIGNIFICANT_DIGITS = 6
 """Digits of floats."""
 MAX_PMATRIX_COLUMNS = 10
 """A matrix of amsmath has at most this many columns, unless a counter of LaTeX is raised."""
-
-_SPECIAL = {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
 
 def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
@@ -193,8 +191,7 @@ def _cells(cells: list[list[str]], most: int | None) -> str:
 
 
 def _words(text: str) -> str:
-    escaped = "".join(_SPECIAL.get(c, f"\\{c}" if c in "&%$#_{}" else c) for c in shown(text))
-    return rf"\text{{{escaped}}}"
+    return rf"\text{{{escaped_latex(shown(text))}}}"
 
 
 def _dots(found: int, most: int | None) -> list[str]:

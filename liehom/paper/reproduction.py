@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -12,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from liehom.disk import check_target, write_atomically
-from liehom.display import DisplayedTable
+from liehom.display import DisplayedTable, comma_separated
 from liehom.errors import FormatError, InputError
 
 Cell: TypeAlias = Any
@@ -62,11 +60,8 @@ class Table(DisplayedTable):
 
     def csv(self) -> str:
         """Table as comma-separated values, numbers with all digits."""
-        target = io.StringIO()
-        writer = csv.writer(target, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows([["" if _is_empty(x) else _plain(x) for x in row] for row in self.rows])
-        return target.getvalue()
+        rows = [["" if _is_empty(x) else _plain(x) for x in row] for row in self.rows]
+        return comma_separated([self.columns, *rows])
 
     def markdown(self) -> str:
         """Table in Markdown, numbers with three digits."""
