@@ -125,6 +125,7 @@ def setup(app: Any) -> None:
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)
     app.add_directive("picture", picture_directive.Picture)
+    app.add_directive("gallery", picture_directive.Gallery)
     app.add_html_math_renderer(
         "mathml",
         (lambda visitor, node: mathml(visitor, node, display=False), None),

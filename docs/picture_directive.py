@@ -1,17 +1,32 @@
-"""The directive ``picture`` of the pages, apart from docs/pictures, so that pictures can be drawn without Sphinx."""
+"""The directives ``picture`` and ``gallery`` of the pages, apart from docs/pictures, which is used without Sphinx."""
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import ClassVar
 
+import picture_source
 import pictures
 from docutils import nodes
 from docutils.parsers.rst import directives
+from sphinx import addnodes
 from sphinx.util.docutils import SphinxDirective
+
+DOCS = Path(__file__).resolve().parent
+USE = re.compile(r"^`{3,}\{picture\} (\w+)\n:alt: (.*)$", flags=re.MULTILINE)
+
+
+def versions(name: str, alt: str, **options: str) -> list[nodes.Node]:
+    """Both versions of a picture, of which the page shows one."""
+    return [
+        nodes.image(uri=f"/_pictures/{name}_{kind}.svg", alt=alt, classes=[f"only-{kind}"], **options)
+        for kind in ("light", "dark")
+    ]
 
 
 class Picture(SphinxDirective):
-    """The directive ``picture``: both versions of a picture, of which the page shows one."""
+    """The directive ``picture``: a picture in the version that fits the page."""
 
     required_arguments = 1
     option_spec: ClassVar = {"alt": directives.unchanged_required, "width": directives.unchanged}
@@ -20,12 +35,30 @@ class Picture(SphinxDirective):
         name = self.arguments[0]
         if name not in pictures.DRAWN or not self.options.get("alt"):
             raise self.error(f"{name!r} is not a function of docs/pictures, or has no alt text")
+        return versions(name, **self.options)
+
+
+class Gallery(SphinxDirective):
+    """The directive ``gallery``: every picture with the page that uses it and its program, the shortest first."""
+
+    def run(self) -> list[nodes.Node]:
+        self.env.note_reread()  # pictures and pages change without this page
+        uses: dict[str, tuple[str, str]] = {}
+        for path in sorted(DOCS.rglob("*.md")):
+            for name, alt in USE.findall(path.read_text(encoding="utf-8")):
+                uses.setdefault(name, (path.relative_to(DOCS).with_suffix("").as_posix(), alt))
+        programs = {name: picture_source.script(function) for name, function in pictures.DRAWN.items()}
+        shown = sorted(uses, key=lambda name: programs[name].count("\n"))
         return [
-            nodes.image(
-                uri=f"/_pictures/{name}_{kind}.svg",
-                alt=self.options["alt"],
-                classes=[f"only-{kind}"],
-                **({"width": self.options["width"]} if "width" in self.options else {}),
-            )
-            for kind in ("light", "dark")
+            nodes.container("", *(self.item(name, *uses[name], programs[name]) for name in shown), classes=["gallery"])
         ]
+
+    def item(self, name: str, page: str, alt: str, program: str) -> nodes.Node:
+        """One picture, below it its title, the page and the folded program."""
+        link = addnodes.pending_xref(refdomain="std", reftype="doc", reftarget=f"/{page}", refexplicit=False)
+        link += nodes.inline()
+        title = nodes.paragraph("", "", nodes.strong("", name.replace("_", " ").capitalize()), nodes.Text(" in "), link)
+        folded = nodes.raw("", f"<details><summary>{program.count(chr(10))} lines</summary>", format="html")
+        code = nodes.literal_block(program, program, language="python")
+        end = nodes.raw("", "</details>", format="html")
+        return nodes.container("", *versions(name, alt), title, folded, code, end, ids=[name])

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 
 import pytest
+from IPython.core.inputtransformer2 import TransformerManager
 
 from tests.test_docs import PACKAGE, blocks, pages_with, read
 
@@ -65,7 +66,7 @@ def test_the_button_copies_the_code_of_examples_and_no_output(page: str) -> None
 @pytest.mark.parametrize("language", ["python", "pycon"])
 def test_copied_blocks_run_when_they_are_pasted(language: str) -> None:
     """A statement of several lines ends with an empty line and has none inside, as Python's prompt wants it."""
-    transformer = pytest.importorskip("IPython.core.inputtransformer2").TransformerManager()
+    transformer = TransformerManager()
     for page in pages_with(language):
         for block in blocks(read(page), language):
             text = copied(block)

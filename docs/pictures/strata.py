@@ -13,7 +13,7 @@ from pictures import picture
 
 
 @picture
-def sym3_triangle(colours: Sequence[str]) -> Any:
+def eigenvalues_of_symmetric_matrices(colours: Sequence[str]) -> Any:
     figure = new_figure(5.0, 4.6)
     lh.plotting.plot_eigenvalues(figure.add_subplot())
     return figure

@@ -1,0 +1,95 @@
+"""Pictures of the pages: each is on a page, and its program in the gallery draws it."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import importlib
+import io
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.test_docs import DOCS
+from tests.test_docs_copied import faults_of_pasting
+
+FAST = ("bracket_table", "dynkin_diagrams", "spirals")
+"""The pictures that are drawn here, of which one has a helper and colours."""
+
+
+@pytest.fixture(scope="module")
+def pictures() -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(DOCS))
+        module = importlib.import_module("pictures")
+        module.load()
+        yield module
+
+
+@pytest.fixture(scope="module")
+def script(pictures: Any) -> Callable[[str], str]:
+    make = importlib.import_module("picture_source").script
+    return lambda name: make(pictures.DRAWN[name])
+
+
+def undefined(program: str) -> set[str]:
+    """The names that a program reads and defines nowhere."""
+    tree = ast.parse(program)
+    found = {"__name__", "__file__", *dir(builtins)}
+    read_here = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            (read_here if isinstance(node.ctx, ast.Load) else found).add(node.id)
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            found.add(node.name)
+        elif isinstance(node, ast.arg):
+            found.add(node.arg)
+        elif isinstance(node, ast.alias):
+            found.add(node.asname or node.name.partition(".")[0])
+    annotations = [
+        n for node in ast.walk(tree) for n in (getattr(node, "annotation", None), getattr(node, "returns", None))
+    ]
+    lazy = {name.id for node in annotations if node for name in ast.walk(node) if isinstance(name, ast.Name)}
+    return read_here - found - (lazy if "from __future__ import annotations" in program else set())
+
+
+def test_every_picture_is_on_a_page_with_words_for_those_who_do_not_see_it(pictures: Any) -> None:
+    text = "".join(path.read_text(encoding="utf-8") for path in sorted(DOCS.rglob("*.md")))
+    used = dict(re.findall(r"^`{3,}\{picture\} (\w+)\n:alt: (.*)$", text, flags=re.MULTILINE))
+    assert set(used) == set(pictures.DRAWN)
+    assert min(len(alt) for alt in used.values()) > 20
+
+
+def test_programs_of_the_gallery_are_complete_and_can_be_pasted(pictures: Any, script: Callable[[str], str]) -> None:
+    for name in pictures.DRAWN:
+        program = script(name)
+        assert undefined(program) == set(), name
+        assert faults_of_pasting(program) == [], name
+        assert not re.search(r"^(from|import) pictures", program, flags=re.MULTILINE), (
+            "a picture uses its own module only"
+        )
+        assert program.endswith(f'figure.savefig("{name}.svg")\n')
+
+
+def test_a_name_that_a_program_lacks_is_found() -> None:
+    assert undefined("import numpy as np\nx = np.ones(3) + eye") == {"eye"}
+    assert undefined("def f(x: Any) -> None:\n    return x\n") == {"Any"}
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_the_program_of_the_gallery_draws_the_picture_of_the_page(
+    name: str, pictures: Any, script: Callable[[str], str], tmp_path: Path
+) -> None:
+    from liehom.plotting.canvas import COLOURS, UNDATED, matplotlib_module
+
+    pictures.write(name, tmp_path / "page.svg", COLOURS, dark=False)
+    namespace: dict[str, Any] = {}
+    with matplotlib_module("").rc_context():
+        exec(script(name).rpartition("figure.savefig")[0], namespace)  # a second drawing would refine the layout
+        namespace["figure"].patch.set_alpha(0.0)
+        drawn = io.BytesIO()
+        namespace["figure"].savefig(drawn, format="svg", metadata=UNDATED[".svg"])
+    assert drawn.getvalue() == (tmp_path / "page.svg").read_bytes()
