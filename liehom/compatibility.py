@@ -129,6 +129,7 @@ GROWN: dict[str, tuple[str, ...]] = {
     "liehom.homogeneous.field:GeneratorField": ("_sites",),
     "liehom.homogeneous.rodrigues:Rodrigues": ("_power",),
     "liehom.atlas.entry:Entry": ("family", "facts"),
+    "liehom.integrators.solution:Solution": ("_steps",),
     "liehom.integrators.solution:Report": ("near_steps", "unkept_from", "stopped_at", "diagnostics"),
 }
 """Attributes since 0.1.0 that `__setstate__` of the class fills in, 'old module:old name' -> names."""

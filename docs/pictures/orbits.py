@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.plotting.canvas import COLOURS, GREY, PALE, matplotlib_module, new_figure
+from liehom.plotting.canvas import GREY, new_figure
+from liehom.plotting.surfaces import AZIMUTH, ELEVATION
 from pictures import picture
 
 FIELD = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / np.array([1.0, 2.0, 3.0]))
@@ -63,13 +64,6 @@ def orbits_on_the_sphere(colours: Sequence[str]) -> Any:
 def first_orbit(colours: Sequence[str]) -> Any:
     """The picture of the last block of the first steps, in the colours of the page."""
     sol = lh.integrate(FIELD, (0, 30), [0.8, 0.0, 0.6], step=lh.Corrected(lh.Euler(), order=4), dt=0.25)
-    figure = lh.plotting.plot_trajectory(sol)
-    figure.set_size_inches(4.2, 4.4)
-    named = dict(zip(COLOURS, colours, strict=True))
-    for line in figure.axes[0].lines:
-        line.set_color(named.get(line.get_color(), line.get_color()))
-        if line.get_color() == PALE:
-            line.set(color=GREY, alpha=0.45)
-    for text in figure.findobj(matplotlib_module("text").Text):
-        text.set_color(matplotlib_module("").rcParams["text.color"])
+    figure = new_figure(4.2, 4.4)
+    lh.plotting.plot_trajectory(sol, ax=figure.add_subplot(projection="3d", elev=ELEVATION, azim=AZIMUTH))
     return figure

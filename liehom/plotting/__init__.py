@@ -1,12 +1,17 @@
 """Plots of orders, errors, trajectories, strata, failure cones, roots and diagrams, by matplotlib (`liehom[plot]`).
 
-`canvas` makes figures, colours and files, and is the one module that loads matplotlib. `convergence_plot` draws errors
-over step sizes, `drift_plot` errors of first integrals over time, and `trajectory_plot` solutions. `strata_plot` draws
-failure cones, eigenvalues and Weyl chambers, `root_plot` roots and weights, and `diagram_plot` Dynkin, Satake and Vogan
-diagrams and bracket tables. A figure belongs to the caller: no window is opened, and no setting of matplotlib is
-changed. docs/api/plotting.md lists the functions.
+* `canvas` makes figures, colours and files, and is the one module that loads matplotlib;
+* `convergence_plot` draws errors over step sizes, `drift_plot` errors of first integrals over time;
+* `surfaces` draws spheres and other quadrics with curves on them, `trajectory_plot` solutions, whose points between the
+  steps are those of `curves`;
+* `strata_plot` draws failure cones, eigenvalues and Weyl chambers;
+* `root_plot` draws roots and weights, `diagram_plot` Dynkin, Satake and Vogan diagrams and bracket tables.
+
+A figure belongs to the caller: no window is opened, and no setting of matplotlib is changed. docs/api/plotting.md lists
+the functions.
 """
 
+from liehom.plotting.canvas import style as style
 from liehom.plotting.convergence_plot import plot_convergence as plot_convergence
 from liehom.plotting.diagram_plot import plot_bracket_table as plot_bracket_table
 from liehom.plotting.diagram_plot import plot_dynkin as plot_dynkin

@@ -26,6 +26,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 DASHES = ("-", "--", "-.", ":")
 GREY, PALE = "#6b6b6b", "#d9d9d9"
+DARK_PALE = "#4a4a4a"
 # the same hues, light enough for a dark page
 DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 
@@ -58,6 +59,7 @@ DARK: dict[str, object] = {
     "grid.color": "#3a3a3a",
     "axes.edgecolor": "#999999",
     "axes.facecolor": "none",
+    "figure.facecolor": "#131416",
 }
 """What `style` sets for a dark page, besides `STYLE`."""
 # metadata that would contain the time of writing, so that equal plots would be different files
@@ -85,29 +87,34 @@ def matplotlib_module(name: str) -> Any:
 
 
 def style(*, dark: bool = False) -> AbstractContextManager[None]:
-    """Context manager that sets the style of the library's plots.
+    """Context manager that sets the style of the library's plots: all that is drawn in it has this style.
 
     Parameters
     ----------
     dark : bool, optional
-        Light text on no background, for a dark page; the colours of lines are then `DARK_COLOURS`.
+        Light text on a dark background, with lines in lighter colours.
+
+    Examples
+    --------
+    >>> with style(dark=True):  # doctest: +SKIP
+    ...     ax = plot_dynkin("E8")
     """
     context: AbstractContextManager[None] = matplotlib_module("").rc_context({**STYLE, **(DARK if dark else {})})
     return context
 
 
 def style_unless(ax: Axes | None) -> AbstractContextManager[object]:
-    """The style of the library for new figures; the style of the caller, unchanged, for axes that the caller gives.
+    """The style of the library for new figures, unless `style` is active; for axes that are given, that of the caller.
 
     Raises
     ------
     InputError
         If `ax` is not None and not axes of matplotlib.
     """
-    if ax is None:
-        return style()
-    figure_of(ax)
-    return nullcontext()
+    if ax is not None:
+        figure_of(ax)
+        return nullcontext()
+    return nullcontext() if matplotlib_module("").rcParams["svg.hashsalt"] == STYLE["svg.hashsalt"] else style()
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -162,6 +169,11 @@ def current_colours() -> tuple[str, ...]:
 def paper_colour() -> str:
     """The colour, 'white' or 'black', that contrasts with `current_colours`."""
     return "black" if _is_dark() else "white"
+
+
+def pale_colour() -> str:
+    """The grey of grids and other lines in the background, which is near the color of the page."""
+    return DARK_PALE if _is_dark() else PALE
 
 
 def _is_dark() -> bool:

@@ -18,7 +18,7 @@ from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralS
 from liehom.errors import InputError, ShapeError
 from liehom.integrators import Solution
 from liehom.plotting.canvas import DASHES, MARKERS, current_colours, new_figure, style_unless
-from liehom.plotting.trajectory_plot import MAX_TRAJECTORIES
+from liehom.plotting.curves import MAX_TRAJECTORIES
 from liehom.typing import Array
 
 if TYPE_CHECKING:

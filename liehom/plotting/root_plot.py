@@ -15,7 +15,7 @@ import numpy as np
 from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.errors import InputError
 from liehom.plotting.canvas import GREY, MARKERS, axes_of_dimension, current_colours, paper_colour, style_unless
-from liehom.plotting.trajectory_plot import AnyAxes
+from liehom.plotting.surfaces import AnyAxes
 from liehom.representations.highest_weight import character
 from liehom.typing import Array, IntegerArray
 

@@ -11,9 +11,9 @@ from liehom.algebra.roots.root_system import root_system
 from liehom.errors import InputError, displayed
 from liehom.fullness import decide_fullness, failure_report
 from liehom.homogeneous import FailureSet, RelativeInvariant, adjoint_strata, symmetric_strata
-from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, matplotlib_module, new_figure, style_unless
+from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, new_figure, style_unless
 from liehom.plotting.root_plot import simple_root_coordinates
-from liehom.plotting.trajectory_plot import AZIMUTH, ELEVATION, AnyAxes, draw_sphere
+from liehom.plotting.surfaces import AZIMUTH, ELEVATION, AnyAxes, Scene, sphere
 from liehom.representations import Pair
 from liehom.scalars import Matrix
 from liehom.typing import Array
@@ -119,17 +119,15 @@ def _zeros(terms: Sequence[Term], size: int) -> Iterator[Array]:
             if abs(root.imag) < 1e-9 * (1 + abs(root)):
                 yield np.array([[root.real], [1.0]]) / np.hypot(root.real, 1.0)
         return
-    theta, phi = np.meshgrid(np.linspace(0, np.pi, GRID), np.linspace(0, 2 * np.pi, 2 * GRID), indexing="ij")
-    grid = _on_the_sphere(theta, phi)
-    f = sum(c * np.prod(grid ** e[:, None, None], axis=0) for e, c in terms)
-    if f.min() < 0 < f.max():
-        contours = matplotlib_module("figure").Figure().add_subplot().contour(phi, theta, f, levels=[0.0])
-        for line in (segment for level in contours.allsegs for segment in level):
-            yield _on_the_sphere(line[:, 1], line[:, 0])
+    exponents = np.array([e for e, _ in terms])
+    coefficients = np.array([c for _, c in terms])
+    yield from (curve for _, curve in sphere(1.0).contours(lambda m: _value(m, exponents, coefficients), [0.0]))
 
 
-def _on_the_sphere(theta: Array, phi: Array) -> Array:
-    return np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)])
+def _value(m: Array, exponents: Array, coefficients: Array) -> Array:
+    """A polynomial at points (..., 3)."""
+    found: Array = np.prod(m[..., None, :] ** exponents, axis=-1) @ coefficients
+    return found
 
 
 def _prepare(ax: Axes) -> None:
@@ -144,13 +142,11 @@ def _prepare(ax: Axes) -> None:
 
 def _prepare_space(ax: AnyAxes) -> None:
     ax.view_init(elev=ELEVATION, azim=AZIMUTH)
-    draw_sphere(ax, 1.0)
-    for i, direction in enumerate(np.eye(3)):
-        ax.plot(*np.outer(direction, np.array([1.0, 1.15])), color=GREY, linewidth=1.0)
-        ax.text(*(1.25 * direction), f"$x_{i}$", ha="center", va="center")
-    ax.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
+    scene = Scene(ax)
+    sphere(1.0).draw(scene)
+    scene.frame(1.0, ("$x_0$", "$x_1$", "$x_2$"))
+    scene.limit(1.0)
     ax.set_axis_off()
-    ax.set_box_aspect((1, 1, 1), zoom=1.25)
 
 
 def _draw(ax: Axes, curve: Array, colour: str) -> None:

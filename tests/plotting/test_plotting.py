@@ -58,6 +58,12 @@ def holds(figure: Any, wanted: Any) -> bool:
     return any(line.shape == wanted.shape and np.allclose(line.astype(float), wanted) for line in lines(figure))
 
 
+def misses(figure: Any, points: Any) -> float:
+    """The largest distance from a point of shape (axes, n) to the nearest point of a line."""
+    drawn = np.concatenate([line.astype(float).T for line in lines(figure) if len(line) == len(points)])
+    return float(max(np.nanmin(np.linalg.norm(drawn - point, axis=-1)) for point in points.T))
+
+
 def texts(figure: Any) -> list[str]:
     return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
 
@@ -151,11 +157,11 @@ def test_three_coordinates_on_a_sphere() -> None:
 
 def test_what_is_behind_the_sphere_is_pale() -> None:
     spin = lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1])
-    made = lh.integrate(spin, (0, 12), [0.8, 0.0, 0.6], dt=0.1)
+    made = lh.integrate(spin, (0, 12), [0.8, 0.0, 0.6], dt=0.2)
     axes = plot_trajectory(made).axes[0]
     up, around = np.radians(axes.elev), np.radians(axes.azim)
     eye = np.array([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)])
-    curves = [line for line in axes.lines if len(line.get_data_3d()[0]) == made.y.shape[1]]
+    curves = [line for line in axes.lines if len(line.get_data_3d()[0]) > 500]
     assert sorted(line.get_alpha() or 1.0 for line in curves) == [0.3, 1.0]
     for line in curves:
         depth = eye @ np.array(line.get_data_3d(), dtype=float)
@@ -169,13 +175,15 @@ def test_three_coordinates_elsewhere_have_no_sphere() -> None:
     made = lh.integrate(field, (0, 1), [0.0, 0.0, 1.0], dt=0.1)
     figure = plot_trajectory(made)
     assert not any("|m|" in text for text in texts(figure))
-    assert holds(figure, made.y)
+    assert holds(plot_trajectory(made, show="steps"), made.y)
+    assert misses(figure, made.y) < 1e-12
 
 
 def test_two_coordinates_in_the_plane() -> None:
     made = solution(2)
     figure = plot_trajectory(made)
-    assert holds(figure, made.y)
+    assert holds(plot_trajectory(made, show="steps"), made.y)
+    assert misses(figure, made.y) < 1e-12
     assert figure.axes[0].get_aspect() == 1
     assert (figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()) == ("$m_0$", "$m_1$")
 
@@ -185,7 +193,8 @@ def test_more_coordinates_over_time(size: int) -> None:
     made = solution(size)
     figure = plot_trajectory(made)
     for values in made.y:
-        assert holds(figure, np.array([made.t, values]))
+        assert holds(plot_trajectory(made, show="steps"), np.array([made.t, values]))
+        assert misses(figure, np.array([made.t, values])) < 1e-12
     assert figure.axes[0].get_xlabel() == "time $t$"
     assert f"$m_{size - 1}$" in texts(figure)
 
@@ -203,6 +212,71 @@ def test_dense_output_is_drawn_finely() -> None:
     assert np.abs(np.linalg.norm(curve, axis=0) - 1).max() < 1e-12
     back = lh.integrate(rotation(2), (3, 0), [1.0, 0.0], dt=1.0, dense_output=True)
     assert np.allclose(max(lines(plot_trajectory(back)), key=lambda line: line.shape[1])[:, 0], [1, 0])
+
+
+def furthest_from_the_circle(sol: lh.Solution, show: str = "curve") -> float:
+    """How far midpoints of the segments that are drawn are from the unit circle: 0.12 for a chord of 1 radian."""
+    curve = max(lines(plot_trajectory(sol, show=show)), key=lambda line: line.shape[1]).astype(float)
+    middles = (curve[:, 1:] + curve[:, :-1]) / 2
+    return float(np.abs(np.linalg.norm(middles, axis=0) - 1).max())
+
+
+def test_curves_follow_the_method_between_steps() -> None:
+    """With a step of 1 radian the chord would be 0.12 away; and the angle is the one of the step, not of a spline."""
+    sol = lh.integrate(rotation(2), (0, 6), [1.0, 0.0], dt=1.0)
+    assert sol.sol is None
+    assert furthest_from_the_circle(sol) < 1e-4
+    turned = max(lines(plot_trajectory(sol, over_time=True)), key=lambda line: line.shape[1]).astype(float)
+    assert np.abs(turned[1] - np.cos(turned[0])).max() < 1e-12
+    assert furthest_from_the_circle(sol, "steps") > 0.1  # a control
+
+
+def test_curves_of_files_and_of_output_times_are_splines_on_the_sphere(tmp_path: Path) -> None:
+    sol = lh.integrate(rotation(2), (0, 6), [1.0, 0.0], dt=0.5)
+    sol.save(tmp_path / "sol.npz")
+    sampled = lh.integrate(rotation(2), (6, 0), [1.0, 0.0], t_eval=np.arange(6.0, -0.1, -0.5))
+    for made in (lh.Solution.load(tmp_path / "sol.npz"), sampled, pickle.loads(pickle.dumps(sol))):
+        assert furthest_from_the_circle(made) < 1e-4
+        angle = max(lines(plot_trajectory(made, over_time=True)), key=lambda line: line.shape[1]).astype(float)
+        assert np.abs(angle[1] - np.cos(angle[0] - made.t[0])).max() < 2e-3
+        assert misses(plot_trajectory(made), made.y) < 1e-12
+
+
+def test_long_runs_have_a_limit_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.import_module("liehom.plotting.curves"), "MAX_POINTS", 1000)
+    sol = lh.integrate(rotation(2), (0, 25), [1.0, 0.0], dt=0.01, step=lh.Euler())
+    figure = plot_trajectory(sol)
+    assert max(line.shape[1] for line in lines(figure)) <= 1001
+    assert "one of 3 steps" in figure.axes[0].get_title(loc="left")
+
+
+def test_chosen_coordinates_and_markers() -> None:
+    made = solution(5)
+    figure = plot_trajectory(made, coordinates=(4, 1))
+    assert misses(figure, made.y[[4, 1]]) < 1e-12
+    assert (figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()) == ("$m_4$", "$m_1$")
+    assert plot_trajectory(made, coordinates=(0, 1, 2)).axes[0].name == "3d"
+    both = plot_trajectory(made, coordinates=(4, 1), show="both")
+    assert holds(both, made.y[[4, 1]]) and not holds(figure, made.y[[4, 1]])
+
+
+def test_axes_of_the_caller_in_space_and_in_the_plane() -> None:
+    made = solution(3)
+    whole = Figure()
+    solid, flat = whole.add_subplot(1, 2, 1, projection="3d"), whole.add_subplot(1, 2, 2)
+    assert plot_trajectory(made, ax=solid) is whole
+    assert plot_trajectory(made, ax=flat) is whole
+    drawn = np.concatenate([np.array(line.get_data(), dtype=float) for line in flat.lines], axis=1)
+    assert np.nanmax(np.hypot(*drawn)) == pytest.approx(1.15, abs=0.1)  # the sphere and the ends of its axes
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [({"show": "dots"}, "'both'"), ({"coordinates": (0, 3)}, "from 0 to 2"), ({"coordinates": ()}, "from 0 to 2")],
+)
+def test_wrong_options_of_plot_trajectory_raise(options: Any, match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        plot_trajectory(solution(3), **options)
 
 
 @pytest.mark.parametrize(("size", "dense"), [(2, False), (3, True), (4, False), (9, False)])

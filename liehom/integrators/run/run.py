@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time as wall
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path as File
 from typing import final
 
@@ -24,7 +25,7 @@ from liehom.integrators.run.events import Events
 from liehom.integrators.run.options import Options, Span, outcome
 from liehom.integrators.run.progress import Progress
 from liehom.integrators.run.records import EventLog, Path, Samples
-from liehom.integrators.run.solution import Solution
+from liehom.integrators.run.solution import Solution, with_steps
 from liehom.integrators.run.state import RunState
 from liehom.integrators.run.statistics import StepStatistics
 from liehom.pytrees import numbers_of
@@ -155,10 +156,8 @@ class Run(Automaton):
     def _solution(self) -> Solution:
         o, now = self.options, self.state
         times, points, sizes = now.path.compact()
-        dense = None
-        if o.dense_output:
-            psi = Generator(self.field, self.psi.orbit_dimension, self.start)
-            dense = DenseSolution(self.action, psi, self.step, times, points, sizes, nominal=o.nominal)
+        psi = Generator(self.field, self.psi.orbit_dimension, self.start)
+        dense = partial(DenseSolution, self.action, psi, self.step, times, points, sizes, nominal=o.nominal)
         if now.samples is None:
             t, y = np.moveaxis(times, 0, -1), np.moveaxis(points, 0, -1)
         else:
@@ -168,10 +167,10 @@ class Run(Automaton):
         t_events, y_events = now.event_log.lists() if self.stops.events is not None else (None, None)
         record, direction = now.statistics, float(self.direction)
         ended = outcome(now.code, now.ended_at, record.unkept_from, direction, self.step.order, record.loss)
-        return Solution(
+        made = Solution(
             t=t,
             y=y,
-            sol=dense,
+            sol=dense() if o.dense_output else None,
             t_events=t_events,
             y_events=y_events,
             nfev=now.calls,
@@ -181,3 +180,4 @@ class Run(Automaton):
             report=record.report(self.action, o.clock, self.psi.orbit_dimension, direction, ended.stopped_at),
             statuses=ended.statuses if self.shape else ended.status,
         )
+        return with_steps(made, dense) if self.keeps else made

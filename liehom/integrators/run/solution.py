@@ -10,8 +10,8 @@ import textwrap
 import warnings
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from typing import Any, final
 
 import numpy as np
@@ -88,6 +88,15 @@ class Solution(Displayed):
     statuses: int | IntegerArray
     njev: int = field(default=0)
     nlu: int = field(default=0)
+    # makes what `sol` would be with dense output, for plots; neither written to files nor pickled
+    _steps: Callable[[], DenseSolution] | None = field(default=None, init=False)
+
+    def __getstate__(self) -> list[object]:
+        return [getattr(self, entry.name) for entry in fields(self) if entry.name != "_steps"]
+
+    def __setstate__(self, state: list[object]) -> None:
+        for entry, value in zip(fields(self), [*state, None], strict=True):
+            object.__setattr__(self, entry.name, value)
 
     @property
     def success(self) -> bool:
@@ -181,6 +190,46 @@ class Solution(Displayed):
         shown = [n for n in SUMMARY if n != "statuses" or np.ndim(self.statuses)]
         width = max(map(len, shown)) + 1
         return "\n".join(f"{name:>{width}}: {_summary_entry(self[name], width + 2)}" for name in shown)
+
+
+def with_steps(solution: Solution, steps: Callable[[], DenseSolution]) -> Solution:
+    """The solution, which remembers its steps so that `interpolant` can make them again.
+
+    Parameters
+    ----------
+    solution : Solution
+    steps : callable
+        Returns the dense output.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> sol = lh.integrate(field, (0, 1), [1.0, 0.0], dt=0.5, dense_output=True)
+    >>> with_steps(sol, lambda: sol.sol) is sol
+    True
+    """
+    object.__setattr__(solution, "_steps", steps)
+    return solution
+
+
+def interpolant(solution: Solution) -> DenseSolution | None:
+    """The solution as a function of time, which is `sol` or makes the steps again; None if it does not know its steps.
+
+    Solutions that were read from files or pickles, those at times of `t_eval`, those that were merged from parts, and
+    those of compiled calls without a path do not know their steps.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+    >>> sol = lh.integrate(field, (0, 1), [1.0, 0.0], dt=0.5)
+    >>> sol.sol is None, interpolant(sol)(0.25).round(4).tolist()
+    (True, [0.9689, 0.2474])
+    """
+    if solution.sol is None and solution._steps is not None:
+        return solution._steps()
+    return solution.sol
 
 
 def warn_of_order(report: Report, stacklevel: int) -> None:
