@@ -123,7 +123,7 @@ def test_malformed_table_raises_with_the_fault(text: str, says: str) -> None:
     ],
 )
 def test_a_table_that_is_too_large_is_refused(text: str, says: str) -> None:
-    with pytest.raises(errors.LimitError, match=says):
+    with lh.limits(entries=10**6), pytest.raises(errors.LimitError, match=says):
         io.from_gap(text)
 
 

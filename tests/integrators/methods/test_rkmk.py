@@ -362,6 +362,7 @@ def test_jax_traces_a_step(name: str, jax: Any) -> None:
     assert np.abs(np.asarray(jax.jit(step)(*map(jax.numpy.asarray, (m, t, h)))) - wanted).max() < 1e-14
 
 
+@pytest.mark.slow  # test_compiled_implicit differentiates trajectories of implicit steps
 def test_jax_differentiates_an_implicit_step(jax: Any) -> None:
     rho, m = starts("S2")
     action, psi = lh.Action(rho), Generator(smooth_field(rho), 2)
