@@ -161,7 +161,10 @@ def test_an_unknown_number_of_steps_needs_a_bound() -> None:
         jax.jit(lambda t: lh.integrate(field, (0.0, t), START, dt=0.1, engine="jax").y)(1.0)
 
 
-@pytest.mark.parametrize("options", [{"max_steps": 3}, pytest.param({"min_step": 2.0}, marks=pytest.mark.slow)], ids=str)
+SMALLEST = pytest.param({"min_step": 2.0}, marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize("options", [{"max_steps": 3}, SMALLEST], ids=str)
 def test_bounds_of_adaptive_steps_hold_under_jit(options: dict[str, Any]) -> None:
     field = lh.GeneratorField(RHO, lambda m, t, args: -m * args)
     propagator, numbers = lh.Propagator(field, "rk45", engine="jax"), jnp.array([1.0, 0.5, 0.25])
