@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]  # the pages document this tree, whatever is installed
 
 import formulas  # noqa: E402 - found by the path that is set above
+import page_links  # noqa: E402
 
 LOG = logging.getLogger(__name__)
 
@@ -113,11 +114,19 @@ def table_of_modules(app: Any, what: str, name: str, thing: Any, options: Any, l
         lines[first:] = [*table, "", *(line for i, line in enumerate(lines) if i > first and not matches[i])]
 
 
+def check_links(app: Any, exception: Exception | None) -> None:
+    """A warning for each link of the built pages that leads nowhere, and for each picture without words."""
+    if exception is None and app.builder.name == "html":
+        for page, fault in page_links.faults(Path(app.outdir)):
+            LOG.warning("%s: %s", page, fault)
+
+
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
     app.connect("autodoc-process-docstring", table_of_modules, priority=950)
     app.connect("doctree-read", refuse_apostrophes)
+    app.connect("build-finished", check_links)
     import page_tree  # found by the path that is set above
     import picture_directive
     import pictures
