@@ -114,6 +114,22 @@ WINGS: dict[str, tuple[str, ...]] = {
         "convergence",
     ),
     "atlas": ("recipe", "entry", "pair_facts", "table_rows", "sweep", "families", "all_families"),
+    "cli": (
+        "guard",
+        "terminal",
+        "options",
+        "inputs",
+        "problem_options",
+        "show",
+        "integration",
+        "atlas_command",
+        "classify_commands",
+        "describe_command",
+        "fullness_commands",
+        "reproduce",
+        "demo",
+        "app",
+    ),
     "instances": ("spheres", "bodies", "rigid_body", "spins", "sym_conjugation", "isospectral"),
 }
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import nullcontext
 from typing import Any, BinaryIO
 
 from liehom.atlas.entry import Entry
@@ -128,17 +129,17 @@ def write_entries(path: str | os.PathLike[str], entries: Iterable[Entry]) -> dic
     return made
 
 
-def read_entries(path: str | os.PathLike[str]) -> Iterator[Entry]:
-    """Iterator of the entries in a file of entries.
+def read_entries(path: str | os.PathLike[str] | BinaryIO) -> Iterator[Entry]:
+    """Iterator of the entries in a file of entries: its path, or the file open in binary mode.
 
     Raises
     ------
     FormatError
         If the file cannot be read, or a line is not an entry.
     """
-    shown = displayed(str(path))
+    shown = displayed(str(getattr(path, "name", path)))
     try:
-        with open(path, "rb") as file:
+        with open(path, "rb") if isinstance(path, str | os.PathLike) else nullcontext(path) as file:
             for number, line in enumerate(file, 1):
                 try:
                     entry = Entry.from_json(json.loads(line))

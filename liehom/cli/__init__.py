@@ -1,9 +1,10 @@
 """The command line: every command parses its options, calls the library, and prints the result.
 
-`app` defines the commands; `describe_command`, `numerical_commands` and `reproduce` hold the larger ones,
-`run_integrate` and `run_order` their work, `demo` the tour. `inputs` reads files, pairs, points and numbers from
-arguments, `problem_options` overrides the problem of a file, `show` prints, `options` are shared options, `guard` maps
-exceptions to exit codes. Only `guard` is imported before a command runs. docs/command-line.md describes the commands.
+`app` has the group of commands and the short ones; modules that end in `_command` or `_commands`, `reproduce` and the
+wing `integration` hold the others, `demo` the tour. `inputs` reads files, pairs, points and numbers from arguments,
+`problem_options` overrides the problem of a file, `show` prints results, `options` are shared options, `guard` maps
+exceptions to exit codes, and the wing `terminal` has help, completion and the steps of long commands. Only `guard` is
+imported before a command runs. docs/command-line.md describes the commands.
 """
 
 from __future__ import annotations

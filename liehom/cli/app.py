@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import sys
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
 
 from liehom.budget import limits, parsed_limits
-from liehom.cli import atlas_command, classify_commands, describe_command, numerical_commands, reproduce
-from liehom.cli.guard import NO, NUMERICAL, YES, guarded
-from liehom.cli.options import JsonOption, PairArgument, run
+from liehom.cli import atlas_command, classify_commands, describe_command, fullness_commands, reproduce
+from liehom.cli.guard import NUMERICAL, YES, guarded
+from liehom.cli.integration import numerical_commands
+from liehom.cli.options import FileArgument, JsonOption, PairArgument, command, run
+from liehom.cli.terminal import completion
+from liehom.cli.terminal.help import COMPLETE, Group, examples
 
-if TYPE_CHECKING:
-    from liehom.fullness import Verdict
-    from liehom.scalars import Field
+HELP = """Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces.
 
-HELP = "Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces."
+Exit codes: 0 yes or done, 1 no, 2 malformed input, 3 numerical or undecided, 70 a bug, 74 no output, 130 interrupted.
+"""
+TRY_FIRST = (
+    ('liehom fullness "so(4)/so(3)"', "Is this pair full, and why?"),
+    ('liehom describe "so(4,1)"', "What is this Lie algebra?"),
+    ("liehom integrate examples/rigid_body.json", "Integrate an orbit."),
+    ("liehom demo", "Take a tour of a few seconds."),
+    ("liehom --help", "List all commands."),
+)
+"""Commands that ``liehom`` without arguments suggests."""
 
 
-class LimitsFirst(TyperGroup):
+class LimitsFirst(Group):
     """The group of commands; ``--limit NAME=NUMBER`` is read before and after the name of the command."""
 
-    def parse_args(self, ctx: object, args: list[str]) -> list[str]:
-        return list(super().parse_args(ctx, limits_first(args)))  # type: ignore[arg-type]
+    def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
+        return list(super().parse_args(ctx, limits_first(args)))
 
 
 def limits_first(args: list[str]) -> list[str]:
@@ -53,8 +64,9 @@ app: typer.Typer = typer.Typer(
     name="liehom",
     cls=LimitsFirst,
     help=HELP,
-    no_args_is_help=True,
-    add_completion=False,
+    epilog=examples(*(line for line, _ in TRY_FIRST[:-1])),
+    invoke_without_command=True,
+    add_completion=False,  # its scripts do not quote parentheses, so names of pairs become syntax errors
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -67,7 +79,11 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback(help=HELP)
+if COMPLETE in os.environ:
+    completion.enable()
+
+
+@app.callback()
 def _options(
     context: typer.Context,
     limit: Annotated[
@@ -84,127 +100,34 @@ def _options(
 
     if (code := guarded(enter)) != YES:
         raise typer.Exit(code)
+    if context.invoked_subcommand is None:
+        run(try_first)
 
 
-@app.command()
-def fullness(
-    pair: PairArgument,
-    certificate: Annotated[
-        str | None, typer.Option(metavar="OUT", help="File for the certificate (default: none).")
-    ] = None,
-    json: JsonOption = False,
-) -> None:
-    """Decide whether a pair is full, and why.  Exit code 0: full, 1: not full, 3: numerical or undecided."""
-    run(lambda: _fullness(pair, certificate, json))
+def try_first() -> int:
+    """Print the commands to begin with; returns the exit code."""
+    left = max(len(line) for line, _ in TRY_FIRST)
+    wide = left + max(len(says) for _, says in TRY_FIRST) + 4 <= shutil.get_terminal_size().columns
+    print("Lie algebras, homogeneous spaces and isotropy, with proofs. Try first:\n")
+    for line, says in TRY_FIRST:
+        print(f"  {line:<{left}}  {says}" if wide else f"  {line}\n      {says}")
+    print("\nliehom COMMAND --help explains a command, with examples.")
+    return YES
 
 
-def _fullness(text: str, out: str | None, as_json: bool) -> int:
-    from liehom.cli.inputs import check_output, pair_argument, pair_facts, pair_line
-    from liehom.cli.show import show_answer, show_json
-    from liehom.errors import InputError
-    from liehom.fullness.decide import decide_fullness
-    from liehom.io import dump
-
-    pair = pair_argument(text)
-    if out is not None and not pair.field.exact:
-        raise InputError("a numerical answer has no certificate; give exact numbers, or leave --certificate out")
-    if out is not None:
-        check_output(out, text)
-    verdict = decide_fullness(pair)
-    proved = verdict.certificate is not None
-    if proved:
-        verdict.verify()
-    code = NUMERICAL if not proved else YES if verdict.full else NO
-    if out is not None:
-        dump(verdict.certificate, out)
-    if as_json:
-        show_json({**verdict.to_json(), "pair": pair_facts(text, pair)})
-        return code
-    rows = [("pair", pair_line(text, pair)), *_evidence(verdict)]
-    if out is not None:
-        rows.append(("written to", out))
-    show_answer(str(verdict), rows, code)
-    return code
+command(
+    app,
+    'liehom fullness "so(4)/so(3)"',
+    'liehom fullness "so(3,1)/so(2,1)" --certificate certificate.json',
+    "liehom fullness examples/g2_su3.json --json",
+    'liehom catalog "sl(3)/P1" | liehom fullness -',
+)(fullness_commands.fullness)
+command(app, 'liehom verify "so(3,1)/so(2,1)" certificate.json')(fullness_commands.verify)
 
 
-def _evidence(verdict: Verdict) -> list[tuple[str, str]]:
-    """Labels and values of the evidence for a verdict."""
-    from liehom.cli.show import short_vector
-
-    data = verdict.to_json()
-    rows = []
-    if data.get("eta") is not None:
-        rows.append(("eta", short_vector(data["eta"])))
-        definition = _definition(getattr(verdict, "eta_field", None))
-        if definition:
-            rows.append(("where", definition))
-        rows.append(("rank at eta", f"{data['rank']}, short of dim g/h by {data['rank_defect']}"))
-    elif data.get("eta_numerical"):
-        rows.append(("eta, numerically", short_vector([f"{x:.6g}" for x in data["eta_numerical"]])))
-    if verdict.certificate is None:
-        rows.append(
-            ("least singular value", f"{data['smallest_singular_value']:.3g}, tolerance {data['tolerance']:.3g}")
-        )
-        rows.append(("gap", f"{data['gap']:.3g}"))
-    else:
-        rows.append(("certificate", f"{verdict.certificate.kind}, verified by the independent checker"))
-    return rows
-
-
-def _definition(field: Field | None) -> str:
-    """Definition of the generator of a number field, in words; an empty string for other fields."""
-    from liehom.scalars import NumberField
-
-    if not isinstance(field, NumberField):
-        return ""
-    terms = [f"{c} {field.symbol}^{i}" if i else str(c) for i, c in enumerate(field.minpoly) if c]
-    low, high = field.interval
-    equation = " + ".join(reversed(terms)).replace("+ -", "- ")
-    return f"{field.symbol} = {field.to_float(field.generator):.6g}... is the root of {equation} in [{low}, {high}]"
-
-
-@app.command()
-def verify(
-    pair: PairArgument,
-    certificate: Annotated[str, typer.Argument(metavar="CERT", help="Certificate file.")],
-    json: JsonOption = False,
-) -> None:
-    """Check that a certificate proves its verdict for a pair.  Exit code 0: proved, 1: a check fails."""
-    run(lambda: _verify(pair, certificate, json))
-
-
-def _verify(text: str, file: str, as_json: bool) -> int:
-    from liehom.cli.inputs import file_argument, pair_argument, pair_facts, pair_line
-    from liehom.cli.show import show_answer, show_json
-    from liehom.errors import CertificateError, CertificateFormatError
-    from liehom.fullness.certificates.certificate import Certificate
-    from liehom.fullness.checker.verify import verify_certificate
-    from liehom.io import read_object
-
-    pair = pair_argument(text)
-    certificate = Certificate.from_json(read_object(file_argument(file)))
-    failure = None
-    try:
-        verify_certificate(pair, certificate)
-    except CertificateFormatError:
-        raise
-    except CertificateError as error:
-        if not as_json:
-            raise
-        failure = {"check": error.check, "message": str(error)}
-    claim = "full" if certificate.full else "not full"
-    if as_json:
-        data = {"verified": failure is None, "full": certificate.full, "kind": certificate.kind, "failure": failure}
-        show_json({**data, "pair": pair_facts(text, pair)})
-    else:
-        rows = [("pair", pair_line(text, pair)), ("certificate", f"{file}, kind {certificate.kind}")]
-        show_answer(f"verified: the certificate proves that the pair is {claim}", rows)
-    return YES if failure is None else NO
-
-
-@app.command()
+@command(app, "liehom isotropy examples/sym3.json", "liehom isotropy examples/sym3.json --point '-1,0,0,-1,0,sqrt(2)'")
 def isotropy(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="Representation file.")],
+    file: FileArgument,
     point: Annotated[
         str | None, typer.Option(metavar="ROW", help="Point, e.g. '1,0,-2/3' (default: the file's point).")
     ] = None,
@@ -215,13 +138,12 @@ def isotropy(
 
 
 def _isotropy(file: str, point: str | None, as_json: bool) -> int:
-    from liehom.cli.inputs import file_argument, point_in
+    from liehom.cli.inputs import point_in, problem_argument, shown_name
     from liehom.cli.show import short_vector, show_answer, show_json
     from liehom.errors import FormatError
-    from liehom.io import load_problem
     from liehom.scalars import RR
 
-    problem = load_problem(file_argument(file))
+    problem = problem_argument(file)
     rho, at = problem.representation, list(problem.point or ())
     if point is not None:
         rho, at = point_in(rho, point)
@@ -249,7 +171,7 @@ def _isotropy(file: str, point: str | None, as_json: bool) -> int:
         )
         return code
     facts = [
-        ("representation", f"{file}: dim g = {dimension} on {rho.field.name}^{rho.size}"),
+        ("representation", f"{shown_name(file)}: dim g = {dimension} on {rho.field.name}^{rho.size}"),
         ("point", short_vector([write(x) for x in at])),
     ]
     if rho.appended:
@@ -263,7 +185,7 @@ def _isotropy(file: str, point: str | None, as_json: bool) -> int:
     return code
 
 
-@app.command(name="range")
+@command(app, 'liehom range "so(3,1)/so(2,1)"', 'liehom range "so(4)/so(3)" --psi 0,1,0,0,0,1', name="range")
 def range_(
     pair: PairArgument,
     psi: Annotated[
@@ -302,23 +224,38 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
     return code
 
 
-app.command()(classify_commands.classify)
-app.command()(classify_commands.full_pairs)
-app.command()(describe_command.describe)
-app.command()(numerical_commands.integrate)
-app.command()(numerical_commands.order)
-app.command()(reproduce.reproduce)
+command(app, 'liehom classify "so(6)/u(3)"')(classify_commands.classify)
+command(app, "liehom full-pairs 3")(classify_commands.full_pairs)
+command(app, 'liehom describe "so(4,1)"', 'liehom describe "e(3)/so(3)"', "liehom describe examples/sym3.json")(
+    describe_command.describe
+)
+command(
+    app,
+    "liehom integrate examples/rigid_body.json",
+    "liehom integrate examples/rigid_body.json --base euler --order 4 --dt 0.05 --out body.npz",
+    "liehom integrate examples/rigid_body.json --rtol 1e-8 --plot orbit.png",
+)(numerical_commands.integrate)
+command(app, "liehom order examples/rigid_body.json --base euler --order 3 --t-span 0 1")(numerical_commands.order)
+command(app, "liehom reproduce fig1 --quick --out figures", "liehom reproduce all --out figures")(reproduce.reproduce)
 app.add_typer(atlas_command.atlas, name="atlas")
 
 
-@app.command()
+@command(app, "liehom catalog", 'liehom catalog "so(4)/so(3)" > pair.json')
 def catalog(
     name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="Pair to print as a pair file (default: list all names).")
+        str | None,
+        typer.Argument(
+            metavar="[NAME]",
+            help="Pair to print as a pair file (default: list all names).",
+            autocompletion=completion.pair,
+        ),
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """List names that other commands accept, one of each kind (sizes are free), or print one pair as a file."""
+    """List names of pairs that other commands accept, or print one pair as a file.
+
+    The list has one or more names of each kind; sizes are free.
+    """
     run(lambda: _catalog(name, json))
 
 
@@ -338,9 +275,9 @@ def _catalog(name: str | None, as_json: bool) -> int:
     return YES
 
 
-@app.command()
+@command(app, "liehom demo", "liehom demo --plot errors.png")
 def demo(plot: numerical_commands.PlotOption = None, json: JsonOption = False) -> None:
-    """Show a tour: fullness with verified certificates, isotropy, integration."""
+    """Show a tour: fullness with verified certificates, isotropy and integration."""
 
     def action() -> int:
         from liehom.cli.demo import run_demo
@@ -348,3 +285,6 @@ def demo(plot: numerical_commands.PlotOption = None, json: JsonOption = False) -
         return run_demo(plot, json)
 
     run(action)
+
+
+command(app, "liehom completion bash", 'eval "$(liehom completion bash)"')(completion.completion)

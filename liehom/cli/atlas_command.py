@@ -8,7 +8,9 @@ from typing import Annotated, Any, TypeAlias
 import typer
 
 from liehom.cli.guard import YES
-from liehom.cli.options import JsonOption, run
+from liehom.cli.options import JsonOption, command, run
+from liehom.cli.terminal import completion
+from liehom.cli.terminal.help import Group
 from liehom.errors import InputError, displayed
 
 FamilyOption: TypeAlias = Annotated[
@@ -16,13 +18,14 @@ FamilyOption: TypeAlias = Annotated[
 ]
 
 atlas: typer.Typer = typer.Typer(
-    help="The atlas: families of pairs, each pair decided with a certificate.",
+    cls=Group,
+    help="List, build and search the atlas: families of pairs, each pair decided with a certificate.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
 
 
-@atlas.command()
+@command(atlas, "liehom atlas families")
 def families(json: JsonOption = False) -> None:
     """List the families and their numbers of pairs."""
 
@@ -40,7 +43,7 @@ def families(json: JsonOption = False) -> None:
     run(action)
 
 
-@atlas.command()
+@command(atlas, "liehom atlas build atlas.jsonl --family parabolic --store parts")
 def build(
     out: Annotated[str, typer.Argument(metavar="OUT.jsonl", help="File for the entries with their certificates.")],
     family: FamilyOption = None,
@@ -55,7 +58,10 @@ def build(
     force: Annotated[bool, typer.Option("--force", help="Replace the files if they exist.")] = False,
     json: JsonOption = False,
 ) -> None:
-    """Decide all pairs of the families, verify the certificates, and count.  Exit code 0: all decided, 1: not all."""
+    """Decide all pairs of the families, verify the certificates, and count.
+
+    The exit code is 0 if all pairs are decided, and 1 if not.
+    """
     run(lambda: _build(out, family, table, store, processes, force, json))
 
 
@@ -86,9 +92,16 @@ def _build(
     return NO if any(own["undecided"] for own in counts.values()) else YES
 
 
-@atlas.command()
+@command(atlas, "liehom atlas show atlas.jsonl --full --search S^3")
 def show(
-    file: Annotated[str, typer.Argument(metavar="FILE.jsonl", help="File that `build` has written.")],
+    file: Annotated[
+        str,
+        typer.Argument(
+            metavar="FILE.jsonl",
+            help="File that `liehom atlas build` has written, or - for standard input.",
+            autocompletion=completion.files(".jsonl"),
+        ),
+    ],
     family: FamilyOption = None,
     full: Annotated[bool | None, typer.Option("--full/--not-full", help="Only pairs that are full, or not.")] = None,
     letter: Annotated[
@@ -97,7 +110,7 @@ def show(
     search: Annotated[str, typer.Option(metavar="TEXT", help="Only pairs with this text in a cell.")] = "",
     json: JsonOption = False,
 ) -> None:
-    """Print rows of the table of a file; with --json the entries with their certificates."""
+    """Print rows of the table of a file, or with --json the entries with their certificates."""
 
     def action() -> int:
         from liehom.atlas import FAMILIES

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def classify(pair: PairArgument, json: JsonOption = False) -> None:
-    """Find the row of a full pair in the classification.  Exit code 1: not full, 3: numerical or undecided."""
+    """Find the row of a full pair in the classification.
+
+    The exit code is 1 if the pair is not full, and 3 if the answer is numerical or undecided.
+    """
     run(lambda: _classify(pair, json))
 
 
@@ -68,7 +71,10 @@ def _evidence(found: Classification, pair: Pair) -> list[tuple[str, str]]:
 def full_pairs(
     d: Annotated[int, typer.Argument(metavar="D", min=0, help="Dimension of g/h.")], json: JsonOption = False
 ) -> None:
-    """List all full pairs of a dimension: one for each row of the classification, with c for a number in spirals."""
+    """List all full pairs of a dimension, one for each row of the classification.
+
+    In the name of a family of spirals, c stands for a positive number.
+    """
 
     def action() -> int:
         from liehom.cli.show import show_json, show_table

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import liehom.io
 from liehom.cli.guard import YES
 from liehom.cli.inputs import examples_folder
+from liehom.cli.integration.run_order import measured, table_json
 from liehom.cli.problem_options import check_plot_file
-from liehom.cli.run_order import measured, table_json
 from liehom.cli.show import show_json, show_table
 from liehom.fullness.decide import decide_fullness
 from liehom.fullness.verdict import NotFull

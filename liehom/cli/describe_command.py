@@ -8,6 +8,7 @@ import typer
 
 from liehom.cli.guard import NUMERICAL, YES
 from liehom.cli.options import JsonOption, run
+from liehom.cli.terminal import completion
 
 if TYPE_CHECKING:
     from liehom.algebra import LieAlgebra
@@ -17,20 +18,25 @@ ObjectArgument: TypeAlias = Annotated[
     str,
     typer.Argument(
         metavar="FILE|NAME",
-        help="File (algebra, pair or representation, GAP's .g, Sage's .sage), or name such as 'so(4,1)', 'e(3)/so(3)'.",
+        help="Name such as 'so(4,1)', 'e(3)/so(3)' or E8, file of an algebra, a pair or a representation (.json, GAP's "
+        ".g, Sage's .sage), or - for a JSON file on standard input.",
+        autocompletion=completion.anything,
     ),
 ]
 
 
 def describe(name: ObjectArgument, json: JsonOption = False) -> None:
-    """Describe the structure of a Lie algebra, a pair or a representation.  Exit code 3: numerical only."""
+    """Describe the structure of a Lie algebra, a pair or a representation.
+
+    The exit code is 3 if the input has floats, so that the answer is only numerical.
+    """
     run(lambda: run_describe(name, json))
 
 
 def run_describe(text: str, as_json: bool) -> int:
     """Print the summary or the JSON object; returns the exit code."""
     from liehom.algebra import LieAlgebra
-    from liehom.cli.inputs import object_argument
+    from liehom.cli.inputs import object_argument, shown_name
     from liehom.cli.show import show_json, show_lines
     from liehom.representations import Pair
 
@@ -42,7 +48,7 @@ def run_describe(text: str, as_json: bool) -> int:
     else:
         data, lines = (representation_facts(described), []) if as_json else ({}, representation_summary(described))
     if as_json:
-        show_json({"input": text, **data})
+        show_json({"input": shown_name(text), **data})
     else:
         show_lines(lines)
     return YES if described.field.exact else NUMERICAL

@@ -28,23 +28,23 @@ def guarded(action: Callable[[], int]) -> int:
         code = action()
         sys.stdout.flush()
     except CertificateFormatError as error:
-        return _said(f"error: {error}", BAD_INPUT)
+        return say(f"error: {_with_notes(error)}", BAD_INPUT)
     except CertificateError as error:
-        return _said(f"the certificate fails: {error}", NO)
+        return say(f"the certificate fails: {_with_notes(error)}", NO)
     except InternalError as error:
-        return _said(f"internal error: {error}", INTERNAL)
+        return say(f"internal error: {error}", INTERNAL)
     except UndecidedError as error:
-        return _said(f"undecided: {error}", NUMERICAL)
+        return say(f"undecided: {_with_notes(error)}", NUMERICAL)
     except LiehomError as error:
-        return _said(f"error: {error}", BAD_INPUT)
+        return say(f"error: {_with_notes(error)}", BAD_INPUT)
     except KeyboardInterrupt as interrupt:
-        return _said(f"interrupted{interrupt}", INTERRUPTED)
+        return say(f"interrupted{interrupt}", INTERRUPTED)
     except OSError as error:
         if error.filename is None and sys.stdout is not None:
             return close_output(error)
-        return _said(_bug_report(error), INTERNAL)
+        return say(_bug_report(error), INTERNAL)
     except Exception as error:  # noqa: BLE001  the top of the program: any other exception is a bug
-        return _said(_bug_report(error), INTERNAL)
+        return say(_bug_report(error), INTERNAL)
     return code
 
 
@@ -78,15 +78,37 @@ def close_output(error: OSError) -> int:
             continue
     if error.errno == errno.EPIPE:
         return BROKEN_PIPE
-    return _said(f"error: standard output cannot be written: {error.strerror or error}", NOT_WRITTEN)
+    return say(f"error: standard output cannot be written: {error.strerror or error}", NOT_WRITTEN)
 
 
-def _said(message: str, code: int) -> int:
+def say(message: str, code: int) -> int:
+    """The exit code, after a message on standard error: one line, wrapped between words on a terminal.
+
+    Examples
+    --------
+    >>> say("error: this name is unknown", 2)
+    2
+    """
+    line = f"liehom: {message}"
     try:
-        print(f"liehom: {message}", file=sys.stderr, flush=True)
+        print(_wrapped(line) if sys.stderr.isatty() else line, file=sys.stderr, flush=True)
     except (OSError, ValueError):  # a full disk: the exit code has to do
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     return code
+
+
+def _wrapped(line: str) -> str:
+    """The line broken between words only, so that names and commands can be copied."""
+    import shutil
+    import textwrap
+
+    width = max(shutil.get_terminal_size().columns - 1, 20)
+    return textwrap.fill(line, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+
+
+def _with_notes(error: BaseException) -> str:
+    """Message of an error and its notes, which name a command that helps."""
+    return "; ".join([str(error), *getattr(error, "__notes__", ())])
 
 
 def _bug_report(error: Exception) -> str:

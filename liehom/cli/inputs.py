@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
+from liehom.budget import current_limits
 from liehom.disk import check_target
-from liehom.errors import CatalogError, FormatError
-from liehom.io import from_gap, from_sage, load, load_pair
+from liehom.errors import CatalogError, FormatError, InputError
+from liehom.io import Problem, from_gap, from_sage, load, load_pair, load_problem
 from liehom.io.json_reader import parse_object, read_text
 from liehom.io.number_lists import vector
 from liehom.representations import Pair, Representation
 from liehom.scalars import RR, Field, Scalar, common_field
 
 EXAMPLES = "examples/"
+STANDARD_INPUT = "-"
+"""Argument that denotes the file on standard input."""
+PAIR_HINT = '`liehom catalog` lists names, and `liehom catalog "so(4)/so(3)"` prints a pair file'
+OBJECT_HINT = '`liehom describe "so(4,1)"` and `liehom describe examples/sym3.json` are examples'
+PROBLEM_HINT = "examples/rigid_body.json and examples/sym3.json are files of this kind"
 _TYPE = re.compile(r"[A-G][0-9]{1,2}", re.ASCII)
 _DECIMAL = re.compile(r"\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*", re.ASCII)
 
@@ -36,14 +46,65 @@ def examples_folder() -> Path:
     raise FormatError(f"the example files are neither in {package / 'examples'} nor next to the package")
 
 
-def file_argument(text: str) -> str:
-    """Path of the file that an argument names; 'examples/NAME' is an installed example if no such file exists here.
+@contextmanager
+def pointing_to(hint: str) -> Iterator[None]:
+    """Context manager that adds a hint, which the message ends with, to an error about an argument."""
+    try:
+        yield
+    except (CatalogError, FormatError) as error:
+        error.add_note(hint)
+        raise
+
+
+@final
+class _StandardInput(io.BytesIO):
+    """Content of standard input, with the name that messages show."""
+
+    name = "standard input"
+
+
+def standard_input() -> BinaryIO:
+    """File with the content of standard input.
+
+    Raises
+    ------
+    InputError
+        If standard input is a terminal, closed or empty.
+    """
+    if sys.stdin is None:
+        raise InputError("- is the file on standard input, which is closed: pipe a file into the command")
+    if sys.stdin.isatty():
+        raise InputError("- is the file on standard input, which is the terminal: use  liehom ... - < FILE  or a pipe")
+    content = _StandardInput(sys.stdin.buffer.read(current_limits().file_bytes + 1))
+    if not content.getvalue().strip():
+        raise InputError("- is the file on standard input, which is empty: has the command before the pipe failed?")
+    return content
+
+
+def check_one_standard_input(*texts: str | None) -> None:
+    """Raise `InputError` if more than one argument is '-', since standard input can be read only once."""
+    if texts.count(STANDARD_INPUT) > 1:
+        raise InputError("- is given twice, but standard input holds one file: give the other file by its name")
+
+
+def shown_name(text: str) -> str:
+    """Name of the file or object that an argument denotes, as results show it."""
+    return _StandardInput.name if text == STANDARD_INPUT else text
+
+
+def file_argument(text: str) -> str | BinaryIO:
+    """File that an argument names; '-' is standard input, 'examples/NAME' an installed example if none exists here.
 
     Examples
     --------
     >>> os.path.basename(file_argument("examples/sym3.json")), file_argument("mine.json")
     ('sym3.json', 'mine.json')
     """
+    return standard_input() if text == STANDARD_INPUT else path_argument(text)
+
+
+def path_argument(text: str) -> str:
+    """Path of the file that an argument names, as `file_argument`."""
     name = text.removeprefix(EXAMPLES)
     if text.startswith(EXAMPLES) and name == os.path.basename(name) and "\0" not in text and not os.path.exists(text):
         found = examples_folder() / name
@@ -53,7 +114,7 @@ def file_argument(text: str) -> str:
 
 def is_file(text: str) -> bool:
     """Whether an argument names a file rather than an entry of the catalogue."""
-    return os.path.exists(text) or text.endswith(".json")
+    return text == STANDARD_INPUT or os.path.exists(text) or text.endswith(".json")
 
 
 def check_output(path: str, *inputs: str) -> None:
@@ -68,7 +129,7 @@ def check_output(path: str, *inputs: str) -> None:
     """
     check_target(path, force=True)
     for text in inputs:
-        name = file_argument(text)
+        name = path_argument(text)
         if os.path.exists(path) and os.path.exists(name) and os.path.samefile(path, name):
             raise FormatError(f"{path!r} is read by this command, so it is not overwritten: give another name")
 
@@ -81,11 +142,18 @@ def pair_argument(text: str) -> Pair:
     FormatError, CatalogError
         If the file is malformed, or the name is unknown.
     """
-    if is_file(text):
-        return load_pair(file_argument(text))
-    from liehom.catalog import pair
+    with pointing_to(PAIR_HINT):
+        if is_file(text):
+            return load_pair(file_argument(text))
+        from liehom.catalog import pair
 
-    return pair(text)
+        return pair(text)
+
+
+def problem_argument(text: str) -> Problem:
+    """Problem in a representation file."""
+    with pointing_to(PROBLEM_HINT):
+        return load_problem(file_argument(text))
 
 
 def object_argument(text: str) -> LieAlgebra | Pair | Representation:
@@ -108,7 +176,8 @@ def object_argument(text: str) -> LieAlgebra | Pair | Representation:
     kind = os.path.splitext(text)[1]
     if kind in READERS:
         return READERS[kind](read_text(file_argument(text), "a file of GAP or Sage"))
-    found = load(file_argument(text)) if is_file(text) else _named(text)
+    with pointing_to(OBJECT_HINT):
+        found = load(file_argument(text)) if is_file(text) else _named(text)
     return Pair(found.algebra, found) if isinstance(found, Subalgebra) else found
 
 
@@ -186,7 +255,7 @@ def point_in(representation: Representation, text: str) -> tuple[Representation,
 def pair_facts(text: str, pair: Pair) -> dict[str, Any]:
     """JSON object of the pair that an argument denotes: name, dimensions and field."""
     return {
-        "name": text,
+        "name": shown_name(text),
         "dimension": pair.algebra.dimension,
         "subalgebra_dimension": pair.subalgebra.dimension,
         "field": pair.field.name,
@@ -196,4 +265,4 @@ def pair_facts(text: str, pair: Pair) -> dict[str, Any]:
 def pair_line(text: str, pair: Pair) -> str:
     """Line about the pair that an argument denotes: name, dimensions and field."""
     n, k = pair.algebra.dimension, pair.subalgebra.dimension
-    return f"{text}: dim g = {n}, dim h = {k}, dim g/h = {n - k}, over {pair.field.name}"
+    return f"{shown_name(text)}: dim g = {n}, dim h = {k}, dim g/h = {n - k}, over {pair.field.name}"

@@ -9,10 +9,10 @@ from importlib.util import find_spec
 from types import MappingProxyType
 from typing import Any, final
 
-from liehom.cli.inputs import file_argument, number_value
+from liehom.cli.inputs import PROBLEM_HINT, number_value, pointing_to, problem_argument
 from liehom.disk import check_target
 from liehom.errors import FormatError, InputError
-from liehom.io import Problem, load_problem
+from liehom.io import Problem
 from liehom.io.problem_file import read_options
 
 PLOT_SUFFIXES = (".png", ".pdf", ".svg")
@@ -74,17 +74,18 @@ def problem_of(file: str, given: ProblemOptions) -> Problem:
         field, the point or t_span is missing.
     """
     options = given.values()
-    problem = load_problem(file_argument(file))
+    problem = problem_argument(file)
     tolerances = {"rtol", "atol"} & options.keys()
     if "dt" in options and tolerances:
         raise InputError("--dt fixes the step size, --rtol and --atol adapt it: give the one or the others")
     dropped = ({"dt"} if tolerances else set()) | ({"t_eval"} if "t_span" in options else set())
     kept: Mapping[str, Any] = {key: x for key, x in problem.options.items() if key not in dropped}
     made = replace(problem, options=MappingProxyType({**kept, **options}))
-    made.field()
-    if "t_span" not in made.options:
-        raise FormatError("the file has no 't_span': add \"t_span\": [start, end], or give --t-span START END")
-    made.checked_start(made.options["t_span"][0])
+    with pointing_to(PROBLEM_HINT):
+        made.field()
+        if "t_span" not in made.options:
+            raise FormatError("the file has no 't_span': add \"t_span\": [start, end], or give --t-span START END")
+        made.checked_start(made.options["t_span"][0])
     return made
 
 

@@ -12,7 +12,7 @@ from liehom.algebra.core.subalgebra import Subalgebra
 from liehom.disk import write_atomically
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
-from liehom.io.json_reader import CHECKSUM, json_checksum, kind_of, parse_object, read_object, shown
+from liehom.io.json_reader import CHECKSUM, Source, json_checksum, kind_of, parse_object, read_object, shown
 from liehom.io.problem_file import Problem
 from liehom.representations.core.pair import Pair
 from liehom.representations.core.representation import Representation
@@ -31,15 +31,15 @@ KINDS = {
 }
 
 
-def load(path: str | os.PathLike[str]) -> LieAlgebra | Subalgebra | Pair | Representation:
+def load(path: Source) -> LieAlgebra | Subalgebra | Pair | Representation:
     """LieAlgebra, Subalgebra, Pair or Representation in a file.
 
     A representation file with a point gives the Pair that the point determines.
 
     Parameters
     ----------
-    path : path_like
-        A JSON file of a format in docs/formats.md.
+    path : path_like or binary file
+        A JSON file of a format in docs/formats.md: its path, or the file open in binary mode, as ``sys.stdin.buffer``.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def load(path: str | os.PathLike[str]) -> LieAlgebra | Subalgebra | Pair | Repre
     return from_json(read_object(path))
 
 
-def load_pair(path: str | os.PathLike[str]) -> Pair:
+def load_pair(path: Source) -> Pair:
     """Pair in a pair or subalgebra file, or in a representation file with a point.
 
     Raises
@@ -91,7 +91,7 @@ def load_pair(path: str | os.PathLike[str]) -> Pair:
     return found
 
 
-def load_problem(path: str | os.PathLike[str]) -> Problem:
+def load_problem(path: Source) -> Problem:
     """Problem in a representation file, with its point, generator and options; the point may have floats.
 
     Raises

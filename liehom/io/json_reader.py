@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Collection, Mapping
+from contextlib import nullcontext
 from fractions import Fraction
-from typing import Any, NoReturn
+from typing import Any, BinaryIO, NoReturn, TypeAlias
 
 from liehom.budget import current_limits, within
 from liehom.disk import checksum
 from liehom.errors import FormatError
 
+Source: TypeAlias = str | os.PathLike[str] | BinaryIO
+"""A path, or a file that is open in binary mode, such as ``sys.stdin.buffer``."""
 CHECKSUM = "checksum"
 """Key of the checksum, which any file may have."""
 MAX_SHOWN = 60
@@ -26,7 +29,7 @@ MAX_INTEGER_DIGITS = 4000
 """Longer integers stay strings: Python refuses to convert them, the grammar of values does not."""
 
 
-def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
+def read_object(path: Source) -> dict[str, Any]:
     """JSON object in a file, as a dict.
 
     Raises
@@ -50,7 +53,7 @@ def read_object(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise
 
 
-def read_text(path: str | os.PathLike[str], expected: str) -> str:
+def read_text(path: Source, expected: str) -> str:
     """Text of a file in UTF-8, of which no more is read than the limit allows, even if the file has no end.
 
     Raises
@@ -67,22 +70,33 @@ def read_text(path: str | os.PathLike[str], expected: str) -> str:
     ...
     liehom.errors.LimitError: the file '/dev/zero' has 67108865 bytes or more, the limit is 67108864; raise it by ...
     """
-    allowed = current_limits().file_bytes
-    found = bytearray()
-    if not isinstance(path, str | os.PathLike):  # an integer is the number of an open file
-        raise FormatError(f"expected the path of a file, got {shown(path)}")
+    if not isinstance(path, str | os.PathLike) and not hasattr(
+        path, "read"
+    ):  # an integer is the number of an open file
+        raise FormatError(f"expected the path of a file, or a file open in binary mode, got {shown(path)}")
+    name = shown(str(path)) if isinstance(path, str | os.PathLike) else str(getattr(path, "name", "it"))
     try:
-        with open(path, "rb", buffering=0) as file:
-            while len(found) <= allowed and (part := file.read(min(CHUNK, allowed + 1 - len(found)))):
-                found += part
+        with open(path, "rb", buffering=0) if isinstance(path, str | os.PathLike) else nullcontext(path) as file:
+            found = _content(file)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise FormatError(f"{shown(str(path))} cannot be read: {reason}") from None
-    within("file_bytes", len(found), f"the file {shown(str(path))} has {{}} bytes or more")
+        raise FormatError(f"{name} cannot be read: {reason}") from None
+    within("file_bytes", len(found), f"the file {name} has {{}} bytes or more")
     try:
         return found.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise FormatError(f"{shown(str(path))} is not text in UTF-8 (byte {error.start}), so not {expected}") from None
+        raise FormatError(f"{name} is not text in UTF-8 (byte {error.start}), so not {expected}") from None
+
+
+def _content(file: BinaryIO) -> bytearray:
+    """Bytes of an open file, at most one more than the limit."""
+    allowed = current_limits().file_bytes
+    found = bytearray()
+    while len(found) <= allowed and (part := file.read(min(CHUNK, allowed + 1 - len(found)))):
+        if not isinstance(part, bytes):
+            raise FormatError("the file is open in text mode, expected binary mode: open(path, 'rb')")
+        found += part
+    return found
 
 
 def parse_object(text: str) -> dict[str, Any]:

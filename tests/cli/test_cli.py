@@ -35,6 +35,7 @@ COMMANDS = (
     "reproduce",
     "catalog",
     "demo",
+    "completion",
     "atlas",
 )
 

@@ -14,7 +14,8 @@ from typer.testing import CliRunner, Result
 import liehom as lh
 from liehom.cli import problem_options as cli_problem
 from liehom.cli.app import app
-from liehom.cli.run_integrate import invariant_drift
+from liehom.cli.inputs import path_argument
+from liehom.cli.integration.run_integrate import invariant_drift
 from liehom.integrators.run.run import Run
 
 RIGID, SYM3, SPIN = "examples/rigid_body.json", "examples/sym3_generic.json", "examples/driven_spin.json"
@@ -53,7 +54,7 @@ def refused(result: Result, *named: str) -> None:
 
 def variant(**keys: Any) -> str:
     """A file: the rigid body with some keys changed, or left out where None."""
-    data = {**json.loads(Path(cli_problem.file_argument(RIGID)).read_text("utf-8")), **keys}
+    data = {**json.loads(Path(path_argument(RIGID)).read_text("utf-8")), **keys}
     Path("variant.json").write_text(json.dumps({key: x for key, x in data.items() if x is not None}), "utf-8")
     return "variant.json"
 
@@ -75,7 +76,7 @@ def test_integrate_prints_a_table_and_the_report() -> None:
 
 def test_the_file_has_what_the_library_computes() -> None:
     assert liehom("integrate", SPIN, "--out", "spin.npz").exit_code == 0
-    solution = lh.load_problem(cli_problem.file_argument(SPIN)).integrate()
+    solution = lh.load_problem(path_argument(SPIN)).integrate()
     with np.load("spin.npz", allow_pickle=False) as file:
         assert np.array_equal(file["t"], solution.t)
         assert np.array_equal(file["y"], solution.y)

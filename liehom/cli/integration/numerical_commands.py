@@ -7,9 +7,15 @@ from typing import Annotated, TypeAlias
 import typer
 
 from liehom.cli.options import JsonOption, run
+from liehom.cli.terminal import completion
 
 FileArgument: TypeAlias = Annotated[
-    str, typer.Argument(metavar="FILE", help="Representation file with a point and a generator or vector field.")
+    str,
+    typer.Argument(
+        metavar="FILE",
+        help="Representation file with a point and a generator or vector field, or - for a file on standard input.",
+        autocompletion=completion.files(".json"),
+    ),
 ]
 SpanOption: TypeAlias = Annotated[
     tuple[str, str] | None, typer.Option(metavar="START END", help="Time span (default: the file's).")
@@ -17,7 +23,9 @@ SpanOption: TypeAlias = Annotated[
 BaseOption: TypeAlias = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME", help="Base step: euler, heun, rk4, cg3, cf4, gauss2, ... (default: the file's, else lietaylor)."
+        metavar="NAME",
+        help="Base step: euler, heun, rk4, cg3, cf4, gauss2, ... (default: the file's, else lietaylor).",
+        autocompletion=completion.words(*completion.BASES),
     ),
 ]
 OrderOption: TypeAlias = Annotated[
@@ -27,13 +35,17 @@ OrderOption: TypeAlias = Annotated[
 ExponentialOption: TypeAlias = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME", help="Exponential: exp, cayley, expm, series or rodrigues (default: the file's, else exp)."
+        metavar="NAME",
+        help="Exponential: exp, cayley, expm, series or rodrigues (default: the file's, else exp).",
+        autocompletion=completion.words(*completion.EXPONENTIALS),
     ),
 ]
 ClockOption: TypeAlias = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME", help="Time reparametrization: corrected or nominal (default: the file's, else corrected)."
+        metavar="NAME",
+        help="Time reparametrization: corrected or nominal (default: the file's, else corrected).",
+        autocompletion=completion.words(*completion.CLOCKS),
     ),
 ]
 PlotOption: TypeAlias = Annotated[
@@ -76,16 +88,29 @@ def integrate(
     ] = None,
     engine: Annotated[
         str,
-        typer.Option("--engine", "--compile", metavar="NAME", help="Engine that makes the steps: numpy, llvm or jax."),
+        typer.Option(
+            "--engine",
+            "--compile",
+            metavar="NAME",
+            help="Engine that makes the steps: numpy, llvm or jax (default: numpy).",
+            show_default=False,
+            autocompletion=completion.words(*completion.ENGINES),
+        ),
     ] = "numpy",
-    force: Annotated[bool, typer.Option("--force", help="Replace the .npz file if it exists.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the .npz file if it exists (default: an error).")
+    ] = False,
     json: JsonOption = False,
 ) -> None:
-    """Integrate the problem of a file.  Exit code 0: the end was reached, 1: the run stopped before it."""
+    """Integrate the problem of a file, and print points of the trajectory and the report of the corrector.
+
+    The exit code is 0 if the end of the time span is reached, and 1 if the run stops before it or a corrected step
+    does not keep its order.
+    """
 
     def action() -> int:
+        from liehom.cli.integration.run_integrate import Output, run_integrate
         from liehom.cli.problem_options import ProblemOptions
-        from liehom.cli.run_integrate import Output, run_integrate
 
         given = ProblemOptions(t_span, dt, base, order, rtol, atol, exponential, clock)
         return run_integrate(file, given, Output(out, plot, checkpoint, force, json, progress, max_steps, engine))
@@ -106,11 +131,14 @@ def order(
     clock: ClockOption = None,
     json: JsonOption = False,
 ) -> None:
-    """Measure the order of convergence on the problem of a file: orbit and trajectory error for several step sizes."""
+    """Measure the order of convergence on the problem of a file.
+
+    The table has the errors of orbits and of trajectories for several step sizes, and their slopes.
+    """
 
     def action() -> int:
+        from liehom.cli.integration.run_order import run_order
         from liehom.cli.problem_options import ProblemOptions
-        from liehom.cli.run_order import run_order
 
         given = ProblemOptions(t_span, None, base, order, None, None, exponential, clock)
         return run_order(file, given, dt, plot, json)

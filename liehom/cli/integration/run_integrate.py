@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.cli.guard import NO, YES
+from liehom.cli.inputs import shown_name
 from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json, show_table
 from liehom.disk import check_target
@@ -184,7 +185,7 @@ def _print_json(file: str, solution: Solution, drift: Array | None, output: Outp
     rows = _shown_rows(solution.y.shape[-1])
     show_json(
         {
-            "file": file,
+            "file": shown_name(file),
             "out": output.out,
             "plot": output.plot,
             "t": [float(solution.t[k]) for k in rows],

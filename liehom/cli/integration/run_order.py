@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from liehom.cli.guard import YES
-from liehom.cli.inputs import number_value
+from liehom.cli.inputs import number_value, shown_name
 from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json
 from liehom.errors import FormatError
@@ -36,7 +36,7 @@ def run_order(file: str, given: ProblemOptions, sizes: str | None, plot: str | N
 
         plot_convergence(table, plot)
     if as_json:
-        show_json({"file": file, "plot": plot, **table_json(table)})
+        show_json({"file": shown_name(file), "plot": plot, **table_json(table)})
         return YES
     print(table)
     if plot is not None:
