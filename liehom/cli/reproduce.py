@@ -20,9 +20,7 @@ FOLDER = "reproduction"
 
 def reproduce(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Figure: fig1, ..., fig7, separatrix, or all.")],
-    out: Annotated[
-        str, typer.Option(metavar="DIR", help=f"Folder for tables and plots (default: {FOLDER}).", show_default=False)
-    ] = FOLDER,
+    out: Annotated[str, typer.Option(metavar="DIR", help=f"Folder for tables and plots (default: {FOLDER}).")] = FOLDER,
     quick: Annotated[
         bool, typer.Option("--quick", help="Use few bodies and short runs: seconds instead of minutes.")
     ] = False,

@@ -93,7 +93,6 @@ def integrate(
             "--compile",
             metavar="NAME",
             help="Engine that makes the steps: numpy, llvm or jax (default: numpy).",
-            show_default=False,
             autocompletion=completion.words(*completion.ENGINES),
         ),
     ] = "numpy",

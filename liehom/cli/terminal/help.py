@@ -79,10 +79,10 @@ class _Page:
         rows: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
         for parameter in self.get_params(ctx):  # type: ignore[attr-defined]
             record = parameter.get_help_record(ctx)
-            if record is not None and parameter.param_type_name == "argument":
-                rows["Arguments"].append((str(parameter.metavar or parameter.name).strip("[]"), parameter.help or ""))
-            elif record is not None:
-                rows["Options"].append(record)
+            if record is not None:  # of the record only the name: the help has the default in words
+                argument = parameter.param_type_name == "argument"
+                name = str(parameter.metavar or parameter.name).strip("[]") if argument else record[0]
+                rows["Arguments" if argument else "Options"].append((name, parameter.help or ""))
         for name, records in rows.items():
             _write_list(formatter, name, records)
 
