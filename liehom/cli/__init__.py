@@ -2,8 +2,8 @@
 
 `app` has the group of commands and the short ones; modules that end in `_command` or `_commands`, `reproduce` and the
 wing `integration` hold the others, `demo` the tour. `inputs` reads files, pairs, points and numbers from arguments,
-`problem_options` overrides the problem of a file, `show` prints results, `options` are shared options, `guard` maps
-exceptions to exit codes, and the wing `terminal` has help, completion and the steps of long commands. Only `guard` is
+`problem_options` overrides the problem of a file. `show` prints results, `options` are shared options, and `guard` maps
+exceptions to exit codes. The wing `terminal` has help, completion and the steps of long commands. Only `guard` is
 imported before a command runs. docs/command-line.md describes the commands.
 """
 

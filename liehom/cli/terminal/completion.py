@@ -1,7 +1,7 @@
 """Words that shells complete, and the scripts that make bash, zsh and fish ask for them.
 
-A shell asks at every press of the tab key, so nothing here imports the layers of mathematics: names of pairs are read
-from the one file of the catalogue that lists them, the other words are lists, which tests compare with the library.
+A shell asks at every press of the tab key, so nothing here imports the layers of mathematics. Names of pairs are read
+from the one file of the catalogue that lists them. The other words are lists, which tests compare with the library.
 """
 
 from __future__ import annotations

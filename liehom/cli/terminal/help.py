@@ -20,7 +20,7 @@ UsageError: type[Any] = typer.BadParameter.__base__ or typer.BadParameter  # typ
 
 
 class Formatter(Protocol):
-    """What a help page is written with; typer's own class has no public name."""
+    """Writer of a help page; typer's own class has no public name."""
 
     width: int
 

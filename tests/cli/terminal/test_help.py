@@ -178,3 +178,16 @@ def test_messages_are_wrapped_between_words_on_a_terminal(
     assert all(len(line) < width for line in lines)
     assert (len(lines) > 1) == (width < 120)
     assert " ".join(line.strip() for line in lines) == f"liehom: {message}"
+
+
+PAGE = (Path(__file__).resolve().parents[3] / "docs" / "command-line.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_page_of_the_command_line_has_every_command_and_option(name: str) -> None:
+    first, *rest = name.split()
+    assert f"| `liehom {first}" in PAGE
+    assert all(f"`{word}`" in PAGE for word in rest)
+    options = {option for parameter in COMMANDS[name].params for option in parameter.opts if option.startswith("--")}
+    missing = [option for option in options - {"--json", "--help"} if not re.search(rf"`{option}[ `]", PAGE)]
+    assert missing == []
