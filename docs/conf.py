@@ -55,6 +55,7 @@ html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["liehom.css"]
 html_title = f"liehom {release}"
+html_search_scorer = str(ROOT / "docs" / "search_scorer.js")
 
 
 # Formulas become MathML when the pages are built, so that they can be read without a network and without scripts.

@@ -16,7 +16,7 @@ import pytest
 from tests.test_docs import DOCS
 from tests.test_docs_copied import faults_of_pasting
 
-FAST = ("bracket_table", "dynkin_diagrams", "spirals")
+FAST = ("dynkin_diagrams", "spirals")
 """The pictures that are drawn here, of which one has a helper and colours."""
 
 
