@@ -25,6 +25,7 @@ The layers, in reading order; each imports only those above it in this list:
 `io`               JSON files in and out.
 `paper`            the figures of the paper, reproduced.
 `plotting`         plots of trajectories and of measured orders.
+`pages`            a page for the browser about a pair.
 `testing`          a public conformance suite.
 `cli`              the command line.
 """
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     from liehom import instances as instances
     from liehom import integrators as integrators
     from liehom import io as io
+    from liehom import pages as pages
     from liehom import paper as paper
     from liehom import parallel as parallel
     from liehom import pauli as pauli
@@ -221,6 +223,7 @@ if TYPE_CHECKING:
     from liehom.io import to_json as to_json
     from liehom.io import to_sage as to_sage
     from liehom.io import to_sympy as to_sympy
+    from liehom.pages import pair_page as pair_page
     from liehom.pytrees import PerTrajectory as PerTrajectory
     from liehom.representations import Decomposition as Decomposition
     from liehom.representations import HermitianForms as HermitianForms
@@ -275,6 +278,7 @@ _LAYERS = (
     "instances",
     "integrators",
     "io",
+    "pages",
     "paper",
     "parallel",
     "pauli",
@@ -324,6 +328,7 @@ _NAMES = {
     "liehom.io": (
         "dump from_gap from_json from_sage latex load load_pair load_problem loads to_gap to_json to_sage to_sympy"
     ),
+    "liehom.pages": "pair_page",
     "liehom.representations": (
         "adjoint character coadjoint decompose_character Decomposition defining dominant_character "
         "dual_weight frobenius_schur_indicator hermitian_conjugation HermitianForms highest_weight_module "

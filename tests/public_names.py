@@ -29,6 +29,7 @@ PACKAGES = [
     "liehom.io",
     "liehom.parallel",
     "liehom.plotting",
+    "liehom.pages",
     "liehom.paper",
     "liehom.testing",
     "liehom.tracing",

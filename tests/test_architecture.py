@@ -53,7 +53,7 @@ def integrate() -> object:
 @pytest.mark.parametrize(
     ("start", "end", "run"),
     [
-        ("## A pair through", "Pairs without an invariant form", lambda: lh.decide_fullness(PAIR)),
+        ("## A pair through", "Pairs without an invariant form", lambda: str(lh.decide_fullness(PAIR))),
         ("starts from the pair and the certificate", "## A point through", lambda: lh.decide_fullness(PAIR).verify()),
         ("## A point through", "Options lead to neighbours", integrate),
     ],

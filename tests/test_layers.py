@@ -40,9 +40,10 @@ BELOW: dict[str, tuple[str, ...]] = {
     "atlas": ("catalog", "fullness", "parallel"),
     "io": ("catalog", "fullness", "integrators"),
     "plotting": ("io",),
+    "pages": ("plotting",),
     "paper": ("plotting", "instances"),
     "testing": ("catalog", "fullness", "integrators", "io"),
-    "cli": ("io", "atlas", "paper", "pauli", "testing"),
+    "cli": ("io", "atlas", "pages", "paper", "pauli", "testing"),
     "__main__": ("cli",),
     "": ("cli", "compatibility"),  # liehom/__init__.py, which everybody below must leave alone
 }
@@ -126,6 +127,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "classify_commands",
         "describe_command",
         "fullness_commands",
+        "page_command",
         "reproduce",
         "demo",
         "app",

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from liehom.budget import limits, parsed_limits
-from liehom.cli import atlas_command, classify_commands, describe_command, fullness_commands, reproduce
+from liehom.cli import atlas_command, classify_commands, describe_command, fullness_commands, page_command, reproduce
 from liehom.cli.guard import NUMERICAL, YES, guarded
 from liehom.cli.integration import numerical_commands
 from liehom.cli.options import FileArgument, JsonOption, PairArgument, command, run
@@ -229,6 +229,11 @@ command(app, "liehom full-pairs 3")(classify_commands.full_pairs)
 command(app, 'liehom describe "so(4,1)"', 'liehom describe "e(3)/so(3)"', "liehom describe examples/sym3.json")(
     describe_command.describe
 )
+command(
+    app,
+    'liehom show "so(3,1)/so(2,1)" -o cone.html',
+    'liehom catalog "sl(2)/so(1,1)" | liehom show - -o lines.html',
+)(page_command.show)
 command(
     app,
     "liehom integrate examples/rigid_body.json",

@@ -30,6 +30,9 @@ DARK_PALE = "#4a4a4a"
 # the same hues, light enough for a dark page
 DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 
+MAX_NAME = 20
+"""Characters of a name in a picture."""
+
 STYLE: dict[str, object] = {
     "font.size": 10,
     "axes.titlesize": 10,
@@ -115,6 +118,19 @@ def style_unless(ax: Axes | None) -> AbstractContextManager[object]:
         figure_of(ax)
         return nullcontext()
     return nullcontext() if matplotlib_module("").rcParams["svg.hashsalt"] == STYLE["svg.hashsalt"] else style()
+
+
+def plain(name: str) -> str:
+    """A name as text of a picture: not too long, every character can be written to a file, no dollar begins a formula.
+
+    Examples
+    --------
+    >>> plain("x_$1$")
+    'x_\\\\$1\\\\$'
+    """
+    short = name if len(name) <= MAX_NAME else f"{name[:MAX_NAME]}..."
+    writable = "".join(c if c.isprintable() else "\ufffd" for c in short)
+    return writable.replace("$", r"\$")
 
 
 def new_figure(width: float, height: float) -> Figure:

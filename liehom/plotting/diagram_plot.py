@@ -23,6 +23,7 @@ from liehom.plotting.canvas import (
     matplotlib_module,
     new_figure,
     paper_colour,
+    plain,
     style_unless,
 )
 from liehom.typing import Array
@@ -209,12 +210,13 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
             )
         _write_terms(ax, algebra, strips, colours, points)
         ax.set(aspect="equal", xlim=(-2.1, n - 0.4), ylim=(n - 0.4, -2.1))
-        ax.set_xticks(range(n), algebra.basis_names, rotation=90 if max(map(len, algebra.basis_names)) > 2 else 0)
-        ax.set_yticks(range(n), algebra.basis_names)
+        names = [plain(name) for name in algebra.basis_names]
+        ax.set_xticks(range(n), names, rotation=90 if max(map(len, names)) > 2 else 0)
+        ax.set_yticks(range(n), names)
         ax.tick_params(length=0, labelsize=float(np.clip(200 / n, 5, 9)), labeltop=True, labelbottom=False)
         ax.grid(visible=False)
         ax.spines[:].set_visible(False)
-        ax.set_title(f"{algebra.name or 'Lie algebra'}: [row, column]", loc="left")
+        ax.set_title(f"{plain(algebra.name or 'Lie algebra')}: [row, column]", loc="left")
     return ax
 
 
@@ -392,7 +394,7 @@ def _write_terms(ax: Axes, algebra: LieAlgebra, strips: Sequence[Strip], colours
     size = float(np.clip(0.28 * points, 0, 9))
     for x, y, width, k in strips:
         i, j = int(y), round(x)
-        value, name = constants[min(i, j), max(i, j), k], algebra.basis_names[k]
+        value, name = constants[min(i, j), max(i, j), k], plain(algebra.basis_names[k])
         one = abs(algebra.field.to_float(value)) == 1.0
         text = name if one else f"{algebra.field.show(value).lstrip('-')}·{name}"
         if size >= 4 and 0.62 * size * len(text) < width * points:

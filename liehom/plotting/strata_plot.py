@@ -9,9 +9,9 @@ import numpy as np
 
 from liehom.algebra.roots.root_system import root_system
 from liehom.errors import InputError, displayed
-from liehom.fullness import decide_fullness, failure_report
+from liehom.fullness import FailureReport, decide_fullness, failure_report
 from liehom.homogeneous import FailureSet, RelativeInvariant, adjoint_strata, symmetric_strata
-from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, new_figure, style_unless
+from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, new_figure, plain, style_unless
 from liehom.plotting.root_plot import simple_root_coordinates
 from liehom.plotting.surfaces import AZIMUTH, ELEVATION, AnyAxes, Scene, sphere
 from liehom.representations import Pair
@@ -66,17 +66,38 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
         colours = current_colours()
         ax = axes_of_dimension(ax, pair.dimension, 4.6)
         _prepare(ax)
-        drawn = 0
-        for part in report.parts:
-            for curve in _curves(part, pair.dimension):
-                _draw(ax, curve, colours[0])
-                drawn += 1
-        ax.set_title(_title(pair, report.generic.holds, drawn), loc="left")
+        curves = failure_curves(report, pair.dimension)
+        for curve in curves:
+            _draw(ax, curve, colours[0])
+        ax.set_title(_title(pair, report.generic.holds, len(curves)), loc="left")
     return ax
 
 
+def failure_curves(report: FailureReport, dimension: int) -> list[Array]:
+    """Curves on the unit sphere whose rays make up the parts of a failure cone in dimension 2 or 3.
+
+    Returns
+    -------
+    list of array (dimension, k)
+        Points in order; a single point stands for the line that it spans.
+
+    Raises
+    ------
+    InputError
+        If matplotlib, which finds the contours in dimension 3, is not installed.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> report = lh.failure_report(lh.pair("sl(2)/so(1,1)"))
+    >>> len(failure_curves(report, 2))
+    4
+    """
+    return [curve for part in report.parts for curve in _curves(part, dimension)]
+
+
 def _title(pair: Pair, holds: bool | None, drawn: int) -> str:
-    name = f"{pair.name}: " if pair.name else ""
+    name = f"{plain(pair.name)}: " if pair.name else ""
     if holds is False:
         return f"{name}(6.3) holds for no ψ"
     if decide_fullness(pair):
@@ -95,10 +116,14 @@ def _curves(part: FailureSet, size: int) -> Iterator[Array]:
     if part.kind == "null cone":
         unit = np.eye(size, dtype=int)
         yield from _zeros([(unit[i] + unit[j], rows[i, j]) for i in range(size) for j in range(size)], size)
-        return
-    basis = np.linalg.qr(rows.T)[0].T
+    else:
+        yield _in_subspace(np.linalg.qr(rows.T)[0].T)
+
+
+def _in_subspace(basis: Array) -> Array:
+    """The point, or the great circle, that the orthonormal rows span."""
     turn = np.linspace(0, 2 * np.pi, 2 * GRID)
-    yield basis.T if len(basis) == 1 else basis.T @ np.array([np.cos(turn), np.sin(turn)])
+    return basis.T if len(basis) == 1 else basis.T @ np.array([np.cos(turn), np.sin(turn)])
 
 
 def _floats(matrix: Matrix) -> Array:
@@ -119,6 +144,14 @@ def _zeros(terms: Sequence[Term], size: int) -> Iterator[Array]:
             if abs(root.imag) < 1e-9 * (1 + abs(root)):
                 yield np.array([[root.real], [1.0]]) / np.hypot(root.real, 1.0)
         return
+    if all(e.sum() == 2 for e, _ in terms):
+        # a semidefinite form changes no sign: its zeros are its kernel
+        squares, vectors = np.linalg.eigh(sum(c * np.outer(e, e) - c * np.diag(e * (e - 1)) for e, c in terms))
+        small = 1e-12 * abs(squares).max()
+        if squares[0] > -small or squares[-1] < small:
+            kernel = vectors[:, abs(squares) <= small].T
+            yield from [_in_subspace(kernel)] if len(kernel) else []
+            return
     exponents = np.array([e for e, _ in terms])
     coefficients = np.array([c for _, c in terms])
     yield from (curve for _, curve in sphere(1.0).contours(lambda m: _value(m, exponents, coefficients), [0.0]))

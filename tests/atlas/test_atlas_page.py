@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import random
 import re
-import shutil
-import subprocess
 from collections import Counter
 from functools import cache
 from pathlib import Path
@@ -17,6 +15,7 @@ import pytest
 import liehom as lh
 from liehom.atlas.table_rows import COLUMNS, COUNTS, MISSING, table_row
 from tests import sampling
+from tests.browser import dom, needs_browser
 from tests.sampling import examples
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -24,7 +23,6 @@ PAGE = (DOCS / "atlas.md").read_text(encoding="utf-8")
 FILE = DOCS / "_static" / "atlas.json"
 DATA = json.loads(FILE.read_text(encoding="utf-8"))
 ROWS = [dict(zip(COLUMNS, cells, strict=True)) for cells in DATA["rows"]]
-BROWSER = shutil.which("chromium") or shutil.which("google-chrome")
 
 
 @cache
@@ -102,7 +100,7 @@ def test_the_proposition_on_symmetric_pairs_holds_in_the_table() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(BROWSER is None, reason="no browser")
+@needs_browser
 def test_the_script_searches_filters_and_sorts(tmp_path: Path) -> None:
     """The script in a page of its own, with a second script that uses the controls and prints what is shown."""
     uses = """
@@ -126,11 +124,8 @@ def test_the_script_searches_filters_and_sorts(tmp_path: Path) -> None:
     script = (DOCS / "_static" / "atlas.js").read_text(encoding="utf-8")
     page = f'{head}<div id="atlas"></div><script>{script}</script><script>{uses}</script>'
     (tmp_path / "page.html").write_text(page, encoding="utf-8")
-    flags = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking"
-    words = [str(BROWSER), *flags.split(), "--disable-component-update", "--disable-sync", "--virtual-time-budget=8000"]
-    words += [f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", (tmp_path / "page.html").as_uri()]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True)
-    out = json.loads(re.search(r"<body>(.*)</body>", done.stdout, flags=re.DOTALL)[1])  # type: ignore[index]
+    shown = dom(tmp_path / "page.html")
+    out = json.loads(re.search(r"<body>(.*)</body>", shown, flags=re.DOTALL)[1])  # type: ignore[index]
     assert out["first"] == 300
     assert out["all"] == len(ROWS)
     full = {row["pair"]: row["dim g/h"] for row in ROWS if row["family"] == "symmetric" and row["full"]}

@@ -6,7 +6,6 @@ import re
 import time
 from collections.abc import Callable, Iterator
 from functools import cache
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
@@ -15,6 +14,7 @@ import liehom as lh
 from liehom import paper, pauli
 from liehom.display import Displayed, DisplayedTable, Typeset
 from liehom.io.html_format import html
+from tests.html_structure import Balance
 
 FIELD = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/2"])
 EVIL = "</div><script>alert(1)</script> & $x$ \\evil{"
@@ -57,7 +57,6 @@ SAMPLES: dict[str, Callable[[], object]] = {
 FORMULAS_ONLY = {"ExactMatrix", "FloatMatrix", "LinearCombination", "AlgebraicNumber"}
 EVERY = pytest.mark.parametrize("name", SAMPLES)
 CARDS = pytest.mark.parametrize("name", sorted(SAMPLES.keys() - FORMULAS_ONLY))
-VOID = {"br", "hr", "img"}
 
 
 @cache
@@ -66,31 +65,6 @@ def sample(name: str) -> Typeset:
     assert isinstance(found, Typeset)
     assert type(found).__name__ == name
     return found
-
-
-class Balance(HTMLParser):
-    """Every element is closed, in order; `seen` are the tags and `text` the text outside of them."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__(convert_charrefs=True)
-        self.open: list[str] = []
-        self.seen: list[str] = []
-        self.text = ""
-        self.feed(text)
-        self.close()
-        assert not self.open, f"not closed: {self.open}"
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.seen.append(tag)
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open, f"</{tag}> closes nothing"
-        assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        self.text += data
 
 
 def is_balanced(text: str) -> bool:
