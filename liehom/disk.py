@@ -6,8 +6,10 @@ import contextlib
 import hashlib
 import os
 import secrets
+import signal
 import stat
-from collections.abc import Callable, Mapping
+import threading
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
@@ -71,6 +73,43 @@ def write_atomically(path: str | os.PathLike[str], content: bytes | memoryview |
             temporary.unlink()
         raise
     _flush_folder(target.parent)
+
+
+def write_together(folder: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
+    """Paths of several files in a folder, written one after another; Ctrl-C waits until the last one is written.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written; the files before it are written, and those after it are not.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> [path.name for path in write_together(tempfile.mkdtemp(), {"a.csv": b"1", "a.json": b"2"})]
+    ['a.csv', 'a.json']
+    """
+    paths = [Path(folder) / name for name in contents]
+    with _interrupt_afterwards():
+        for path, content in zip(paths, contents.values(), strict=True):
+            write_atomically(path, content)
+    return paths
+
+
+@contextlib.contextmanager
+def _interrupt_afterwards() -> Iterator[None]:
+    """Delay Ctrl-C, which only the main thread receives, to the end of the block."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    caught: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: caught.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if caught:
+            signal.raise_signal(signal.SIGINT)
 
 
 def _fill(file: BinaryIO, content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from liehom.errors import InputError
 from liehom.paper.efficiency import figure6, figure7
@@ -39,7 +40,7 @@ def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Rep
     Returns
     -------
     Reproduction
-        With `.tables`, `.checks`, `.holds`, `.markdown()`, `.write(folder)`, `.plot(path)`.
+        With `.tables`, `.checks`, `.holds`, `.caption()`, `.markdown()`, `.latex()`, `.plot(path)`, `.write(folder)`.
 
     Raises
     ------
@@ -54,8 +55,7 @@ def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Rep
     """
     if name not in _FIGURES:
         raise InputError(f"there is no figure {name!r} to reproduce, expected one of {', '.join(NAMES)}")
-    if seed is None:
-        return _FIGURES[name](quick)
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
         raise InputError(f"a seed is a non-negative integer, got {seed!r}")
-    return _FIGURES[name](quick, seed)
+    done = _FIGURES[name](quick) if seed is None else _FIGURES[name](quick, seed)
+    return replace(done, settings={"quick": bool(quick), "seed": seed})

@@ -1,88 +1,66 @@
-"""Data of a reproduction: tables (CSV, Markdown), claims with their evidence, and a plot."""
+"""Reproduction of a figure: tables, claims with their evidence, a plot, captions, and the files of all these.
+
+A caption names the claims of the paper that fail. The files of a figure are written together when it is finished. The
+last of them, NAME.json, lists the others with their fingerprints, so `stored` finds figures that are complete.
+"""
 
 from __future__ import annotations
 
-import math
+import contextlib
+import hashlib
+import json
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+import sys
+import textwrap
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
-from liehom.disk import check_target, write_atomically
-from liehom.display import DisplayedTable, comma_separated
+from liehom.disk import check_target, write_together
 from liehom.errors import FormatError, InputError
+from liehom.paper.tables import Table, mathtext, typeset
+from liehom.plotting.canvas import finished, rendered, style
 
-Cell: TypeAlias = Any
-"""Content of a cell of a table: a string, a number of Python or numpy, or None."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-
-@dataclass(frozen=True, slots=True)
-class Table(DisplayedTable):
-    """Named columns and rows of strings and numbers.
-
-    Parameters
-    ----------
-    title : str
-    columns : sequence of str
-    rows : sequence of sequences
-        Cells are strings or numbers; None and NaN become an empty cell.
-    in_markdown : bool, optional
-        False for the points of curves; Markdown then shows only the number of rows.
-
-    Raises
-    ------
-    InputError
-        If a row does not have as many cells as there are columns.
-
-    Examples
-    --------
-    >>> table = Table("errors", ("dt", "error"), [(0.1, 1.25e-7)])
-    >>> print(table.markdown())
-    | dt | error |
-    |---|---|
-    | 0.1 | 1.25e-07 |
-    >>> table.csv()
-    'dt,error\\n0.1,1.25e-07\\n'
-    """
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
-    in_markdown: bool = True
-
-    def __post_init__(self) -> None:
-        wrong = [row for row in self.rows if len(row) != len(self.columns)]
-        if wrong:
-            raise InputError(
-                f"a row of the table {self.title!r} has {len(wrong[0])} cells, expected {len(self.columns)}"
-            )
-
-    def csv(self) -> str:
-        """Table as comma-separated values, numbers with all digits."""
-        rows = [["" if _is_empty(x) else _plain(x) for x in row] for row in self.rows]
-        return comma_separated([self.columns, *rows])
-
-    def markdown(self) -> str:
-        """Table in Markdown, numbers with three digits."""
-        lines = ["| " + " | ".join(cells) + " |" for cells in (self.columns, *map(_shown_row, self.rows))]
-        lines.insert(1, "|" + "---|" * len(self.columns))
-        return "\n".join(lines)
-
-    def _caption(self) -> str:
-        return self.title
-
-    def _cells(self) -> list[list[str]]:
-        return [list(self.columns), *map(_shown_row, self.rows)]
+FORMATS = ("png", "svg", "pdf")
+"""Formats of plots."""
+CAPTION_SIZE, CHARACTERS_PER_INCH, LINE_HEIGHT = 8, 16.5, 0.16
+"""Points, characters and inches of the lines of a caption in a plot."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Claim of the paper or of its correction, the evidence, and whether the claim holds."""
+    """Claim of the paper or of its correction, the evidence, and whether the claim holds.
+
+    Attributes
+    ----------
+    claim, found : str
+    holds : bool
+    refutes : str
+        Claim of the paper that fails if this claim holds; empty if there is none.
+    table : str
+        Key of the table that shows the evidence.
+
+    Examples
+    --------
+    >>> Check("2 > 1", "2 - 1 = 1", True, refutes="1 > 2").failure
+    '1 > 2 (found: 2 - 1 = 1)'
+    """
 
     claim: str
     found: str
     holds: bool
+    refutes: str = ""
+    table: str = ""
+
+    @property
+    def failure(self) -> str:
+        """Claim that fails with the evidence against it; an empty string if none fails."""
+        failing = self.refutes if self.holds else self.claim
+        return f"{failing} (found: {self.found})" if failing else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,14 +76,18 @@ class Reproduction:
         Tables by the end of their file names; "" is the main table.
     checks : tuple of Check
     notes : tuple of str
-    plot : callable or None
-        Writes the plot to a path; with None it returns a figure of matplotlib.
+    draw : callable or None
+        Makes the plot as a figure of matplotlib; None if there is no plot.
+    shows : str
+        Sentence that says what the plot shows.
+    settings : dict
+        Arguments of `reproduce`.
 
     Examples
     --------
-    >>> done = Reproduction("fig0", "nothing", "none", {}, (Check("1 = 1", "1", True),))
-    >>> done.holds
-    True
+    >>> done = Reproduction("fig0", "Figure 0", "No data.", {}, (Check("1 = 1", "1", True, "1 = 2"),))
+    >>> done.holds, done.caption()
+    (True, 'Figure 0. Claims that fail: 1 = 2 (found: 1).')
     """
 
     name: str
@@ -114,86 +96,215 @@ class Reproduction:
     tables: dict[str, Table]
     checks: tuple[Check, ...] = ()
     notes: tuple[str, ...] = ()
-    plot: Callable[[Path | None], object] | None = None
+    draw: Callable[[], Figure] | None = None
+    shows: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def holds(self) -> bool:
-        """Whether all claims hold."""
+        """Whether all checks hold."""
         return all(check.holds for check in self.checks)
 
-    def markdown(self) -> str:
-        """Page in Markdown with the title, the data, all tables and the claims."""
+    def failures(self, table: str | None = None) -> list[str]:
+        """Claims that fail, with the evidence: those of the paper, and those of the reproduction.
+
+        Parameters
+        ----------
+        table : str, optional
+            Key of a table: only the claims that it refutes (default: all).
+        """
+        return [c.failure for c in self.checks if c.failure and table in (None, c.table)]
+
+    def caption(self, table: str | None = None) -> str:
+        """Caption of the plot, or of a table: its title, what it shows, and the claims that fail.
+
+        Parameters
+        ----------
+        table : str, optional
+            Key of a table (default: the caption of the plot).
+        """
+        first = [f"{self.title}.", self.shows] if table is None else [f"{self.tables[table].title}."]
+        first += [] if table else self.notes
+        return " ".join(part for part in (*first, _fails(self.failures(table))) if part)
+
+    def markdown(self, plot: str | None = None) -> str:
+        """Page in Markdown with the title, the data, the plot, all tables and the claims.
+
+        Parameters
+        ----------
+        plot : str, optional
+            Name of the file of the plot (default: none).
+        """
         parts = [f"# {self.title}", self.sample]
-        for table in self.tables.values():
+        if plot is not None:
+            parts += [f"![{self.title}]({plot})", f"*{self.caption()}*"]
+        for key, table in self.tables.items():
             body = table.markdown() if table.in_markdown else f"{len(table.rows)} rows: see the CSV file."
             parts.append(f"## {table.title}\n\n{body}")
+            if failing := self.failures(key):
+                parts.append(f"*{_fails(failing)}*")
         if self.checks:
             rows = [(c.claim, c.found, "yes" if c.holds else "NO") for c in self.checks]
             parts.append("## Claims\n\n" + Table("claims", ("claim", "found", "holds"), rows).markdown())
         return "\n\n".join([*parts, *self.notes]) + "\n"
 
-    def write(self, folder: str | os.PathLike[str], plot: bool = True) -> list[Path]:
-        """Paths of the files NAME.md, NAME.csv (one for each table) and NAME.png, after writing them.
+    def latex(self) -> str:
+        """Tables in LaTeX, for ``\\input``; their captions name the claims that fail."""
+        found = [table.latex(self.caption(key)) for key, table in self.tables.items() if table.in_markdown]
+        return "\n\n".join([f"% {typeset(self.title)}", *found]) + "\n"
 
-        Existing files with these names are replaced. With `plot` False no plot is drawn, so matplotlib is not needed.
+    def plot(self, path: str | os.PathLike[str] | None = None, *, dark: bool = False) -> Figure:
+        """Plot with its caption as a figure of matplotlib, after it is written to a file if a path is given.
+
+        Parameters
+        ----------
+        path : path, optional
+            File to write: .png, .pdf, .svg, ....
+        dark : bool, optional
+            Draw for a dark page.
+
+        Raises
+        ------
+        InputError
+            If this figure has no plot, or matplotlib is not installed.
+        FormatError
+            If the file cannot be written.
+        """
+        if self.draw is None:
+            raise InputError(f"{self.name} is a table in the paper and has no plot: use .tables or .markdown()")
+        with style(dark=dark):
+            figure = self.draw()
+            width, height = figure.get_size_inches()
+            lines = [mathtext(line) for line in textwrap.wrap(self.caption(), round(CHARACTERS_PER_INCH * width))]
+            figure.set_size_inches(width, height + LINE_HEIGHT * len(lines))
+            figure.supxlabel("\n".join(lines), x=0.005, ha="left", fontsize=CAPTION_SIZE)
+            return finished(figure, path)
+
+    def files(self, formats: Sequence[str] = FORMATS, *, dark: bool = False) -> dict[str, bytes]:
+        """Contents of the files NAME.md, NAME.tex, NAME.csv (one for each table), the plots and NAME.json, by names.
+
+        Parameters
+        ----------
+        formats : sequence of str, optional
+            Formats of the plot, of png, svg and pdf. With none, matplotlib is not needed.
+        dark : bool, optional
+            Draw for a dark page.
+
+        Raises
+        ------
+        InputError
+            If matplotlib is not installed, or a format is unknown.
+        """
+        wrong = [kind for kind in formats if kind not in FORMATS]
+        if wrong:
+            raise InputError(f"plots have no format {wrong[0]!r}, expected some of {', '.join(FORMATS)}")
+        plots: dict[str, bytes] = {}
+        if self.draw is not None and formats:
+            figure = self.plot(dark=dark)
+            with style(dark=dark):
+                if (layout := figure.get_layout_engine()) is not None:  # once for all formats
+                    layout.execute(figure)
+                    figure.set_layout_engine("none")
+                plots = {f"{self.name}.{kind}": rendered(figure, kind, self._about(kind)) for kind in formats}
+        texts = {f"{self.name}.md": self.markdown(next(iter(plots), None)), f"{self.name}.tex": self.latex()}
+        texts |= {f"{self.name}{'_' if end else ''}{end}.csv": table.csv() for end, table in self.tables.items()}
+        found = {name: text.encode() for name, text in texts.items()} | plots
+        return found | {f"{self.name}.json": self._record(found, formats, dark)}
+
+    def write(
+        self, folder: str | os.PathLike[str], formats: Sequence[str] = FORMATS, *, dark: bool = False
+    ) -> list[Path]:
+        """Paths of the files of `files`, after writing them; an existing figure with this name is replaced.
+
+        Ctrl-C while the files are written waits until they are complete.
 
         Raises
         ------
         FormatError
             If a file cannot be written.
+        InputError
+            If matplotlib is not installed, or a format is unknown.
         """
-        target = Path(os.fspath(folder))
-        texts = {f"{self.name}.md": self.markdown()}
-        texts |= {f"{self.name}{'_' if end else ''}{end}.csv": table.csv() for end, table in self.tables.items()}
-        written = []
+        target, contents = Path(os.fspath(folder)), self.files(formats, dark=dark)
+        record = target / f"{self.name}.json"
         try:
             target.mkdir(parents=True, exist_ok=True)
-            for name, text in texts.items():
+            for name in contents:
                 check_target(target / name, force=True)
-                write_atomically(target / name, text.encode())
-                written.append(target / name)
+            for name in set(_read(record).get("files", ())) - contents.keys():
+                with contextlib.suppress(FileNotFoundError):
+                    (target / Path(name).name).unlink()
+            record.unlink(missing_ok=True)
+            return write_together(target, contents)
         except OSError as error:
             raise FormatError(f"{os.fspath(folder)!r} cannot be written: {error.strerror or error}") from None
-        if plot and self.plot is not None:
-            self.plot(target / f"{self.name}.png")
-            written.append(target / f"{self.name}.png")
-        return written
 
     def to_json(self) -> dict[str, Any]:
-        """JSON object of the tables and claims."""
-        tables = {
-            end or "table": {"columns": list(t.columns), "rows": [[_json(x) for x in row] for row in t.rows]}
-            for end, t in self.tables.items()
-            if t.in_markdown
-        }
-        checks = [{"claim": c.claim, "found": c.found, "holds": c.holds} for c in self.checks]
-        return {"name": self.name, "title": self.title, "sample": self.sample, "tables": tables, "checks": checks}
+        """JSON object of the settings, the tables, the claims and the caption."""
+        tables = {end or "table": table.to_json() for end, table in self.tables.items() if table.in_markdown}
+        checks = [{"claim": c.claim, "found": c.found, "holds": c.holds, "refutes": c.refutes} for c in self.checks]
+        found = {"name": self.name, "title": self.title, "sample": self.sample, "settings": dict(self.settings)}
+        return {**found, "tables": tables, "checks": checks, "caption": self.caption(), "holds": self.holds}
+
+    def _about(self, kind: str) -> dict[str, str]:
+        return {"Title": self.title, "Subject" if kind == "pdf" else "Description": self.caption()}
+
+    def _record(self, contents: Mapping[str, bytes], formats: Iterable[str], dark: bool) -> bytes:
+        files = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
+        data = {**self.to_json(), **_drawn(formats, dark), "files": files}
+        return (json.dumps(data, indent=1, allow_nan=False) + "\n").encode()
 
 
-def _is_empty(x: Cell) -> bool:
-    return x is None or (not isinstance(x, str) and math.isnan(x))
+def stored(
+    folder: str | os.PathLike[str],
+    name: str,
+    settings: Mapping[str, Any],
+    formats: Iterable[str] = FORMATS,
+    *,
+    dark: bool = False,
+) -> dict[str, Any] | None:
+    """JSON object of a figure that was written completely with these settings; None if there is none.
 
-
-def _plain(x: Cell) -> str | int:
-    return x if isinstance(x, str | int) else repr(float(x))
-
-
-def _json(x: Cell) -> str | float | None:
-    return None if _is_empty(x) else x if isinstance(x, str | int) else float(x)
-
-
-def _shown_row(row: Sequence[Cell]) -> list[str]:
-    return [_shown(x) for x in row]
-
-
-def _shown(x: Cell) -> str:
-    """Content of a cell in Markdown.
+    Parameters
+    ----------
+    folder : path
+    name : str
+    settings : dict
+        Arguments of `reproduce`: quick and seed.
+    formats, dark
+        Arguments of `Reproduction.write`.
 
     Examples
     --------
-    >>> [_shown(x) for x in (None, "a|b", 2, 0.0, 12.345, 1e-9)]
-    ['', 'a\\\\|b', '2', '0', '12.3', '1e-09']
+    >>> stored("no/such/folder", "fig1", {"quick": True, "seed": None}) is None
+    True
     """
-    if _is_empty(x):
-        return ""
-    return x.replace("|", "\\|") if isinstance(x, str) else str(x) if isinstance(x, int) else f"{x:.3g}"
+    found = _read(Path(folder) / f"{name}.json")
+    wanted = {"settings": dict(settings), **_drawn(formats, dark)}
+    if not isinstance(found.get("files"), dict) or any(found.get(key) != value for key, value in wanted.items()):
+        return None
+    try:
+        whole = all(
+            hashlib.sha256((Path(folder) / file).read_bytes()).hexdigest() == value
+            for file, value in found["files"].items()
+        )
+    except OSError:
+        return None
+    return found if whole else None
+
+
+def _drawn(formats: Iterable[str], dark: bool) -> dict[str, Any]:
+    """Entries of NAME.json besides the settings that decide the files; the package is loaded before this module."""
+    return {"formats": sorted(formats), "dark": dark, "liehom": sys.modules["liehom"].__version__}
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _fails(failing: Sequence[str]) -> str:
+    return f"Claims that fail: {'; '.join(failing)}." if failing else ""

@@ -9,8 +9,9 @@ from liehom.paper.energy_errors import kernels_agree, scale
 from liehom.paper.kernels import kernel
 from liehom.paper.printed_data import EULER
 from liehom.paper.printed_data import SEPARATRIX as PRINTED
-from liehom.paper.reproduction import Check, Reproduction, Table
+from liehom.paper.reproduction import Check, Reproduction
 from liehom.paper.samples import MOMENTS, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
+from liehom.paper.tables import Table
 from liehom.typing import Array
 
 SPAN, BATCHES = 500.0, 40

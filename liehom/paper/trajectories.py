@@ -8,8 +8,9 @@ from liehom.paper.energy_errors import kernels_agree, scale
 from liehom.paper.kernels import kernel
 from liehom.paper.plots import draw_spheres
 from liehom.paper.printed_data import EULER, FIGURE_2
-from liehom.paper.reproduction import Check, Reproduction, Table
+from liehom.paper.reproduction import Check, Reproduction
 from liehom.paper.samples import KINDS, NARROW_MOMENTS, Sample, largest_energy_error, random_bodies, spread
+from liehom.paper.tables import Table
 from liehom.typing import Array
 
 SPAN, DT = 200.0, 0.1
@@ -59,7 +60,8 @@ def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
             ),
         },
         (Check("all points stay on the sphere", f"| |m|^2 - 1 | at most {off:.0e}", off < ZERO),),
-        plot=lambda path: draw_spheres(curves, path),
+        draw=lambda: draw_spheres(curves),
+        shows="Upper row: a triaxial body, lower row: an axisymmetric body. Parts behind the sphere are pale.",
     )
 
 
@@ -104,8 +106,13 @@ def figure2(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
     sample = (
         f"{_described(seed)} Beside them {count} other bodies with one trajectory each: median, 5th, 95th percentile."
     )
+    count_inside = sum(row[-1] == "yes" for row in rows)
+    notes = (
+        f"{count_inside} of {len(rows)} numbers of the paper lie in the range.",
+        "The first update is xi_b^Eul; the paper's header reads xi_n^Eul.",
+    )
     return Reproduction(
-        "fig2", f"Figure 2: {title.lower()} of Euler's method", sample, {"": Table(title, columns, rows)}, checks
+        "fig2", f"Figure 2: {title.lower()} of Euler's method", sample, {"": Table(title, columns, rows)}, checks, notes
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from importlib import import_module
@@ -152,10 +153,7 @@ def _share_svg(figure: Any) -> None:
 
 
 def _svg(figure: Figure) -> str:
-    file = io.StringIO()
-    with style():
-        figure.savefig(file, format="svg", metadata=UNDATED[".svg"])
-    return file.getvalue()
+    return rendered(figure, "svg").decode()
 
 
 def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axes:
@@ -211,6 +209,23 @@ def figure_of(axes: Axes) -> Figure:
     return figure
 
 
+def rendered(figure: Figure, kind: str, about: Mapping[str, str] | None = None) -> bytes:
+    """Content of a file of this kind, such as "svg", with the same bytes for equal figures.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    kind : str
+        Suffix of the file without its dot.
+    about : dict of str to str, optional
+        Metadata of the file, with the keys of its format: `Title`, and `Description` or for PDF `Subject`.
+    """
+    file = io.BytesIO()
+    with style_unless(None):
+        figure.savefig(file, format=kind, metadata={**UNDATED.get(f".{kind}", {}), **(about or {})})
+    return file.getvalue()
+
+
 def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
     """The figure, after it is written to a file if a path is given.
 
@@ -228,8 +243,7 @@ def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
         raise FormatError(f"{os.fspath(path)!r} is not the name of a plot: it must end in one of {', '.join(known)}")
     check_target(target, force=True)
     try:
-        with style():
-            write_atomically(target, lambda file: figure.savefig(file, format=suffix[1:], metadata=UNDATED.get(suffix)))
+        write_atomically(target, rendered(figure, suffix[1:]))
     except OSError as error:
         raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
     return figure

@@ -5,18 +5,25 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
+from time import monotonic, sleep
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner, Result
 
 import liehom.paper
 from liehom.cli.app import app
 from liehom.errors import FormatError, InputError
 from liehom.instances import RigidBody
-from liehom.paper import NAMES, Check, Reproduction, Table, efficiency, reproduce
+from liehom.paper import NAMES, Check, Reproduction, Table, efficiency, reproduce, stored
 from liehom.paper.costs import Cost, operations
 from liehom.paper.efficiency import accuracy, own_consistency
 from liehom.paper.energy_errors import energy_errors, scale
@@ -27,6 +34,9 @@ from liehom.paper.printed_data import CROSSOVER, FIGURE_3, FIGURE_4, FIGURE_5, F
 from liehom.paper.samples import largest_energy_error, random_bodies
 from liehom.paper.separatrices import separatrix_sample
 from liehom.paper.trajectories import trajectory
+from liehom.plotting.canvas import new_figure
+
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 # -- the formulas ----------------------------------------------------------------------------------------
@@ -174,9 +184,9 @@ def test_conclusions_do_not_depend_on_measured_times(monkeypatch: pytest.MonkeyP
     assert first["checks"] == second["checks"]
     for name, table in first["tables"].items():
         timed = [i for i, column in enumerate(table.columns) if "time" in column]
-        assert len(timed) == 1
+        assert len(timed) == (name != "lines")  # the fits are over operations
         rows = zip(table.rows, second["tables"][name].rows, strict=True)
-        assert any(a[timed[0]] != b[timed[0]] for a, b in rows)
+        assert not timed or any(a[timed[0]] != b[timed[0]] for a, b in rows)
         for a, b in zip(table.rows, second["tables"][name].rows, strict=True):
             assert [x for i, x in enumerate(a) if i not in timed] == [x for i, x in enumerate(b) if i not in timed]
 
@@ -215,12 +225,128 @@ def test_a_claim_that_fails_is_said_to_fail() -> None:
     done = Reproduction("x", "X", "none", {}, (Check("1 = 1", "1", True), Check("1 = 2", "1", False)))
     assert not done.holds
     assert "| 1 = 2 | 1 | NO |" in done.markdown()
+    assert done.caption() == "X. Claims that fail: 1 = 2 (found: 1)."
+    assert not Reproduction("x", "X", "none", {}, (Check("1 = 1", "1", True),)).failures()
+
+
+@pytest.mark.parametrize(
+    ("name", "failing"),
+    [
+        ("fig4", ["triaxial rk2_b: the formula as printed", "triaxial rk2_ib: the formula as printed"]),
+        ("fig5", ["triaxial sy4_o: the formula as printed", "the errors of xi_o^sy4 and xi_io^sy4 have slope 3"]),
+        ("fig6", ["xi_io^RK2 costs 17.14 steps of xi_b^Eul (found: 3.52"]),
+        ("fig7", ["xi_o^sy4 is the most efficient update for high accuracy", "xi_ib^RK2 is the most efficient of"]),
+    ],
+)
+def test_captions_name_the_claims_of_the_paper_that_fail(name: str, failing: list[str]) -> None:
+    done = reproduce(name, quick=True)
+    page, tex, shown = done.markdown("plot.svg"), done.latex(), [done.caption(key) for key in done.tables]
+    for text in failing:
+        assert text in done.caption()
+        assert page.count(text) == 2  # below the plot and below the table that refutes it
+        assert sum(text in caption for caption in shown) == 1
+    assert tex.count("Claims that fail:") == sum("Claims that fail" in caption for caption in shown) > 0
+    assert "Claims that fail" not in reproduce("fig3", quick=True).caption()
+
+
+def test_files_are_in_their_format_and_the_same_again() -> None:
+    done = reproduce("fig4", quick=True)
+    files = done.files()
+    assert small("fig4").files() == small("fig4").files()
+    assert {name[5:] for name in files if name.startswith("fig4.")} == {"md", "tex", "csv", "png", "svg", "pdf", "json"}
+    assert files["fig4.png"].startswith(b"\x89PNG")
+    assert files["fig4.pdf"].startswith(b"%PDF")
+    assert files["fig4.pdf"].rstrip().endswith(b"%%EOF")
+    assert b"/Subject (Figure 4: energy errors" in files["fig4.pdf"]
+    assert not any(b"CreationDate" in files[name] or b"dc:date" in files[name] for name in ("fig4.pdf", "fig4.svg"))
+    width, height = int.from_bytes(files["fig4.png"][16:20]), int.from_bytes(files["fig4.png"][20:24])
+    root = ElementTree.fromstring(files["fig4.svg"])
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    points = [float(size.removesuffix("pt")) for size in (root.attrib["width"], root.attrib["height"])]
+    assert [width, height] == pytest.approx([x * 160 / 72 for x in points], abs=1)
+    described = [element.text for element in root.iter() if element.tag.endswith("description")]
+    assert described == [done.caption()]
+    with pytest.raises(InputError, match="png, svg, pdf"):
+        done.files(("bmp",))
+    with pytest.raises(InputError, match="table in the paper"):
+        reproduce("fig2", quick=True).plot()
+
+
+def test_a_plot_has_its_caption_inside() -> None:
+    drawn = " ".join(reproduce("fig4", quick=True).plot().get_supxlabel().split())
+    assert drawn.startswith("Figure 4: energy errors of the Heun method")
+    assert r"triaxial $\xi_{ib}^{\mathrm{RK2}}$: the formula as printed has energy order 4 (found: 3.00" in drawn
+
+
+def test_panels_of_figures_3_to_5_show_both_the_errors_here_and_those_of_the_paper() -> None:
+    assert len(reproduce("fig7", quick=True).plot().axes) == 4
+    for name, rows, columns in (("fig3", 1, 6), ("fig4", 2, 4), ("fig5", 2, 6)):
+        done = reproduce(name, quick=True)
+        figure = done.plot()
+        assert len(figure.axes) == rows * columns
+        table = [dict(zip(done.tables[""].columns, row, strict=True)) for row in done.tables[""].rows]
+        for axes, key in zip(figure.axes, dict.fromkeys((row["body"], row["update"]) for row in table), strict=True):
+            mine = [row for row in table if (row["body"], row["update"]) == key]
+            middle = max(axes.get_lines(), key=lambda line: len(line.get_xdata()) if line.get_linestyle() == "-" else 0)
+            assert list(middle.get_ydata()) == [max(row["average error"], 3e-17) for row in mine]
+            points = [np.ravel(line.get_data()).tolist() for line in axes.get_lines() if len(line.get_xdata()) == 1]
+            assert all([row["dt"], max(row["paper"], 3e-17)] in points for row in mine)
+            assert axes.get_title(loc="right") == key[0]
+
+
+def test_tables_in_latex_compile_as_text() -> None:
+    text = Table("a & b", ("x_1", "update"), [("|m| < 1", "sy4_io"), (2.5e-7, "10 %")]).latex("Claims: xi_o^sy4 50%")
+    assert r"\caption{Claims: $\xi_{o}^{\mathrm{sy4}}$ 50\%}" in text
+    assert r"x\_1 & update \\" in text
+    assert r"$|$m$|$ $<$ 1 & $\xi_{io}^{\mathrm{sy4}}$ \\" in text
+    assert r"$2.5\cdot10^{-7}$ & 10 \% \\" in text
+
+
+def axes_only() -> Figure:
+    figure = new_figure(3, 2)
+    figure.add_subplot()
+    return figure
+
+
+def small(name: str, **settings: Any) -> Reproduction:
+    """A figure that costs nothing."""
+    table = Table("t", ("a",), [(len(name),)])
+    given = {"quick": False, "seed": None} | settings
+    return Reproduction(name, name, "none", {"": table}, draw=axes_only, settings=given)
+
+
+def test_a_figure_is_found_again_only_if_it_is_complete_and_the_same(tmp_path: Path) -> None:
+    done = small("fig2")
+    paths = done.write(tmp_path, ("svg",))
+    assert len(paths) == 5
+    found = stored(tmp_path, "fig2", done.settings, ("svg",))
+    assert found is not None
+    assert found["tables"] == done.to_json()["tables"]
+    assert stored(tmp_path, "fig2", {"quick": True, "seed": None}, ("svg",)) is None
+    assert stored(tmp_path, "fig2", done.settings, ("png",)) is None
+    assert stored(tmp_path, "fig2", done.settings, ("svg",), dark=True) is None
+    for path in paths:
+        before = path.read_bytes()
+        path.write_bytes(before[:-3])
+        assert stored(tmp_path, "fig2", done.settings, ("svg",)) is None
+        path.unlink()
+        assert stored(tmp_path, "fig2", done.settings, ("svg",)) is None
+        path.write_bytes(before)
+    assert stored(tmp_path, "fig2", done.settings, ("svg",)) is not None
+
+
+def test_a_figure_that_is_written_again_leaves_no_file_of_before(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    small("fig3").write(tmp_path, ("png", "pdf"))
+    left = {path.name for path in small("fig3").write(tmp_path, ("svg",))}
+    assert {path.name for path in tmp_path.iterdir()} == left | {"mine.txt"}
+    assert not any(name.endswith((".png", ".pdf")) for name in left)
 
 
 def test_files_of_a_figure(tmp_path: Path) -> None:
     done = reproduce("fig1", quick=True)
-    names = sorted(path.name for path in done.write(tmp_path / "new"))
-    assert names == ["fig1.csv", "fig1.md", "fig1.png", "fig1_bodies.csv"]
+    names = [path.name for path in done.write(tmp_path / "new", ("svg",))]
+    assert names == ["fig1.md", "fig1.tex", "fig1.csv", "fig1_bodies.csv", "fig1.svg", "fig1.json"]
     rows = list(csv.DictReader(io.StringIO((tmp_path / "new" / "fig1.csv").read_text(encoding="utf-8"))))
     m = np.array([[float(row[f"m{k}"]) for k in (1, 2, 3)] for row in rows])
     assert np.abs((m**2).sum(axis=1) - 1).max() < 1e-13
@@ -256,12 +382,123 @@ def liehom_(*words: str) -> Result:
 
 
 def test_reproduce_all_writes_every_table(tmp_path: Path) -> None:
-    result = liehom_("reproduce", "all", "--quick", "--out", str(tmp_path))
+    result = liehom_("reproduce", "all", "--quick", "--format", "none", "--out", str(tmp_path / "new" / "folder"))
     assert result.exit_code == 0, result.stdout
+    assert result.stderr == ""
     assert "FAILS" not in result.stdout
-    assert {f"{name}.{end}" for name in NAMES for end in ("md", "csv")} | {"fig1.png", "fig7.png"} <= {
-        path.name for path in tmp_path.iterdir()
-    }
+    files = {path.name for path in (tmp_path / "new" / "folder").iterdir()}
+    assert {f"{name}.{end}" for name in NAMES for end in ("md", "tex", "csv", "json")} <= files
+    assert {name.rpartition(".")[2] for name in files} == {"md", "tex", "csv", "json"}
+
+
+def test_reproduce_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = liehom_("reproduce", "fig4", "--quick")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "the formula as printed has energy order 4 (found: 3.00" in result.stdout
+    assert "rk2_io" in result.stdout and "slope in the paper" in result.stdout
+    assert result.stdout.endswith("no files are written: --out DIR writes tables and plots\n")
+    for words in (("--resume",), ("--dark",), ("--format", "svg")):
+        refused = liehom_("reproduce", "fig4", "--quick", *words)
+        assert (refused.exit_code, refused.stdout) == (2, "")
+        assert "--out DIR" in refused.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("--out", "new", "--format", "bmp"), "png,svg,pdf"),
+        (("--out", "new", "--format", ""), "png,svg,pdf"),
+        (("--out", "file"), "not a writable folder"),
+        (("--out", "file/new"), "not a writable folder"),
+        (("--out", ""), "not a writable folder"),
+    ],
+)
+def test_reproduce_refuses_before_the_work(
+    words: tuple[str, ...], named: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("file").write_text("mine")
+    monkeypatch.setattr(liehom.paper, "reproduce", lambda *args, **options: pytest.fail("it works already"))
+    result = liehom_("reproduce", "fig4", "--quick", *words)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert named in result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_reproduce_without_matplotlib_writes_the_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("liehom.cli.problem_options.can_plot", lambda: False)
+    result = liehom_("reproduce", "fig3", "--quick", "--out", str(tmp_path))
+    assert (result.exit_code, result.stdout.splitlines()[-1]) == (0, f"5 files in {tmp_path}; no plots")
+    asked = liehom_("reproduce", "fig3", "--quick", "--out", str(tmp_path), "--format", "svg")
+    assert asked.exit_code == 2 and "pip install 'liehom[plot]'" in asked.stderr
+
+
+def test_resume_computes_only_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    computed: list[str] = []
+
+    def counted(name: str, **settings: Any) -> Reproduction:
+        computed.append(name)
+        return small(name, **settings)
+
+    monkeypatch.setattr(liehom.paper, "reproduce", counted)
+    words = ("reproduce", "all", "--quick", "--format", "none", "--out", str(tmp_path))
+    first = liehom_(*words)
+    assert computed == list(NAMES)
+    (tmp_path / "fig4.csv").unlink()
+    again = liehom_(*words, "--resume")
+    assert computed == [*NAMES, "fig4"]
+    assert (again.exit_code, again.stdout) == (0, first.stdout)
+    other = liehom_(*words, "--resume", "--seed", "5", "--json")
+    assert computed == [*NAMES, "fig4", *NAMES]
+    resumed = liehom_(*words, "--resume", "--seed", "5", "--json")
+    assert json.loads(resumed.stdout) == json.loads(other.stdout)
+    assert computed == [*NAMES, "fig4", *NAMES]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="another system sends no SIGINT to a process")
+def test_an_interrupted_reproduction_leaves_complete_figures_and_says_which(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = [sys.executable, "-m", "liehom", "reproduce", "all", "--format", "none", "--out", str(out)]
+    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        end = monotonic() + 60
+        while not (out / "fig1.json").exists() and monotonic() < end:
+            sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=60)
+    assert (process.returncode, stdout) == (130, "")
+    finished = sorted(path.stem for path in out.glob("*.json"))
+    assert "fig1" in finished and len(finished) < len(NAMES)
+    told = (
+        f"liehom: interrupted; finished in {out}: {', '.join(finished)}; the same command with --resume does the others"
+    )
+    assert stderr == told + "\n"
+    listed = [json.loads((out / f"{name}.json").read_text())["files"].keys() | {f"{name}.json"} for name in finished]
+    assert {path.name for path in out.iterdir()} == set().union(*listed)
+    assert all(stored(out, name, {"quick": False, "seed": None}, ()) for name in finished)
+
+
+def test_an_interruption_before_the_first_figure_leaves_no_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*args: object, **options: object) -> Reproduction:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(liehom.paper, "reproduce", interrupted)
+    result = liehom_("reproduce", "all", "--out", str(tmp_path / "new"))
+    assert (result.exit_code, result.stdout) == (130, "")
+    assert result.stderr == "liehom: interrupted; no figure is finished\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_progress_is_on_standard_error_if_it_is_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    silent = liehom_("reproduce", "fig2", "--quick")
+    assert silent.stderr == ""
+    monkeypatch.setenv("FORCE_COLOR", "1")  # rich takes every stream for a terminal
+    shown = liehom_("reproduce", "fig2", "--quick", "--progress")
+    assert "reproducing fig2" in shown.stderr
+    assert shown.stdout == silent.stdout
 
 
 def test_reproduce_prints_one_object(tmp_path: Path) -> None:
