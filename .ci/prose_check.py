@@ -37,10 +37,10 @@ def clean(text: str) -> str:
     return re.sub(r"\s+", " ", text.replace("**", "").replace("*", "")).strip()
 
 
-def markdown(path: pathlib.Path):
-    """Yield (kind, place, text) for the paragraphs, headings and table cells of a Markdown file."""
+def markdown(path: pathlib.Path, source: str):
+    """Yield (kind, place, text) for the paragraphs, headings and table cells of Markdown."""
     fence, block, start, math = None, [], 0, False
-    for number, line in enumerate([*path.read_text().splitlines(), ""], 1):
+    for number, line in enumerate([*source.splitlines(), ""], 1):
         mark = re.match(r"\s*(`{3,}|~{3,})", line)
         if mark:
             fence = None if fence else mark[1]
@@ -100,9 +100,17 @@ def strings(node: ast.AST):
     return None
 
 
-def python(path: pathlib.Path):
+def notebook(path: pathlib.Path):
+    """Yield (kind, place, text) for the cells of a notebook; a place is "path, cell number:line"."""
+    for number, cell in enumerate(json.loads(path.read_text())["cells"]):
+        read = markdown if cell["cell_type"] == "markdown" else python
+        for kind, place, text in read(path, "".join(cell["source"])):
+            line = place.rpartition(":")[2]
+            yield kind, f"{path}, cell {number}:{line}", text
+
+
+def python(path: pathlib.Path, source: str):
     """Yield (kind, place, text) for docstrings, messages, help texts, test names and comments."""
-    source = path.read_text()
     tree = ast.parse(source)
     for node in ast.walk(tree):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
@@ -137,15 +145,17 @@ def python(path: pathlib.Path):
 
 
 def prose(roots: list[str]):
-    """Yield (kind, place, text) for every Markdown and Python file below the given paths."""
+    """Yield (kind, place, text) for every Markdown file, notebook and Python file below the given paths."""
     for root in map(pathlib.Path, roots):
         for path in [root] if root.is_file() else sorted(root.rglob("*")):
             if SKIP & set(path.parts):
                 continue
             if path.suffix == ".md":
-                yield from markdown(path)
+                yield from markdown(path, path.read_text())
+            elif path.suffix == ".ipynb":
+                yield from notebook(path)
             elif path.suffix == ".py":
-                yield from python(path)
+                yield from python(path, path.read_text())
 
 
 PROSE = {"md", "module", "doc1", "doc", "comment", "help", "table"}
@@ -244,7 +254,7 @@ def main() -> int:
         if kind == "test" or "prose: ok" in text:
             continue
         for rule, quote, advice in hits(kind, text):
-            found[place.rpartition(":")[0], rule].append((place, quote, advice))
+            found[re.split(r", cell |:(?=\d+$)", place)[0], rule].append((place, quote, advice))
     if options.dump:
         return 0
     counts = {f"{path} {rule}": len(places) for (path, rule), places in sorted(found.items())}

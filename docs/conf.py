@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 import tomllib
@@ -10,6 +11,7 @@ from typing import Any
 
 from docutils import nodes
 from docutils.utils.math import MathError
+from sphinx import addnodes
 from sphinx.util import logging
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -26,9 +28,19 @@ copyright = "liehom authors"
 release = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
 version = release
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
+# Notebooks are stored without outputs, and the build runs them. For a cell that fails or writes to stderr there is a
+# warning, which the strict build refuses.
+nb_execution_mode = "force"
+nb_execution_show_tb = True
+nb_execution_timeout = 60
+nb_execution_in_temp = True
+nb_output_stderr = "remove-warn"
+nb_merge_streams = True
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))  # for their kernels
+
 exclude_patterns = ["_build", "pictures"]
 
 # the button of a block copies its code alone, without prompts and output; blocks of output alone have no button
@@ -122,12 +134,23 @@ def check_links(app: Any, exception: Exception | None) -> None:
             LOG.warning("%s: %s", page, fault)
 
 
+def link_notebook(app: Any, doctree: nodes.document) -> None:
+    """Below the title of a notebook a link that downloads it."""
+    source = Path(app.env.doc2path(app.env.docname))
+    title = next(doctree.findall(nodes.title), None)
+    if source.suffix == ".ipynb" and title is not None:
+        link = addnodes.download_reference("", "", reftarget=source.name, refdoc=app.env.docname, classes=["notebook"])
+        link += nodes.Text(f"Download {source.name}")
+        title.parent.insert(1, nodes.paragraph("", "", link))
+
+
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
     app.connect("autodoc-process-docstring", table_of_modules, priority=950)
     app.connect("doctree-read", refuse_apostrophes)
     app.connect("build-finished", check_links)
+    app.connect("doctree-read", link_notebook, priority=400)  # before the files to download are collected
     import page_tree  # found by the path that is set above
     import picture_directive
     import pictures

@@ -21,6 +21,7 @@ from liehom.display import SHOWN_LINES, DisplayedTable
 from liehom.fullness import (
     Certificate,
     Classification,
+    FailureReport,
     Full,
     NotFull,
     NumericallyFull,
@@ -185,6 +186,16 @@ def _(obj: Classification) -> Card:
         ("dimension of the ideal inside h", obj.ideal.dimension or None),
     )
     return Card(f"classification: {obj.name or 'no catalogue name'}", facts)
+
+
+@card_of.register
+def _(obj: FailureReport) -> Card:
+    facts = (
+        ("fails on", ", and ".join(part.description for part in obj.parts) or None),
+        ("complete for", ", ".join(obj.searched) or None),
+        ("not searched", ", ".join(obj.not_searched) or None),
+    )
+    return Card(str(obj).partition(";")[0], facts)
 
 
 # -- trajectories --------------------------------------------------------------------------------------------

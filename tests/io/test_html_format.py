@@ -264,7 +264,7 @@ def test_ipython_finds_the_methods(name: str) -> None:
 
 
 def test_the_card_of_the_docs_is_the_one_that_is_made() -> None:
-    page = Path(__file__).resolve().parents[2] / "docs" / "tutorials" / "index.md"
+    page = Path(__file__).resolve().parents[2] / "docs" / "notebooks" / "index.md"
     shown = page.read_text(encoding="utf-8").partition("```{raw} html\n")[2].partition("\n```")[0]
     assert shown == html(lh.decide_fullness(lh.pair("so(3)/so(2)")))
 
