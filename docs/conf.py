@@ -17,7 +17,8 @@ from sphinx.util import logging
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]  # the pages document this tree, whatever is installed
 
-import formulas  # noqa: E402 - found by the path that is set above
+import api_pages  # noqa: E402 - found by the path that is set above
+import formulas  # noqa: E402
 import page_links  # noqa: E402
 
 LOG = logging.getLogger(__name__)
@@ -54,7 +55,8 @@ default_role = "code"
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
-autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike"}  # not the page-long union behind it
+# names, not the unions of half a page behind them
+autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike", **api_pages.type_aliases()}
 python_use_unqualified_type_names = True
 napoleon_use_ivar = True  # an attribute described in a section is not described a second time
 napoleon_use_rtype = False
@@ -102,29 +104,22 @@ def keep_bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: l
         text = line.strip()
         inside = bool(text) and (inside or text.startswith(">>>"))
         if not inside:
-            parts = re.split(r"(``[^`]*``|`[^`]*`)", line)
-            lines[i] = "".join(
-                part
-                if part.startswith("`")
-                else re.sub(
-                    r"\||\*\*(?=\w)|(?<![\w*])\*(?=\w+(?:[^\w*]|$))(?!\S[^*]*\S\*(?!\w))",
-                    lambda bar: "".join(f"\\{c}" for c in bar[0]),
-                    formulas.APOSTROPHE.sub(lambda prime: prime[1] + "\u2032" * len(prime[2]), part),
-                )
-                for part in parts
-            )
+            lines[i] = escaped(line)
 
 
-def table_of_modules(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Lines "`module`   what it holds" of the package's docstring become a table with links."""
-    entry = re.compile(r"`(\w+)` {2,}(\S.*)")
-    matches = [entry.fullmatch(line) for line in lines]
-    if what == "module" and any(matches):
-        first = next(i for i, match in enumerate(matches) if match)
-        table = [".. list-table::", "   :widths: auto", ""]
-        for match in filter(None, matches):
-            table += [f"   * - :py:mod:`{match[1]} <{name}.{match[1]}>`", f"     - {match[2]}"]
-        lines[first:] = [*table, "", *(line for i, line in enumerate(lines) if i > first and not matches[i])]
+def escaped(line: str) -> str:
+    """One line of a docstring as reStructuredText."""
+    parts = re.split(r"(``[^`]*``|`[^`]*`)", line)
+    return "".join(
+        part
+        if part.startswith("`")
+        else re.sub(
+            r"\||\*\*(?=\w)|(?<![\w*])\*(?=\w+(?:[^\w*]|$))(?!\S[^*]*\S\*(?!\w))",
+            lambda bar: "".join(f"\\{c}" for c in bar[0]),
+            formulas.APOSTROPHE.sub(lambda prime: prime[1] + "\u2032" * len(prime[2]), part),
+        )
+        for part in parts
+    )
 
 
 def check_links(app: Any, exception: Exception | None) -> None:
@@ -147,7 +142,6 @@ def link_notebook(app: Any, doctree: nodes.document) -> None:
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
-    app.connect("autodoc-process-docstring", table_of_modules, priority=950)
     app.connect("doctree-read", refuse_apostrophes)
     app.connect("build-finished", check_links)
     app.connect("doctree-read", link_notebook, priority=400)  # before the files to download are collected
@@ -155,6 +149,15 @@ def setup(app: Any) -> None:
     import picture_directive
     import pictures
 
+    def expand(app: Any, page: str, source: list[str]) -> None:
+        source[0] = api_pages.expand(page, source[0], escaped)
+
+    def add_members(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+        if what in ("class", "exception"):
+            lines += api_pages.members(*name.rsplit(".", 1), escaped)
+
+    app.connect("source-read", expand)
+    app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)
     app.add_directive("picture", picture_directive.Picture)

@@ -281,3 +281,4 @@ CLAIMS: dict[str, Claim] = {
     for rows, full in ((_FULL, True), (_NOT_FULL, False))
     for row in rows
 }
+"""The claim about each listed pair, by the name of the pair."""

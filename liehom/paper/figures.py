@@ -23,6 +23,7 @@ _FIGURES: dict[str, Callable[..., Reproduction]] = {
     "separatrix": separatrix,
 }
 NAMES = tuple(_FIGURES)
+"""What `reproduce` reproduces: names of figures, and of the experiment on separatrices."""
 
 
 def reproduce(name: str, *, quick: bool = False, seed: int | None = None) -> Reproduction:

@@ -1,4 +1,4 @@
-"""Truncated Taylor series on which numpy code runs, and series in Lie algebras; see docs/api/series.md.
+"""Truncated Taylor series on which numpy code runs, and series in Lie algebras.
 
 In reading order:
 

@@ -1,0 +1,303 @@
+"""Tables and entries of the API pages, written when the pages are read.
+
+A page of docs/api names what it documents, in reading order; summaries and entries come from the docstrings.
+
+    ```{entries} liehom.algebra
+    Subalgebra Homomorphism LieAlgebra.bracket
+    ```
+
+becomes a table with one row for each name, and below it the entries. Without names all public names of the module are
+taken. Methods that are named (`LieAlgebra.bracket`) are left out of the entry of their class. Three more blocks make
+tables only: `{summary} liehom.algebra` for each page that it lists, below the page of the module, `{pages}` with a
+row for each page that it lists, and `{names} liehom` for the top level.
+
+The module needs no Sphinx, so that the tests read the pages by it too.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import importlib
+import inspect
+import posixpath
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+FOLDER = Path(__file__).resolve().parent
+BLOCK = re.compile(r"^```\{(entries|summary|pages|names)\} ?([\w.]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+MEMBERS_IN_A_TABLE = 4
+"""A class with fewer members has no table of them."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Entries of a page: the page without suffix, the heading above, the module, the names."""
+
+    page: str
+    title: str
+    module: str
+    names: tuple[str, ...]
+
+
+def documented(thing: object) -> bool:
+    return bool(inspect.getdoc(thing))
+
+
+def member_names(cls: type) -> list[str]:
+    """Public methods and properties with a docstring that the class itself defines, in the order of the source."""
+    kinds = (property, functools.cached_property, staticmethod, classmethod)
+    return [
+        name
+        for name, value in vars(cls).items()
+        if not name.startswith("_")
+        and (inspect.isfunction(value) or isinstance(value, kinds))
+        and documented(getattr(cls, name))
+    ]
+
+
+def public_names(module: str) -> list[str]:
+    """What a package hands on (`X as X`) or a module defines, in the order of the source."""
+    loaded = importlib.import_module(module)
+    listed = getattr(loaded, "__all__", None)
+    tree = ast.parse(inspect.getsource(loaded))
+    names: list[str] = []
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom):
+            names += [alias.name for alias in node.names if alias.asname == alias.name]
+        elif isinstance(node, ast.ClassDef | ast.FunctionDef):
+            names.append(node.name)
+        elif isinstance(node, ast.AnnAssign | ast.Assign):
+            target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
+            names += [target.id] if isinstance(target, ast.Name) and written(loaded, target.id) else []
+    public = [name for name in dict.fromkeys(names) if not name.startswith("_")]
+    return [name for name in public if not listed or name in listed]
+
+
+@functools.cache
+def written(module: ModuleType, name: str) -> str:
+    """The string below the assignment of a name, in the module or where the module has the name from; "" if none."""
+    body = ast.parse(inspect.getsource(module)).body
+    for node, after in zip(body, [*body[1:], ast.Pass()], strict=True):
+        if isinstance(node, ast.ImportFrom) and name in [alias.asname or alias.name for alias in node.names]:
+            return written(importlib.import_module(str(node.module)), name)
+        target = (
+            node.target
+            if isinstance(node, ast.AnnAssign)
+            else node.targets[0]
+            if isinstance(node, ast.Assign)
+            else None
+        )
+        if isinstance(target, ast.Name) and target.id == name and isinstance(after, ast.Expr):
+            return inspect.cleandoc(str(ast.literal_eval(after.value))) if isinstance(after.value, ast.Constant) else ""
+    return ""
+
+
+def find(module: str, name: str) -> Any:
+    """The object of a dotted name."""
+    return functools.reduce(getattr, name.split("."), importlib.import_module(module))
+
+
+def directive(module: str, name: str) -> str:
+    """The directive of autodoc for a name."""
+    thing = find(module, name)
+    owner, _, member = name.rpartition(".")
+    if owner:
+        static = inspect.getattr_static(find(module, owner), member)
+        return "autoproperty" if isinstance(static, property | functools.cached_property) else "automethod"
+    if inspect.isclass(thing):
+        return "autoexception" if issubclass(thing, BaseException) else "autoclass"
+    return "autofunction" if inspect.isroutine(thing) else "autodata"
+
+
+def summary(module: str, name: str) -> str:
+    """The first paragraph of a docstring, in one line."""
+    text = written(importlib.import_module(module), name) if directive(module, name) == "autodata" else ""
+    return " ".join((text or inspect.getdoc(find(module, name)) or "").split("\n\n")[0].split())
+
+
+def order(folder: Path) -> Iterator[Path]:
+    """The API pages, each followed by the pages that it lists."""
+    for path in sorted((folder / "api").glob("*.md")):
+        yield path
+        for match in BLOCK.finditer(path.read_text(encoding="utf-8")):
+            if match[1] == "summary":
+                yield from (folder / "api" / f"{page}.md" for page in match[3].split())
+
+
+@functools.cache
+def blocks(folder: Path = FOLDER) -> tuple[Block, ...]:
+    """All entries of docs/api, page after page."""
+    found = []
+    for path in order(folder):
+        text, page = path.read_text(encoding="utf-8"), path.relative_to(folder).with_suffix("").as_posix()
+        for match in BLOCK.finditer(text):
+            if match[1] == "entries":
+                heading = re.findall(r"^#+ (.*)$", text[: match.start()], flags=re.MULTILINE)[-1]
+                names = tuple(match[3].split()) or tuple(public_names(match[2]))
+                found.append(Block(page, heading, match[2], names))
+    return tuple(found)
+
+
+def type_aliases() -> dict[str, str]:
+    """Names of types that signatures show in place of what they stand for, with their entries."""
+    return {name: f"{block.module}.{name}" for block in blocks() if block.page == "api/typing" for name in block.names}
+
+
+def placed(module: str, cls: str) -> dict[str, Block]:
+    """The members of a class that have their entry on another page or in another block, with that block."""
+    start = f"{cls}."
+    return {
+        name.removeprefix(start): block
+        for block in blocks()
+        for name in block.names
+        if block.module == module and name.startswith(start)
+    }
+
+
+Escape = Callable[[str], str]
+
+
+def table(rows: Iterable[tuple[str, str]], escape: Escape) -> Iterator[str]:
+    """A table of rows (link, text)."""
+    yield from (".. list-table::", "   :class: api-names", "   :widths: 30 70", "")
+    for link, text in rows:
+        yield from (f"   * - {link}", f"     - {escape(text)}")
+    yield ""
+
+
+def rows(module: str, names: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """For each name a link to its entry, and its summary."""
+    for name in names:
+        yield f":py:obj:`{name.rpartition('.')[2]} <{module}.{name}>`", summary(module, name)
+
+
+def entry(module: str, name: str, escape: Escape) -> Iterator[str]:
+    """The directive that makes the entry of a name."""
+    text = written(importlib.import_module(module), name)
+    own = re.search(rf"^{name}\b.*=", inspect.getsource(importlib.import_module(module)), flags=re.MULTILINE)
+    if text and not own and directive(module, name) == "autodata":
+        yield from (f".. py:data:: {module}.{name}", "", *(f"   {escape(line)}" for line in text.splitlines()), "")
+        return
+    yield f".. {directive(module, name)}:: {module}.{name}"
+    if away := placed(module, name):
+        yield f"   :exclude-members: {', '.join(away)}"
+    yield ""
+
+
+def members(module: str, cls: str, escape: Escape) -> Iterator[str]:
+    """Tables of the members of a class, for the end of its docstring: one for each block that has their entries."""
+    names, away = member_names(find(module, cls)), placed(module, cls)
+    if len(names) < MEMBERS_IN_A_TABLE:
+        return
+    groups: dict[str, list[str]] = {}
+    for name in [*away, *(name for name in names if name not in away)]:
+        groups.setdefault(away[name].title if name in away else "Methods and properties", []).append(f"{cls}.{name}")
+    for title, group in groups.items():
+        yield from ("", f".. rubric:: {title}", "")
+        yield from table(rows(module, group), escape)
+
+
+def rst(lines: Iterable[str]) -> str:
+    return "\n".join(["```{eval-rst}", *lines, "```", ""])
+
+
+def title_and_purpose(page: str, folder: str) -> tuple[str, str]:
+    """The title of a page and its first sentence, whose links are changed to start from another folder."""
+    title, purpose = (FOLDER / f"{page}.md").read_text(encoding="utf-8").split("\n\n")[:2]
+    sentence = re.split(r"(?<=\.)\s", purpose)[0].replace("\n", " ")
+    here = posixpath.dirname(page)
+    moved = re.sub(
+        r"\]\(([\w./-]+\.md)", lambda link: "](" + posixpath.relpath(posixpath.join(here, link[1]), folder), sentence
+    )
+    return title.removeprefix("# "), moved
+
+
+def declaration(module: str) -> list[str]:
+    """The target of links to a module; a module that is one file has its docstring here."""
+    if hasattr(importlib.import_module(module), "__path__"):
+        return [f".. py:module:: {module}", ""]
+    return [f".. automodule:: {module}", "   :no-members:", ""]
+
+
+class Writer:
+    """Writes the blocks of one page out.
+
+    Parameters
+    ----------
+    page : str
+        The page, without suffix, relative to the folder of the documentation.
+    escape : function
+        Makes one line of a docstring into reStructuredText.
+    """
+
+    def __init__(self, page: str, escape: Escape) -> None:
+        self.page, self.folder, self.escape = page, page.rpartition("/")[0], escape
+        self.declared: set[str] = set()
+
+    def block(self, match: re.Match[str]) -> str:
+        """What a block becomes: its kind names the method."""
+        written_out: str = getattr(self, match[1])(match[2], match[3].split())
+        return written_out
+
+    def entries(self, module: str, names: list[str]) -> str:
+        """A table and the entries; no table of one name, nor of methods that the class lists on this page."""
+        names, lines = names or public_names(module), []
+        if module not in self.declared and any(directive(module, name) != "autodata" for name in names):
+            inner = hasattr(importlib.import_module(module), "__path__") and self.folder != "api"
+            lines += [] if inner else declaration(module)
+            self.declared.add(module)
+        owners = {name.rpartition(".")[0] for name in names}
+        listed = [block.names for block in blocks() if block.page == self.page and block.module == module]
+        if len(names) > 1 and not (owners != {""} and owners < {name for group in listed for name in group}):
+            lines += table(rows(module, names), self.escape)
+        for name in names:
+            lines += entry(module, name, self.escape)
+        return rst(lines)
+
+    def summary(self, module: str, pages: list[str]) -> str:
+        """For each page below this one its title, its first sentence and a table."""
+        self.declared.add(module)
+        parts = [self.contents(pages), rst(declaration(module))]
+        for page in pages:
+            title, purpose = title_and_purpose(f"{self.folder}/{page}", self.folder)
+            lines: list[str] = []
+            for block in blocks():
+                if block.page == f"{self.folder}/{page}":
+                    lines += table(rows(block.module, block.names), self.escape)
+            parts.append(f"## [{title}]({page}.md)\n\n{purpose}\n\n{rst(lines)}")
+        return "\n".join(parts)
+
+    def pages(self, _: str, pages: list[str]) -> str:
+        """A row for each page: title, module, and the first line of the module's docstring."""
+        found = []
+        for page in pages:
+            path = posixpath.normpath(f"{self.folder}/{page}")
+            module = "liehom" if page == "top-level" else f"liehom.{posixpath.basename(page)}"
+            about = str(importlib.import_module(module).__doc__).splitlines()[0].removeprefix("liehom: ")
+            title, _purpose = title_and_purpose(path, self.folder)
+            found.append((f":doc:`{title} </{path}>`", f"``{module}``: {about[0].lower()}{about[1:]}"))
+        return self.contents(pages) + rst(table(found, self.escape))
+
+    def names(self, module: str, _: list[str]) -> str:
+        places = {id(find(block.module, name)): f"{block.module}.{name}" for block in blocks() for name in block.names}
+        lines = [f".. py:module:: {module}", "   :no-index-entry:", ""]
+        found = []
+        for name in sorted(dir(importlib.import_module(module)), key=str.lower):
+            thing = getattr(importlib.import_module(module), name)
+            if id(thing) in places or (isinstance(thing, type) and issubclass(thing, BaseException)):
+                home, _, last = places.get(id(thing), f"liehom.errors.{name}").rpartition(".")
+                found.append((f":py:obj:`lh.{name} <{home}.{last}>`", summary(home, last)))
+        return rst([*lines, *table(found, self.escape)])
+
+    def contents(self, pages: Iterable[str]) -> str:
+        return "\n".join(["```{toctree}", ":hidden:", "", *pages, "```", "", ""])
+
+
+def expand(page: str, text: str, escape: Escape) -> str:
+    """The text of a page with its blocks written out."""
+    return BLOCK.sub(Writer(page, escape).block, text)
