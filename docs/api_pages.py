@@ -217,11 +217,8 @@ def title_and_purpose(page: str, folder: str) -> tuple[str, str]:
     return title.removeprefix("# "), moved
 
 
-def declaration(module: str) -> list[str]:
-    """The target of links to a module; a module that is one file has its docstring here."""
-    if hasattr(importlib.import_module(module), "__path__"):
-        return [f".. py:module:: {module}", ""]
-    return [f".. automodule:: {module}", "   :no-members:", ""]
+def is_package(module: str) -> bool:
+    return hasattr(importlib.import_module(module), "__path__")
 
 
 class Writer:
@@ -248,9 +245,10 @@ class Writer:
         """A table and the entries; no table of one name, nor of methods that the class lists on this page."""
         names, lines = names or public_names(module), []
         if module not in self.declared and any(directive(module, name) != "autodata" for name in names):
-            inner = hasattr(importlib.import_module(module), "__path__") and self.folder != "api"
-            lines += [] if inner else declaration(module)
-            self.declared.add(module)
+            if self.folder == "api" or not is_package(module):
+                self.declared.add(module)
+            if not is_package(module):
+                lines += [f".. automodule:: {module}", "   :no-members:", ""]
         owners = {name.rpartition(".")[0] for name in names}
         listed = [block.names for block in blocks() if block.page == self.page and block.module == module]
         if len(names) > 1 and not (owners != {""} and owners < {name for group in listed for name in group}):
@@ -262,7 +260,7 @@ class Writer:
     def summary(self, module: str, pages: list[str]) -> str:
         """For each page below this one its title, its first sentence and a table."""
         self.declared.add(module)
-        parts = [self.contents(pages), rst(declaration(module))]
+        parts = [self.contents(pages)]
         for page in pages:
             title, purpose = title_and_purpose(f"{self.folder}/{page}", self.folder)
             lines: list[str] = []
@@ -285,19 +283,25 @@ class Writer:
 
     def names(self, module: str, _: list[str]) -> str:
         places = {id(find(block.module, name)): f"{block.module}.{name}" for block in blocks() for name in block.names}
-        lines = [f".. py:module:: {module}", "   :no-index-entry:", ""]
+        self.declared.add(module)
         found = []
         for name in sorted(dir(importlib.import_module(module)), key=str.lower):
             thing = getattr(importlib.import_module(module), name)
             if id(thing) in places or (isinstance(thing, type) and issubclass(thing, BaseException)):
                 home, _, last = places.get(id(thing), f"liehom.errors.{name}").rpartition(".")
                 found.append((f":py:obj:`lh.{name} <{home}.{last}>`", summary(home, last)))
-        return rst([*lines, *table(found, self.escape)])
+        return rst(table(found, self.escape))
 
     def contents(self, pages: Iterable[str]) -> str:
         return "\n".join(["```{toctree}", ":hidden:", "", *pages, "```", "", ""])
 
 
 def expand(page: str, text: str, escape: Escape) -> str:
-    """The text of a page with its blocks written out."""
-    return BLOCK.sub(Writer(page, escape).block, text)
+    """The text of a page with its blocks written out; below the title, targets for links to the packages."""
+    writer = Writer(page, escape)
+    whole = BLOCK.sub(writer.block, text)
+    targets = [
+        line for module in sorted(writer.declared) if is_package(module) for line in (f".. py:module:: {module}", "")
+    ]
+    title, rest = whole.split("\n", 1)
+    return f"{title}\n\n{rst(targets)}{rest}" if targets else whole
