@@ -61,7 +61,7 @@ def member_names(cls: type) -> list[str]:
 
 
 def public_names(module: str) -> list[str]:
-    """What a package hands on (`X as X`) or a module defines, in the order of the source."""
+    """Names that a package hands on (`X as X`) or a module defines, in the order of the source."""
     loaded = importlib.import_module(module)
     listed = getattr(loaded, "__all__", None)
     tree = ast.parse(inspect.getsource(loaded))
@@ -237,7 +237,7 @@ class Writer:
         self.declared: set[str] = set()
 
     def block(self, match: re.Match[str]) -> str:
-        """What a block becomes: its kind names the method."""
+        """The text that a block becomes; its kind names the method."""
         written_out: str = getattr(self, match[1])(match[2], match[3].split())
         return written_out
 
