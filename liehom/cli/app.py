@@ -16,6 +16,7 @@ from liehom.cli.integration import numerical_commands
 from liehom.cli.options import FileArgument, JsonOption, PairArgument, command, run
 from liehom.cli.terminal import completion
 from liehom.cli.terminal.help import COMPLETE, Group, examples
+from liehom.cli.terminal.steps import step
 
 HELP = """Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces.
 
@@ -151,6 +152,7 @@ def _isotropy(file: str, point: str | None, as_json: bool) -> int:
         if problem.start is None:
             raise FormatError("the file has no 'point': give one with --point")
         rho, at = rho.over(RR), list(problem.start)
+    step("isotropy at the point")
     isotropy = rho.isotropy(at)
     dimension = rho.algebra.dimension
     write = rho.field.format
@@ -204,6 +206,7 @@ def _range(text: str, psi: str | None, as_json: bool) -> int:
 
     pair = pair_argument(text)
     row = None if psi is None else row_in(pair.field, psi, "psi")
+    step("range condition")
     found = range_condition(pair, row)
     exact = pair.field.exact
     write = pair.field.format

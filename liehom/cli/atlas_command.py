@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Annotated, Any, TypeAlias
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
@@ -11,7 +11,11 @@ from liehom.cli.guard import YES
 from liehom.cli.options import JsonOption, command, run
 from liehom.cli.terminal import completion
 from liehom.cli.terminal.help import Group
+from liehom.cli.terminal.steps import rename_step, step
 from liehom.errors import InputError, displayed
+
+if TYPE_CHECKING:
+    from liehom.atlas import Entry
 
 FamilyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Family, once or more often (default: all families).")
@@ -33,7 +37,10 @@ def families(json: JsonOption = False) -> None:
         from liehom.atlas import FAMILIES, recipes
         from liehom.cli.show import show_json, show_table
 
-        counts = {name: sum(1 for _ in recipes([name])) for name in FAMILIES}
+        counts = {}
+        for name in FAMILIES:
+            step(f"pairs of the family {name}")
+            counts[name] = sum(1 for _ in recipes([name]))
         if json:
             show_json(counts)
         else:
@@ -80,7 +87,14 @@ def _build(
         if path is not None:
             check_target(path, force=force)
     executor = None if processes == 1 else partial(ProcessPoolExecutor, processes)
-    made = built.write_entries(out, built.build(names, executor=executor, store=store))
+    done = [0]
+    step("first pairs")
+    try:
+        made = built.write_entries(out, _counted(built.build(names, executor=executor, store=store), done))
+    except KeyboardInterrupt:
+        kept = f"in {store}: the same command continues" if store else "not stored: with --store DIR they would be"
+        raise KeyboardInterrupt(f" after {done[0]} pairs, which are {kept}; {out} is not written") from None
+    step("table")
     if table is not None:
         built.write_table(table, made)
     counts: dict[str, dict[str, Any]] = made["counts"]
@@ -90,6 +104,14 @@ def _build(
         heads = list(next(iter(counts.values()), {}))
         show_table(["family", *heads], [[name, *(str(n) for n in own.values())] for name, own in counts.items()])
     return NO if any(own["undecided"] for own in counts.values()) else YES
+
+
+def _counted(entries: Iterable[Entry], done: list[int]) -> Iterator[Entry]:
+    """The entries, while their number is counted and shown."""
+    for entry in entries:
+        done[0] += 1
+        rename_step(f"{done[0]} pairs decided, the last of them {entry.name}")
+        yield entry
 
 
 @command(atlas, "liehom atlas show atlas.jsonl --full --search S^3")

@@ -8,6 +8,7 @@ import typer
 
 from liehom.cli.guard import NO, NUMERICAL, YES
 from liehom.cli.options import JsonOption, PairArgument, run
+from liehom.cli.terminal.steps import step
 
 if TYPE_CHECKING:
     from liehom.fullness import Classification
@@ -30,7 +31,8 @@ def _classify(text: str, as_json: bool) -> int:
     from liehom.fullness import decide_fullness
 
     pair = pair_argument(text)
-    verdict = decide_fullness(pair)
+    step("isotropy representation")
+    verdict = decide_fullness(pair, progress=step)
     if verdict.certificate is None or not verdict.full:
         code = NUMERICAL if verdict.certificate is None else NO
         if as_json:
@@ -40,7 +42,9 @@ def _classify(text: str, as_json: bool) -> int:
                 f"{verdict}", [("pair", pair_line(text, pair)), ("row", "none: only full pairs have one")], code
             )
         return code
+    step("row of the classification")
     found = classification_of(pair, verdict)
+    step("check of the certificate and of the row")
     verdict.verify()
     found.verify(pair)
     if as_json:

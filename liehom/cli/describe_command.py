@@ -9,6 +9,7 @@ import typer
 from liehom.cli.guard import NUMERICAL, YES
 from liehom.cli.options import JsonOption, run
 from liehom.cli.terminal import completion
+from liehom.cli.terminal.steps import step
 
 if TYPE_CHECKING:
     from liehom.algebra import LieAlgebra
@@ -41,6 +42,7 @@ def run_describe(text: str, as_json: bool) -> int:
     from liehom.representations import Pair
 
     described = object_argument(text)
+    step("structure of the object")
     if isinstance(described, LieAlgebra):
         data, lines = ({**algebra_facts(described)}, []) if as_json else ({}, described.describe().splitlines())
     elif isinstance(described, Pair):

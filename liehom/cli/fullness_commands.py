@@ -9,6 +9,7 @@ import typer
 from liehom.cli.guard import NO, NUMERICAL, YES
 from liehom.cli.options import JsonOption, PairArgument, run
 from liehom.cli.terminal import completion
+from liehom.cli.terminal.steps import step
 
 if TYPE_CHECKING:
     from liehom.fullness import Verdict
@@ -41,9 +42,11 @@ def _fullness(text: str, out: str | None, as_json: bool) -> int:
         raise InputError("a numerical answer has no certificate; give exact numbers, or leave --certificate out")
     if out is not None:
         check_output(out, text)
-    verdict = decide_fullness(pair)
+    step("isotropy representation")
+    verdict = decide_fullness(pair, progress=step)
     proved = verdict.certificate is not None
     if proved:
+        step("check of the certificate")
         verdict.verify()
     code = NUMERICAL if not proved else YES if verdict.full else NO
     if out is not None:
@@ -135,6 +138,7 @@ def _verify(text: str, file: str, as_json: bool) -> int:
     with pointing_to("`liehom fullness PAIR --certificate CERT` writes a certificate file"):
         certificate = Certificate.from_json(read_object(file_argument(file)))
     failure = None
+    step("check of the certificate")
     try:
         verify_certificate(pair, certificate)
     except CertificateFormatError:

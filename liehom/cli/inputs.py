@@ -13,6 +13,7 @@ from typing import Any, BinaryIO, final
 
 from liehom.algebra import LieAlgebra, Subalgebra
 from liehom.budget import current_limits
+from liehom.cli.terminal.steps import step
 from liehom.disk import check_target
 from liehom.errors import CatalogError, FormatError, InputError
 from liehom.io import Problem, from_gap, from_sage, load, load_pair, load_problem
@@ -142,6 +143,7 @@ def pair_argument(text: str) -> Pair:
     FormatError, CatalogError
         If the file is malformed, or the name is unknown.
     """
+    step("construction of the pair")
     with pointing_to(PAIR_HINT):
         if is_file(text):
             return load_pair(file_argument(text))
@@ -152,6 +154,7 @@ def pair_argument(text: str) -> Pair:
 
 def problem_argument(text: str) -> Problem:
     """Problem in a representation file."""
+    step("reading the file")
     with pointing_to(PROBLEM_HINT):
         return load_problem(file_argument(text))
 
@@ -176,6 +179,7 @@ def object_argument(text: str) -> LieAlgebra | Pair | Representation:
     kind = os.path.splitext(text)[1]
     if kind in READERS:
         return READERS[kind](read_text(file_argument(text), "a file of GAP or Sage"))
+    step("construction of the object")
     with pointing_to(OBJECT_HINT):
         found = load(file_argument(text)) if is_file(text) else _named(text)
     return Pair(found.algebra, found) if isinstance(found, Subalgebra) else found

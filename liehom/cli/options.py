@@ -10,6 +10,7 @@ import typer
 from liehom.cli.guard import guarded
 from liehom.cli.terminal import completion
 from liehom.cli.terminal.help import Command, examples
+from liehom.cli.terminal.steps import Steps
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -49,4 +50,9 @@ def command(app: typer.Typer, *lines: str, name: str | None = None) -> Callable[
 
 def run(action: Callable[[], int]) -> None:
     """Exit with the code of an action, or of the exception that it raises."""
-    raise typer.Exit(guarded(action))
+
+    def work() -> int:
+        with Steps():
+            return action()
+
+    raise typer.Exit(guarded(work))

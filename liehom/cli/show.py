@@ -8,12 +8,15 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from liehom.cli.terminal.steps import step
+
 STYLES = {0: "green", 1: "red", 3: "yellow"}
 """Colour of a panel for each exit code."""
 
 
 def show_json(data: Mapping[str, Any]) -> None:
     """Print one JSON object to standard output."""
+    step("")
     print(json.dumps(finite(data), allow_nan=False))
 
 
@@ -34,6 +37,7 @@ def finite(value: Any) -> Any:
 
 def show_answer(sentence: str, rows: Sequence[tuple[str, str]], code: int = 0) -> None:
     """Print a sentence and labelled facts below it."""
+    step("")
     if not sys.stdout.isatty():
         width = max((len(name) for name, _ in rows), default=0)
         print(sentence)
@@ -55,6 +59,7 @@ def show_answer(sentence: str, rows: Sequence[tuple[str, str]], code: int = 0) -
 
 def show_lines(lines: Sequence[str]) -> None:
     """Print lines, the first of which is the title."""
+    step("")
     if not sys.stdout.isatty():
         print("\n".join(lines))
         return
@@ -68,6 +73,7 @@ def show_lines(lines: Sequence[str]) -> None:
 
 def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header: bool = True) -> None:
     """Print a table; in a pipe, aligned plain lines."""
+    step("")
     if not sys.stdout.isatty():
         shown = [columns, *rows] if header else list(rows)
         widths = [max(len(row[c]) for row in shown) for c in range(len(columns))] if shown else []

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-import sys
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, final
 
 from liehom.cli.guard import NO, YES
 from liehom.cli.inputs import shown_name
 from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json, show_table
+from liehom.cli.terminal.steps import rename_step, step
 from liehom.disk import check_target
 from liehom.errors import FormatError, InputError
 from liehom.io import save_solution
@@ -68,17 +69,20 @@ def run_integrate(file: str, given: ProblemOptions, output: Output) -> int:
     options: dict[str, Any] = {} if output.max_steps is None else {"max_steps": output.max_steps}
     options["engine"] = output.engine
     options["dense_output"] = output.plot is not None
-    options["progress"] = sys.stderr.isatty() if output.progress is None else output.progress
+    done = [0.0]
+    options["progress"] = True if output.progress else partial(_report, done)
+    step("" if output.progress is not None else "integrating")
     try:
         # a number that is not finite ends the run with a message, and that message also says which order was kept
         with np.errstate(all="ignore"), without_order_warning():
             solution = problem.integrate(checkpoint=output.checkpoint, **options)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(_how_to_continue(output.checkpoint)) from None
+        raise KeyboardInterrupt(f" at {done[0]:.0%} of the time span{_how_to_continue(output.checkpoint)}") from None
     if output.out is not None:
         save_solution(solution, output.out, force=output.force)
     if output.plot is not None:
         _draw(solution, output.plot)
+    step("drift of the invariants")
     drift = invariant_drift(problem.representation, solution.y)
     if output.as_json:
         _print_json(file, solution, drift, output)
@@ -87,9 +91,16 @@ def run_integrate(file: str, given: ProblemOptions, output: Output) -> int:
     return YES if solution.success else NO
 
 
+def _report(done: list[float], fraction: float) -> None:
+    done[0] = fraction
+    rename_step(f"integrating, {fraction:.0%} of the time span")
+
+
 def _how_to_continue(checkpoint: str | None) -> str:
-    if checkpoint is None or not os.path.exists(checkpoint):
-        return ""
+    if checkpoint is None:
+        return "; nothing is stored: with --checkpoint PATH the same command continues"
+    if not os.path.exists(checkpoint):
+        return "; nothing is stored yet"
     return f"; the state is in {checkpoint}: the same command continues from it"
 
 

@@ -9,6 +9,7 @@ from liehom.cli.guard import YES
 from liehom.cli.inputs import number_value, shown_name
 from liehom.cli.problem_options import ProblemOptions, check_plot_file, problem_of
 from liehom.cli.show import show_json
+from liehom.cli.terminal.steps import step
 from liehom.errors import FormatError
 from liehom.io.number_lists import vector
 from liehom.io.solution_file import plain
@@ -29,6 +30,7 @@ def run_order(file: str, given: ProblemOptions, sizes: str | None, plot: str | N
     check_plot_file(plot)
     dts = step_sizes(SIZES if sizes is None else sizes)
     problem = problem_of(file, given)
+    step(f"solution of higher accuracy, and {len(dts)} step sizes")
     with np.errstate(all="ignore"):
         table = measured(problem, dts)
     if plot is not None:
@@ -38,6 +40,7 @@ def run_order(file: str, given: ProblemOptions, sizes: str | None, plot: str | N
     if as_json:
         show_json({"file": shown_name(file), "plot": plot, **table_json(table)})
         return YES
+    step("")
     print(table)
     if plot is not None:
         print(f"plot: {plot}")
