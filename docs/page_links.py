@@ -53,7 +53,7 @@ class Page(HTMLParser):
 
 
 def dead(link: str, page: Path, pages: dict[Path, Page]) -> str | None:
-    """What is wrong with a link of a page, or None; a link to the outside must have a host."""
+    """The fault of a link of a page, or None; a link to the outside must have a host."""
     parts = urlsplit(link)
     if parts.scheme in ("http", "https") or parts.netloc:
         return None if "." in parts.netloc and not set(link) & set(" <>\"'`\\") else f"{link!r} is not an address"

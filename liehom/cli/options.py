@@ -42,6 +42,7 @@ def command(app: typer.Typer, *lines: str, name: str | None = None) -> Callable[
     >>> @command(app, "liehom hello")
     ... def hello() -> None:
     ...     "Greet the world."
+    ...
     >>> app.registered_commands[0].epilog
     'liehom hello'
     """
