@@ -210,6 +210,7 @@ if TYPE_CHECKING:
     from liehom.integrators import integrate_ensemble as integrate_ensemble
     from liehom.integrators import observed_order as observed_order
     from liehom.integrators import tableau as tableau
+    from liehom.integrators import work_precision as work_precision
     from liehom.io import dump as dump
     from liehom.io import from_gap as from_gap
     from liehom.io import from_json as from_json
@@ -323,6 +324,7 @@ _NAMES = {
         "Solution Tableau "
         "Taylor integrate integrate_ensemble observed_order tableau Composition IsospectralMidpoint "
         "MoserVeselov SphericalMidpoint Splitting VariationalMidpoint ExponentialRosenbrock Rosenbrock StiffRKMK "
+        "work_precision"
     ),
     "liehom.instances": "AttitudeBody HeavyTop LandauLifshitz RigidBody SE3Body Sphere SymmetricMatrices",
     "liehom.io": (

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterable, Sequence
 
 SHOWN_LINES = 8
 """Lines of brackets, and rows and columns of matrices, that a notebook shows."""
+NUMBER = re.compile(r"[^A-Za-z?]*([0-9.]e[-+]?[0-9]+)?[^A-Za-z?]*|nan|inf")
+"""Cells that are aligned at the right: without letters, except the e of an exponent."""
 
 _SPECIAL = {"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
@@ -110,12 +113,17 @@ class Displayed(Typeset):
 class DisplayedTable(Displayed):
     """Tables; `_caption`, `_cells` and `_notes` of a derived class are what is shown.
 
+    Columns of numbers are aligned at the right, others at the left.
+
     Examples
     --------
     >>> class Squares(DisplayedTable):
     ...     def _cells(self) -> list[list[str]]:
     ...         return [["n", "n^2"], ["2", "4"]]
     ...
+    >>> print(Squares())
+    n  n^2
+    2    4
     >>> print(Squares()._repr_latex_())
     $\\displaystyle \\begin{array}{ll}
     \\text{n} & \\text{n\\textasciicircum{}2} \\\\ \\hline
@@ -124,6 +132,37 @@ class DisplayedTable(Displayed):
     """
 
     __slots__ = ()
+
+    def __str__(self) -> str:
+        cells, right = self._cells(), self._right()
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = [
+            "  ".join(f"{x:>{w}}" if r else f"{x:<{w}}" for x, w, r in zip(row, widths, right, strict=True)).rstrip()
+            for row in cells
+        ]
+        return "\n".join([*filter(None, [self._caption()]), *lines, *self._notes()])
+
+    def to_markdown(self) -> str:
+        """The table as a Markdown string, with the notes below it.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> print(lh.atlas.sweep(["so(3)/so(2)"]).to_markdown())
+        | pair | dim g | dim h | full | certificate |
+        | --- | ---: | ---: | --- | --- |
+        | so(3)/so(2) | 3 | 1 | yes | full |
+        """
+        head, *body = self._cells()
+        rule = ["---:" if right else "---" for right in self._right()]
+        lines = ["| " + " | ".join(row) + " |" for row in (head, rule, *body)]
+        return "\n".join([*lines, "", *(f"{note}  " for note in self._notes())]).rstrip()
+
+    def _right(self) -> list[bool]:
+        """A bool for each column: whether all its cells are numbers, or marks without letters."""
+        _, *body = self._cells()
+        columns = zip(*body, strict=True) if body else [()] * len(self._cells()[0])
+        return [all(NUMBER.fullmatch(cell) for cell in column) for column in columns]
 
     def _caption(self) -> str:
         """Line above the table."""

@@ -143,10 +143,12 @@ CLASS_FILES = (
     "liehom.representations.core.pair",
 )
 
-# what a notebook asks of an object of any layer: the methods of its base import the renderer when they are called
+# what a notebook or user asks of an object of any layer: its methods import what renders it when they are called
+TABLE_WITH_PLOT = "liehom.integrators.convergence.work_precision_table"
 RENDERERS = {
     ("liehom.display", "liehom.io.html_format"),
     ("liehom.display", "liehom.io.latex_format"),
+    (TABLE_WITH_PLOT, "liehom.plotting.work_precision_plot"),
 }
 
 MAX_MODULES = 14
@@ -157,7 +159,7 @@ DOORS: dict[str, tuple[str, ...]] = {
     # points with symbols in them: linear algebra over a field of rational functions, by DomainMatrix
     "sympy.polys": ("liehom.scalars", "liehom.representations.analysis.symbolic"),
     "networkx": ("liehom.algebra",),
-    "matplotlib": ("liehom.plotting", "liehom.paper"),
+    "matplotlib": ("liehom.plotting", "liehom.paper", TABLE_WITH_PLOT),  # the type of what its method returns
     "jax": ("liehom.integrators", "liehom.series", "liehom.tracing"),
     "llvmlite": ("liehom.tracing",),
     "zarr": ("liehom.parallel",),
@@ -282,10 +284,12 @@ def test_imports_point_downward() -> None:
     assert not wrong, "\n".join(wrong)
 
 
-def test_renderers_are_imported_when_a_notebook_asks() -> None:
+def test_renderers_are_imported_when_they_are_asked_for() -> None:
     found = {(module, name) for module in modules() for name in internal(module) if (module, name) in RENDERERS}
     assert found == RENDERERS
-    assert not internal("liehom.display", typing=False, local=False), "at load time nothing is imported"
+    for module, renderer in RENDERERS:
+        assert renderer not in internal(module, typing=False, local=False), "nothing is imported at load time"
+    assert not internal("liehom.display", typing=False, local=False)
 
 
 def test_only_the_scalars_and_the_command_line_know_their_libraries() -> None:

@@ -32,3 +32,25 @@ def energy_drift_of_steps(colours: Sequence[str]) -> Any:
     figure = new_figure(5.6, 3.8)
     lh.plotting.plot_energy_drift(_runs(), ENERGY, figure.add_subplot())
     return figure
+
+
+@cache
+def _study() -> lh.integrators.WorkPrecisionTable:
+    """The study of docs/which-step.md; times are not drawn, so one call of each run is enough."""
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
+    methods = {
+        "Corrected(Euler(), 4)": lh.Corrected(lh.Euler(), 4),
+        "LieTaylor(4)": lh.LieTaylor(4),
+        'RKMK("rk4")': "rk4",
+        "Taylor(8)": lh.Taylor(8),
+    }
+    sizes = [1.0, 0.5, 0.25, 0.125]
+    return lh.work_precision(field, methods, (0, 10), [0.6, 0.0, 0.8], dts=sizes, repeats=1)
+
+
+@picture
+def work_precision_of_steps(colours: Sequence[str]) -> Any:
+    """Errors of four steps on the free rigid body over the number of steps."""
+    figure = new_figure(5.6, 3.8)
+    _study().plot(figure.add_subplot(), against="steps")
+    return figure

@@ -211,32 +211,6 @@ class Atlas(DisplayedTable):
             ]
         }
 
-    def to_markdown(self) -> str:
-        """The table as a Markdown string.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> print(lh.atlas.sweep(["so(3)/so(2)"]).to_markdown())
-        | pair | dim g | dim h | full | certificate |
-        | --- | ---: | ---: | --- | --- |
-        | so(3)/so(2) | 3 | 1 | yes | full |
-        """
-        head, *body = self._cells()
-        lines = [head, ["---", "---:", "---:", "---", "---"], *body]
-        return "\n".join("| " + " | ".join(row) + " |" for row in lines)
-
-    def __str__(self) -> str:
-        cells = self._cells()
-        widths = [max(len(row[c]) for row in cells) for c in range(5)]
-        lines = []
-        for row in cells:
-            sides = [
-                f"{x:>{w}}" if c in (1, 2) else f"{x:<{w}}" for c, (x, w) in enumerate(zip(row, widths, strict=True))
-            ]
-            lines.append("  ".join(sides).rstrip())
-        return "\n".join(lines)
-
     def __repr__(self) -> str:
         full, not_full, rest = len(self.full), len(self.not_full), len(self.failures)
         return f"<atlas of {len(self)} pairs, {full} full, {not_full} not, {rest} undecided>"

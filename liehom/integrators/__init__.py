@@ -3,15 +3,18 @@
 In reading order, `tableaux` has Runge-Kutta coefficients that prove their order, `methods` the steps of Lie group
 methods, `run` the loop over steps, `engine` says what an engine is, and `compiled` has those that compile. `propagator`
 has `Propagator`, `integration` has `integrate`, `ensembles` cuts ensembles into chunks for any executor, and
-`convergence` measures orders. See docs/tutorials/integrating.md.
+`convergence` measures orders and costs. See docs/tutorials/integrating.md.
 """
 
 from liehom.correctors import Conserving as Conserving
 from liehom.correctors import Corrected as Corrected
 from liehom.integrators.convergence import ConvergenceTable as ConvergenceTable
 from liehom.integrators.convergence import Reference as Reference
+from liehom.integrators.convergence import WorkPrecisionRow as WorkPrecisionRow
+from liehom.integrators.convergence import WorkPrecisionTable as WorkPrecisionTable
 from liehom.integrators.convergence import observed_order as observed_order
 from liehom.integrators.convergence import orbit_distance as orbit_distance
+from liehom.integrators.convergence import work_precision as work_precision
 from liehom.integrators.engine import Engine as Engine
 from liehom.integrators.engine import Problem as Problem
 from liehom.integrators.ensembles import EnsemblePart as EnsemblePart

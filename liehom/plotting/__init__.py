@@ -1,7 +1,8 @@
 """Plots of orders, errors, trajectories, strata, failure cones, roots and diagrams, by matplotlib (`liehom[plot]`).
 
 * `canvas` makes figures, colours and files, and is the one module that loads matplotlib;
-* `convergence_plot` draws errors over step sizes, `drift_plot` errors of first integrals over time;
+* `convergence_plot` draws errors over step sizes, `work_precision_plot` errors over costs, `drift_plot` errors of first
+  integrals over time;
 * `surfaces` draws spheres and other quadrics with curves on them, `trajectory_plot` solutions, whose points between the
   steps are those of `curves`;
 * `strata_plot` draws failure cones, eigenvalues and Weyl chambers;
@@ -24,3 +25,4 @@ from liehom.plotting.strata_plot import plot_eigenvalues as plot_eigenvalues
 from liehom.plotting.strata_plot import plot_failure_cone as plot_failure_cone
 from liehom.plotting.strata_plot import plot_weyl_chamber as plot_weyl_chamber
 from liehom.plotting.trajectory_plot import plot_trajectory as plot_trajectory
+from liehom.plotting.work_precision_plot import plot_work_precision as plot_work_precision

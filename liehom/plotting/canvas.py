@@ -27,7 +27,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 DASHES = ("-", "--", "-.", ":")
 GREY, PALE = "#6b6b6b", "#d9d9d9"
-DARK_PALE = "#4a4a4a"
+DARK_GREY, DARK_PALE = "#999999", "#4a4a4a"
 # the same hues, light enough for a dark page
 DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 
@@ -61,7 +61,7 @@ TEXT = ("text.color", "axes.labelcolor", "axes.titlecolor", "xtick.labelcolor", 
 DARK: dict[str, object] = {
     **dict.fromkeys(TEXT, "#dddddd"),
     "grid.color": "#3a3a3a",
-    "axes.edgecolor": "#999999",
+    "axes.edgecolor": DARK_GREY,
     "axes.facecolor": "none",
     "figure.facecolor": "#131416",
 }
@@ -188,6 +188,11 @@ def paper_colour() -> str:
 def pale_colour() -> str:
     """The grey of grids and other lines in the background, which is near the color of the page."""
     return DARK_PALE if _is_dark() else PALE
+
+
+def muted_colour() -> str:
+    """The gray, `GREY` or `DARK_GREY`, of remarks and unresolved points, which contrasts with the page."""
+    return DARK_GREY if _is_dark() else GREY
 
 
 def _is_dark() -> bool:

@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from liehom.errors import InputError
 from liehom.integrators import ConvergenceTable
-from liehom.plotting.canvas import COLOURS, GREY, MARKERS, PALE, figure_of, finished, new_figure, style
+from liehom.plotting.canvas import (
+    COLOURS,
+    GREY,
+    MARKERS,
+    PALE,
+    figure_of,
+    finished,
+    muted_colour,
+    new_figure,
+    paper_colour,
+    style,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +34,7 @@ TRIANGLE_OFFSET = 0.4
 FLOOR_MARGIN = 300.0
 
 
-class _Curve(NamedTuple):
+class Curve(NamedTuple):
     """Errors above the floor, errors below it (`lost`), and their style."""
 
     label: str | None
@@ -33,6 +44,7 @@ class _Curve(NamedTuple):
     colour: str
     marker: str
     dashes: str
+    hollow: bool = False
 
 
 def plot_convergence(
@@ -92,9 +104,10 @@ def plot_convergence(
         curves = [curve for k, table in enumerate(chosen) for curve in _curves(table, k, len(chosen))]
         _frame(axes, chosen)
         for curve in curves:
-            _draw(axes, curve)
+            draw_curve(axes, curve)
         _draw_triangles(axes, curves)
-        _draw_floor(axes, chosen)
+        errors = [e for table in chosen for e in (*table.orbit_errors, *table.trajectory_errors)]
+        draw_floor(axes, max(max(table.floors) for table in chosen), errors)
         if len(chosen) == 1 and curves:
             axes.legend(loc="lower right")
         elif curves:
@@ -102,7 +115,7 @@ def plot_convergence(
     return finished(figure, path)
 
 
-def _curves(table: ConvergenceTable, k: int, count: int) -> list[_Curve]:
+def _curves(table: ConvergenceTable, k: int, count: int) -> list[Curve]:
     """Curves of the orbit errors and of the trajectory errors, if they have a point."""
     made = []
     kinds = (("orbit", table.orbit_errors, table.orders[0]), ("trajectory", table.trajectory_errors, table.orders[1]))
@@ -112,7 +125,7 @@ def _curves(table: ConvergenceTable, k: int, count: int) -> list[_Curve]:
             number = i if count == 1 else k
             order = "" if math.isnan(slope) else f", order {slope:.2f}"
             made.append(
-                _Curve(
+                Curve(
                     f"{kind}{order}" if count == 1 else None,
                     [(h, e) for h, e, floor in rows if e > floor],
                     [(h, e) for h, e, floor in rows if e <= floor],
@@ -120,6 +133,7 @@ def _curves(table: ConvergenceTable, k: int, count: int) -> list[_Curve]:
                     COLOURS[number % len(COLOURS)],
                     MARKERS[number % len(MARKERS)],
                     "-" if kind == "orbit" else "--",
+                    hollow=kind == "trajectory",
                 )
             )
     return made
@@ -143,13 +157,15 @@ def _frame(axes: Axes, tables: Sequence[ConvergenceTable]) -> None:
         axes.set_title(f"{name}{first.exponential}, clock {first.clock}, {span}")
 
 
-def _draw(axes: Axes, curve: _Curve) -> None:
+def draw_curve(axes: Axes, curve: Curve) -> None:
+    """Draw errors as markers on a line; those below their floor get open gray markers on a pale line."""
+    paper, muted = paper_colour(), muted_colour()
     both = sorted([*curve.points, *curve.lost])
     if curve.lost:
-        axes.plot(*zip(*both, strict=True), color=PALE, linestyle=curve.dashes, linewidth=1.0, zorder=1.5)
-        axes.plot(*zip(*curve.lost, strict=True), curve.marker, color=GREY, markerfacecolor="white", zorder=2.5)
+        axes.plot(*zip(*both, strict=True), color=muted, alpha=0.5, linestyle=curve.dashes, linewidth=1.0, zorder=1.5)
+        axes.plot(*zip(*curve.lost, strict=True), curve.marker, color=muted, markerfacecolor=paper, zorder=2.5)
     look: dict[str, Any] = {"color": curve.colour, "marker": curve.marker, "linestyle": curve.dashes, "markersize": 6}
-    hollow: dict[str, Any] = {"markerfacecolor": "white"} if curve.dashes == "--" else {}
+    hollow: dict[str, Any] = {"markerfacecolor": paper} if curve.hollow else {}
     points = sorted(curve.points) or [(math.nan, math.nan)]
     axes.plot(*zip(*points, strict=True), label=curve.label, **look, **hollow)
 
@@ -169,9 +185,9 @@ def _explain(axes: Axes, tables: Sequence[ConvergenceTable], names: Sequence[str
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
 
 
-def _draw_triangles(axes: Axes, curves: Sequence[_Curve]) -> None:
+def _draw_triangles(axes: Axes, curves: Sequence[Curve]) -> None:
     """Draw one triangle for each integer slope, below the lowest curve with this slope."""
-    lowest: dict[int, _Curve] = {}
+    lowest: dict[int, Curve] = {}
     for curve in curves:
         if len(curve.points) < 2 or math.isnan(curve.slope):
             continue
@@ -195,13 +211,13 @@ def _draw_triangles(axes: Axes, curves: Sequence[_Curve]) -> None:
         )
 
 
-def _draw_floor(axes: Axes, tables: Sequence[ConvergenceTable]) -> None:
+def draw_floor(axes: Axes, highest: float, errors: Sequence[float]) -> None:
     """Shade the region below the highest floor, if errors come near it."""
-    highest = max(max(table.floors) for table in tables)
-    errors = [e for t in tables for e in (*t.orbit_errors, *t.trajectory_errors) if e > 0]
+    muted = muted_colour()
+    errors = [e for e in errors if e > 0]
     if errors and min(errors) < FLOOR_MARGIN * highest:
-        axes.axhspan(min(0.3 * min(errors), 0.05 * highest), highest, color=PALE, alpha=0.35, zorder=0, linewidth=0)
+        axes.axhspan(min(0.3 * min(errors), 0.05 * highest), highest, color=muted, alpha=0.12, zorder=0, linewidth=0)
         axes.text(
             0.01, 0.8 * highest, "round-off or accuracy of the reference", transform=axes.get_yaxis_transform(),
-            va="top", color=GREY, fontsize=8,
+            va="top", color=muted, fontsize=8,
         )  # fmt: skip

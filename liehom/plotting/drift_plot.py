@@ -140,6 +140,7 @@ def _named(
 def _trajectories(solution: Solution, F: IntegralSource, value: npt.ArrayLike | None) -> list[_Values]:
     """The values of F along each of the first trajectories of a solution."""
     y = np.asarray(solution.y)
+    exact = None if value is None else np.asarray(value, dtype=float)
     times = np.broadcast_to(np.asarray(solution.t), (*y.shape[:-2], y.shape[-1]))
     integral = FirstIntegral(F, y.shape[-2])
     found = []
@@ -147,9 +148,9 @@ def _trajectories(solution: Solution, F: IntegralSource, value: npt.ArrayLike | 
         there = np.isfinite(t) & np.isfinite(points).all(axis=0)
         values = np.asarray(integral(np.moveaxis(points[:, there], 0, -1)), dtype=float)
         try:
-            initial = values[0] if value is None else np.broadcast_to(np.asarray(value, dtype=float), values[0].shape)
+            initial = values[0] if exact is None else np.broadcast_to(exact, values[0].shape)
         except ValueError:
-            raise ShapeError(f"value has shape {np.shape(value)}, F has {values.shape[-1]} components") from None
+            raise ShapeError(f"value is {value!r}, F has {values.shape[-1]} components") from None
         found.append(_Values(np.abs(t[there] - t[there][0]), values - initial, initial))
     return found
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
+from liehom.integrators.convergence.work_precision import timed
 from tests.benchmarks.integration_peers import Solver, extended_reference, sample_times
 from tests.benchmarks.integration_problems import Problem
 
@@ -32,14 +33,7 @@ Point = tuple[float, float, float]
 
 def seconds(run: Callable[[], Any], rounds: int = 3) -> float:
     """Processor time of a run, the least of some rounds; long ones are made less often."""
-    found = []
-    for _ in range(rounds):
-        begin = time.process_time()
-        run()
-        found.append(time.process_time() - begin)
-        if sum(found) > 1:
-            break
-    return min(found)
+    return timed(run, rounds)[1]
 
 
 # -- errors ----------------------------------------------------------------------------------------------

@@ -47,6 +47,7 @@ SAMPLES: dict[str, Callable[[], object]] = {
     "Tableau": lambda: lh.tableau("rk4"),
     "ConvergenceTable": lambda: lh.observed_order(FIELD, [1.0, 0.0], lh.Euler(), [0.1, 0.05]),
     "Atlas": lambda: lh.atlas.sweep(["so(4)/so(3)", "so(3,1)/so(2,1)"]),
+    "WorkPrecisionTable": lambda: lh.work_precision(FIELD, ["rk4"], (0, 1), [1.0, 0.0], dts=[0.5, 0.25]),
     "Table": lambda: paper.Table("errors", ("dt", "a < b"), [(0.1, 1.25e-7)]),
     "DynamicalLieAlgebra": lambda: pauli.closure(["XX", "ZI", "IZ"]),
     "ExactMatrix": lambda: lh.so(3).killing_form(),
@@ -190,7 +191,7 @@ def test_a_numerical_verdict_says_that_it_is_not_proved(name: str) -> None:
     assert "numerical" in verdict._repr_latex_()
 
 
-@pytest.mark.parametrize("name", ["ConvergenceTable", "Atlas", "Table"])
+@pytest.mark.parametrize("name", ["ConvergenceTable", "WorkPrecisionTable", "Atlas", "Table"])
 def test_tables_show_their_cells(name: str) -> None:
     table = sample(name)
     assert isinstance(table, DisplayedTable)

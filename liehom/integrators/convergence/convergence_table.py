@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, final
 
 from liehom.display import DisplayedTable
+from liehom.integrators.convergence.csv_file import csv_file
 
 MARGIN = 10.0
 """Smallest ratio of an error of the method to the accuracy of the reference and to round-off."""
@@ -103,33 +105,23 @@ class ConvergenceTable(DisplayedTable):
         columns = (self.dts, self.orbit_errors, self.orbit_slopes, self.trajectory_errors, self.trajectory_slopes)
         return tuple(ConvergenceRow(*row) for row in zip(*columns, self.floors, strict=True))
 
-    def __str__(self) -> str:
-        cells = self._cells()
-        widths = [max(len(row[i]) for row in cells) for i in range(len(cells[0]))]
-        lines = ["  ".join(f"{x:>{w}}" for x, w in zip(row, widths, strict=True)).rstrip() for row in cells]
-        return "\n".join([self._caption(), *lines, *self._notes()])
-
     def __repr__(self) -> str:
         return str(self)
 
-    def to_markdown(self) -> str:
-        """The table in Markdown, with the notes below it.
-
-        Examples
-        --------
-        >>> import liehom as lh
-        >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/2"])
-        >>> table = lh.integrators.observed_order(field, [1.0, 0.0], lh.Euler(), [0.1, 0.05])
-        >>> print(table.to_markdown().splitlines()[0])
-        | dt | orbit error | order | trajectory error | order |
-        """
-        head, *body = self._cells()
-        rule = ["---:"] * len(head)
-        lines = ["| " + " | ".join(row) + " |" for row in (head, rule, *body)]
-        return "\n".join([*lines, "", *(f"{note}  " for note in self._notes())]).rstrip()
-
-    def to_csv(self) -> str:
+    def to_csv(self, path: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
         """Comma-separated values with a line of names, all digits, and empty entries for NaN.
+
+        Parameters
+        ----------
+        path : path_like, optional
+            A file to write.
+        force : bool
+            Whether an existing file may be replaced.
+
+        Raises
+        ------
+        FormatError
+            If the file exists and `force` is False, or the file cannot be written.
 
         Examples
         --------
@@ -139,8 +131,7 @@ class ConvergenceTable(DisplayedTable):
         >>> print(table.to_csv().splitlines()[0])
         dt,orbit_error,orbit_slope,trajectory_error,trajectory_slope,floor
         """
-        rows = [",".join("" if math.isnan(x) else repr(float(x)) for x in row) for row in self.rows]
-        return "\n".join([",".join(ConvergenceRow._fields), *rows]) + "\n"
+        return csv_file(ConvergenceRow._fields, self.rows, path, force=force)
 
     def _caption(self) -> str:
         count = f", {self.trajectories} trajectories (root mean squares)" if self.trajectories != 1 else ""

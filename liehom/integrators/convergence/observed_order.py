@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,16 +17,14 @@ import numpy.typing as npt
 from liehom.correctors.step import ExponentialLike, StepLike, as_step
 from liehom.errors import ConvergenceError, InputError
 from liehom.homogeneous import GeneratorField
-from liehom.integrators.convergence.convergence_table import MARGIN, NAN, ConvergenceTable
-from liehom.integrators.convergence.orbit_error import orbit_distance
+from liehom.integrators.convergence.convergence_table import NAN, ConvergenceTable
 from liehom.integrators.convergence.reference import Reference
+from liehom.integrators.convergence.run_errors import end_points, errors_of, floor_of, reference_for
 from liehom.integrators.engine import Engine
 from liehom.integrators.engines import engine_option
 from liehom.integrators.ensembles.ensemble_problem import EnsembleProblem, all_solved
 from liehom.integrators.points import points_of, span_of
-from liehom.integrators.run.solution import Solution
 from liehom.parallel import ExecutorLike
-from liehom.typing import Array
 
 
 def observed_order(
@@ -95,21 +92,16 @@ def observed_order(
     first, last = span_of(t_span, start.dtype)
     if sizes[0] > abs(last - first):
         raise InputError(f"the step size {sizes[0]} is longer than t_span = {t_span!r}: it would be shortened")
-    if reference is not None and not isinstance(reference, Reference):
-        raise InputError(f"reference is {reference!r}, expected a liehom.integrators.Reference")
+    exact = reference_for(field, start, first, reference)
     chosen = engine_option(engine, compile, stacklevel=3)
     options = {"step": step, "exponential": exponential, "clock": clock, "engine": chosen}
     problems = [EnsembleProblem(field, (first, last), start, {}, {**options, "dt": h}) for h in sizes]
     runs = all_solved(problems, executor, store, retries)
     if all(run.status == -1 for run in runs):
         raise ConvergenceError(f"no step size came through; the smallest, {sizes[-1]}: {runs[-1].message}")
-    if reference is None:
-        reference = Reference(field, start.astype(np.longdouble), first)
-    elif not np.array_equal(reference.start, start) or reference.t0 != first:
-        raise InputError("the reference goes through another point or starts at another time than y0 at t_span[0]")
-    accuracy = float(np.max(reference.accuracy(last)))
-    has_orbits = not (field.time_dependent and clock == "nominal")
-    errors = [_errors(reference, run, last, has_orbits) for run in runs]
+    accuracy = float(np.max(exact.accuracy(last)))
+    orbit = not (field.time_dependent and clock == "nominal")
+    errors = [(NAN, NAN) if run.status == -1 else errors_of(exact, end_points(run), last, orbit=orbit) for run in runs]
     report = runs[0].report
     return ConvergenceTable(
         step=repr(step),
@@ -122,7 +114,7 @@ def observed_order(
         dts=sizes,
         orbit_errors=tuple(e[0] for e in errors),
         trajectory_errors=tuple(e[1] for e in errors),
-        floors=tuple(_floor(reference(last), start.dtype, run, accuracy) for run in runs),
+        floors=tuple(floor_of(exact(last), start.dtype, run.n_steps, accuracy) for run in runs),
         reference_accuracy=accuracy,
         messages=tuple(run.message if run.status == -1 else "" for run in runs),
     )
@@ -137,31 +129,3 @@ def _sizes(dts: Iterable[float]) -> tuple[float, ...]:
     if len(sizes) < 2 or not all(0 < h < math.inf for h in sizes):
         raise InputError(f"dts is {dts!r}, expected two or more different positive step sizes, e.g. [0.1, 0.05]")
     return tuple(sizes)
-
-
-def _errors(reference: Reference, run: Solution, end: np.floating[Any], has_orbits: bool) -> tuple[float, float]:
-    """(orbit error, trajectory error) at the end of a run."""
-    if run.status == -1:
-        return NAN, NAN
-    last = _end_points(run)
-    trajectory = _mean(np.linalg.norm(last - reference(end), axis=-1))
-    orbit = _mean(orbit_distance(reference, last, end)[0]) if has_orbits else NAN
-    return orbit, trajectory
-
-
-def _end_points(run: Solution) -> Array:
-    """The last points (..., N); behind them rows of ensembles are filled up with NaN."""
-    count = np.isfinite(run.t).sum(axis=-1)
-    points: Array = np.take_along_axis(run.y, (count - 1)[..., None, None], axis=-1)[..., 0]
-    return points
-
-
-def _mean(distances: Array) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(distances**2)))
-
-
-def _floor(points: Array, dtype: np.dtype[Any], run: Solution, accuracy: float) -> float:
-    """Ten times the accuracy of the reference, or ten times the rounding of all steps added up as a random walk."""
-    unit = float(np.finfo(dtype).eps) * float(np.max(np.linalg.norm(points, axis=-1), initial=0.0))
-    return MARGIN * max(accuracy, unit * math.sqrt(float(np.max(run.n_steps, initial=1))))

@@ -1,0 +1,115 @@
+"""Plots of work and precision: what is drawn is what was measured, with failed and unresolved runs told."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.errors import InputError
+from liehom.integrators import WorkPrecisionRow, WorkPrecisionTable
+from liehom.plotting import plot_work_precision
+
+pytest.importorskip("matplotlib")
+
+from liehom.plotting.canvas import DARK_COLOURS, GREY, new_figure, style
+
+NAN = float("nan")
+
+
+def row(method: str, k: int, *, tolerance: bool = False, **changes: Any) -> WorkPrecisionRow:
+    size = 0.5**k
+    made = WorkPrecisionRow(
+        method, None if tolerance else size, size if tolerance else None, 10.0 ** (-2 * k), 10.0 ** (-2 * k - 1),
+        1e-15, 7 * k, 3 * k, 0.1 * k, 0.2 * k,
+    )  # fmt: skip
+    return made._replace(**changes)
+
+
+def table(*rows: WorkPrecisionRow) -> WorkPrecisionTable:
+    return WorkPrecisionTable(rows, (0.0, 4.0), 1, "numpy", "made up", 1e-16, "no machine", len(rows))
+
+
+TWO = table(*(row(name, k) for name in ("a", "b") for k in (1, 2, 3)))
+
+
+def data(ax: Any) -> list[Any]:
+    lines = [np.array(line.get_data(), dtype=float) for line in ax.lines]
+    return [line for line in lines if np.isfinite(line).any()]
+
+
+def labels(ax: Any) -> list[str]:
+    legend = ax.get_legend() or ax.figure.legends[0]
+    return [text.get_text() for text in legend.get_texts()]
+
+
+@pytest.mark.parametrize(
+    ("against", "error", "x", "y"),
+    [("time", "trajectory", [0.1, 0.2, 0.3], 0), ("wall", "trajectory", [0.2, 0.4, 0.6], 0),
+     ("calls", "orbit", [7, 14, 21], 1), ("steps", "orbit", [3, 6, 9], 1)],
+)  # fmt: skip
+def test_errors_are_drawn_over_the_cost(against: str, error: str, x: list[float], y: int) -> None:
+    ax = TWO.plot(against=against, error=error)
+    for line in data(ax):
+        np.testing.assert_allclose(line, [x, 10.0 ** -(2 * np.arange(1, 4) + y)])
+    assert (ax.get_xscale(), ax.get_yscale(), len(data(ax))) == ("log", "log", 2)
+    assert error in ax.get_ylabel() and labels(ax) == ["a", "b"]
+
+
+def test_methods_differ_in_color_dashes_and_markers() -> None:
+    looks = [(line.get_color(), line.get_linestyle(), line.get_marker()) for line in plot_work_precision(TWO).lines]
+    assert all(a != b for a, b in zip(*looks, strict=True))
+
+
+def test_failed_runs_are_counted_in_the_legend() -> None:
+    failed = row("a", 4, error=NAN, orbit_error=NAN, calls=None, steps=None, cpu_time=NAN, wall_time=NAN, message="no")
+    ax = plot_work_precision(table(*TWO.rows, failed), against="calls")
+    assert labels(ax) == ["a (1 failed)", "b"]
+
+
+def test_unresolved_errors_are_open_and_gray_and_their_region_is_shaded() -> None:
+    ax = plot_work_precision(table(row("a", 1), row("a", 2), row("a", 3, floor=1e-5)))
+    gray = [line for line in ax.lines if line.get_color() == GREY and line.get_linestyle() == "None"]
+    assert [line.get_ydata().tolist() for line in gray] == [[1e-6]]
+    assert gray[0].get_markerfacecolor() == "white"
+    assert len(ax.patches) == 1
+    assert not plot_work_precision(TWO).patches  # a control
+
+
+def test_adaptive_runs_have_a_curve_of_their_own() -> None:
+    both = table(*(row("a", k, tolerance=adaptive) for adaptive in (False, True) for k in (1, 2)))
+    ax = plot_work_precision(both)
+    assert labels(ax) == ["a", "a, adaptive"]
+    assert [line.get_markerfacecolor() for line in ax.lines] == [ax.lines[0].get_color(), "white"]
+    alone = table(row("a", 1, tolerance=True), row("a", 2, tolerance=True))
+    assert labels(plot_work_precision(alone)) == ["a"]
+
+
+def test_the_axes_and_the_style_of_the_caller_are_used() -> None:
+    with style(dark=True):
+        given = new_figure(4, 3).add_subplot()
+        assert TWO.plot(given) is given
+    assert given.lines[0].get_color() == DARK_COLOURS[0] and not given.figure.legends
+
+
+def test_an_ensemble_has_root_mean_squares() -> None:
+    assert "root mean square" in plot_work_precision(dataclasses.replace(TWO, trajectories=5)).get_ylabel()
+
+
+def test_a_measured_table_is_drawn() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/2"])
+    made = lh.work_precision(field, ["euler"], (0, 1), [1.0, 0.0], dts=[0.2, 0.1], repeats=1)
+    (line,) = data(made.plot(against="steps"))
+    np.testing.assert_allclose(line, [[5, 10], [r.error for r in made.rows]])
+
+
+@pytest.mark.parametrize(
+    ("given", "options"),
+    [(3, {}), (TWO, {"against": "cost"}), (TWO, {"error": "energy"}), (TWO, {"ax": "axes"})],
+)
+def test_wrong_arguments_are_refused(given: Any, options: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match=r"expected|axes of matplotlib"):
+        plot_work_precision(given, **options)
