@@ -21,8 +21,8 @@ class Terminal(io.StringIO):
         return True
 
 
-@pytest.fixture
-def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+def terminal_of(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    """A terminal as standard error; no fixture, since pytest sets the streams again before the test itself."""
     made = Terminal()
     monkeypatch.setattr(sys, "stderr", made)
     monkeypatch.setenv("TERM", "xterm")
@@ -37,7 +37,8 @@ def wait_for(text: str, shown: Terminal) -> None:
         time.sleep(0.01)
 
 
-def test_a_long_step_is_shown_on_a_terminal_and_erased_before_the_answer(terminal: Terminal) -> None:
+def test_a_long_step_is_shown_on_a_terminal_and_erased_before_the_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = terminal_of(monkeypatch)
     with Steps():
         step("invariant forms")
         wait_for("invariant forms", terminal)
@@ -52,7 +53,8 @@ def test_a_long_step_is_shown_on_a_terminal_and_erased_before_the_answer(termina
         assert terminal.getvalue() == before
 
 
-def test_a_short_command_shows_nothing(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_short_command_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = terminal_of(monkeypatch)
     monkeypatch.setattr(steps, "DELAY", 60.0)
     with Steps() as running:
         step("invariant forms")
