@@ -75,6 +75,13 @@ class Scene:
         """Draw a curve through points (3, k), or (2, k) in the plane."""
         self.axes.plot(*(points if self.solid or len(points) == 2 else self.screen @ points), *marks, **look)
 
+    def move(self, line: AnyAxes, points: Array) -> None:
+        """Give a line that `plot` has drawn other points."""
+        if self.solid:
+            line.set_data_3d(*points)
+        else:
+            line.set_data(*(points if len(points) == 2 else self.screen @ points))
+
     def text(self, point: Array, text: str, **look: object) -> None:
         """Write a word at a point."""
         self.axes.text(*(point if self.solid else self.screen @ point), text, ha="center", va="center", **look)
@@ -94,28 +101,33 @@ class Scene:
         hidden = surface is not None and bool(surface.hidden(point[:, None], self.eye)[0])
         self.plot(point[:, None], marker, **look, **({"alpha": FAINT, "zorder": 1.2} if hidden else {"zorder": 5}))
 
-    def frame(self, reach: Array | float, names: Sequence[str]) -> None:
-        """The ends of the coordinate axes outside of a surface with the given reach along them, and their names."""
+    def frame(self, reach: Array | float, names: Sequence[str], *, whole: bool = False) -> None:
+        """The ends of the coordinate axes outside of a surface with the given reach along them, and their names.
+
+        With `whole` the axes are drawn from 0 on.
+        """
         reaches = np.broadcast_to(reach, 3)
         gap = 0.15 * float(np.mean(reaches))
         for far, direction, name in zip(reaches, np.eye(3), names, strict=True):
+            if whole:
+                self.plot(np.outer(direction, np.array([0.0, far])), color=pale_colour(), linewidth=1.0, zorder=0.4)
             self.plot(np.outer(direction, np.array([far, far + gap])), color=GREY, linewidth=1.0, zorder=4)
             self.text((far + 1.7 * gap) * direction, name, zorder=6)
 
-    def limit(self, half: Array | float, middle: Array | float = 0.0) -> None:
-        """Show the box of this half size about its middle, in equal scales."""
+    def limit(self, half: Array | float, middle: Array | float = 0.0, zoom: float = 1.25) -> None:
+        """Show the box of this half size about its middle, in equal scales; `zoom` cuts off its corners."""
         halves, center = np.broadcast_to(half, 3), np.broadcast_to(middle, 3)
         if self.solid:
             for name, c, h in zip("xyz", center, halves, strict=True):
                 getattr(self.axes, f"set_{name}lim")(c - h, c + h)
-            self.axes.set_box_aspect(halves / halves.max(), zoom=1.25)
+            self.axes.set_box_aspect(halves / halves.max(), zoom=zoom)
             return
-        corners = self.screen @ (center[:, None] + halves[:, None] * _CORNERS)
+        corners = self.screen @ (center[:, None] + 1.1 / zoom * halves[:, None] * _CORNERS)
         self.axes.set(xlim=(corners[0].min(), corners[0].max()), ylim=(corners[1].min(), corners[1].max()))
         self.axes.set_aspect("equal")
 
 
-_CORNERS = np.array(np.meshgrid([-0.88, 0.88], [-0.88, 0.88], [-0.88, 0.88])).reshape(3, -1)
+_CORNERS = np.array(np.meshgrid([-1.0, 1.0], [-1.0, 1.0], [-1.0, 1.0])).reshape(3, -1)
 
 
 def only(points: Array, kept: BooleanArray) -> Array:
@@ -264,13 +276,12 @@ class Quadric:
         for _, line in self.contours(lambda m: m @ normal, [0.0]):
             scene.plot(only(line, ~self.hidden(line, scene.eye)), color=GREY, linewidth=0.9, zorder=0.6)
 
-    def reach(self) -> Array:
-        """How far the drawn part extends along each coordinate axis, shape (3,)."""
+    def bounds(self) -> tuple[Array, Array]:
+        """The least and the largest of each coordinate on the part that is drawn, shapes (3,)."""
         u, v = self.parameters
         heights, angles = np.meshgrid(u, v)
-        parts = [np.abs(self.at(heights, angles, sheet)).max(axis=(1, 2)) for sheet in self._sheets]
-        found: Array = np.max(parts, axis=0)
-        return found
+        points = np.stack([self.at(heights, angles, sheet) for sheet in self._sheets], axis=-1)
+        return points.min(axis=(1, 2, 3)), points.max(axis=(1, 2, 3))
 
 
 _KINDS = {

@@ -1,4 +1,4 @@
-"""Plots of solutions: curves in the plane or in space for two or three coordinates, else coordinates over time."""
+"""Plots of solutions as curves in the plane, in space and on quadrics, or as coordinates over time."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from liehom.errors import InputError, displayed
 from liehom.integrators import Solution
@@ -23,6 +24,7 @@ from liehom.plotting.canvas import (
 )
 from liehom.plotting.curves import Curves, constant_norm, curves_of, steps_of
 from liehom.plotting.surfaces import AnyAxes, Quadric, Scene, space_axes, sphere
+from liehom.representations import Representation
 from liehom.typing import Array
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_LINES = 8
+LEVEL_TOLERANCE = 1e-6
+"""Variation of an invariant form along trajectories that is admissible, relative to |Q| |m|^2."""
 
 
 class Layer(NamedTuple):
@@ -104,18 +108,17 @@ def plot_trajectory(
     steps = steps_of(solution)
     if show not in SHOWN:
         raise InputError(f"show is {displayed(show)}, expected one of {', '.join(map(repr, SHOWN))}")
-    chosen = _chosen(coordinates, steps.y.shape[1])
+    chosen, names = chosen_coordinates(coordinates, steps.y.shape[1])
     coloured = len(chosen) > MAX_LINES
     curves = steps if show == "steps" or (coloured and solution.sol is None) else curves_of(solution)
     layers = [Layer(curves.t, curves.y[:, chosen], "-")] if show != "steps" else []
     layers += [Layer(steps.t, steps.y[:, chosen], ".")] if show != "curve" else []
-    names = [f"$m_{i}$" if i < 10 else f"$m_{{{i}}}$" for i in chosen]
     with style_unless(ax):
         radius = None
-        if len(chosen) == 3 and not over_time:
-            ax, radius = _in_space(layers, names, ax)
-        elif len(chosen) == 2 and not over_time:
-            ax = _in_the_plane(layers, names, ax)
+        if len(chosen) in (2, 3) and not over_time:
+            scene, surface = draw_scenery(layers[0].y, names, ax)
+            draw_layers(scene, layers, surface)
+            ax, radius = scene.axes, None if surface is None else np.sqrt(surface.level)
         elif not coloured:
             ax = _over_time(layers, names, ax)
         else:
@@ -125,12 +128,118 @@ def plot_trajectory(
     return finished(figure, path)
 
 
-def _chosen(coordinates: Sequence[int] | None, size: int) -> list[int]:
-    """The indices of the coordinates to draw, checked."""
+def plot_quadric(
+    form: Representation | npt.ArrayLike, through: Solution | npt.ArrayLike, ax: Axes | None = None
+) -> Axes:
+    """Draw the quadrics m^T Q m = c in space on which given trajectories or points are, with the trajectories.
+
+    Parameters
+    ----------
+    form : Representation, or array_like of shape (3, 3)
+        A representation on space with one invariant symmetric form Q, up to multiples; or Q itself.
+    through : Solution, or array_like of shape (3,) or (..., 3)
+        A solution of `integrate`, of an ensemble the first 50 trajectories; or points.
+    ax : matplotlib.axes.Axes, optional
+        Axes in space or in the plane; by default new ones in space.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    InputError
+        If matplotlib is not installed, there is no such form, or Q does not have the same value along a trajectory.
+
+    Notes
+    -----
+    Drawn are spheres, ellipsoids, hyperboloids of one and two sheets, cones and elliptic cylinders: the sheets on which
+    there are points, and a little more of them than the points need. Parts of a trajectory that its surface hides are
+    faint. Curves between the steps are those of `plot_trajectory`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> rho = lh.defining(lh.so(2, 1))
+    >>> sol = lh.integrate(lh.GeneratorField(rho, ["m2", "1", "m0"]), (0, 3), [0.0, 0.0, 1.0])
+    >>> ax = lh.plotting.plot_quadric(rho, sol)  # doctest: +SKIP
+    """
+    matrix = invariant_form(form)
+    layer = None
+    if isinstance(through, Solution):
+        curves = curves_of(through)
+        layer = Layer(curves.t, curves.y, "-")
+    y = np.asarray(through, dtype=float).reshape(-1, 3, 1) if layer is None else layer.y
+    if y.shape[1] != 3:
+        raise InputError(f"quadrics are drawn in space; the solution has {y.shape[1]} coordinates")
+    surfaces = _surfaces(matrix, y)
+    with style_unless(ax):
+        scene = Scene(space_axes(ax))
+        for surface in dict.fromkeys(surfaces):
+            surface.draw(scene)
+        if layer is not None:
+            for k, (surface, points) in enumerate(zip(surfaces, y, strict=True)):
+                scene.curve(surface, points, **look(k, len(y)))
+            mark_ends(scene, y, surfaces)
+        else:
+            for surface, points in zip(surfaces, y, strict=True):
+                scene.mark(surface, points[:, 0], "o", color=current_colours()[0], markersize=6)
+        low, high = (f([s.bounds()[i] for s in surfaces], axis=0) for i, f in enumerate((np.min, np.max)))
+        scene.frame(high, ("$m_0$", "$m_1$", "$m_2$"), whole=not surfaces[0].closed)
+        scene.limit((high - low) / 2, (high + low) / 2, zoom=1.0)
+        scene.axes.set_title(", ".join(dict.fromkeys(f"{s.kind}, $c$ = {s.level:.4g}" for s in surfaces)), loc="left")
+    axes: Axes = scene.axes
+    return axes
+
+
+def invariant_form(form: Representation | npt.ArrayLike) -> Array:
+    """The matrix Q (3, 3) of the first argument of `plot_quadric`.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> invariant_form(lh.defining(lh.so(2, 1))).tolist()
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]
+    """
+    if isinstance(form, Representation):
+        forms = form.invariant_forms().symmetric if form.size == 3 else []
+        if len(forms) != 1:
+            found = f"{len(forms)} independent invariant forms" if form.size == 3 else f"{form.size} coordinates"
+            raise InputError(f"expected a representation on space with one invariant form; this one has {found}")
+        return np.array(forms[0].to_numpy(), dtype=float)
+    matrix = np.asarray(form, dtype=float)
+    if matrix.shape != (3, 3) or not np.allclose(matrix, matrix.T) or not matrix.any():
+        raise InputError(f"expected a symmetric 3 x 3 matrix that is not 0, got {displayed(form)}")
+    return matrix
+
+
+def _surfaces(form: Array, y: Array) -> list[Quadric]:
+    """The quadric of each trajectory (k, 3, n), the same one for equal levels."""
+    values = np.einsum("kin,ij,kjn->kn", y, form, y)
+    scale = np.abs(form).max() * np.nanmax((y**2).sum(axis=1), initial=0.0)
+    levels = np.nanmean(values, axis=1)
+    if not np.nanmax(np.abs(values - levels[:, None]), initial=0.0) <= LEVEL_TOLERANCE * scale:
+        raise InputError("Q does not have the same value along a trajectory, so that it is not an invariant form of it")
+    distinct = np.unique(np.round(levels / (LEVEL_TOLERANCE * scale or 1.0)), return_inverse=True)[1].reshape(-1)
+    made = {}
+    for number in np.unique(distinct):
+        points = np.concatenate([part[:, np.isfinite(part).all(axis=0)] for part in y[distinct == number]], axis=1)
+        made[number] = Quadric(form, float(levels[distinct == number].mean()), points)
+    return [made[number] for number in distinct]
+
+
+def chosen_coordinates(coordinates: Sequence[int] | None, size: int) -> tuple[list[int], list[str]]:
+    """The indices of the coordinates to draw, checked, and their names.
+
+    Examples
+    --------
+    >>> chosen_coordinates((2, 0), 3)
+    ([2, 0], ['$m_2$', '$m_0$'])
+    """
     chosen = list(range(size)) if coordinates is None else list(coordinates)
     if not chosen or any(isinstance(i, bool) or not isinstance(i, int) or not 0 <= i < size for i in chosen):
         raise InputError(f"coordinates are indices from 0 to {size - 1}, got {displayed(coordinates)}")
-    return chosen
+    return chosen, [f"$m_{i}$" if i < 10 else f"$m_{{{i}}}$" for i in chosen]
 
 
 def _entitle(ax: Axes, solution: Solution, steps: Curves, radius: float | None, shown: int) -> None:
@@ -154,11 +263,11 @@ def _ends(points: Array) -> tuple[Array, Array]:
     return points[:, there[0]], points[:, there[-1]]
 
 
-def mark_ends(scene: Scene, y: Array, surface: Quadric | None = None) -> None:
+def mark_ends(scene: Scene, y: Array, surfaces: Sequence[Quadric | None]) -> None:
     """Mark initial points by a disc and ends by a square, pale if hidden, with one legend for all curves."""
     colours = current_colours()
     size = 6 if len(y) <= 5 else 3.5
-    for k, points in enumerate(y):
+    for k, (points, surface) in enumerate(zip(y, surfaces, strict=True)):
         colour = colours[k % len(colours)]
         for marker, point in zip("os", _ends(points), strict=True):
             fill = {"color": colour, "markersize": size, "markerfacecolor": colour if marker == "o" else paper_colour()}
@@ -170,21 +279,23 @@ def mark_ends(scene: Scene, y: Array, surface: Quadric | None = None) -> None:
     scene.axes.legend(loc="upper right")
 
 
-# -- in space --------------------------------------------------------------------------------------------
-def _in_space(layers: Sequence[Layer], names: Sequence[str], ax: Axes | None) -> tuple[Axes, float | None]:
-    y = layers[0].y
-    radius = constant_norm(y)
-    scene = Scene(space_axes(ax))
-    surface = None
+# -- in the plane and in space ---------------------------------------------------------------------------
+def draw_scenery(y: Array, names: Sequence[str], ax: Axes | None) -> tuple[Scene, Quadric | None]:
+    """Axes for trajectories (k, 2, n) or (k, 3, n); for three coordinates of constant norm, with the sphere."""
+    if y.shape[1] == 2:
+        flat: AnyAxes = new_figure(5.4, 5.0).add_subplot() if ax is None else ax
+        flat.set(xlabel=names[0], ylabel=names[1])
+        flat.set_aspect("equal", adjustable="datalim")
+        return Scene(flat), None
+    scene, radius = Scene(space_axes(ax)), constant_norm(y)
     if radius is None:
         _box(scene, y, names)
-    else:
-        surface = sphere(radius)
-        surface.draw(scene)
-        scene.frame(radius, names)
-        scene.limit(radius)
-    draw_layers(scene, layers, surface)
-    return scene.axes, radius
+        return scene, None
+    surface = sphere(radius)
+    surface.draw(scene)
+    scene.frame(radius, names)
+    scene.limit(radius)
+    return scene, surface
 
 
 def draw_layers(scene: Scene, layers: Sequence[Layer], surface: Quadric | None = None) -> None:
@@ -192,7 +303,7 @@ def draw_layers(scene: Scene, layers: Sequence[Layer], surface: Quadric | None =
     for layer in layers:
         for k, points in enumerate(layer.y):
             scene.curve(surface, points, layer.mark, **look(k, len(layer.y)))
-    mark_ends(scene, layers[0].y, surface)
+    mark_ends(scene, layers[0].y, [surface] * len(layers[0].y))
 
 
 def _box(scene: Scene, y: Array, names: Sequence[str]) -> None:
@@ -211,15 +322,7 @@ def _box(scene: Scene, y: Array, names: Sequence[str]) -> None:
         axis.set_pane_color((0.5, 0.5, 0.5, 0.05))
 
 
-# -- in the plane, over time -----------------------------------------------------------------------------
-def _in_the_plane(layers: Sequence[Layer], names: Sequence[str], ax: Axes | None) -> AnyAxes:
-    axes: AnyAxes = new_figure(5.4, 5.0).add_subplot() if ax is None else ax
-    draw_layers(Scene(axes), layers)
-    axes.set(xlabel=names[0], ylabel=names[1])
-    axes.set_aspect("equal", adjustable="datalim")
-    return axes
-
-
+# -- over time --------------------------------------------------------------------------------------------
 def _over_time(layers: Sequence[Layer], names: Sequence[str], ax: Axes | None) -> AnyAxes:
     axes: AnyAxes = new_figure(7.0, 4.2).add_subplot() if ax is None else ax
     colours = current_colours()

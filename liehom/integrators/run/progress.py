@@ -21,6 +21,8 @@ class Progress:
     ----------
     show : bool or callable
         True: a bar on standard error. A function is called with the fraction done, from 0 to 1.
+    task : str, optional
+        The word before the bar.
 
     Raises
     ------
@@ -38,11 +40,12 @@ class Progress:
     1.0
     """
 
-    def __init__(self, show: bool | Callable[[float], object]) -> None:
+    def __init__(self, show: bool | Callable[[float], object], task: str = "integrating") -> None:
         if not callable(show) and show not in (True, False, None):
             raise InputError(f"progress is {displayed(show)}, expected True, False or a function of the fraction done")
         self._callback = show if callable(show) else None
         self._bar: Any = None
+        self._name = task
         self._task: Any = None
         self._silent = not show
         self._last = -INTERVAL
@@ -54,7 +57,7 @@ class Progress:
 
             self._bar = Bar(console=Console(stderr=True), transient=True)
             self._bar.start()
-            self._task = self._bar.add_task("integrating", total=1.0)
+            self._task = self._bar.add_task(self._name, total=1.0)
         return self
 
     def update(self, fraction: Callable[[], float], *, last: bool = False) -> None:

@@ -1,0 +1,116 @@
+"""Animations: the points of the frames, files as a whole, pages without the network, interruptions, what is refused."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("PIL")
+
+from PIL import Image
+
+from liehom.errors import FormatError, InputError
+from liehom.plotting import animate_trajectory
+from liehom.plotting.animation import stage
+from liehom.plotting.canvas import new_figure
+
+SPIN = lh.GeneratorField(lh.defining(lh.so(2)), [1])
+SOL = lh.integrate(SPIN, (0, 3), [1.0, 0.0], dt=0.5)
+
+
+def small() -> Any:
+    return new_figure(1.2, 1.2).add_subplot()
+
+
+def test_the_point_is_the_solution_at_the_time_of_the_frame() -> None:
+    (actor,) = stage(SOL, ax=small())
+    for fraction in (0.0, 0.37, 1.0):
+        tail, hidden, dot = actor.move(fraction)
+        place = np.array(dot.get_data(), dtype=float)[:, 0]
+        assert np.abs(place - [np.cos(3 * fraction), np.sin(3 * fraction)]).max() < 1e-5
+        assert np.allclose(np.array(tail.get_data(), dtype=float)[:, -1], place)
+        assert not np.isfinite(np.array(hidden.get_data(), dtype=float)).any()
+
+
+def test_points_behind_the_sphere_are_faint() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1])
+    sol = lh.integrate(field, (0, 2 * np.pi), [1.0, 0.0, 0.0], dt=0.5)
+    (actor,) = stage(sol, ax=new_figure(2, 2).add_subplot(projection="3d", elev=10, azim=0))
+    alphas = [actor.move(fraction)[2].get_alpha() for fraction in (0.0, 0.5, 1.0)]
+    assert alphas == [1.0, 0.3, 1.0]
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".html"])
+def test_files_have_all_frames_and_progress_is_reported(suffix: str, tmp_path: Path) -> None:
+    seen: list[float] = []
+    file = tmp_path / f"orbit{suffix}"
+    animate_trajectory(SOL, file, seconds=0.4, fps=10, ax=small(), progress=seen.append)
+    assert seen[-1] == 1.0 and seen == sorted(seen)
+    assert [path.name for path in tmp_path.iterdir()] == [file.name]
+    if suffix == ".gif":
+        with Image.open(file) as made:
+            assert made.n_frames == 4 and made.info["duration"] == 100 and made.info["loop"] == 0
+            first = np.asarray(made.convert("RGB"), dtype=int)
+            made.seek(2)
+            assert np.abs(np.asarray(made.convert("RGB"), dtype=int) - first).max() > 50  # something has moved
+        return
+    text = file.read_text(encoding="utf-8")
+    assert text.count("data:image/png;base64") == 4
+    assert not re.search(r"https?://|<link|fa-", text)
+    assert text.startswith("<!doctype html>") and "<title>orbit</title>" in text
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".html"])
+def test_an_interruption_leaves_the_file_that_was_there(suffix: str, tmp_path: Path) -> None:
+    def interrupt(fraction: float) -> None:
+        if fraction > 0.5:
+            raise KeyboardInterrupt
+
+    file, missing = tmp_path / f"old{suffix}", tmp_path / f"new{suffix}"
+    file.write_bytes(b"before")
+    for path in (file, missing):
+        with pytest.raises(KeyboardInterrupt):
+            animate_trajectory(SOL, path, seconds=0.3, fps=10, ax=small(), progress=interrupt)
+    assert [path.name for path in tmp_path.iterdir()] == [file.name] and file.read_bytes() == b"before"
+
+
+def test_coordinates_over_time_and_chosen_ones() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(4)), np.arange(1.0, 7))
+    sol = lh.integrate(field, (0, 1), np.eye(4)[0], dt=0.1)
+    actors = stage(sol, ax=small())
+    assert len(actors) == 4
+    for i, actor in enumerate(actors):
+        assert np.allclose(np.array(actor.move(1.0)[2].get_data(), dtype=float)[:, 0], [1.0, sol.y[i, -1]])
+    (actor,) = stage(sol, (3, 1), ax=small())
+    assert np.allclose(np.array(actor.move(1.0)[2].get_data(), dtype=float)[:, 0], sol.y[[3, 1], -1])
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "match"),
+    [
+        ({"path": "orbit.mp4"}, FormatError, ".gif or .html"),
+        ({"path": "no/such/folder/orbit.gif"}, FormatError, "does not exist"),
+        ({"fps": 0}, InputError, "frames"),
+        ({"seconds": 1e9}, InputError, "5000"),
+        ({"seconds": float("nan")}, InputError, "frames"),
+        ({"coordinates": (0, 2)}, InputError, "from 0 to 1"),
+    ],
+)
+def test_wrong_arguments_raise_before_the_work(
+    options: Any, error: type[Exception], match: str, tmp_path: Path
+) -> None:
+    with pytest.raises(error, match=match):
+        animate_trajectory(SOL, **options)
+
+
+def test_many_coordinates_must_be_chosen() -> None:
+    field = lh.GeneratorField(lh.defining(lh.so(9)), np.arange(1.0, 37))
+    with pytest.raises(InputError, match="up to 8 coordinates"):
+        stage(lh.integrate(field, (0, 1), np.eye(9)[0], dt=0.5))

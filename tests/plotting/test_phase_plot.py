@@ -1,0 +1,141 @@
+"""Phase portraits: equilibria and their types, level sets, separatrices, and what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.instances import RigidBody
+
+pytest.importorskip("matplotlib")
+
+from liehom.plotting import plot_phase_portrait
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, new_figure, style
+from liehom.plotting.phase_plot import between, equilibria, flow_of
+
+ENERGY = "m0**2/2 + m1**2/4 + m2**2/6"
+BODY = RigidBody([1, 2, 3])
+
+
+def kinds(what: Any, **options: Any) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for equilibrium in equilibria(flow_of(what, options.get("energy"), options.get("radius", 1.0))):
+        found[equilibrium.kind] = found.get(equilibrium.kind, 0) + 1
+    return found
+
+
+def drawn(ax: Any, colour: str) -> np.ndarray:
+    """The points (k, 3) of the lines of a color in axes in space, without arrowheads and markers."""
+    lines = [np.array(line.get_data_3d(), dtype=float).T for line in ax.lines if line.get_color() == colour]
+    points = np.concatenate([line for line in lines if len(line) > 3])
+    return points[np.isfinite(points).all(axis=1)]
+
+
+@pytest.mark.parametrize("radius", [1.0, 2.5])
+def test_equilibria_of_the_rigid_body_are_its_axes(radius: float) -> None:
+    found = equilibria(flow_of(ENERGY, None, radius))
+    wanted = BODY.equilibria(radius)
+    assert len(found) == 6
+    for equilibrium in found:
+        assert np.abs(equilibrium.point - wanted).max(axis=1).min() < 1e-8 * radius
+        middle = abs(equilibrium.point[1]) > 0.5 * radius
+        assert equilibrium.kind == ("saddle" if middle else "center")
+
+
+@pytest.mark.parametrize(
+    ("what", "wanted"),
+    [
+        ("m2", {"center": 2}),
+        ("m0*m1*m2", {"center": 8, "saddle": 6}),
+        ("m2**2 + 7*m0/10", {"center": 3, "saddle": 1}),
+        ("m0**4 + m1**4 + m2**4", {"center": 14, "saddle": 12}),
+        (BODY.energy, {"center": 4, "saddle": 2}),
+    ],
+)
+def test_types_of_equilibria_have_the_index_of_the_sphere(what: Any, wanted: dict[str, int]) -> None:
+    assert kinds(what) == wanted
+    assert wanted["center"] - wanted.get("saddle", 0) == 2  # Poincare and Hopf
+
+
+def test_damping_turns_centers_into_foci_and_a_gradient_has_nodes() -> None:
+    rho = lh.adjoint(lh.so(3))
+    inverse = np.array([1.0, 0.5, 1 / 3])
+    damped = lh.GeneratorField(rho, lambda m: -m * inverse - 0.2 * np.cross(m, m * inverse))
+    assert kinds(damped) == {"stable focus": 2, "unstable focus": 2, "saddle": 2}
+    gradient = lh.GeneratorField(rho, lambda m: np.cross(m, m * inverse))
+    assert kinds(gradient) == {"stable node": 2, "unstable node": 2, "saddle": 2}
+
+
+def test_a_circle_of_equilibria_is_not_isolated() -> None:
+    found = kinds("m0**2 + m1**2 + 2*m2**2")
+    assert found["center"] == 2 and found["not isolated"] > 20
+
+
+def test_level_sets_and_separatrices_are_drawn() -> None:
+    ax = plot_phase_portrait(ENERGY)
+    separatrix = drawn(ax, COLOURS[1])
+    saddle = np.abs(np.abs(separatrix[:, 1]) - 1) < 1e-6
+    assert np.abs(BODY.energy(separatrix[~saddle]) - 1 / 4).max() < 1e-3
+    exact = np.concatenate([BODY.separatrix(np.linspace(0, 2 * np.pi, 90), branch) for branch in (1, -1)])
+    assert np.linalg.norm(exact[:, None] - separatrix, axis=-1).min(axis=1).max() < 0.05  # all of both circles
+    below, above = drawn(ax, COLOURS[0]), drawn(ax, COLOURS[2])
+    assert np.abs(np.linalg.norm(np.concatenate([below, above]), axis=1) - 1).max() < 1e-9
+    assert BODY.energy(below).max() < 1 / 4 < BODY.energy(above).min()
+    assert len(np.unique((BODY.energy(above) - 1e-3).round(2))) == 5
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert labels == ["separatrix", "center (4)", "saddle (2)"]
+
+
+def test_a_field_without_an_energy_is_drawn_by_its_trajectories() -> None:
+    field = BODY.field("b")
+    ax = plot_phase_portrait(field)
+    separatrix = drawn(ax, COLOURS[1])
+    separatrix = separatrix[np.abs(np.abs(separatrix[:, 1]) - 1) > 1e-6]
+    assert len(separatrix) > 300 and np.abs(BODY.energy(separatrix) - 1 / 4).max() < 1e-3
+    with_energy = plot_phase_portrait(field, energy=BODY.energy)
+    assert np.abs(BODY.energy(drawn(with_energy, COLOURS[1])) - 1 / 4).max() < 1e-3
+
+
+def test_arrows_point_in_the_direction_of_the_field() -> None:
+    ax = plot_phase_portrait("m2", new_figure(3, 3).add_subplot(projection="3d", elev=10, azim=0))
+    heads = [np.array(line.get_data_3d()).T for line in ax.lines if np.shape(line.get_data_3d()) == (3, 3)]
+    assert heads
+    for back, tip, _ in heads:
+        assert (tip - back) @ np.cross(tip, [0, 0, 1]) > 0
+
+
+def test_the_far_side_is_faint_and_dark_pages_have_light_lines() -> None:
+    with style(dark=True):
+        ax = plot_phase_portrait(ENERGY)
+    up, around = np.radians(ax.elev), np.radians(ax.azim)
+    eye = np.array([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)])
+    faint = [line for line in ax.lines if line.get_alpha() == 0.3 and line.get_color() == DARK_COLOURS[1]]
+    assert faint
+    for line in faint:
+        depth = eye @ np.array(line.get_data_3d(), dtype=float)
+        assert np.mean(depth[np.isfinite(depth)] < 0) > 0.9
+
+
+def test_levels_lie_between_critical_values() -> None:
+    for ends in ((False, True), (True, False), (True, True), (False, False)):
+        found = between(1.0, 3.0, *ends, 5)
+        assert found == sorted(found) and found[0] > 1 and found[-1] < 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "match"),
+    [
+        ((lh.GeneratorField(lh.defining(lh.so(4)), [1, 0, 0, 0, 0, 0]),), "4 coordinates"),
+        ((lh.GeneratorField(lh.defining(lh.so(3)), ["t", 0, 0]),), "depends on time"),
+        ((lh.GeneratorField(lh.defining(lh.so(2, 1)), [1, 1, 0]),), "tangent"),
+        (("m0", None, "m1"), "GeneratorField"),
+        (("m0", None, None, -1.0), "radius"),
+    ],
+)
+def test_other_arguments_raise(arguments: tuple[Any, ...], match: str) -> None:
+    names = ("field", "ax", "energy", "radius")
+    with pytest.raises(lh.InputError, match=match):
+        plot_phase_portrait(**dict(zip(names, arguments, strict=False)))
