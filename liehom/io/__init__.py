@@ -3,7 +3,7 @@
 `load`, `loads`, `from_json`, `to_json` and `dump` read and write JSON (`files`, with one module for each format);
 `json_reader` and `number_lists` read JSON strictly and convert numbers. `problem_file` is the `Problem` that a
 representation file states for an integration. `gap_format`, `sage_format`, `sympy_format` and `latex_format` write, and
-partly read, the formats of other programs.
+partly read, the formats of other programs; `latex_parts` writes the parts of formulas.
 
 Input that is malformed raises `FormatError`, or a more specific `InputError`, that names the key or the index. Values
 are parsed by the grammar of `liehom.scalars` and never executed. docs/formats.md describes the formats.

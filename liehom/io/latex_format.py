@@ -1,42 +1,48 @@
-r"""LaTeX of brackets, matrices, numbers, pairs, verdicts and tables, for use in math mode.
+r"""LaTeX of every object that notebooks show, for use in math mode; `latex_parts` has the parts of the formulas.
 
 \begin{aligned} [e_0, e_1] &= e_2 \\ ... \end{aligned},      \begin{pmatrix} -2 & 0 \\ 0 & \frac{1}{2} \end{pmatrix}
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
+from functools import singledispatch
 from itertools import islice
-from typing import Any
 
-from liehom.algebra import Homomorphism, LieAlgebra, RealForm, RootSystem, Subalgebra
+from liehom.algebra import Homomorphism, LieAlgebra, LieAlgebraFamily, RealForm, RootSystem, Subalgebra
 from liehom.algebra.core.names import LinearCombination
-from liehom.display import Displayed, DisplayedTable, escaped_latex
-from liehom.errors import InputError, shown
+from liehom.display import Displayed, DisplayedTable
+from liehom.errors import InputError
 from liehom.fullness import (
     Certificate,
     Classification,
+    FailureReport,
     Full,
     NotFull,
     NumericallyFull,
     NumericallyNotFull,
     NumericallyUndecided,
 )
-from liehom.integrators import Solution
-from liehom.representations import Pair, Representation
-from liehom.scalars import QQ, RR, AlgebraicNumber, Field, FloatField, Matrix, NumberField, Scalar
+from liehom.homogeneous import Stratum
+from liehom.integrators import Solution, Tableau
+from liehom.io.latex_parts import (
+    aligned,
+    combination,
+    dots,
+    matrix_latex,
+    name_latex,
+    number_latex,
+    polynomial_latex,
+    structure_latex,
+    sum_latex,
+    symbol_latex,
+    type_latex,
+    words,
+)
+from liehom.representations import Decomposition, HighestWeightModule, Pair, RealModule, Representation
+from liehom.scalars import QQ, RR, AlgebraicNumber, Field, Matrix, Scalar, Subspace
 from liehom.scalars.fields.exact_field import ExactMatrix
 from liehom.scalars.fields.floating import FloatMatrix
-
-GREEK = re.compile(
-    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|upsilon|phi|chi|psi|"
-    "omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Upsilon|Phi|Psi|Omega"
-)
-SIGNIFICANT_DIGITS = 6
-"""Digits of floats."""
-MAX_PMATRIX_COLUMNS = 10
-"""A matrix of amsmath has at most this many columns, unless a counter of LaTeX is raised."""
 
 
 def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
@@ -47,7 +53,7 @@ def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
     obj : LieAlgebra, Subalgebra, Representation, Pair, verdict, RootSystem, Matrix, number, ...
         A Killing form, for example, is a matrix: ``latex(g.killing_form())``. An element is what ``g.show(x)``
         returns. A table (`ConvergenceTable`, `Atlas`) becomes an array. An object without a formula, such as a
-        `Tableau`, becomes its `repr` as text.
+        `liehom.pauli.DynamicalLieAlgebra`, becomes its `repr` as text.
     table : bool
         For an algebra: the square table of all brackets, instead of the list of nonzero brackets.
     most : int, optional
@@ -86,27 +92,15 @@ def latex(obj: object, *, table: bool = False, most: int | None = None) -> str:
     &\;\;\vdots
     \end{aligned}
     """
-    if isinstance(obj, LieAlgebra):
-        return _bracket_table(obj) if table else _bracket_list(obj, most)
-    if isinstance(obj, ExactMatrix | FloatMatrix):
-        return _matrix(obj, most)
-    if isinstance(obj, Subalgebra):
-        return _span(obj, most)
-    if isinstance(obj, LinearCombination):
-        return _combination(obj.field, obj.values, [_symbol(x) for x in obj.names])
-    if isinstance(obj, Representation):
-        names = [_symbol(x) for x in obj.algebra.basis_names[:most]]
-        lines = [rf"\rho({x}) &= {_matrix(a, most)}" for x, a in zip(names, obj.matrices, strict=False)]
-        return _aligned([*lines, *_dots(len(obj.matrices), most)]) if lines else r"\rho = 0"
-    if isinstance(obj, DisplayedTable):
-        return _cells(obj._cells(), most)
-    found = _statement(obj, most)
+    if table and isinstance(obj, LieAlgebra):
+        return _bracket_table(obj)
+    found = _formula(obj, most)
     if found is not None:
         return found
     if isinstance(obj, Displayed):
         text = repr(obj).removeprefix("<").removesuffix(">")
-        return " ".join(_words(line.strip()) for line in text.splitlines()[:1])
-    return _number(*_with_field(obj))
+        return " ".join(words(line.strip()) for line in text.splitlines()[:1])
+    return number_latex(*_with_field(obj))
 
 
 def _with_field(value: object) -> tuple[Field, Scalar]:
@@ -132,91 +126,177 @@ _ANSWERS = {
 }
 
 
-def _statement(obj: object, most: int | None) -> str | None:
-    """LaTeX of an object that is shown by its name or as a short statement; None for other objects."""
-    if isinstance(obj, Pair):
-        return _pair(obj)
-    if type(obj) in _ANSWERS:
-        verdict: Any = obj
-        return f"{_pair(verdict.pair)} {_words(f' {_ANSWERS[type(obj)]}')}"
-    if isinstance(obj, Certificate):
-        return _words(f"certificate of kind '{obj.kind}' over {obj.field.name}")
-    if isinstance(obj, Classification):
-        return rf"{_name(obj.name or 'no catalogue name')} \colon\; {_words(obj.space)}"
-    if isinstance(obj, RealForm):
-        return _name(obj.name)
-    if isinstance(obj, Solution):
-        return _words(obj.message)
-    if isinstance(obj, RootSystem):
-        cartan = _matrix(QQ.matrix(obj.cartan, (obj.rank, obj.rank)), most)
-        name = re.sub("([A-G])([0-9]+)", r"\1_{\2}", obj.type)
-        return rf"{name} \colon\; {cartan}"
-    if isinstance(obj, Homomorphism):
-        return _matrix(obj.matrix, most)
+@singledispatch
+def _formula(obj: object, most: int | None) -> str | None:
+    """LaTeX of an object that has a formula or a short statement; None for other objects."""
     return None
+
+
+@_formula.register
+def _(obj: Pair, most: int | None) -> str:
+    return _pair(obj)
+
+
+@_formula.register
+def _(obj: Full | NotFull | NumericallyFull | NumericallyNotFull | NumericallyUndecided, most: int | None) -> str:
+    return f"{_pair(obj.pair)} {words(f' {_ANSWERS[type(obj)]}')}"
+
+
+@_formula.register
+def _(obj: Certificate, most: int | None) -> str:
+    return words(f"certificate of kind '{obj.kind}' over {obj.field.name}")
+
+
+@_formula.register
+def _(obj: Classification, most: int | None) -> str:
+    return rf"{name_latex(obj.name or 'no catalogue name')} \colon\; {words(obj.space)}"
+
+
+@_formula.register
+def _(obj: FailureReport, most: int | None) -> str:
+    if obj.generic.holds is False:
+        return words("(6.3) holds for no ") + r"\psi"
+    parts = [
+        f"{polynomial_latex(str(x.data))} = 0" if x.kind == "hypersurface" else words(x.description) for x in obj.parts
+    ]
+    lines = [f"&{part}" for part in parts[:most]] or [f"&{words('a cone')}"]
+    return words("(6.3) fails on ") + r"\;" + aligned([*lines, *dots(len(parts), most)])
+
+
+@_formula.register
+def _(obj: RealForm, most: int | None) -> str:
+    return name_latex(obj.name)
+
+
+@_formula.register
+def _(obj: RootSystem, most: int | None) -> str:
+    return rf"{type_latex(obj.type)} \colon\; {matrix_latex(QQ.matrix(obj.cartan, (obj.rank, obj.rank)), most)}"
+
+
+@_formula.register
+def _(obj: Stratum, most: int | None) -> str:
+    label = words(f"({', '.join(map(str, obj.label))})")
+    isotropy = rf"\mathfrak{{g}}_{{m}} \cong {structure_latex(obj.structure)}"
+    return rf"{label} \colon\; \dim G m = {obj.orbit_dimension}, \; {isotropy}"
+
+
+@_formula.register
+def _(obj: HighestWeightModule, most: int | None) -> str:
+    weight = ", ".join(map(str, obj.highest_weight))
+    return rf"V_{{({weight})}}({type_latex(obj.system.type)}), \quad \dim V = {obj.dimension}"
+
+
+@_formula.register
+def _(obj: RealModule, most: int | None) -> str:
+    weight = ", ".join(map(str, obj.highest_weight))
+    commutant = rf"\operatorname{{End}} V = \mathbb{{{obj.division_algebra}}}"
+    return rf"V_{{({weight})}}({name_latex(obj.form.name)}), \quad \dim V = {obj.dimension}, \quad {commutant}"
+
+
+@_formula.register
+def _(obj: Decomposition, most: int | None) -> str:
+    found = [(x.multiplicity, x.irreducible_dimension) for x in obj.isotypic]
+    terms = [(f"{m} \\," if m > 1 else "") + rf"\mathbf{{{d}}}" for m, d in found[:most]]
+    return r" \oplus ".join([*terms, *([r"\dots"] if len(terms) < len(found) else [])]) or "0"
+
+
+@_formula.register
+def _(obj: Solution, most: int | None) -> str:
+    if obj.t.ndim != 1 or not obj.t.size:
+        return words(obj.message)
+    last = [number_latex(RR, float(x)) for x in obj.y[:most, -1]]
+    last += [r"\dots"] * (len(last) < len(obj.y))
+    return rf"y({number_latex(RR, float(obj.t[-1]))}) = \left({', '.join(last)}\right)"
 
 
 def _pair(pair: Pair) -> str:
     if pair.name:
-        return _name(pair.name)
+        return name_latex(pair.name)
     dimensions = f"{pair.algebra.dimension}/{pair.subalgebra.dimension}"
-    return _words(f"pair of dimensions {dimensions}")
+    return words(f"pair of dimensions {dimensions}")
 
 
-def _name(name: str) -> str:
-    r"""LaTeX of the name of an algebra or a pair.
-
-    Examples
-    --------
-    >>> _name("so(4,1)/so(4)"), _name("e6(-26) + R"), _name("<&>")
-    ('\\mathfrak{so}(4,1)/\\mathfrak{so}(4)', '\\mathfrak{e}_{6}(-26) + \\mathbb{R}', '\\text{<\\&>}')
-    """
-    if not re.fullmatch(r"[A-Za-z0-9(),/+* .-]+", name, re.ASCII) or not re.match("[A-Za-z]+[0-9(*]", name):
-        return _words(name)
-
-    def factor(match: re.Match[str]) -> str:
-        word, index = match[1], match[2]
-        letter = rf"\mathbb{{{word}}}" if word in ("R", "C", "H") else rf"\mathfrak{{{word}}}"
-        return letter + (f"_{{{index}}}" if index else "")
-
-    return re.sub("([A-Za-z]+)([0-9]*)", factor, name).replace("*", "^{*}")
+@_formula.register
+def _(obj: DisplayedTable, most: int | None) -> str:
+    return _cells(obj._cells(), most)
 
 
 def _cells(cells: list[list[str]], most: int | None) -> str:
-    head, *body = [" & ".join(map(_words, row)) for row in cells]
+    head, *body = [" & ".join(map(words, row)) for row in cells]
     lines = [*body[:most], *([r"\vdots"] if most is not None and len(body) > most else [])]
     columns = "l" * len(cells[0])
     rows = " \\\\\n".join(lines)
     return f"\\begin{{array}}{{{columns}}}\n{head} \\\\ \\hline\n{rows}\n\\end{{array}}"
 
 
-def _words(text: str) -> str:
-    return rf"\text{{{escaped_latex(shown(text))}}}"
-
-
-def _dots(found: int, most: int | None) -> list[str]:
-    return [] if most is None or found <= most else [r"&\;\;\vdots"]
-
-
 # -- brackets and matrices -----------------------------------------------------------------------------------
-def _bracket_list(algebra: LieAlgebra, most: int | None) -> str:
-    names = [_symbol(x) for x in algebra.basis_names]
-    found = _brackets(algebra, names, most=most)
+@_formula.register
+def _(algebra: LieAlgebra, most: int | None) -> str:
+    names = [symbol_latex(x) for x in algebra.basis_names]
+    return _bracket_lines(names, _brackets(algebra, names, most=most), most)
+
+
+@_formula.register
+def _(family: LieAlgebraFamily, most: int | None) -> str:
+    from sympy import latex as sympy_latex
+
+    names = [symbol_latex(x) for x in family.basis_names]
+    brackets = {
+        pair: sum_latex((sympy_latex(v), names[k]) for k, v in sorted(row.items()))
+        for pair, row in sorted(family._brackets.items())
+    }
+    return _bracket_lines(names, brackets, most)
+
+
+def _bracket_lines(names: Sequence[str], found: Mapping[tuple[int, int], str], most: int | None) -> str:
     lines = [f"[{names[i]}, {names[j]}] &= {text}" for (i, j), text in islice(found.items(), most)]
-    return _aligned([*(lines or [r"[x, y] &= 0 \quad \text{for all } x, y"]), *_dots(len(found), most)])
+    return aligned([*(lines or [r"[x, y] &= 0 \quad \text{for all } x, y"]), *dots(len(found), most)])
 
 
-def _span(subalgebra: Subalgebra, most: int | None) -> str:
-    names = [_symbol(x) for x in subalgebra.algebra.basis_names]
+@_formula.register
+def _(subalgebra: Subalgebra, most: int | None) -> str:
+    names = [symbol_latex(x) for x in subalgebra.algebra.basis_names]
     field, basis = subalgebra.algebra.field, subalgebra.basis
     shown_rows = range(subalgebra.dimension if most is None else min(most, subalgebra.dimension))
-    rows = [_combination(field, basis.row(i), names) for i in shown_rows]
+    rows = [combination(field, basis.row(i), names) for i in shown_rows]
     rows += [r"\dots"] * (len(rows) < subalgebra.dimension)
     return rf"\left\langle {', '.join(rows)} \right\rangle" if rows else r"\{0\}"
 
 
+@_formula.register
+def _(space: Subspace, most: int | None) -> str:
+    rows = [", ".join(number_latex(space.field, x) for x in row) for row in space.basis.to_rows()]
+    vectors = [f"({row})" for row in rows[:most]]
+    vectors += [r"\dots"] * (len(vectors) < len(rows))
+    return rf"\left\langle {', '.join(vectors)} \right\rangle" if vectors else r"\{0\}"
+
+
+@_formula.register
+def _(rho: Representation, most: int | None) -> str:
+    names = [symbol_latex(x) for x in rho.algebra.basis_names[:most]]
+    lines = [rf"\rho({x}) &= {matrix_latex(a, most)}" for x, a in zip(names, rho.matrices, strict=False)]
+    return aligned([*lines, *dots(len(rho.matrices), most)]) if lines else r"\rho = 0"
+
+
+@_formula.register
+def _(obj: Homomorphism, most: int | None) -> str:
+    return matrix_latex(obj.matrix, most)
+
+
+@_formula.register
+def _(obj: Tableau, most: int | None) -> str:
+    below = [[x if j < i or x != 0 else None for j, x in enumerate(row)] for i, row in enumerate(obj.a)]
+    stages = [[c, *row] for c, row in zip(obj.c, below, strict=True)]
+    weights = [[None, *row] for row in (obj.b, obj.embedded_b) if row is not None]
+    upper, lower = (
+        " \\\\\n".join(" & ".join("" if x is None else number_latex(obj.field, x) for x in row) for row in rows)
+        for rows in (stages, weights)
+    )
+    return "\n".join([rf"\begin{{array}}{{c|{'c' * obj.stages}}}", rf"{upper} \\ \hline", lower, r"\end{array}"])
+
+
 def _bracket_table(algebra: LieAlgebra) -> str:
-    names, n = [_symbol(x) for x in algebra.basis_names], algebra.dimension
+    names, n = [symbol_latex(x) for x in algebra.basis_names], algebra.dimension
     found = {(j, i): text for (i, j), text in _brackets(algebra, names, -1).items()} | _brackets(algebra, names)
     lines = [" & ".join(["", *names]) + r" \\ \hline"]
     lines += [" & ".join([names[i], *(found.get((i, j), "0") for j in range(n))]) + r" \\" for i in range(n)]
@@ -232,90 +312,15 @@ def _brackets(
         if most is not None and (i, j) not in rows and len(rows) > most:
             break
         rows.setdefault((i, j), []).append((v if sign == 1 else -v, names[k]))
-    return {pair: _sum(algebra.field, terms) for pair, terms in rows.items()}
+    return {pair: sum_latex((number_latex(algebra.field, v), x) for v, x in terms) for pair, terms in rows.items()}
 
 
-def _matrix(matrix: Matrix, most: int | None = None) -> str:
-    nrows, ncols = matrix.shape if most is None else (min(most, n) for n in matrix.shape)
-    corner = matrix if most is None else matrix.select(rows=range(nrows), columns=range(ncols))
-    rows = [[_number(matrix.field, x) for x in row] for row in corner.to_rows()]
-    if ncols < matrix.ncols:
-        rows = [[*row, r"\cdots"] for row in rows]
-    if nrows < matrix.nrows:
-        rows.append([r"\vdots"] * ncols + [r"\ddots"] * (ncols < matrix.ncols))
-    lines = [" & ".join(row) for row in rows]
-    if ncols + (ncols < matrix.ncols) <= MAX_PMATRIX_COLUMNS:
-        return _environment("pmatrix", lines)
-    body = " \\\\\n".join(lines)
-    return f"\\left(\\begin{{array}}{{{'r' * matrix.ncols}}}\n{body}\n\\end{{array}}\\right)"
+@_formula.register
+def _(element: LinearCombination, most: int | None) -> str:
+    return combination(element.field, element.values, [symbol_latex(x) for x in element.names])
 
 
-def _aligned(lines: Iterable[str]) -> str:
-    return _environment("aligned", lines)
-
-
-def _environment(name: str, lines: Iterable[str]) -> str:
-    body = " \\\\\n".join(lines)
-    return f"\\begin{{{name}}}\n{body}\n\\end{{{name}}}"
-
-
-# -- sums and numbers ----------------------------------------------------------------------------------------
-def _combination(field: Field, row: Sequence[Scalar], names: Sequence[str]) -> str:
-    return _sum(field, [(v, x) for v, x in zip(row, names, strict=True) if v != 0])
-
-
-def _sum(field: Field, terms: Sequence[tuple[Scalar, str]]) -> str:
-    """LaTeX of a sum of numbers times names; a number with several terms is in parentheses."""
-    out = ""
-    for value, name in terms:
-        text = _number(field, value)
-        if " " in text:
-            part = rf"\left({text}\right) {name}"
-        elif text in ("1", "-1"):
-            part = text[:-1] + name
-        else:
-            part = f"{text} {name}"
-        out += part if not out else f" - {part[1:]}" if part.startswith("-") else f" + {part}"
-    return out or "0"
-
-
-def _number(field: Field, value: Scalar) -> str:
-    if isinstance(field, FloatField):
-        digits, _, exponent = f"{value:.{SIGNIFICANT_DIGITS}g}".partition("e")
-        return rf"{digits}\cdot10^{{{int(exponent)}}}" if exponent else digits
-    if not isinstance(field, NumberField):
-        return _fraction(value)
-    symbol = rf"\sqrt{{{field.symbol[5:-1]}}}" if field.symbol.startswith("sqrt(") else _symbol(field.symbol)
-    powers = ["", symbol, *(f"{symbol}^{{{p}}}" for p in range(2, field.degree))]
-    out = ""
-    for p, c in enumerate(field.coordinates(value)):
-        c = c * field.leading**p
-        if c == 0:
-            continue
-        text = _fraction(c)
-        part = text if not p else text[:-1] + powers[p] if text in ("1", "-1") else text + powers[p]
-        out += part if not out else f" - {part[1:]}" if part.startswith("-") else f" + {part}"
-    return out or "0"
-
-
-def _fraction(value: Any) -> str:
-    if value.q == 1:
-        return str(value.p)
-    sign = "-" if value < 0 else ""
-    return rf"{sign}\frac{{{abs(value.p)}}}{{{value.q}}}"
-
-
-def _symbol(name: str) -> str:
-    r"""LaTeX of the name of a basis element or of a generator.
-
-    Examples
-    --------
-    >>> _symbol("e12"), _symbol("alpha_1"), _symbol("height"), _symbol("a&b")
-    ('e_{12}', '\\alpha_{1}', '\\mathrm{height}', '\\text{a\\&b}')
-    """
-    match = re.fullmatch(r"([A-Za-z]+)_?([0-9]*)", name, re.ASCII)
-    if match is None:
-        return _words(name)
-    word, index = match[1], match[2]
-    text = f"\\{word}" if GREEK.fullmatch(word) else word if len(word) == 1 else rf"\mathrm{{{word}}}"
-    return f"{text}_{{{index}}}" if index else text
+@_formula.register(ExactMatrix)
+@_formula.register(FloatMatrix)
+def _(obj: Matrix, most: int | None) -> str:
+    return matrix_latex(obj, most)

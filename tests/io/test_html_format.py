@@ -229,6 +229,51 @@ def test_formulas_of_elements() -> None:
     assert lh.latex(g.over(lh.RR).show([0.5, 0.0, -1e-9])) == r"0.5 x_{1} - 1\cdot10^{-9} z"
 
 
+@pytest.mark.parametrize(
+    ("name", "formula"),
+    [
+        ("LieAlgebraFamily", r"\begin{aligned} [x, y] &= a z \end{aligned}"),
+        (
+            "FailureReport",
+            r"\text{(6.3) fails on }\;\begin{aligned} &x_{0}^{2} + x_{1}^{2} - x_{2}^{2} = 0 \end{aligned}",
+        ),
+        ("Decomposition", r"\mathbf{1} \oplus \mathbf{3} \oplus \mathbf{5}"),
+        ("HighestWeightModule", r"V_{(1, 0)}(A_{2}), \quad \dim V = 3"),
+        (
+            "RealModule",
+            r"V_{(1, 0)}(\mathfrak{su}(2,1)), \quad \dim V = 6, \quad \operatorname{End} V = \mathbb{C}",
+        ),
+        ("Stratum", r"\text{(2, 1)} \colon\; \dim G m = 2, \; \mathfrak{g}_{m} \cong \mathbb{R}"),
+        ("Subspace", r"\left\langle (1, 2) \right\rangle"),
+        ("Solution", r"y(1) = \left(0.218704, 0.975791\right)"),
+    ],
+)
+def test_formulas_of_modules_families_strata_reports_and_solutions(name: str, formula: str) -> None:
+    assert lh.latex(sample(name)).replace("\n", " ") == formula
+
+
+def test_formulas_of_decompositions_have_multiplicities_and_dots() -> None:
+    rho = lh.defining(lh.so(3))
+    found = rho.tensor(rho).tensor(rho).decomposition()
+    assert lh.latex(found) == r"\mathbf{1} \oplus 3 \,\mathbf{3} \oplus 2 \,\mathbf{5} \oplus \mathbf{7}"
+    assert lh.latex(found, most=2) == r"\mathbf{1} \oplus 3 \,\mathbf{3} \oplus \dots"
+
+
+def test_formulas_of_tableaux_leave_zeros_on_and_above_the_diagonal_out() -> None:
+    lines = lh.latex(lh.tableau("rk4")).splitlines()
+    assert lines[0] == r"\begin{array}{c|cccc}"
+    assert lines[3] == r"\frac{1}{2} & 0 & \frac{1}{2} &  &  \\"
+    assert lines[5] == r" & \frac{1}{6} & \frac{1}{3} & \frac{1}{3} & \frac{1}{6}"
+    assert lh.latex(lh.tableau("rk45")).count("\\hline\n") == 1
+    assert len(lh.latex(lh.tableau("rk45")).splitlines()) == 7 + 2 + 2
+
+
+def test_a_report_of_a_pair_without_directions_says_so() -> None:
+    verdict = lh.decide_fullness(lh.pair("su(3)/su(2)"))
+    assert isinstance(verdict, lh.NotFull)
+    assert lh.latex(verdict.where_it_fails()) == r"\text{(6.3) holds for no }\psi"
+
+
 def test_most_cuts_and_none_does_not() -> None:
     matrix = lh.QQ.matrix([[1, 2, 3], [4, 5, 6]])
     assert lh.latex(matrix, most=2).splitlines()[1:-1] == [r"1 & 2 & \cdots \\", r"4 & 5 & \cdots"]
