@@ -9,13 +9,13 @@ import numpy as np
 
 from liehom.paper.tables import Table, symbol
 from liehom.plotting.canvas import MARKERS, current_colours, matplotlib_module, new_figure, paper_colour
+from liehom.plotting.surfaces import Scene, space_axes, sphere
 from liehom.typing import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ELEVATION, AZIMUTH = np.radians(24.0), np.radians(35.0)
 FLOOR, CEILING = 3e-17, 10.0
 """Errors at the lower and upper end of the axes of Figures 3 to 5; a zero of the paper is drawn at the lower end."""
 
@@ -34,7 +34,7 @@ IN_RANGE, OUTSIDE, ZERO = Look("D", "paper, in the range"), Look("x", "paper, ou
 def draw_spheres(curves: Mapping[tuple[str, str], Array]) -> Figure:
     """Plot of trajectories on spheres, with a row for each body and a column for each update.
 
-    Parts of a trajectory behind the sphere are pale.
+    Parts of a trajectory behind the sphere are faint.
 
     Parameters
     ----------
@@ -51,44 +51,21 @@ def draw_spheres(curves: Mapping[tuple[str, str], Array]) -> Figure:
         for j, name in enumerate(names):
             _draw_sphere(panels[i, j], curves[body, name])
             if i == 0:
-                panels[i, j].set_title(symbol(name), loc="center", fontsize=13)
-        panels[i, 0].text(-1.32, 0, body, rotation=90, ha="center", va="center", fontsize=11)
+                panels[i, j].set_title(symbol(name), loc="center", fontsize=13, y=1.0)
+        panels[i, 0].text(
+            -0.02, 0.5, body, transform=panels[i, 0].transAxes, rotation=90, ha="center", va="center", fontsize=11
+        )
     return figure
 
 
-def _view() -> Array:
-    """Unit vectors to the right, up and towards the viewer, as rows."""
-    eye = np.array([np.cos(ELEVATION) * np.cos(AZIMUTH), np.cos(ELEVATION) * np.sin(AZIMUTH), np.sin(ELEVATION)])
-    right = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0.0])
-    return np.stack([right, np.cross(eye, right), eye])
-
-
 def _draw_sphere(axes: Axes, points: Array) -> None:
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.set(xlim=(-1.4, 1.25), ylim=(-1.2, 1.3))
-    turn, edge, colours = np.linspace(0, 2 * np.pi, 200), _edge_colour(), current_colours()
-    axes.fill(np.cos(turn), np.sin(turn), facecolor=edge, alpha=0.05, zorder=0)
-    axes.plot(np.cos(turn), np.sin(turn), color=edge, linewidth=0.8, zorder=0.5)
-    for k in range(points.shape[2]):
-        x, y, depth = _view() @ points[:, :, k].T
-        for front in (False, True):
-            shown = (depth >= 0) == front
-            near = shown | np.r_[shown[1:], False] | np.r_[False, shown[:-1]]
-            width, alpha, zorder = (0.8, 1.0, 3) if front else (0.5, 0.3, 1)
-            line = np.where(near, x, np.nan), np.where(near, y, np.nan)
-            axes.plot(*line, color=colours[k], linewidth=width, alpha=alpha, zorder=zorder)
-        pale = depth[0] < 0
-        fill: dict[str, Any] = {
-            "markerfacecolor": colours[k],
-            "markeredgecolor": paper_colour(),
-            "alpha": 0.4 if pale else 1.0,
-        }
-        axes.plot(x[:1], y[:1], "o", markersize=5.5, zorder=1.5 if pale else 5, **fill)
-    for k, direction in enumerate(np.eye(3)):
-        x, y, _ = _view() @ direction
-        axes.plot([x, 1.12 * x], [y, 1.12 * y], color=edge, linewidth=0.9, zorder=4)
-        axes.text(1.22 * x, 1.22 * y, f"$m_{k + 1}$", ha="center", va="center", fontsize=9, color=edge)
+    scene, surface = Scene(space_axes(axes)), sphere(1.0)
+    surface.draw(scene)
+    for colour, curve in zip(current_colours(), np.moveaxis(points, 2, 0), strict=False):
+        scene.curve(surface, curve.T, color=colour, linewidth=0.8)
+        scene.mark(surface, curve[0], "o", color=colour, markersize=5, markeredgecolor=paper_colour())
+    scene.frame(1.0, ("$m_1$", "$m_2$", "$m_3$"))
+    scene.limit(1.0)
 
 
 # -- Figures 3 to 5 --------------------------------------------------------------------------------------
@@ -118,11 +95,16 @@ def draw_errors(errors: Table, slopes: Table, printed: Table | None = None, colu
     height = -(-len(panels) // width)
     figure = new_figure(0.6 + 1.55 * width, 1.0 + 1.75 * height)
     grid = figure.subplots(height, width, sharex=True, sharey=True, squeeze=False)
+    grid[0, 0].set(xscale="log", yscale="log", xlim=(4e-3, 25), ylim=(FLOOR / 3, CEILING))
+    grid[0, 0].set_xticks([0.01, 0.1, 1, 10], [".01", ".1", "1", "10"])
+    grid[0, 0].set_yticks([1e-15, 1e-10, 1e-5, 1], ["1e-15", "1e-10", "1e-5", "1"])
     for axes, panel in zip(grid.flat, panels, strict=True):
         mine, other = ([row for row in some if (row["body"], row["update"]) == panel] for some in (rows, misprints))
         _draw_panel(axes, current_colours()[updates.index(panel[1])], mine, other)
-        axes.set_title(symbol(panel[1]), fontsize=11)
-        axes.set_title(panel[0], loc="right", fontsize=8, color=_edge_colour())
+        axes.minorticks_off()
+        axes.tick_params(labelsize=8)
+        axes.set_title(symbol(panel[1]), fontsize=11, y=1.0)  # a given height saves half the time of the plot
+        axes.set_title(panel[0], loc="right", fontsize=8, color=_edge_colour(), y=1.0)
         text = f"slope {measured[panel]['slope']:.2f}\npaper {measured[panel]['slope in the paper']:.2f}"
         if measured[panel]["slope"] == measured[panel]["slope"]:
             axes.text(0.96, 0.04, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=8)
@@ -148,23 +130,19 @@ def _draw_panel(
     if printed:
         errors = [row["average error"] for row in printed]
         axes.plot([row["dt"] for row in printed], errors, "--", color=_edge_colour(), linewidth=1.2)
-    for row in rows:
-        _mark(axes, row["dt"], max(row["paper"], FLOOR), _look(row))
-    axes.set(xscale="log", yscale="log", xlim=(4e-3, 25), ylim=(FLOOR / 3, CEILING))
-    axes.set_xticks([0.01, 0.1, 1, 10], [".01", ".1", "1", "10"])
-    axes.set_yticks([1e-15, 1e-10, 1e-5, 1])
-    axes.minorticks_off()
-    axes.tick_params(labelsize=8)
+    for look in dict.fromkeys(map(_look, rows)):
+        chosen = [row for row in rows if _look(row) == look]
+        _mark(axes, [row["dt"] for row in chosen], [max(row["paper"], FLOOR) for row in chosen], look)
 
 
 def _look(row: Mapping[str, Any]) -> Look:
     return ZERO if row["paper"] == 0 else IN_RANGE if row["paper in range"] == "yes" else OUTSIDE
 
 
-def _mark(axes: Axes, x: float, y: float, look: Look, label: str | None = None) -> None:
+def _mark(axes: Axes, x: Sequence[float], y: Sequence[float], look: Look, label: str | None = None) -> None:
     ink = matplotlib_module("").rcParams["text.color"]
     axes.plot(
-        [x], [y], look.marker, color=ink, markersize=6, markerfacecolor="none", markeredgewidth=1.3, zorder=4,
+        x, y, look.marker, color=ink, markersize=6, markerfacecolor="none", markeredgewidth=1.3, zorder=4,
         linestyle="none", label=label,
     )  # fmt: skip
 
@@ -176,7 +154,7 @@ def _explain(figure: Figure, rows: Sequence[Mapping[str, Any]], misprints: bool,
     axes.plot(nowhere, nowhere, "o-", color=edge, markersize=4, label="median")
     axes.fill_between(nowhere, nowhere, nowhere, color=edge, alpha=0.3, linewidth=0, label="5 % to 95 %")
     for look in dict.fromkeys(map(_look, rows)):
-        _mark(axes, np.nan, np.nan, look, look.label)
+        _mark(axes, nowhere, nowhere, look, look.label)
     if misprints:
         axes.plot(nowhere, nowhere, "--", color=edge, linewidth=1.2, label="formula as printed")
     figure.legend(loc="outside upper left", ncols=columns, fontsize=8)
@@ -205,7 +183,7 @@ def draw_costs(points: Table, fits: Table, panels: Sequence[tuple[str, Sequence[
         for k, name in enumerate(names):
             mine = [row for row in _records(points) if row["update"] == name]
             _draw_cost(axes, k, [row["-ln error"] for row in mine], [row["ln cost"] for row in mine], lines[name])
-        axes.set_title(title)
+        axes.set_title(title, y=1.0)
         axes.set_xlabel("$-\\ln$ (average energy error)")
         axes.set_ylabel("$\\ln$ (cost / cost of an Euler step)")
         axes.legend(loc="lower right")

@@ -61,7 +61,7 @@ def figure1(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
         },
         (Check("all points stay on the sphere", f"| |m|^2 - 1 | at most {off:.0e}", off < ZERO),),
         draw=lambda: draw_spheres(curves),
-        shows="Upper row: a triaxial body, lower row: an axisymmetric body. Parts behind the sphere are pale.",
+        shows="Upper row: a triaxial body, lower row: an axisymmetric body. Parts behind the sphere are faint.",
     )
 
 

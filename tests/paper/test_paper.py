@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-import json
-import os
-import signal
-import subprocess
-import sys
+import re
 from pathlib import Path
-from time import monotonic, sleep
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
-from typer.testing import CliRunner, Result
 
-import liehom.paper
-from liehom.cli.app import app
 from liehom.errors import FormatError, InputError
 from liehom.instances import RigidBody
 from liehom.paper import NAMES, Check, Reproduction, Table, efficiency, reproduce, stored
@@ -34,7 +25,7 @@ from liehom.paper.printed_data import CROSSOVER, FIGURE_3, FIGURE_4, FIGURE_5, F
 from liehom.paper.samples import largest_energy_error, random_bodies
 from liehom.paper.separatrices import separatrix_sample
 from liehom.paper.trajectories import trajectory
-from liehom.plotting.canvas import new_figure
+from tests.paper.small import small
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -289,7 +280,8 @@ def test_panels_of_figures_3_to_5_show_both_the_errors_here_and_those_of_the_pap
             mine = [row for row in table if (row["body"], row["update"]) == key]
             middle = max(axes.get_lines(), key=lambda line: len(line.get_xdata()) if line.get_linestyle() == "-" else 0)
             assert list(middle.get_ydata()) == [max(row["average error"], 3e-17) for row in mine]
-            points = [np.ravel(line.get_data()).tolist() for line in axes.get_lines() if len(line.get_xdata()) == 1]
+            marks = [line for line in axes.get_lines() if line.get_linestyle() == "None"]
+            points = [point for line in marks for point in np.transpose(line.get_data()).tolist()]
             assert all([row["dt"], max(row["paper"], 3e-17)] in points for row in mine)
             assert axes.get_title(loc="right") == key[0]
 
@@ -300,19 +292,6 @@ def test_tables_in_latex_compile_as_text() -> None:
     assert r"x\_1 & update \\" in text
     assert r"$|$m$|$ $<$ 1 & $\xi_{io}^{\mathrm{sy4}}$ \\" in text
     assert r"$2.5\cdot10^{-7}$ & 10 \% \\" in text
-
-
-def axes_only() -> Figure:
-    figure = new_figure(3, 2)
-    figure.add_subplot()
-    return figure
-
-
-def small(name: str, **settings: Any) -> Reproduction:
-    """A figure that costs nothing."""
-    table = Table("t", ("a",), [(len(name),)])
-    given = {"quick": False, "seed": None} | settings
-    return Reproduction(name, name, "none", {"": table}, draw=axes_only, settings=given)
 
 
 def test_a_figure_is_found_again_only_if_it_is_complete_and_the_same(tmp_path: Path) -> None:
@@ -376,150 +355,51 @@ def test_a_panel_for_every_body_and_update() -> None:
     ]
 
 
-# -- the command -----------------------------------------------------------------------------------------
-def liehom_(*words: str) -> Result:
-    return CliRunner().invoke(app, list(words))
+# -- the pages -------------------------------------------------------------------------------------------
+def test_captions_of_the_page_name_the_claims_that_fail() -> None:
+    page = (ROOT / "docs" / "reproduction.md").read_text(encoding="utf-8")
+    captions = {part[1:9]: part for part in page.split("\n\n") if part.startswith("*Figure")}
+    assert list(captions) == [f"Figure {n}" for n in (1, 3, 4, 5, 6, 7)]
+    failing = {name for name in captions if "that fail" in captions[name].replace("\n", " ")}
+    assert failing == {f"Figure {n}" for n in (4, 5, 6, 7)}
+    for n, numbers in {4: ("1.00", "3.00", "4.54"), 5: ("2.26", "4.04", "4.12", "5.00"), 6: ("17.14", "3.52")}.items():
+        assert all(number in captions[f"Figure {n}"] for number in numbers)
 
 
-def test_reproduce_all_writes_every_table(tmp_path: Path) -> None:
-    result = liehom_("reproduce", "all", "--quick", "--format", "none", "--out", str(tmp_path / "new" / "folder"))
-    assert result.exit_code == 0, result.stdout
-    assert result.stderr == ""
-    assert "FAILS" not in result.stdout
-    files = {path.name for path in (tmp_path / "new" / "folder").iterdir()}
-    assert {f"{name}.{end}" for name in NAMES for end in ("md", "tex", "csv", "json")} <= files
-    assert {name.rpartition(".")[2] for name in files} == {"md", "tex", "csv", "json"}
+def test_tables_of_the_page_have_the_columns_of_today_and_the_numbers_of_the_paper() -> None:
+    for name, key in stored_tables():
+        fresh = reproduce(name, quick=True).tables[key]
+        head, *rows = csv.reader(stored_table(name, key))
+        assert head == list(fresh.columns)
+        if "paper" in head:
+            printed = {tuple(row[:3]): row[head.index("paper")] for row in map(cells, rows)}
+            again = {tuple(row[:3]): row[head.index("paper")] for row in fresh.rows}
+            assert {key: printed[key] for key in again} == again
 
 
-def test_reproduce_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    result = liehom_("reproduce", "fig4", "--quick")
-    assert (result.exit_code, result.stderr) == (0, "")
-    assert "the formula as printed has energy order 4 (found: 3.00" in result.stdout
-    assert "rk2_io" in result.stdout and "slope in the paper" in result.stdout
-    assert result.stdout.endswith("no files are written: --out DIR writes tables and plots\n")
-    for words in (("--resume",), ("--dark",), ("--format", "svg")):
-        refused = liehom_("reproduce", "fig4", "--quick", *words)
-        assert (refused.exit_code, refused.stdout) == (2, "")
-        assert "--out DIR" in refused.stderr
-    assert list(tmp_path.iterdir()) == []
+@pytest.mark.slow
+def test_tables_of_the_page_are_those_of_the_command() -> None:
+    for name, key in stored_tables():
+        fresh = reproduce(name).tables[key]
+        timed = [i for i, column in enumerate(fresh.columns) if "time" in column]
+        rows = list(map(cells, list(csv.reader(stored_table(name, key)))[1:]))
+        for mine, row in zip(fresh.rows, rows, strict=True):
+            for i, (x, y) in enumerate(zip(mine, row, strict=True)):
+                assert i in timed or x == y or y == pytest.approx(x, rel=1e-3, abs=1e-13, nan_ok=True), (name, row)
 
 
-@pytest.mark.parametrize(
-    ("words", "named"),
-    [
-        (("--out", "new", "--format", "bmp"), "png,svg,pdf"),
-        (("--out", "new", "--format", ""), "png,svg,pdf"),
-        (("--out", "file"), "not a writable folder"),
-        (("--out", "file/new"), "not a writable folder"),
-        (("--out", ""), "not a writable folder"),
-    ],
-)
-def test_reproduce_refuses_before_the_work(
-    words: tuple[str, ...], named: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("file").write_text("mine")
-    monkeypatch.setattr(liehom.paper, "reproduce", lambda *args, **options: pytest.fail("it works already"))
-    result = liehom_("reproduce", "fig4", "--quick", *words)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert named in result.stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+def stored_tables() -> list[tuple[str, str]]:
+    """Names of figures and keys of the tables of the page."""
+    files = sorted(path.stem.partition("_") for path in (ROOT / "docs" / "_static" / "reproduction").glob("*.csv"))
+    assert len(files) == 10
+    return [(name, key) for name, _, key in files]
 
 
-def test_reproduce_without_matplotlib_writes_the_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("liehom.cli.problem_options.can_plot", lambda: False)
-    result = liehom_("reproduce", "fig3", "--quick", "--out", str(tmp_path))
-    assert (result.exit_code, result.stdout.splitlines()[-1]) == (0, f"5 files in {tmp_path}; no plots")
-    asked = liehom_("reproduce", "fig3", "--quick", "--out", str(tmp_path), "--format", "svg")
-    assert asked.exit_code == 2 and "pip install 'liehom[plot]'" in asked.stderr
+def stored_table(name: str, key: str) -> list[str]:
+    file = f"{name}{'_' if key else ''}{key}.csv"
+    return (ROOT / "docs" / "_static" / "reproduction" / file).read_text(encoding="utf-8").splitlines()
 
 
-def test_resume_computes_only_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    computed: list[str] = []
-
-    def counted(name: str, **settings: Any) -> Reproduction:
-        computed.append(name)
-        return small(name, **settings)
-
-    monkeypatch.setattr(liehom.paper, "reproduce", counted)
-    words = ("reproduce", "all", "--quick", "--format", "none", "--out", str(tmp_path))
-    first = liehom_(*words)
-    assert computed == list(NAMES)
-    (tmp_path / "fig4.csv").unlink()
-    again = liehom_(*words, "--resume")
-    assert computed == [*NAMES, "fig4"]
-    assert (again.exit_code, again.stdout) == (0, first.stdout)
-    other = liehom_(*words, "--resume", "--seed", "5", "--json")
-    assert computed == [*NAMES, "fig4", *NAMES]
-    resumed = liehom_(*words, "--resume", "--seed", "5", "--json")
-    assert json.loads(resumed.stdout) == json.loads(other.stdout)
-    assert computed == [*NAMES, "fig4", *NAMES]
-
-
-@pytest.mark.skipif(os.name != "posix", reason="another system sends no SIGINT to a process")
-def test_an_interrupted_reproduction_leaves_complete_figures_and_says_which(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    words = [sys.executable, "-m", "liehom", "reproduce", "all", "--format", "none", "--out", str(out)]
-    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        end = monotonic() + 60
-        while not (out / "fig1.json").exists() and monotonic() < end:
-            sleep(0.02)
-        process.send_signal(signal.SIGINT)
-        stdout, stderr = process.communicate(timeout=60)
-    assert (process.returncode, stdout) == (130, "")
-    finished = sorted(path.stem for path in out.glob("*.json"))
-    assert "fig1" in finished and len(finished) < len(NAMES)
-    told = (
-        f"liehom: interrupted; finished in {out}: {', '.join(finished)}; the same command with --resume does the others"
-    )
-    assert stderr == told + "\n"
-    listed = [json.loads((out / f"{name}.json").read_text())["files"].keys() | {f"{name}.json"} for name in finished]
-    assert {path.name for path in out.iterdir()} == set().union(*listed)
-    assert all(stored(out, name, {"quick": False, "seed": None}, ()) for name in finished)
-
-
-def test_an_interruption_before_the_first_figure_leaves_no_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(*args: object, **options: object) -> Reproduction:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(liehom.paper, "reproduce", interrupted)
-    result = liehom_("reproduce", "all", "--out", str(tmp_path / "new"))
-    assert (result.exit_code, result.stdout) == (130, "")
-    assert result.stderr == "liehom: interrupted; no figure is finished\n"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_progress_is_on_standard_error_if_it_is_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    silent = liehom_("reproduce", "fig2", "--quick")
-    assert silent.stderr == ""
-    monkeypatch.setenv("FORCE_COLOR", "1")  # rich takes every stream for a terminal
-    shown = liehom_("reproduce", "fig2", "--quick", "--progress")
-    assert "reproducing fig2" in shown.stderr
-    assert shown.stdout == silent.stdout
-
-
-def test_reproduce_prints_one_object(tmp_path: Path) -> None:
-    result = liehom_("reproduce", "fig2", "--quick", "--seed", "5", "--out", str(tmp_path), "--json")
-    data = json.loads(result.stdout)
-    assert data["holds"] is True
-    assert data["figures"][0]["name"] == "fig2"
-    assert len(data["figures"][0]["tables"]["table"]["rows"]) == 6
-    assert all(Path(file).is_file() for file in data["figures"][0]["files"])
-
-
-def test_reproduce_lists_the_known_names(tmp_path: Path) -> None:
-    result = liehom_("reproduce", "fig8", "--out", str(tmp_path))
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert "separatrix, all" in result.stderr
-
-
-def test_reproduce_exits_with_1_where_a_claim_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    wrong = Reproduction("fig2", "X", "none", {}, (Check("1 = 2", "1", False),))
-    monkeypatch.setattr(liehom.paper, "reproduce", lambda *args, **options: wrong)
-    result = liehom_("reproduce", "fig2", "--out", str(tmp_path))
-    assert result.exit_code == 1
-    assert "FAILS" in result.stdout
+def cells(row: list[str]) -> list[str | float]:
+    numbers = [re.fullmatch(r"-?[0-9.]+(e[+-][0-9]+)?", x) for x in row]
+    return [float(x) if number else (float("nan") if x == "" else x) for x, number in zip(row, numbers, strict=True)]

@@ -1,0 +1,23 @@
+"""A reproduction that costs nothing, for tests of files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from liehom.paper import Reproduction, Table
+from liehom.plotting.canvas import new_figure
+
+
+def axes_only() -> Figure:
+    figure = new_figure(3, 2)
+    figure.add_subplot()
+    return figure
+
+
+def small(name: str, **settings: Any) -> Reproduction:
+    """A figure that costs nothing."""
+    table = Table("t", ("a",), [(len(name),)])
+    given = {"quick": False, "seed": None} | settings
+    return Reproduction(name, name, "none", {"": table}, draw=axes_only, settings=given)
