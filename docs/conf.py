@@ -47,7 +47,7 @@ exclude_patterns = ["_build", "pictures"]
 # the button of a block copies its code alone, without prompts and output; blocks of output alone have no button
 copybutton_prompt_text = r">>> |\.\.\. |\.\.\.$|\$ "
 copybutton_prompt_is_regexp = True
-copybutton_selector = "div:not(.highlight-text) > div.highlight > pre"
+copybutton_selector = "div:not(.highlight-text, .highlight-myst-ansi) > div.highlight > pre"
 
 # a single pair of backticks in a docstring is code
 default_role = "code"

@@ -1,0 +1,114 @@
+"""Pictures of the proofs: the range condition, isotropy corrections, landings, and signatures of simple ideals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+import liehom as lh
+from liehom.plotting.canvas import GREY, new_figure
+from pictures import picture
+
+
+@picture
+def range_condition_in_the_plane(colours: Sequence[str]) -> Any:
+    """The isotropy of two pairs on the directions x of g/h; where rho(h) x is along x, the condition fails."""
+    figure = new_figure(5.6, 3.1)
+    turn = np.linspace(0, 2 * np.pi, 181)
+    for axes, name in zip(figure.subplots(1, 2), ("so(3)/so(2)", "so(2,1)/so(1,1)"), strict=True):
+        pair = lh.pair(name)
+        (rho,) = (np.array(m.to_numpy(), dtype=float) for m in pair.isotropy_representation().matrices)
+        axes.plot(np.cos(turn), np.sin(turn), color=GREY, linewidth=0.8)
+        for angle in np.arange(16) * np.pi / 8:
+            x = np.array([np.cos(angle), np.sin(angle)])
+            move = 0.5 * rho @ x / np.linalg.norm(rho, 2)
+            fails = abs(x[0] * move[1] - x[1] * move[0]) < 1e-12
+            arrow = {"arrowstyle": "-|>", "color": colours[1 if fails else 0], "linewidth": 2.2 if fails else 1.2}
+            axes.plot([0, x[0]], [0, x[1]], color=GREY, linewidth=0.5, alpha=0.6)
+            axes.annotate("", x + move, x, arrowprops=arrow)
+        axes.set_title(f"{name}: {'full' if lh.decide_fullness(pair).full else 'not full'}", loc="center")
+        axes.set(aspect="equal", xlim=(-1.6, 1.6), ylim=(-1.6, 1.6))
+        axes.set_axis_off()
+    return figure
+
+
+@picture
+def circles_of_isotropy(colours: Sequence[str]) -> Any:
+    """An orbit of the rigid body and the circles exp(t (psi + s m)) m, seen from above m; one of them osculates."""
+    moments = np.array([1.0, 2.0, 3.0])
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / moments)
+    m = np.array([0.6, 0.0, 0.8])
+    zeta = lh.correction(field, lh.Euler(), m, order=2).zeta[1]
+    psi, best = -m / moments, zeta @ m
+    along = np.cross(psi, m) / np.linalg.norm(np.cross(psi, m))
+    seen = np.array([along, np.cross(m, along)])
+    figure = new_figure(5.2, 3.6)
+    axes = figure.add_subplot()
+    action, times = lh.Action(field.representation), np.linspace(-4.0, 4.0, 401)
+    for s in np.linspace(-1.0, 2.0, 13):
+        circle = action.act(times[:, None] * (psi + s * best * m), m)
+        axes.plot(*(seen @ circle.T), color=GREY, linewidth=0.6, alpha=0.7)
+    for s, colour, dash, label in ((0, colours[1], "--", "Euler's step: ζ = 0"), (1, colours[0], "-.", "corrected: ζ")):
+        circle = action.act(times[:, None] * (psi + s * best * m), m)
+        axes.plot(*(seen @ circle.T), color=colour, linestyle=dash, linewidth=2.0, label=label)
+    halves = [lh.integrate(field, (0, end), m, t_eval=np.linspace(0, end, 101), rtol=1e-9).y for end in (-4.0, 4.0)]
+    orbit = np.hstack([halves[0][:, ::-1], halves[1]])
+    axes.plot(*(seen @ orbit), color=colours[2], linewidth=2.6, alpha=0.8, label="the orbit", zorder=1.5)
+    axes.plot(0, 0, "o", color=colours[6], markersize=6, zorder=4)
+    axes.annotate("m", (0, 0), xytext=(4, -14), textcoords="offset points")
+    axes.set(aspect="equal", xlim=(-0.85, 0.85), ylim=(-0.5, 0.5))
+    axes.set_axis_off()
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=3)
+    return figure
+
+
+@picture
+def landing_on_a_circle(colours: Sequence[str]) -> Any:
+    """Taylor polynomials of a rotation leave the circle; the projection puts their ends back."""
+    figure = new_figure(5.0, 4.4)
+    axes = figure.add_subplot()
+    turn, h = np.linspace(-0.4, 2.0, 200), 1.2
+    axes.plot(np.cos(turn), np.sin(turn), color=GREY, linewidth=2.0, label="the orbit")
+    times = np.linspace(0, h, 60)
+    flow = lh.flow_series(lh.GeneratorField(lh.defining(lh.so(2)), lambda m: 0 * m[..., :1] + 1), [1.0, 0.0], order=3)
+    terms = np.array(flow.points.coefficients)
+    for n, dash in zip((1, 2, 3), ("--", "-.", ":"), strict=True):
+        curve = sum(np.outer(term, times**k) for k, term in enumerate(terms[: n + 1]))
+        end = curve[:, -1]
+        axes.plot(*curve, color=colours[n - 1], linestyle=dash, linewidth=2.0, label=f"Taylor polynomial, n = {n}")
+        arrow = {"arrowstyle": "-|>", "color": colours[n - 1], "linewidth": 1.6, "shrinkA": 4, "shrinkB": 4}
+        axes.annotate("", end / np.linalg.norm(end), end, arrowprops=arrow)
+        axes.plot(*end, "s", color=colours[n - 1], markersize=5)
+        axes.plot(*(end / np.linalg.norm(end)), "o", color=colours[n - 1], markersize=6)
+    axes.plot(np.cos(h), np.sin(h), "*", color=colours[6], markersize=11, label="the end of the flow", zorder=5)
+    axes.set(aspect="equal")
+    axes.set_axis_off()
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure
+
+
+@picture
+def signatures_of_simple_ideals(colours: Sequence[str]) -> Any:
+    """The signature of K((theta - c) x, y) falls at each real root of the centroid, by twice that of the ideal."""
+    brackets = {(0, 1): {2: 1}, (1, 2): {3: 1}, (0, 2): {4: -1}, (0, 4): {5: 1}}
+    brackets |= {(1, 3): {5: -1}, (3, 4): {2: 2}, (1, 5): {0: 2}, (2, 4): {0: -2}}
+    brackets |= {(4, 5): {3: 2}, (0, 5): {1: -2}, (2, 3): {1: 2}, (3, 5): {4: -2}}
+    g = lh.LieAlgebra(brackets, dimension=6)
+    killing = np.array(g.killing_form().to_numpy(), dtype=float)
+    theta = np.array(g.centroid()[1].to_numpy(), dtype=float)
+    cs = np.linspace(-3.2, 3.6, 1361)
+    forms = [killing @ (theta - c * np.eye(6)) for c in cs]
+    figure = new_figure(5.2, 3.0)
+    axes = figure.add_subplot()
+    signatures = [np.sign(np.linalg.eigvalsh((form + form.T) / 2)).sum() for form in forms]
+    axes.step(cs, signatures, color=colours[0], where="mid", linewidth=2.0)
+    for root, level, text in (
+        (1 - 2**0.5, 1, "so(3), K of signature −3:\nup by 6"),
+        (1 + 2**0.5, 3, "sl(2,R), +1:\ndown by 2"),
+    ):
+        axes.axvline(root, color=colours[1], linestyle=":", linewidth=1.2)
+        axes.annotate(text, (root, level), xytext=(-6, 0), textcoords="offset points", ha="right", va="center")
+    axes.set(xlabel="c", ylabel="signature", yticks=[-2, 0, 2, 4], xlim=(-3.2, 3.6))
+    return figure
