@@ -146,6 +146,7 @@ def setup(app: Any) -> None:
     app.connect("build-finished", check_links)
     app.connect("doctree-read", link_notebook, priority=400)  # before the files to download are collected
     import page_tree  # found by the path that is set above
+    import pair_page_directive
     import picture_directive
     import pictures
 
@@ -160,6 +161,7 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)
+    app.add_directive("pairpage", pair_page_directive.PairPage)
     app.add_directive("picture", picture_directive.Picture)
     app.add_directive("gallery", picture_directive.Gallery)
     app.add_html_math_renderer(

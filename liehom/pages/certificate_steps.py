@@ -79,10 +79,10 @@ def _full(pair: Pair, certificate: Certificate) -> list[str]:
             matrix_table(form, "P"),
         ),
         details(
-            f"{_count(len(elements), 'element')} z of h preserve P up to a factor",
+            "1 element z of h preserves P" if len(elements) == 1 else f"{len(elements)} elements z of h preserve P",
             paragraph(
-                "ρ(z)ᵀ P + P ρ(z) = 2c P, where ρ(z) is the matrix of z on g/h. So ρ(z) − c is skew for P: an "
-                "infinitesimal rotation."
+                "Up to a factor, that is, ρ(z)ᵀ P + P ρ(z) = 2c P, where ρ(z) is the matrix of z on g/h. So ρ(z) − c "
+                "is skew for P: an infinitesimal rotation."
             ),
             table(["", "element of h", "c"], rows, "elements"),
             *first,
@@ -322,7 +322,3 @@ def _row(row: ExactMatrix) -> str:
 
 def _cut(words: str, most: int = MOST_CHARACTERS) -> str:
     return words if len(words) <= most else f"{words[:most]} ..."
-
-
-def _count(n: int, noun: str) -> str:
-    return f"{n} {noun}{'' if n == 1 else 's'}"

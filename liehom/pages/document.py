@@ -7,6 +7,7 @@ import hashlib
 import os
 from pathlib import Path
 
+from liehom.algebra import LieAlgebra
 from liehom.algebra.core.names import linear_combination
 from liehom.disk import check_target, write_atomically
 from liehom.errors import FormatError, InputError, UndecidedError, displayed
@@ -38,8 +39,8 @@ MOST_BRACKETS = 60
 MOST_MATRICES = 12
 MAX_DESCRIBED = 60
 """Largest dimension of an algebra whose structure a page describes: larger ones can take minutes."""
-MAX_FILE = 4_000_000
-"""Largest pair, in nonzero entries of its bracket table times 20 bytes, that a page contains as a file."""
+MAX_FILE = 1_000_000
+"""Bytes of a file that a page contains."""
 
 MEANING = (
     "A pair (g, h) is full if [h, η] + ℝη + h = g for every η outside h (6.4). Then the range condition (6.3), the "
@@ -169,7 +170,7 @@ def _proof(verdict: Verdict) -> str:
                 [
                     ("least singular value", f"{verdict.smallest:.3g}"),
                     ("error of the data", f"{verdict.tolerance:.3g}"),
-                    ("gap between them", f"{verdict.gap:.3g}"),
+                    ("gap, their ratio", f"{verdict.gap:.3g}"),
                 ]
             ),
         )
@@ -215,12 +216,13 @@ def _failures(verdict: Verdict) -> str:
 # -- the pair ------------------------------------------------------------------------------------------------
 def _structure(pair: Pair) -> str:
     blocks = []
-    for name, algebra in (("g", pair.algebra), ("h", pair.subalgebra.as_algebra())):
-        if algebra.dimension > MAX_DESCRIBED:
-            words = f"{name} has dimension {algebra.dimension}; structure is described here up to {MAX_DESCRIBED}. "
+    for name, part in (("g", pair.algebra), ("h", pair.subalgebra)):
+        if part.dimension > MAX_DESCRIBED:
+            words = f"{name} has dimension {part.dimension}; structure is described here up to {MAX_DESCRIBED}. "
             blocks.append(paragraph(words + "The command `liehom describe` has no such limit."))
             continue
         try:
+            algebra = part if isinstance(part, LieAlgebra) else part.as_algebra()
             blocks.append(code_block(f"{name}: {algebra.describe()}"))
         except UndecidedError as undecided:
             blocks.append(paragraph(f"The structure of {name} is not described: {undecided}"))
@@ -232,19 +234,17 @@ def _isotropy(pair: Pair) -> str:
     if d == 0 or k == 0:
         words = "h = g, so g/h = 0." if d == 0 else "h = 0, so nothing acts on g/h = g."
         return _section("isotropy", paragraph(words))
-    g, lift = pair.algebra, pair.subalgebra.quotient().lift
-    names = [[f"x{i}", g.show(row)] for i, row in enumerate(lift.to_rows())]
-    rho = pair.isotropy_representation()
-    basis = pair.subalgebra.basis
-    blocks = [
-        matrix_table(matrix, f"ρ({_short(g.show(basis.row(i)))})")
-        for i, matrix in enumerate(rho.matrices[:MOST_MATRICES])
-    ]
+    g, data = pair.algebra, pair.subalgebra.quotient()
+    names = [[f"x{i}", g.show(row)] for i, row in enumerate(data.lift.to_rows())]
+    shown = zip(pair.isotropy_matrices()[:MOST_MATRICES], data.subspace, strict=False)
+    blocks = [matrix_table(matrix, f"ρ({_short(g.show(z))})") for matrix, z in shown]
     if k > MOST_MATRICES:
         blocks.append(paragraph(f"The first {MOST_MATRICES} of {k} matrices.", "note"))
     return _section(
         "isotropy",
-        paragraph(f"h acts on g/h = ℝ^{d} by ρ(z) x = [z, x] mod h. One matrix for each element of the basis of h:"),
+        paragraph(
+            f"h acts on g/h, of dimension {d}, by ρ(z) x = [z, x] mod h. One matrix for each element of a basis of h:"
+        ),
         f'<div class="matrices">{"".join(blocks)}</div>',
         details("Coordinates of g/h", table(["coordinate", "of the element of g"], names, "coordinates")),
     )
@@ -264,13 +264,12 @@ def _brackets(pair: Pair) -> str:
     basis = ", ".join(names[:MOST_BRACKETS]) + (f", ... ({len(names)} in all)" if len(names) > MOST_BRACKETS else "")
     if not rows:
         return _section("brackets", facts([("basis of g", basis or None)]), paragraph("All brackets vanish."))
-    shown = table(["bracket", "value"], rows, "brackets; all are in pair.json below", MOST_BRACKETS)
+    shown = table(["bracket", "value"], rows, "brackets; the file of the pair has all", MOST_BRACKETS)
     return _section(
         "brackets",
         facts([("basis of g", basis)]),
-        paragraph("All other brackets of basis elements follow by antisymmetry, or are 0."),
-        f'<div class="brackets">{shown}</div>',
-        bracket_picture(g),
+        paragraph("All brackets of basis elements that are not 0, up to antisymmetry:"),
+        f'<div class="brackets"><div>{shown}</div>{bracket_picture(g)}</div>',
     )
 
 
@@ -288,21 +287,23 @@ def _term(value: str, name: str) -> str:
 
 # -- files ---------------------------------------------------------------------------------------------------
 def _files(verdict: Verdict) -> str:
-    pair = verdict.pair
-    whole = 20 * sum(1 for _ in pair.algebra.structure_constants()) <= MAX_FILE
-    links = [download(to_json(pair), "pair.json")] if whole else []
-    if verdict.certificate is None:
-        words = "The pair as a file, for the command below or liehom.load:"
-        command = "liehom fullness pair.json"
-    else:
-        links.append(download(verdict.certificate.to_json(), "certificate.json"))
+    objects = {"pair.json": to_json(verdict.pair)}
+    words = "The pair as a file, for the command below or liehom.load:"
+    command = "liehom fullness pair.json"
+    if verdict.certificate is not None:
+        objects["certificate.json"] = verdict.certificate.to_json()
         words = (
             "Save these files and run the command: it checks the certificate with code that shares only its exact "
             "arithmetic with the decision."
         )
         command = "liehom verify pair.json certificate.json"
-    if not whole:
-        words += " The pair is too large for this page; `liehom catalog NAME` or liehom.dump writes its file."
+    links = {file: download(data, file, MAX_FILE) for file, data in objects.items()}
+    large = [file for file, link in links.items() if link is None]
+    if large:
+        words += f" Too large for this page: {' and '.join(large)}; liehom.dump writes such files."
     return _section(
-        "files", paragraph(words), f"<ul>{''.join(f'<li>{x}</li>' for x in links)}</ul>", code_block(command)
+        "files",
+        paragraph(words),
+        "<ul>" + "".join(f"<li>{x}</li>" for x in links.values() if x) + "</ul>",
+        code_block(command),
     )

@@ -131,15 +131,17 @@ def figure(content: str, caption: str) -> str:
     return f"<figure>{content}<figcaption>{text(caption)}</figcaption></figure>"
 
 
-def download(data: Mapping[str, Any], file: str) -> str:
-    """A link that saves a JSON object, which the link itself contains, as a file.
+def download(data: Mapping[str, Any], file: str, most: int) -> str | None:
+    """A link that saves a JSON object, which the link itself contains, as a file; None if it has over `most` bytes.
 
     Examples
     --------
-    >>> download({"a": 1}, "a.json")
+    >>> download({"a": 1}, "a.json", most=1000)
     '<a download="a.json" href="data:application/json;base64,eyJhIjogMX0=">a.json</a> (8 bytes)'
     """
     content = json.dumps(data, allow_nan=False).encode()
+    if len(content) > most:
+        return None
     size = f"{len(content):,} bytes" if len(content) < 10_000 else f"{len(content) / 1000:,.0f} kB"
     link = f"data:application/json;base64,{base64.b64encode(content).decode()}"
     return f'<a download="{text(file)}" href="{link}">{text(file)}</a> ({size})'

@@ -10,6 +10,7 @@
   const context = canvas.getContext("2d");
   if (!context) return; // the still picture stays
   const START = [-0.95, 0.4]; // angles in radians: about the vertical axis, then towards the viewer
+  const SECTOR = 16; // segments of a curve
   let [round, up] = START;
 
   canvas.tabIndex = 0;
@@ -87,15 +88,14 @@
     }
     line(steps.map((t) => [Math.sin(t), 0, Math.cos(t)]), pale, 0.7, true);
 
-    // the sheets of the cone have one colour, so their order does not matter
+    // the sheets have one colour, so their order does not matter; a few wide sectors meet better than many thin ones
     context.fillStyle = curve;
     context.globalAlpha = 0.13;
     for (const points of curves) {
-      for (let i = 0; i + 1 < points.length; i++) {
+      for (let i = 0; i + 1 < points.length; i += SECTOR) {
         context.beginPath();
         context.moveTo(side / 2, side / 2);
-        context.lineTo(...at(seen(points[i])));
-        context.lineTo(...at(seen(points[i + 1])));
+        for (const point of points.slice(i, i + SECTOR + 1)) context.lineTo(...at(seen(point)));
         context.fill();
       }
     }

@@ -48,7 +48,7 @@ def bracket_picture(algebra: LieAlgebra) -> str:
         return ""
     caption = (
         "Brackets [row, column]: each basis element has its colour at the margin, and each term of a bracket is a "
-        "strip in the colour of its basis element, with its sign. The table above has the same content."
+        "strip in the colour of its basis element, with its sign. The table has the same content."
     )
     return picture(lambda: plot_bracket_table(algebra), "pattern", caption)
 
@@ -56,10 +56,11 @@ def bracket_picture(algebra: LieAlgebra) -> str:
 def diagrams(pair: Pair, most: int) -> str:
     """Satake diagrams of the simple factors of g and h, or why there are none."""
     found, absent = Counter[str](), []
-    for name, algebra in (("g", pair.algebra), ("h", pair.subalgebra.as_algebra())):
-        if algebra.dimension > most or not algebra.dimension:
+    for name, part in (("g", pair.algebra), ("h", pair.subalgebra)):
+        if not 0 < part.dimension <= most:
             continue
         try:
+            algebra = part if isinstance(part, LieAlgebra) else part.as_algebra()
             levi = algebra.levi_decomposition().levi.as_algebra()
             forms = [form.name for form in levi.real_forms()] if levi.dimension else []
         except LiehomError as unknown:  # floats, or real forms that are not decided
