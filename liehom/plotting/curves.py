@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from liehom.errors import InputError
+from liehom.errors import ConvergenceError, InputError
 from liehom.integrators import Solution
+from liehom.integrators.run.dense import DenseSolution
 from liehom.integrators.run.solution import interpolant
 from liehom.typing import Array
 
@@ -48,6 +50,8 @@ def steps_of(solution: Solution) -> Curves:
     y = np.asarray(solution.y, dtype=float)
     t = np.broadcast_to(np.asarray(solution.t, dtype=float), (*y.shape[:-2], y.shape[-1]))
     t, y = t.reshape(-1, t.shape[-1]), y.reshape(-1, *y.shape[-2:])
+    if not len(y):
+        raise InputError("the solution has no trajectory to draw: its ensemble is empty")
     every = -(-t.shape[-1] // MAX_POINTS) or 1
     kept = np.unique(np.r_[0 : t.shape[-1] : every, t.shape[-1] - 1])
     return Curves(t[:MAX_TRAJECTORIES, kept], y[:MAX_TRAJECTORIES][..., kept], len(y), every)
@@ -58,7 +62,7 @@ def curves_of(solution: Solution) -> Curves:
 
     If the solution knows its steps, each is made again with fractions of its size, so that the curve is on the orbit.
     Otherwise, and for more than 400 steps or 50 trajectories, the curve is the cubic spline in time through the steps,
-    divided by |m| if this is constant.
+    projected to the sphere if |m| is constant.
 
     Examples
     --------
@@ -70,14 +74,20 @@ def curves_of(solution: Solution) -> Curves:
     """
     steps = steps_of(solution)
     points = steps.t.shape[-1]
-    if points < 2 or not len(steps.t):
+    if points < 2:
         return steps
-    known = None
     if steps.total <= MAX_TRAJECTORIES and 2 * points <= CURVE_POINTS:
-        known = interpolant(solution)
-    if known is None:
-        parts = [_splined(t, y, max(1, CURVE_POINTS // points)) for t, y in zip(steps.t, steps.y, strict=True)]
-        return steps._replace(t=np.stack([t for t, _ in parts]), y=np.stack([y for _, y in parts]))
+        # an implicit step of another size need not have a solution
+        with contextlib.suppress(ConvergenceError, np.linalg.LinAlgError):
+            known = interpolant(solution)
+            if known is not None:
+                return _made_again(steps, known)
+    parts = [_splined(t, y, max(1, CURVE_POINTS // points)) for t, y in zip(steps.t, steps.y, strict=True)]
+    return steps._replace(t=np.stack([t for t, _ in parts]), y=np.stack([y for _, y in parts]))
+
+
+def _made_again(steps: Curves, known: DenseSolution) -> Curves:
+    """The curves that the method draws between its steps."""
     times = _times(steps.t)
     y = np.asarray(known(times), dtype=float).reshape(steps.total, -1, len(times))
     low, high = np.nanmin(steps.t, axis=-1)[:, None], np.nanmax(steps.t, axis=-1)[:, None]

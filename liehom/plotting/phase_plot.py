@@ -256,7 +256,7 @@ def _mark(scene: Scene, surface: Quadric, points: Sequence[Equilibrium]) -> None
             label = f"{kind} ({len(of_kind)})" if kind != "not isolated" else "equilibria, not isolated"
             scene.plot(np.full((3, 1), np.nan), marker, label=label, **look)
     if scene.axes.get_legend_handles_labels()[0]:
-        place = ("lower center", (0.5, -0.03)) if scene.solid else ("upper center", (0.5, 0.0))
+        place = ("lower center", (0.5, -0.01)) if scene.solid else ("upper center", (0.5, 0.0))
         legend = scene.axes.legend(loc=place[0], bbox_to_anchor=place[1], ncols=2)
         legend.set_in_layout(not scene.solid)
 
