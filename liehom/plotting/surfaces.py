@@ -53,6 +53,8 @@ class Scene:
     ----------
     axes : matplotlib.axes.Axes
         In space, or in the plane. In the plane points are projected.
+    elevation, azimuth : float
+        The direction of the view in degrees, for axes in the plane; axes in space have their own.
 
     Attributes
     ----------
@@ -62,10 +64,10 @@ class Scene:
         Unit vectors to the right and up, as rows.
     """
 
-    def __init__(self, axes: AnyAxes) -> None:
+    def __init__(self, axes: AnyAxes, elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> None:
         self.axes = axes
         self.solid: bool = axes.name == "3d"
-        elevation, azimuth = np.radians((axes.elev, axes.azim) if self.solid else (ELEVATION, AZIMUTH))
+        elevation, azimuth = np.radians((axes.elev, axes.azim) if self.solid else (elevation, azimuth))
         level = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
         self.eye: Array = np.cos(elevation) * level + np.array([0.0, 0.0, np.sin(elevation)])
         right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
