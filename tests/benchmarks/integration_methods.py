@@ -58,6 +58,25 @@ EXPLAINED = {
     "DOP853": '`RKMK("dop853")` with an adaptive step size',
     "exact orbit": "`ExactOrbit`, the step of the rigid body that stays on the orbit, with the Cayley transform",
 }
+SHORT = {
+    "E2": "Corrected 2",
+    "E2 cay": "Corrected 2, Cayley",
+    "E4": "Corrected 4",
+    "E6": "Corrected 6",
+    "T4": "LieTaylor 4",
+    "T6": "LieTaylor 6",
+    "T8": "LieTaylor 8",
+    "T12": "LieTaylor 12",
+    "S4": "Taylor 4",
+    "S8": "Taylor 8",
+    "S12": "Taylor 12",
+    "S16": "Taylor 16",
+    "S20": "Taylor 20",
+    "C2": "Conserving 2",
+    "C4": "Conserving 4",
+    "adaptive": "default",
+}
+"""Names of methods in the cells of tables, where they are not their labels."""
 
 
 def _shaped(problem: Problem, starts: Any) -> Any:

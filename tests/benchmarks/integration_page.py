@@ -1,25 +1,27 @@
-"""The part of docs/performance.md on integration, from the measured figures, and the work-precision plots."""
+"""The pages on the performance of integration, from the measured figures.
+
+docs/performance-integration.md has all tables, and docs/performance.md a summary: the costs of other programs as
+multiples of those of liehom. What is generated is between marks.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.integration_methods import EAGER, EXPLAINED, IN_JIT, JAX, LLVM
+from tests.benchmarks.integration_methods import EXPLAINED, LLVM, SHORT
+from tests.benchmarks.integration_pictures import MANY, PEERS, RATIOS, draw, groups, image, multiples, picture_name
 from tests.benchmarks.integration_problems import Problem, problems
-from tests.benchmarks.integration_targets import BY_HAND, RIVALS, TARGETS, best, curve, ratios
+from tests.benchmarks.integration_targets import BY_HAND, RIVALS, TARGETS, best, ratios
 
 BEGIN, END = "<!-- integration: begin -->", "<!-- integration: end -->"
 FLOOR = (0.5, 1.0, 1.0, 1.0)
 """How many times cheaper than a Runge-Kutta method by hand the steps should be, at the errors of the columns."""
-MANY, EXPONENTS = 10_000, ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
-STYLES = {
-    LLVM: "o-", EAGER: "s-", JAX: "^-", "scipy DOP853": "v--", "heyoka.py": "D--", "diffrax": "x--",
-    "numba RK4 by hand": "+:", IN_JIT: "*-",
-}  # fmt: skip
-"""Line style of each program, whose index is its colour, in all plots."""
+EXPONENTS = ("10⁻³", "10⁻⁶", "10⁻⁹", "10⁻¹²")
+BY, NARROW = "its cheapest method", "\u00a0"
+"""What the row of methods is called, and a space at which no cell is broken."""
 
 
 def shown(x: float | None, digits: int = 2) -> str:
@@ -38,27 +40,25 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     return [*lines, *("| " + " | ".join(row) + " |" for row in rows), ""]
 
 
-def groups(methods: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Rows by program, in the order of the figures, liehom first."""
-    found: dict[str, list[dict[str, Any]]] = {}
-    for row in methods:
-        found.setdefault(row["group"], []).append(row)
-    return found
-
-
 # -- one problem -------------------------------------------------------------------------------------------
-def _cell(problem: Problem, rows: list[dict[str, Any]], count: int, target: float, orbit: bool) -> str:
-    """The smallest cost of the steps, and the label of the method if there are several."""
-    found, label = best(problem, rows, count, target, orbit=orbit, call=False)
-    several = len({row["label"] for row in rows}) > 1
-    return shown(found) + (f" {label}" if several and math.isfinite(found) else "")
+def _rows(
+    name: str, rows: list[dict[str, Any]], problem: Problem, count: int, kinds: Sequence[tuple[float, bool]]
+) -> list[list[str]]:
+    """Costs of a program at errors of orbits (True) or trajectories, and below them the methods if they differ."""
+    found = [best(problem, rows, count, target, orbit=orbit, call=False) for target, orbit in kinds]
+    methods = [SHORT.get(label, label).replace(" ", NARROW) if math.isfinite(cost) else "" for cost, label in found]
+    costs = [_call(rows, count), *(shown(cost) for cost, _ in found)]
+    named = {method for method in methods if method}
+    if len(named) == 1 and len({row["label"] for row in rows}) > 1:
+        return [[f"{name}: {named.pop()}", *costs]]
+    return [[name, *costs], *([[BY, "", *methods]] if len(named) > 1 else [])]
 
 
 def _call(rows: list[dict[str, Any]], count: int) -> str:
     measured = [row["costs"][str(count)] for row in rows if str(count) in row.get("costs", {})]
     known = [part["call"] for m in measured for part in m.get("at", {"": m}).values() if "call" in part]
     if not known:
-        return "in"
+        return "included"
     low, high = shown(min(known)), shown(max(known))
     return low if low == high else f"{low} to {high}"
 
@@ -72,77 +72,36 @@ def _missing(name: str, rows: list[dict[str, Any]], width: int) -> list[str]:
 
 
 def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
-    """Tables of a problem."""
+    """Tables and picture of a problem."""
     found = groups(data["methods"])
-    lines = [f"### {problem.title[0].upper()}{problem.title[1:]}", ""]
+    title = f"{problem.title[0].upper()}{problem.title[1:]}"
+    words = f"errors over CPU time for each program: {problem.title}"
+    lines = [f"### {title}", "", *image(picture_name(problem), words)]
     orbit = "energy" if problem.energy is not None else "orbit"
     span = "" if problem.span == problem.trajectory_span else f" to T = {problem.trajectory_span:.0f}"
-    wide = [f"{orbit} {x}" for x in EXPONENTS] + [f"traj. {x}" for x in EXPONENTS]
+    wide = [f"{what} to{NARROW}{x}" for what in (orbit, "trajectory") for x in EXPONENTS]
     kinds = [(t, True) for t in TARGETS] + [(t, False) for t in TARGETS]
     if any(_has(rows, MANY) for rows in found.values()):
-        lines += [f"N = 10⁴, µs for each trajectory to T = {problem.span:.0f}:", ""]
+        lines += [f"10,000 trajectories, µs for each of them to T = {problem.span:.0f}:", ""]
         rows = [
-            [name, _call(rows, MANY), *(_cell(problem, rows, MANY, t, o) for t, o in kinds)]
-            if _has(rows, MANY)
-            else _missing(name, rows, 10)
+            line
             for name, rows in found.items()
             if _has(rows, MANY) or all("missing" in row for row in rows)
+            for line in (
+                _rows(name, rows, problem, MANY, kinds) if _has(rows, MANY) else [_missing(name, rows, 2 + len(wide))]
+            )
         ]
-        lines += table(["method", "call", *wide], rows)
+        lines += table(["program", "call", *wide], rows)
     few = [(1e-6, True), (1e-3, False), (1e-6, False), (1e-12, False)]
-    names = [f"{orbit} 10⁻⁶", "traj. 10⁻³", "traj. 10⁻⁶", "traj. 10⁻¹²"]
+    names = [f"{orbit if on_orbit else 'trajectory'} to{NARROW}{EXPONENTS[TARGETS.index(t)]}" for t, on_orbit in few]
     for count in (1, 10):
-        lines += [f"N = {count}, µs for each trajectory to T = {problem.span:.0f} (trajectories{span or ' too'}):", ""]
+        which = "One trajectory, µs" if count == 1 else f"{count} trajectories, µs for each of them"
+        lines += [f"{which} to T = {problem.span:.0f} (errors of trajectories{span or ' too'}):", ""]
         rows = [
-            [name, _call(rows, count), *(_cell(problem, rows, count, t, o) for t, o in few)]
-            for name, rows in found.items()
-            if _has(rows, count)
+            line for name, rows in found.items() if _has(rows, count) for line in _rows(name, rows, problem, count, few)
         ]
-        lines += table(["method", "call", *names], rows)
-    return [*lines, f"![work and precision: {problem.title}](_static/{picture_name(problem)})", ""]
-
-
-def picture_name(problem: Problem) -> str:
-    """File name of the plot of a problem."""
-    plain = problem.name.lower().translate(
-        str.maketrans({"⁴": "4", "³": "3", "²": "2", "(": "", ")": "", ",": "", " ": "_"})
-    )
-    return f"work_precision_{plain}.svg"
-
-
-def draw(problem: Problem, data: dict[str, Any], folder: Path) -> None:
-    """Plot errors against the cost of the steps: orbits or energy on the left, trajectories on the right."""
-    import matplotlib
-
-    matplotlib.use("svg")
-    import matplotlib.pyplot as plt
-
-    count = MANY if any(str(MANY) in row.get("costs", {}) for row in data["methods"]) else 1
-    with matplotlib.rc_context({"svg.hashsalt": "liehom", "svg.fonttype": "none", "font.size": 8}):
-        figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True, layout="constrained")
-        for ax, orbit in zip(axes, (True, False), strict=True):
-            for name, rows in groups(data["methods"]).items():
-                measured = [r for r in rows if str(count) in r.get("costs", {})]
-                front = _front([p for r in measured for p in curve(problem, r, count, orbit=orbit)])
-                if front:
-                    color = f"C{list(STYLES).index(name)}"
-                    ax.loglog(*zip(*front, strict=True), STYLES[name], color=color, ms=3, lw=1, label=name)
-            what = ("energy" if problem.energy is not None else "distance from the orbit") if orbit else "trajectory"
-            ax.set(xlabel=f"µs for each of {count} trajectories", title=f"{problem.name}: {what}", ylim=(1e-14, 1))
-            ax.grid(alpha=0.3)
-        axes[0].set_ylabel("error")
-        figure.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=7)
-        figure.savefig(folder / picture_name(problem), metadata={"Date": None})
-        plt.close(figure)
-
-
-def _front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The points (cost, error) for which no cheaper point has a smaller error."""
-    kept: list[tuple[float, float]] = []
-    for cost, error in sorted(points):
-        if not kept or error < kept[-1][1]:
-            kept.append((cost, error))
-    return kept
+        lines += table(["program", "call", *names], rows)
+    return lines
 
 
 # -- the other parts -----------------------------------------------------------------------------------------
@@ -167,19 +126,19 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
         "* Compile time and traces are excluded, and costs in the table of targets are those of whole calls.",
         '* The column "call" is the cost of a call besides its steps, per trajectory. Each method of liehom is a '
         "`Propagator` that was made once, as the objects of the other programs are.",
-        '* The other columns are the cost of the steps. For a program with "in" in the column "call" they contain the '
-        "cost of the call too.",
+        '* The other columns are the cost of the steps. For a program with "included" in the column "call" they '
+        "contain the cost of the call too. A dash means that no tested setting reaches the error.",
         *([earlier] if older else []),
-        "* Each cell shows the cheapest method of its row, with its abbreviation:",
+        "* Of a program with several methods each cell shows the cheapest one, which the next row names:",
         "",
-        *table(["abbreviation", "method"], EXPLAINED.items()),
+        *table(["name", "method"], ((SHORT.get(label, label), text) for label, text in EXPLAINED.items())),
         "The other programs run as follows:",
         "",
         "* scipy's DOP853 with all trajectories as one system;",
         "* heyoka.py in batches of 8 with `fast_math`;",
         "* diffrax through `vmap` on ensembles of 1000, with the better one of Tsit5 and Dopri8;",
-        "* the classical Runge-Kutta method in numba with the field as straight-line code, one trajectory at a time or "
-        "in blocks of 16 lanes.",
+        '* the classical Runge-Kutta method in numba with the field as straight-line code, "one at a time" or in '
+        'blocks of 16 trajectories ("lanes").',
         "",
     ]  # fmt: skip
 
@@ -287,28 +246,77 @@ def drift_part(data: dict[str, Any]) -> list[str]:
 
 
 def page_part(data: dict[str, Any]) -> str:
-    """The part of the page between the markers, as Markdown."""
-    lines = ["## Integration compared with other programs", "", *conditions_part(data)]
-    if "targets" in data:
-        lines += targets_part(data)
+    """The part of docs/performance-integration.md between the markers, as Markdown."""
+    lines = ["## Conditions", "", *conditions_part(data), "## Costs by problem", ""]
     for problem in problems():
         if problem.name in data["problems"]:
             lines += problem_part(problem, data["problems"][problem.name])
-    lines += drift_part(data)
-    for name, part in (("growth", growth_part), ("long", long_part)):
+    lines += ["## Other measurements", "", *drift_part(data)]
+    for name, part in (("growth", growth_part), ("long", long_part), ("targets", targets_part)):
         if name in data:
             lines += part(data)
     return "\n".join(lines)
 
 
+def summary_part(data: dict[str, Any]) -> str:
+    """The part of docs/performance.md between the markers, as Markdown."""
+    c, target = data["conditions"], 1e-6
+    ratios_by = {
+        (peer, count): {problem.name: ratio for problem, ratio in multiples(data, peer, count, target)}
+        for peer in PEERS
+        for count in (1, 10, MANY)
+    }
+    rows = [
+        [peer, *(" to ".join(shown(f(ratios_by[peer, count].values())) for f in (min, max)) for count in (1, 10, MANY))]
+        for peer in PEERS
+    ]
+    return "\n".join([
+        "CPU time of other programs as a multiple of that of liehom, smallest and largest of "
+        f"{len(data['problems'])} problems, for trajectories to an error of 10⁻⁶. A number above 1 means that liehom "
+        f"costs less. Measured {c['date']} on one core ({c['processor']}), with the cost of the call, without "
+        "compilation:",
+        "",
+        *table(["program", "one trajectory", "10 trajectories", "10,000 trajectories"], rows),
+        *image(RATIOS, "CPU time of heyoka, scipy, diffrax and numba divided by that of liehom, for each problem"),
+        *(f"* {_cheaper(ratios_by, peer)}" for peer in ("heyoka.py", "numba RK4 by hand")),
+        f"* Besides its steps, a compiled call of liehom costs {_least_calls(data)}.",
+    ])  # fmt: skip
+
+
+def _cheaper(ratios_by: dict[tuple[str, int], dict[str, float]], peer: str) -> str:
+    """A sentence: on which problems a program costs less than liehom."""
+    said = []
+    for count, which in ((1, "one trajectory"), (MANY, "10,000 trajectories")):
+        names = [name.replace(",", "") for name, ratio in ratios_by[peer, count].items() if ratio < 1]
+        total = len(ratios_by[peer, count])
+        said.append(f"for {which} on {len(names)} of {total} problems" + (f" ({', '.join(names)})" if names else ""))
+    return f"{peer} costs less than liehom {', and '.join(said)}."
+
+
+def _least_calls(data: dict[str, Any]) -> str:
+    """The smallest cost of a call for one trajectory, on the problems where it is smallest and largest."""
+    found = {}
+    for name, content in data["problems"].items():
+        costs = [row["costs"].get("1", {}) for row in content["methods"] if row["group"] == LLVM and "costs" in row]
+        calls = [cost["call"] for cost in costs if "call" in cost]
+        if calls:
+            found[name] = min(calls)
+    low, high = min(found, key=found.__getitem__), max(found, key=found.__getitem__)
+    return f"{shown(found[low])} µs ({low}) to {shown(found[high] / 1000)} ms ({high})"
+
+
 def write(data: dict[str, Any], docs: Path) -> None:
-    """Write the part between the markers of docs/performance.md, and the plots."""
-    for problem in problems():
-        if problem.name in data["problems"]:
-            draw(problem, data["problems"][problem.name], docs / "_static")
-    page = docs / "performance.md"
-    text = page.read_text(encoding="utf-8")
-    if BEGIN not in text:
-        text = f"{text.rstrip()}\n\n{BEGIN}\n{END}\n"
-    before, after = text.partition(BEGIN)[0], text.partition(END)[2]
-    page.write_text(f"{before}{BEGIN}\n{page_part(data)}\n{END}{after}", encoding="utf-8")
+    """Write the parts between the markers of both pages, and the pictures."""
+    draw(data, docs / "_static")
+    for name, part in PARTS.items():
+        page = docs / name
+        text = page.read_text(encoding="utf-8")
+        before, after = text.partition(BEGIN)[0], text.partition(END)[2]
+        page.write_text(f"{before}{BEGIN}\n\n{part(data)}\n\n{END}{after}", encoding="utf-8")
+
+
+PARTS: dict[str, Callable[[dict[str, Any]], str]] = {
+    "performance.md": summary_part,
+    "performance-integration.md": page_part,
+}
+"""What is written into which page."""

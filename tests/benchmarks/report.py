@@ -1,9 +1,9 @@
 """Integration beside its peers: `python -m tests.benchmarks.report [--only NAME ...] [--long] [--render]`.
 
-Measures on one core, keeps the figures in docs/_static/integration.json after every problem, draws work-precision plots
-beside them, and writes the part of docs/performance.md between the marks.  `--only` measures some problems, or
-"targets", "growth", "long", and keeps the other figures; `--render` measures nothing.  `--long` adds T = 10^4 and a
-chain of 10^4 spins.
+Measures on one core, keeps the figures in docs/_static/integration.json after every problem, draws pictures beside
+them, and writes the parts of docs/performance-integration.md and docs/performance.md between the marks.  `--only`
+measures some problems, or "targets", "growth", "long", and keeps the other figures; `--render` measures nothing.
+`--long` adds T = 10^4 and a chain of 10^4 spins.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,9 @@ from tests.benchmarks import integration_measure as measure
 from tests.benchmarks.integration_growth import slope
 from tests.benchmarks.integration_long import long_runs
 from tests.benchmarks.integration_methods import integrate, under_jit
-from tests.benchmarks.integration_page import BEGIN, END, page_part, picture_name, shown
+from tests.benchmarks.integration_page import BEGIN, END, PARTS, shown
 from tests.benchmarks.integration_peers import LADDER, PEERS, Solver
+from tests.benchmarks.integration_pictures import KINDS, RATIOS, draw, multiples, picture_name
 from tests.benchmarks.integration_problems import Problem, chain, problems, quartic, rigid_body, sphere4
 from tests.benchmarks.integration_targets import compile_time, kernels, ratios
 from tests.benchmarks.report import DATA, DOCS
@@ -196,12 +198,39 @@ def test_many_bodies_and_a_grid_of_spins_by_jax() -> None:
 
 def test_the_page_shows_the_figures() -> None:
     data = json.loads(DATA.read_text(encoding="utf-8"))
-    text = (DOCS / "performance.md").read_text(encoding="utf-8")
-    assert text.partition(BEGIN)[2].partition(END)[0].strip() == page_part(data).strip()
+    for name, part in PARTS.items():
+        text = (DOCS / name).read_text(encoding="utf-8")
+        assert text.partition(BEGIN)[2].partition(END)[0].strip() == part(data).strip()
     assert set(data["problems"]) == {problem.name for problem in problems()}
     assert re.fullmatch(r"20\d\d-\d\d-\d\d", data["conditions"]["date"])
-    for problem in problems():
-        assert (DOCS / "_static" / picture_name(problem)).read_text(encoding="utf-8").startswith("<?xml")
+    for name in (*map(picture_name, problems()), RATIOS):
+        for kind in KINDS:
+            assert (DOCS / "_static" / f"{name}_{kind}.svg").read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_pictures_show_the_figures_in_letters_that_a_phone_shows(tmp_path: Path) -> None:
+    """Both versions are drawn from the figures alone; on 380 px most letters have 8 px and more, exponents 6."""
+    pytest.importorskip("matplotlib")
+    data = json.loads(DATA.read_text(encoding="utf-8"))
+    few = {**data, "problems": {"S³": data["problems"]["S³"]}}
+    draw(few, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        f"{name}_{kind}.svg" for name in (RATIOS, "work_precision_s3") for kind in ("dark", "light")
+    ]
+    for path in tmp_path.iterdir():
+        text = path.read_text(encoding="utf-8")
+        width = float(re.search(r'width="([0-9.]+)pt"', text)[1])  # type: ignore[index]
+        sizes = sorted(float(size) * 380 / width for size in re.findall(r"font-size: ([0-9.]+)px", text))
+        assert "heyoka.py" in text and sizes[0] > 6 and sizes[len(sizes) // 2] > 8
+        assert ("#dddddd" in text) == ("dark" in path.name)
+
+
+def test_multiples_are_ratios_of_whole_calls() -> None:
+    data = json.loads(DATA.read_text(encoding="utf-8"))
+    for problem, ratio in multiples(data, "heyoka.py", 10_000, 1e-6):
+        methods = data["problems"][problem.name]["methods"]
+        wanted = ratios(problem, methods, 10_000, orbit=False, call=True, rivals=("heyoka.py",))[1]
+        assert ratio == pytest.approx(wanted)
 
 
 def test_the_costs_of_steps_are_those_of_the_figures() -> None:

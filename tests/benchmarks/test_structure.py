@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from tests.benchmarks.peers_gap import committed
-from tests.benchmarks.structure_report import BEGIN, END, compared
+from tests.benchmarks.structure_report import BEGIN, END, PAGE, SUMMARY, compared, summary
 from tests.benchmarks.structure_tasks import Task, tasks
 
 ROWS = tasks()
@@ -51,11 +51,35 @@ def test_every_row_has_a_committed_figure_of_gap() -> None:
 
 
 def test_report_shows_every_row() -> None:
-    text = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
-    shown = text.partition(BEGIN)[2].partition(END)[0]
+    shown = PAGE.read_text(encoding="utf-8").partition(BEGIN)[2].partition(END)[0]
     assert [line.split("|")[1].strip() for line in shown.splitlines() if line.startswith("| ")][2:] == [
         task.name for task in ROWS
     ]
+
+
+def test_the_first_page_repeats_the_measurements_of_the_other() -> None:
+    """The summary of the comparison with GAP, rows of the table of decisions, and the ratios to PennyLane."""
+    first, exact = (page.read_text(encoding="utf-8") for page in (SUMMARY, PAGE))
+    between = [text.partition(BEGIN)[2].partition(END)[0].strip() for text in (first, exact)]
+    assert between[0] == summary(between[1])
+    rows = [line for line in first.splitlines() if line.startswith("| `")]
+    assert len(rows) >= 3 and all(row in exact.splitlines() for row in rows)
+    closures = exact.partition("| model |")[2].partition("\n\n")[0].splitlines()[2:]
+    ratios = [int(line.split("|")[-2]) for line in closures]
+    assert f"{min(ratios)} to {max(ratios)} times as long" in first
+
+
+def test_a_summary_names_the_tasks_that_take_longer_here() -> None:
+    head = [
+        "GAP 4.9 of 2026-01-01 on a machine.",
+        "",
+        "| task | liehom, s | GAP, s | GAP / liehom |",
+        "| - | - | - | - |",
+    ]
+    rows = ["| a | 1 | 2 | 2 |", "| b | 1 | 0.5 | 0.5 |", "| c | 1 | > 9 | > 9 |", "| d | 1 | failed |  |"]
+    text = summary("\n".join([*head, *rows]))
+    assert text.startswith("GAP 4.9 takes 2 times as long") and "3 tasks" in text and "at most 9 times" in text
+    assert text.endswith("for 1 of the tasks:\n\n* b, 2.0 times")
 
 
 @pytest.mark.parametrize(

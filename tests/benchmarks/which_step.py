@@ -1,6 +1,7 @@
-"""The costs in docs/which-step.md, from the figures of docs/performance.md: `python -m tests.benchmarks.which_step`.
+"""The costs in docs/which-step.md: `python -m tests.benchmarks.which_step`.
 
-The costs are those of compiled steps without the call, for each of 10,000 trajectories to T = 100.
+They are from the figures of docs/performance-integration.md. The costs are those of compiled steps without the call,
+for each of 10,000 trajectories to T = 100.
 """
 
 from __future__ import annotations
