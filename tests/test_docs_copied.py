@@ -70,7 +70,7 @@ def test_copied_blocks_run_when_they_are_pasted(language: str) -> None:
     for page in pages_with(language):
         for block in blocks(read(page), language):
             text = copied(block)
-            assert faults_of_pasting(text) == [], page
+            assert faults_of_pasting(text) == [], f"{page}: a statement of several lines ends with a line '...'"
             assert transformer.check_complete(text + "\n\n")[0] == "complete", page
             assert transformer.transform_cell(text).rstrip() == text.rstrip(), "IPython reads it as one of its commands"
 
@@ -78,7 +78,8 @@ def test_copied_blocks_run_when_they_are_pasted(language: str) -> None:
 def test_copied_examples_of_docstrings_run_when_they_are_pasted() -> None:
     found = list(docstring_blocks())
     assert len(found) > 100
-    assert [(name, faults) for name, block in found if (faults := faults_of_pasting(copied(block)))] == []
+    faulty = [(name, faults) for name, block in found if (faults := faults_of_pasting(copied(block)))]
+    assert faulty == [], "a statement of several lines ends with a line '...'"
 
 
 @pytest.mark.parametrize(

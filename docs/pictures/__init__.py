@@ -7,8 +7,9 @@ A page shows a picture, in a light and a dark version, by
     ```
 
 where `name` is the name of a function that `picture` decorates. It is called in the style of the version, with the
-colours of lines, and returns a figure. Pictures of the README are files of the repository; from its root this
-writes both versions again:
+colours of lines, and returns a figure. The gallery shows the function, with what it uses of its module, as a program
+(docs/picture_source.py), and its name as the title. Pictures of the README are files of the repository. From its root
+this writes both versions again:
 
     PYTHONPATH=.:docs python -m pictures orbits_on_the_sphere docs/_static
 """

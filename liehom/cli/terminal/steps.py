@@ -31,6 +31,7 @@ class Steps:
     >>> with Steps() as steps:
     ...     step("invariant forms")
     ...     step("commutant")
+    ...
     >>> [name for name, _ in steps.finished]
     ['invariant forms']
     """
