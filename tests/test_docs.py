@@ -198,6 +198,7 @@ def test_shell_lines_on_the_pages_name_commands_that_exist() -> None:
 
     known = {command.name or getattr(command.callback, "__name__", "") for command in app.registered_commands}
     known |= {group.name or "" for group in app.registered_groups}
+    known |= {str(group.name) for group in app.registered_groups}
     for page in pages_with("sh"):
         for block in blocks(read(page), "sh"):
             assert set(re.findall(r"(?:^|/)liehom (\w+)", block, flags=re.MULTILINE)) <= known

@@ -127,6 +127,7 @@ WINGS: dict[str, tuple[str, ...]] = {
         "classify_commands",
         "describe_command",
         "fullness_commands",
+        "plot_command",
         "page_command",
         "reproduce",
         "demo",

@@ -10,12 +10,18 @@ from typing import Annotated, Any
 import typer
 
 from liehom.budget import limits, parsed_limits
-from liehom.cli import atlas_command, classify_commands, describe_command, fullness_commands, page_command, reproduce
+from liehom.cli import (
+    classify_commands,
+    describe_command,
+    fullness_commands,
+    page_command,
+    reproduce,
+)
 from liehom.cli.guard import NUMERICAL, YES, guarded
 from liehom.cli.integration import numerical_commands
 from liehom.cli.options import FileArgument, JsonOption, PairArgument, command, run
 from liehom.cli.terminal import completion
-from liehom.cli.terminal.help import COMPLETE, Group, examples
+from liehom.cli.terminal.help import COMPLETE, Group, LateGroup, examples
 from liehom.cli.terminal.steps import step
 
 HELP = """Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces.
@@ -26,6 +32,7 @@ TRY_FIRST = (
     ('liehom fullness "so(4)/so(3)"', "Is this pair full, and why?"),
     ('liehom describe "so(4,1)"', "What is this Lie algebra?"),
     ("liehom integrate examples/rigid_body.json", "Integrate an orbit."),
+    ("liehom plot dynkin E6 --output e6.png", "Draw a picture."),
     ("liehom demo", "Take a tour of a few seconds."),
     ("liehom --help", "List all commands."),
 )
@@ -37,6 +44,24 @@ class LimitsFirst(Group):
 
     def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
         return list(super().parse_args(ctx, limits_first(args)))
+
+
+class Pictures(LateGroup):
+    """The group `plot`."""
+
+    def declared(self) -> typer.Typer:
+        from liehom.cli.plot_command import pictures
+
+        return pictures()
+
+
+class Atlas(LateGroup):
+    """The group `atlas`."""
+
+    def declared(self) -> typer.Typer:
+        from liehom.cli.atlas_command import atlas
+
+        return atlas
 
 
 def limits_first(args: list[str]) -> list[str]:
@@ -245,7 +270,16 @@ command(
 )(numerical_commands.integrate)
 command(app, "liehom order examples/rigid_body.json --base euler --order 3 --t-span 0 1")(numerical_commands.order)
 command(app, "liehom reproduce fig1 --quick --out figures", "liehom reproduce all --out figures")(reproduce.reproduce)
-app.add_typer(atlas_command.atlas, name="atlas")
+app.add_typer(
+    typer.Typer(cls=Pictures, no_args_is_help=True, rich_markup_mode=None),
+    name="plot",
+    help="Draw a picture into a file: a trajectory, a diagram, roots, weights or a cone.",
+)
+app.add_typer(
+    typer.Typer(cls=Atlas, no_args_is_help=True, rich_markup_mode=None),
+    name="atlas",
+    help="List, build and search the atlas: families of pairs, each pair decided with a certificate.",
+)
 
 
 @command(app, "liehom catalog", 'liehom catalog "so(4)/so(3)" > pair.json')

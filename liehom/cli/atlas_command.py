@@ -21,12 +21,7 @@ FamilyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Family, once or more often (default: all families).")
 ]
 
-atlas: typer.Typer = typer.Typer(
-    cls=Group,
-    help="List, build and search the atlas: families of pairs, each pair decided with a certificate.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
+atlas: typer.Typer = typer.Typer(cls=Group, rich_markup_mode=None)
 
 
 @command(atlas, "liehom atlas families")

@@ -105,7 +105,7 @@ def check_plot_file(path: str | None) -> None:
         raise FormatError(f"{path!r} is not the name of a plot: it must end in {', '.join(PLOT_SUFFIXES)}")
     check_target(path, force=True)
     if not can_plot():
-        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]',  or leave out --plot")
+        raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]'")
 
 
 def can_plot() -> bool:

@@ -1,4 +1,4 @@
-"""Solutions as .npz archives: the arrays t and y, and the report as a JSON string. An archive holds no pickles.
+"""Solutions as .npz archives: the arrays of `Solution.save`, and the report as a JSON string, without pickles.
 
 A reader never sees a partial file.
 """
@@ -58,7 +58,7 @@ def summary_json(solution: Solution) -> dict[str, Any]:
 
 
 def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write t, y and the report of a solution to an .npz file.
+    """Write a solution to an .npz file, with its report as a JSON string; `Solution.load` reads it again.
 
     Parameters
     ----------
@@ -82,15 +82,19 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     >>> path = os.path.join(tempfile.mkdtemp(), "rotation.npz")
     >>> save_solution(lh.integrators.integrate(field, (0, 1), [1.0, 0.0], dt=0.25), path)
     >>> with np.load(path) as file:
-    ...     print(sorted(file.files), file["y"].shape, json.loads(str(file["report"]))["n_steps"])
-    ['report', 't', 'y'] (2, 5) 4
+    ...     print(file["t"].shape, file["y"].shape, json.loads(str(file["report"]))["n_steps"])
+    (5,) (2, 5) 4
+    >>> lh.Solution.load(path).n_steps
+    4
     """
     import numpy as np
+
+    from liehom.integrators.run.solution import archive
 
     target = Path(path)
     check_target(target, force=force)
     text = json.dumps({"format": FORMAT, "version": 1, **summary_json(solution)}, allow_nan=False)
-    arrays: dict[str, Any] = {"t": np.asarray(solution.t), "y": np.asarray(solution.y), "report": np.array(text)}
+    arrays: dict[str, Any] = dict(archive(solution, report=np.array(text)))
 
     def content(file: BinaryIO) -> None:
         np.savez(file, **arrays)

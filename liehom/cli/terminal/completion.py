@@ -6,10 +6,8 @@ from the one file of the catalogue that lists them. The other words are lists, w
 
 from __future__ import annotations
 
-import glob
 import importlib
 import os
-import runpy
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, TypeAlias
@@ -40,6 +38,8 @@ SHELLS = ("bash", "zsh", "fish")
 
 def pair_names() -> list[str]:
     """Names of the catalogue, as `liehom.catalog.pair_names`, without the layers below the catalogue."""
+    import runpy  # of the standard library, but only completion needs it
+
     return list(runpy.run_path(str(PACKAGE / "catalog" / "claims.py"))["CLAIMS"])
 
 
@@ -58,6 +58,8 @@ def files(*suffixes: str) -> Completer:
     """Completer of paths with one of these suffixes, of folders, and of the installed examples."""
 
     def completed(incomplete: str) -> list[str]:
+        import glob
+
         found = sorted(glob.glob(glob.escape(incomplete) + "*"))
         paths = [f"{path}/" if os.path.isdir(path) else path for path in found]
         kept = [path for path in paths if path.endswith(("/", *suffixes))]

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, MutableMapping, Sequence
 from contextlib import AbstractContextManager
 from functools import partial
 from typing import Any, Protocol
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
 
 from liehom.cli.guard import BAD_INPUT, INTERRUPTED, say
 
@@ -73,7 +75,7 @@ class _Page:
     def collect_usage_pieces(self, ctx: typer.Context) -> list[str]:
         pieces: list[str] = super().collect_usage_pieces(ctx)  # type: ignore[misc]
         # some versions of typer write {PAIR}, and [[NAME]] if the metavar has brackets already
-        return [piece.strip("{}").replace("[[", "[").replace("]]", "]") for piece in pieces]
+        return [re.sub("[{}]", "", piece).replace("[[", "[").replace("]]", "]") for piece in pieces]
 
     def _write_parameters(self, ctx: object, formatter: Formatter) -> None:
         rows: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
@@ -142,6 +144,29 @@ class Group(_Page, TyperGroup):  # type: ignore[misc]
         except typer.Abort:
             code = INTERRUPTED
         sys.exit(code if isinstance(code, int) else 0)
+
+
+class LateGroup(Group):
+    """Group whose commands are declared when they are asked for, so that other commands start without them."""
+
+    _declared: MutableMapping[str, Any] | None
+
+    def declared(self) -> typer.Typer:
+        """App with the commands of the group."""
+        raise NotImplementedError
+
+    @property
+    def commands(self) -> MutableMapping[str, Any]:
+        """The commands by name."""
+        if self._declared is None:
+            made = get_command(self.declared())
+            self._declared = made.commands if isinstance(made, Group) else {}
+        return self._declared
+
+    @commands.setter
+    def commands(self, given: object) -> None:
+        del given  # the constructor knows of none
+        self._declared = None
 
 
 def _usage(error: _WrongUsage) -> str:

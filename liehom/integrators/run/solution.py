@@ -129,10 +129,7 @@ class Solution(Displayed):
         True
         """
         check_target(path, force=force)
-        arrays, facts = as_arrays(self)
-        text = json.dumps(facts)
-        content = {**arrays, "format": np.array(FORMAT), "facts": np.array(text)}
-        content[MARK] = np.array(checksum(arrays, FORMAT, text))
+        content = archive(self)
         try:
             write_atomically(path, lambda file: np.savez(file, **content))  # type: ignore[arg-type]
         except OSError as error:
@@ -299,6 +296,23 @@ def _occurrences(found: npt.NDArray[Any]) -> str:
 
 
 # -- a solution as arrays and facts ----------------------------------------------------------------------
+def archive(solution: Solution, **more: npt.NDArray[Any]) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of the .npz file of a solution, from which `Solution.load` makes it again; `more` are other arrays.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> sorted(archive(lh.integrate(field, (0, 1), [1.0, 0.0], dt=0.25)))
+    ['checksum', 'facts', 'format', 'n_steps', 'statuses', 't', 'y']
+    """
+    arrays, facts = as_arrays(solution)
+    arrays |= more
+    text = json.dumps(facts)
+    marks = {"format": np.array(FORMAT), "facts": np.array(text), MARK: np.array(checksum(arrays, FORMAT, text))}
+    return {**arrays, **marks}
+
+
 def as_arrays(solution: Solution) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]:
     """A solution without its dense output as (arrays, facts), facts in types that JSON has.
 
