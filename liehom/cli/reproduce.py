@@ -194,7 +194,7 @@ def _progress(names: Sequence[str], wanted: bool | None) -> Iterator[Callable[[s
 # -- printing --------------------------------------------------------------------------------------------
 def _lines(done: Reproduction) -> list[tuple[str, Sequence[str], list[list[str]]]]:
     """Captions, columns and rows of the tables of a figure."""
-    from liehom.paper.tables import shown_rows
+    from liehom.paper.table import shown_rows
 
     return [(done.caption(key), table.columns, shown_rows(table)) for key, table in done.tables.items()
             if table.in_markdown]  # fmt: skip

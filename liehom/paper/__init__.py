@@ -2,7 +2,7 @@
 
 `figures` finds a figure by its name; `trajectories` (Figures 1 and 2), `energy_errors` (3 to 5), `efficiency` (6 and 7)
 and `separatrices` compute them. They use `printed_data` (the numbers of the paper), `kernels` (the 13 updates on
-coordinates), `samples` (random bodies), `orders`, `costs`, `tables`, `plots` and `reproduction` (claims, captions,
+coordinates), `samples` (random bodies), `orders`, `costs`, `table`, `plots` and `reproduction` (claims, captions,
 files). The command ``liehom reproduce`` calls them; docs/reproduction.md discusses the results.
 """
 
@@ -18,6 +18,6 @@ from liehom.paper.reproduction import Check as Check
 from liehom.paper.reproduction import Reproduction as Reproduction
 from liehom.paper.reproduction import stored as stored
 from liehom.paper.separatrices import separatrix as separatrix
-from liehom.paper.tables import Table as Table
+from liehom.paper.table import Table as Table
 from liehom.paper.trajectories import figure1 as figure1
 from liehom.paper.trajectories import figure2 as figure2

@@ -29,7 +29,7 @@ from liehom.paper.plots import draw_costs
 from liehom.paper.printed_data import CROSSOVER, EULER, FIGURE_6, UPDATES
 from liehom.paper.reproduction import Check, Reproduction
 from liehom.paper.samples import MOMENTS, SEED, described, spread
-from liehom.paper.tables import Table
+from liehom.paper.table import Table
 from liehom.typing import Array
 
 PANELS = (

@@ -27,7 +27,7 @@ from liehom.paper.samples import (
     slope,
     spread,
 )
-from liehom.paper.tables import Table
+from liehom.paper.table import Table
 from liehom.typing import Array
 
 SPAN, BATCHES = 100.0, 40

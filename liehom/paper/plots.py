@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from liehom.paper.tables import Table, symbol
+from liehom.paper.table import Table, symbol
 from liehom.plotting.canvas import MARKERS, current_colours, matplotlib_module, new_figure, paper_colour
 from liehom.plotting.surfaces import Scene, space_axes, sphere
 from liehom.typing import Array

@@ -12,6 +12,7 @@ import json
 import os
 import sys
 import textwrap
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from liehom.disk import check_target, write_together
 from liehom.errors import FormatError, InputError
-from liehom.paper.tables import Table, mathtext, typeset
+from liehom.paper.table import Table, mathtext, typeset
 from liehom.plotting.canvas import finished, rendered, style
 
 if TYPE_CHECKING:
@@ -212,11 +213,24 @@ class Reproduction:
         return found | {f"{self.name}.json": self._record(found, formats, dark)}
 
     def write(
-        self, folder: str | os.PathLike[str], formats: Sequence[str] = FORMATS, *, dark: bool = False
+        self,
+        folder: str | os.PathLike[str],
+        formats: Sequence[str] | bool = FORMATS,
+        *,
+        dark: bool = False,
+        plot: bool | None = None,
     ) -> list[Path]:
         """Paths of the files of `files`, after writing them; an existing figure with this name is replaced.
 
         Ctrl-C while the files are written waits until they are complete.
+
+        Parameters
+        ----------
+        folder : path
+        formats, dark
+            As for `files`.
+        plot : bool, optional
+            Deprecated: ``plot=False`` is ``formats=()``.
 
         Raises
         ------
@@ -225,7 +239,8 @@ class Reproduction:
         InputError
             If matplotlib is not installed, or a format is unknown.
         """
-        target, contents = Path(os.fspath(folder)), self.files(formats, dark=dark)
+        contents = self.files(_kinds(formats, plot), dark=dark)
+        target = Path(os.fspath(folder))
         record = target / f"{self.name}.json"
         try:
             target.mkdir(parents=True, exist_ok=True)
@@ -291,6 +306,15 @@ def stored(
     except OSError:
         return None
     return found if whole else None
+
+
+def _kinds(formats: Sequence[str] | bool, plot: bool | None) -> Sequence[str]:
+    """Formats of plots, also from the option `plot` of version 0.1.0."""
+    old = formats if isinstance(formats, bool) else plot
+    if old is not None:
+        warnings.warn("plot= is formats= now: write formats=() for no plot", DeprecationWarning, stacklevel=3)
+        return FORMATS if old else ()
+    return FORMATS if isinstance(formats, bool) else formats
 
 
 def _drawn(formats: Iterable[str], dark: bool) -> dict[str, Any]:

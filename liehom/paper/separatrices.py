@@ -11,7 +11,7 @@ from liehom.paper.printed_data import EULER
 from liehom.paper.printed_data import SEPARATRIX as PRINTED
 from liehom.paper.reproduction import Check, Reproduction
 from liehom.paper.samples import MOMENTS, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
-from liehom.paper.tables import Table
+from liehom.paper.table import Table
 from liehom.typing import Array
 
 SPAN, BATCHES = 500.0, 40

@@ -10,7 +10,7 @@ from liehom.paper.plots import draw_spheres
 from liehom.paper.printed_data import EULER, FIGURE_2
 from liehom.paper.reproduction import Check, Reproduction
 from liehom.paper.samples import KINDS, NARROW_MOMENTS, Sample, largest_energy_error, random_bodies, spread
-from liehom.paper.tables import Table
+from liehom.paper.table import Table
 from liehom.typing import Array
 
 SPAN, DT = 200.0, 0.1

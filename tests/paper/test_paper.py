@@ -314,6 +314,13 @@ def test_a_figure_is_found_again_only_if_it_is_complete_and_the_same(tmp_path: P
     assert stored(tmp_path, "fig2", done.settings, ("svg",)) is not None
 
 
+def test_the_former_option_plot_still_works(tmp_path: Path) -> None:
+    for words, drawn in (({"plot": False}, False), ({"formats": False}, False), ({"plot": True}, True)):
+        with pytest.warns(DeprecationWarning, match="formats=\\(\\)"):
+            written = small("fig3").write(tmp_path, **words)  # type: ignore[arg-type]
+        assert any(path.suffix == ".png" for path in written) == drawn
+
+
 def test_a_figure_that_is_written_again_leaves_no_file_of_before(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     small("fig3").write(tmp_path, ("png", "pdf"))
