@@ -9,7 +9,7 @@
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d");
   if (!context) return; // the still picture stays
-  const START = [-0.95, 0.4]; // angles in radians: about the vertical axis, then towards the viewer
+  const START = [-2.18, 0.38]; // angles about the vertical axis and towards the viewer, as in pictures of the library
   const SECTOR = 16; // segments of a curve
   let [round, up] = START;
 
@@ -139,7 +139,7 @@
     move(...KEYS[event.key]);
   });
   new ResizeObserver(draw).observe(canvas);
-  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  for (const media of ["(prefers-color-scheme: dark)", "print"]) window.matchMedia(media).addEventListener("change", draw);
 })();
 
 // printing opens what is folded

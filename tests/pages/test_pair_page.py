@@ -321,7 +321,7 @@ def test_the_cone_turns_in_a_browser(tmp_path: Path) -> None:
     canvas = next(attributes for tag, attributes in shown.elements if tag == "canvas")
     assert canvas["tabindex"] == "0"
     assert "arrow keys" in str(canvas["aria-label"])
-    assert canvas["data-angles"] == "-0.95 0.40", "it is drawn: the policy of the page allows its script"
+    assert canvas["data-angles"] == "-2.18 0.38", "it is drawn: the policy of the page allows its script"
 
 
 @pytest.mark.slow
@@ -356,10 +356,10 @@ def test_the_cone_turns_by_keys_buttons_and_dragging(tmp_path: Path) -> None:
     (tmp_path / "page.html").write_text(text, encoding="utf-8")
     out = json.loads(re.search(r"<body>(.*)</body>", dom(tmp_path / "page.html"), flags=re.DOTALL)[1])  # type: ignore[index]
     assert out["errors"] == []
-    assert out["first"] == out["reset"] == [-0.95, 0.4]
-    assert out["keys"] == [-0.85, 0.5]
-    assert out["left"] == [-1.05, 0.5]
-    assert out["dragged"] == out["released"] == [0.05, 0.9]
+    assert out["first"] == out["reset"] == [-2.18, 0.38]
+    assert out["keys"] == [-2.08, 0.48]
+    assert out["left"] == [-2.28, 0.48]
+    assert out["dragged"] == out["released"] == [-1.18, 0.88]
     assert min(out["painted"], out["then"]) > 5000
     assert out["open"] is True
     assert out["still"] is False
