@@ -143,6 +143,15 @@ def blocks(folder: Path = FOLDER) -> tuple[Block, ...]:
     return tuple(found)
 
 
+def entries() -> Iterator[str]:
+    """Dotted names of all entries, members of classes included."""
+    for block in blocks():
+        for name in block.names:
+            yield f"{block.module}.{name}"
+            if inspect.isclass(find(block.module, name)):
+                yield from (f"{block.module}.{name}.{member}" for member in member_names(find(block.module, name)))
+
+
 def type_aliases() -> dict[str, str]:
     """Names of types that signatures show in place of what they stand for, with their entries."""
     return {name: f"{block.module}.{name}" for block in blocks() if block.page == "api/typing" for name in block.names}
@@ -181,7 +190,8 @@ def entry(module: str, name: str, escape: Escape) -> Iterator[str]:
     text = written(importlib.import_module(module), name)
     own = re.search(rf"^{name}\b.*=", inspect.getsource(importlib.import_module(module)), flags=re.MULTILINE)
     if text and not own and directive(module, name) == "autodata":
-        yield from (f".. py:data:: {module}.{name}", "", *(f"   {escape(line)}" for line in text.splitlines()), "")
+        yield from (f".. py:data:: {name}", f"   :module: {module}", "")
+        yield from (*(f"   {escape(line)}" for line in text.splitlines()), "")
         return
     yield f".. {directive(module, name)}:: {module}.{name}"
     if away := placed(module, name):

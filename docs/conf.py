@@ -145,7 +145,8 @@ def setup(app: Any) -> None:
     app.connect("doctree-read", refuse_apostrophes)
     app.connect("build-finished", check_links)
     app.connect("doctree-read", link_notebook, priority=400)  # before the files to download are collected
-    import page_tree  # found by the path that is set above
+    import name_links  # found by the path that is set above
+    import page_tree
     import pair_page_directive
     import picture_directive
     import pictures
@@ -162,6 +163,9 @@ def setup(app: Any) -> None:
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)
     app.add_directive("pairpage", pair_page_directive.PairPage)
+    linker = name_links.Linker()
+    app.connect("doctree-resolved", linker, priority=900)
+    app.connect("build-finished", linker.report)
     app.add_directive("picture", picture_directive.Picture)
     app.add_directive("gallery", picture_directive.Gallery)
     app.add_html_math_renderer(

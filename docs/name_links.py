@@ -1,0 +1,105 @@
+"""Links from names in prose to the API, and anchors for the addresses that entries had before."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+from cross_references import Names
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.util import logging
+
+LOG = logging.getLogger(__name__)
+UNLINKED = (
+    nodes.reference,
+    nodes.title,
+    addnodes.desc_signature,
+    addnodes.pending_xref,
+    nodes.FixedTextElement,
+    nodes.rubric,
+)
+PAST = {"changelog"}
+"""Pages that name what is gone."""
+
+KEYS = {"formats", "command-line"}
+"""Pages on which words in code markup are keys of files, or options."""
+
+ONCE_IN = (nodes.row, nodes.definition, addnodes.desc_content, nodes.section)
+
+
+class Linker:
+    """Links the first mention of a name in each section, row of a table, or entry."""
+
+    def __init__(self) -> None:
+        self.names = Names(())
+        self.places: dict[str, Any] = {}
+        self.counts: Counter[str] = Counter()
+
+    def begin(self, app: Any) -> None:
+        """Collect the entries of all pages."""
+        objects = app.env.domains["py"].objects
+        self.places = {
+            name: entry for name, entry in objects.items() if name.startswith("liehom") and not entry.aliased
+        }
+        self.names = Names(name for name, entry in self.places.items() if entry.objtype != "module")
+
+    def __call__(self, app: Any, doctree: nodes.document, page: str) -> None:
+        if not self.places:
+            self.begin(app)
+        made: set[tuple[int, str]] = set()
+        for literal in list(doctree.findall(nodes.literal)):
+            self.link(app, page, literal, made)
+        if page.startswith("api/") and page.count("/") == 1:
+            self.anchor(doctree)
+
+    def link(self, app: Any, page: str, literal: nodes.literal, made: set[tuple[int, str]]) -> None:
+        above, within, package = [], "", page.split("/")[1].replace("-", "_") if page.startswith("api/") else ""
+        node = literal.parent
+        while node is not None:
+            if isinstance(node, UNLINKED):
+                return
+            above.append(node)
+            if isinstance(node, addnodes.desc) and not within and node[0].get("ids"):
+                within = node[0]["ids"][0]
+            node = node.parent
+        try:
+            around = within or (f"liehom.{package}" if package else "")
+            entry = self.names.meant(literal.astext(), around, bare_names_are_keys=page in KEYS)
+        except LookupError as error:
+            if page not in PAST:
+                LOG.warning("%s: there is no %s", literal.astext(), error, location=literal)
+            return
+        path = next(self.names.paths(literal.astext()), "")
+        entry = entry or (path if path in self.places else None)
+        self.counts["linked" if entry else "ours, without entry" if path else "not ours"] += 1
+        if entry is None or entry == within or f"{within}.".startswith(f"{entry}."):
+            return
+        place = next(id(node) for node in above if isinstance(node, (*ONCE_IN, nodes.document)))
+        if (place, entry) in made:
+            return
+        made.add((place, entry))
+        self.counts["links"] += 1
+        target = self.places[entry]
+        uri = app.builder.get_relative_uri(page, target.docname) + "#" + target.node_id
+        reference = nodes.reference("", "", internal=True, refuri=uri, reftitle=entry)
+        literal.replace_self(reference)
+        reference += literal
+
+    def anchor(self, doctree: nodes.document) -> None:
+        """Rows of tables on the page of a package get the addresses that their entries had on this page."""
+        seen = {name for node in doctree.findall(nodes.Element) for name in node.get("ids", [])}
+        for table in doctree.findall(nodes.table):
+            if "api-names" not in table["classes"]:
+                continue
+            for row in table.findall(nodes.row):
+                link = next(iter(row.findall(nodes.reference)), None)
+                page, _, entry = link.get("refuri", "").rpartition("#") if link is not None else ("", "", "")
+                if page and entry in self.places:
+                    ids = [name for name in self.places if f"{name}.".startswith(f"{entry}.") and name not in seen]
+                    row[0]["ids"] += sorted(ids)
+                    seen.update(ids)
+
+    def report(self, app: Any, exception: Exception | None) -> None:
+        """Log how many names were linked."""
+        LOG.info("names in prose: %s", ", ".join(f"{count} {what}" for what, count in sorted(self.counts.items())))
