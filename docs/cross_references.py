@@ -142,7 +142,7 @@ class Names:
         Parameters
         ----------
         text : str
-            The text, such as "lh.so(3)", "Pair.is_primitive" or "g.killing_form()".
+            The text, such as "lh.so(3)" or "g.killing_form()".
         within : str, optional
             The entry in whose docstring the text is, or the package that the page is about.
         bare_names_are_keys : bool, optional
