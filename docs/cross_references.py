@@ -196,7 +196,7 @@ class Names:
         return f"{package}.{name}" if f"{package}.{name}" in self.entries and name not in self.parameters else None
 
     def alone(self, name: str, *, called: bool) -> str | None:
-        """The entry of a name without a path: a class, a function whose name is not a word, or a method of one class."""
+        """The entry of a name without a path: a class, a function with more than a word as name, or a method."""
         whole, members = self.top.get(name, set()), self.members.get(name, set())
         if len(whole) == 1:
             [entry] = whole
