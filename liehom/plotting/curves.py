@@ -15,8 +15,10 @@ from liehom.integrators.run.solution import interpolant
 from liehom.typing import Array
 
 MAX_TRAJECTORIES = 50
-CURVE_POINTS = 800
+CURVE_POINTS = 400
 """Number of points of a curve, unless there are more steps."""
+MAX_STEPS_MADE = 400
+"""Steps are made again for trajectories with at most this number of them."""
 MAX_POINTS = 20_000
 """Of a trajectory with more steps, only some are drawn."""
 SPHERE_TOLERANCE = 1e-6
@@ -48,10 +50,10 @@ def steps_of(solution: Solution) -> Curves:
     if not isinstance(solution, Solution):
         raise InputError(f"expected a solution as liehom.integrate returns it, got {solution!r}")
     y = np.asarray(solution.y, dtype=float)
+    if not y.size:
+        raise InputError("the solution has no point to draw: its ensemble or its t_eval is empty")
     t = np.broadcast_to(np.asarray(solution.t, dtype=float), (*y.shape[:-2], y.shape[-1]))
     t, y = t.reshape(-1, t.shape[-1]), y.reshape(-1, *y.shape[-2:])
-    if not len(y):
-        raise InputError("the solution has no trajectory to draw: its ensemble is empty")
     every = -(-t.shape[-1] // MAX_POINTS) or 1
     kept = np.unique(np.r_[0 : t.shape[-1] : every, t.shape[-1] - 1])
     return Curves(t[:MAX_TRAJECTORIES, kept], y[:MAX_TRAJECTORIES][..., kept], len(y), every)
@@ -69,20 +71,20 @@ def curves_of(solution: Solution) -> Curves:
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
     >>> curves = curves_of(lh.integrate(field, (0, 3), [1.0, 0.0], dt=1.0))
-    >>> curves.y.shape[-1] > 500, bool(abs((curves.y**2).sum(axis=1) - 1).max() < 1e-14)
-    (True, True)
+    >>> curves.y.shape[-1], bool(abs((curves.y**2).sum(axis=1) - 1).max() < 1e-14)
+    (301, True)
     """
     steps = steps_of(solution)
     points = steps.t.shape[-1]
     if points < 2:
         return steps
-    if steps.total <= MAX_TRAJECTORIES and 2 * points <= CURVE_POINTS:
+    if steps.total <= MAX_TRAJECTORIES and points <= MAX_STEPS_MADE + 1:
         # an implicit step of another size need not have a solution
         with contextlib.suppress(ConvergenceError, np.linalg.LinAlgError):
             known = interpolant(solution)
             if known is not None:
                 return _made_again(steps, known)
-    parts = [_splined(t, y, max(1, CURVE_POINTS // points)) for t, y in zip(steps.t, steps.y, strict=True)]
+    parts = [_splined(t, y, max(1, 2 * CURVE_POINTS // points)) for t, y in zip(steps.t, steps.y, strict=True)]
     return steps._replace(t=np.stack([t for t, _ in parts]), y=np.stack([y for _, y in parts]))
 
 
@@ -106,7 +108,7 @@ def _times(t: Array) -> Array:
     """About `CURVE_POINTS` times, in the direction of integration, and among them those of steps that agree."""
     same = np.unique(t[:, :1]).size == 1 and bool((t == t[:1]).all())
     if same:
-        return _divided(t[0], CURVE_POINTS // t.shape[-1])
+        return _divided(t[0], max(2, CURVE_POINTS // t.shape[-1]))
     first = t[0, 0]
     last = np.nanmin(t) if first == np.nanmax(t) else np.nanmax(t)
     times: Array = np.linspace(first, last, CURVE_POINTS)

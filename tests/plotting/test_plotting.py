@@ -161,7 +161,7 @@ def test_what_is_behind_the_sphere_is_pale() -> None:
     axes = plot_trajectory(made).axes[0]
     up, around = np.radians(axes.elev), np.radians(axes.azim)
     eye = np.array([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)])
-    curves = [line for line in axes.lines if len(line.get_data_3d()[0]) > 500]
+    curves = [line for line in axes.lines if len(line.get_data_3d()[0]) > 300 and line.get_color() == "#0072B2"]
     assert sorted(line.get_alpha() or 1.0 for line in curves) == [0.3, 1.0]
     for line in curves:
         depth = eye @ np.array(line.get_data_3d(), dtype=float)
@@ -309,6 +309,9 @@ def test_a_solution_without_a_step() -> None:
 
 
 def test_plot_trajectory_raises_for_other_objects() -> None:
+    for empty in (lh.integrate(rotation(3), (0, 1), np.zeros((0, 3))), solution(3, t_eval=[])):
+        with pytest.raises(InputError, match="no point"):
+            plot_trajectory(empty)
     with pytest.raises(InputError, match="solution"):
         plot_trajectory(np.zeros((3, 4)))  # type: ignore[arg-type]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import pytest
 
 import liehom as lh
 from liehom.errors import FormatError
+from liehom.integrators.run.solution import interpolant
 
 RHO = lh.adjoint(lh.so(3))
 FIELD = lh.GeneratorField(RHO, lambda m: -m * [1.0, 0.5, 0.25])
@@ -40,7 +41,7 @@ def test_what_is_read_is_what_was_written(name: str, tmp_path: Path) -> None:
     read: Any = lh.Solution.load(tmp_path / "run.npz")
     for entry in fields(sol):
         a, b = getattr(sol, entry.name), getattr(read, entry.name)
-        if entry.name == "sol":
+        if entry.name in ("sol", "_steps"):
             assert b is None
         elif entry.name in ("t_events", "y_events") and a is not None:
             assert [x.dtype for x in a] == [x.dtype for x in b]
@@ -101,3 +102,21 @@ def test_a_pickle_of_a_dense_output_says_what_is_in_the_way() -> None:
     plain = lh.integrate(lh.GeneratorField(RHO, ["m0", "-m1", "m2/2"]), (0, 1), START, dt=0.5, dense_output=True)
     again = pickle.loads(pickle.dumps(plain))
     np.testing.assert_array_equal(again.sol(0.3), plain.sol(0.3))  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("name", ["one", "many", "extended", "corrected", "conserving", "events"])
+def test_steps_are_made_again_as_by_dense_output(name: str) -> None:
+    sol: Any = lh.integrate(FIELD, (0, 1), **RUNS[name])
+    dense: Any = lh.integrate(FIELD, (0, 1), **RUNS[name], dense_output=True).sol
+    again: Any = interpolant(sol)
+    assert sol.sol is None
+    assert np.array_equal(again([0.03, 0.77]), dense([0.03, 0.77]))
+
+
+def test_copies_files_and_sampled_solutions_do_not_know_their_steps(tmp_path: Path) -> None:
+    sol = lh.integrate(FIELD, (0, 1), START, dt=0.1)
+    sol.save(tmp_path / "run.npz")
+    sampled = lh.integrate(FIELD, (0, 1), START, dt=0.1, t_eval=[0.0, 1.0])
+    for other in (lh.Solution.load(tmp_path / "run.npz"), pickle.loads(pickle.dumps(sol)), replace(sol), sampled):
+        assert interpolant(other) is None
+    assert interpolant(sol) is not None
