@@ -17,15 +17,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import liehom as lh
-from liehom.plotting.canvas import COLOURS, DARK_COLOURS, matplotlib_module, style
+from liehom.plotting import plot_energy_drift
+from liehom.plotting.canvas import new_figure, style
 
 DT = 0.1
 SAMPLES = 600
 """Times at which energy and Casimir functions are looked at; half of them are spread evenly over the logarithm."""
 MARKERS = ("<!-- energy drift: begin -->", "<!-- energy drift: end -->")
-HAIRLINE = 1e-17
-SYMPLECTIC = ("Midpoint", "MoserVeselov", "Splitting")
-"""Words in the names of the symplectic steps, whose lines are drawn without dashes."""
 
 
 class System(NamedTuple):
@@ -48,6 +46,7 @@ class Row(NamedTuple):
     energy: Any
     casimir: float
     cost: float
+    solution: lh.Solution
 
 
 def spin() -> System:
@@ -105,7 +104,7 @@ def body() -> System:
 def measured(system: System, name: str, count: int) -> Row:
     """A run of `count` steps."""
     end = count * DT
-    times = np.union1d(np.geomspace(DT, end, SAMPLES // 2), np.linspace(0, end, SAMPLES // 2 + 1)[1:])
+    times = np.union1d(np.geomspace(DT, end, SAMPLES // 2), np.linspace(0, end, SAMPLES // 2 + 1))
     propagator = lh.Propagator(system.field, system.steps[name], engine="llvm")
     sol = propagator((0, end), system.start, dt=DT, t_eval=times)
     if not sol.success:
@@ -117,7 +116,8 @@ def measured(system: System, name: str, count: int) -> Row:
     energy = np.abs(system.energy(points) - system.energy(system.start))
     values = zip(system.casimirs(points), system.casimirs(system.start), strict=True)
     moved = [np.abs(after / before - 1).max() for after, before in values]
-    return Row(name, system.steps[name].order, times, energy, float(max(moved)), taken / int(again.n_steps) * 1e6)
+    cost = taken / int(again.n_steps) * 1e6
+    return Row(name, system.steps[name].order, times, energy, float(max(moved)), cost, sol)
 
 
 def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
@@ -146,21 +146,18 @@ def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
 
 def draw(found: Sequence[tuple[System, Sequence[Row]]], folder: Path) -> None:
     """energy_drift_light.svg and energy_drift_dark.svg: the largest energy error so far over time."""
-    pyplot = matplotlib_module("figure")
-    for kind, colours in (("light", COLOURS), ("dark", DARK_COLOURS)):
+    for kind in ("light", "dark"):
         with style(dark=kind == "dark"):
-            figure = pyplot.Figure(figsize=(9.0, 4.4), layout="constrained")
+            figure = new_figure(5.6, 4.6 * len(found))
             figure.patch.set_alpha(0.0)
-            for axes, (system, rows) in zip(figure.subplots(1, len(found), sharey=True), found, strict=True):
-                scale = abs(float(system.energy(system.start)))
-                for colour, row in zip(colours, rows, strict=False):
-                    worst = np.maximum.accumulate(np.maximum(row.energy / scale, HAIRLINE))
-                    dashes = "-" if any(word in row.name for word in SYMPLECTIC) else "--"
-                    axes.loglog(row.times, worst, dashes, color=colour, label=row.name)
+            panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
+            for axes, (system, rows) in zip(panels, found, strict=True):
+                plot_energy_drift({row.name: row.solution for row in rows}, system.energy, axes)
                 axes.set_title(system.title)
-                axes.set_xlabel("time")
-                axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize=8)
-            figure.axes[0].set_ylabel("largest relative energy error so far")
+                below = 0.18 if axes is panels[-1] else 0.04
+                axes.legend(loc="upper center", bbox_to_anchor=(0.45, -below), ncols=2, fontsize=9, handlelength=3.0)
+                if axes is not panels[-1]:
+                    axes.set_xlabel("")
             figure.savefig(folder / f"energy_drift_{kind}.svg", metadata={"Date": None})
 
 
