@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-import sys
-import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, final
@@ -15,6 +12,7 @@ import typer
 
 from liehom.cli.guard import NO, YES
 from liehom.cli.options import JsonOption, run
+from liehom.cli.terminal.steps import step
 
 if TYPE_CHECKING:
     from liehom.paper import Reproduction
@@ -33,7 +31,6 @@ class Wanted:
     resume: bool = False
     quick: bool = False
     seed: int | None = None
-    progress: bool | None = None
     as_json: bool = False
 
 
@@ -56,11 +53,10 @@ def reproduce(
     seed: Annotated[
         int | None, typer.Option(metavar="N", help="Seed of the random bodies (default: the figure's).")
     ] = None,
-    progress: Annotated[bool | None, typer.Option(help="Progress bar (default: on a terminal only).")] = None,
     json: JsonOption = False,
 ) -> None:
     """Reproduce figures of the paper: tables, plots, claims.  Exit code 0: all claims hold, 1: one does not."""
-    run(lambda: run_reproduce(name, Wanted(out, format_, dark, resume, quick, seed, progress, json)))
+    run(lambda: run_reproduce(name, Wanted(out, format_, dark, resume, quick, seed, json)))
 
 
 def run_reproduce(name: str, wanted: Wanted) -> int:
@@ -74,16 +70,15 @@ def run_reproduce(name: str, wanted: Wanted) -> int:
     formats = _checked_formats(wanted)
     names = NAMES if name == ALL else (name,)
     done: list[dict[str, Any]] = []
-    with _progress(names, wanted.progress) as report:
-        try:
-            for one in names:
-                report(one)
-                done.append(_figure(one, formats, wanted))
-        except KeyboardInterrupt:
-            if wanted.out is None:
-                raise KeyboardInterrupt(_not_written([data["name"] for data in done])) from None
-            written = [one for one in names if _stored(one, formats, wanted) is not None]
-            raise KeyboardInterrupt(_how_to_continue(written, wanted.out)) from None
+    try:
+        for k, one in enumerate(names):
+            step(f"{one}, {k + 1} of {len(names)}")
+            done.append(_figure(one, formats, wanted))
+    except KeyboardInterrupt:
+        if wanted.out is None:
+            raise KeyboardInterrupt(_not_written([data["name"] for data in done])) from None
+        written = [one for one in names if _stored(one, formats, wanted) is not None]
+        raise KeyboardInterrupt(_how_to_continue(written, wanted.out)) from None
     holds = all(data["holds"] for data in done)
     if wanted.as_json:
         figures = [{key: value for key, value in data.items() if key != "lines"} for data in done]
@@ -159,36 +154,6 @@ def _how_to_continue(names: Sequence[str], out: str) -> str:
     if not names:
         return "; no figure is finished"
     return f"; finished in {out}: {', '.join(names)}; the same command with --resume does the others"
-
-
-@contextmanager
-def _progress(names: Sequence[str], wanted: bool | None) -> Iterator[Callable[[str], None]]:
-    """Progress on standard error: a function to call when a figure is begun."""
-    if not (sys.stderr.isatty() if wanted is None else wanted):
-        yield lambda name: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = (
-        SpinnerColumn(),
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task, began = bar.add_task("reproducing", total=len(names)), time.perf_counter()
-
-        def report(name: str) -> None:
-            nonlocal began
-            at = names.index(name)
-            if at:
-                bar.console.print(f"{names[at - 1]}: {time.perf_counter() - began:.0f} s")
-            began = time.perf_counter()
-            bar.update(task, description=f"reproducing {name}", completed=at)
-
-        yield report
 
 
 # -- printing --------------------------------------------------------------------------------------------

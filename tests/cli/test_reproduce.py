@@ -137,13 +137,12 @@ def test_an_interruption_before_the_first_figure_leaves_no_folder(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_progress_is_on_standard_error_if_it_is_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    silent = liehom_("reproduce", "fig2", "--quick")
-    assert silent.stderr == ""
-    monkeypatch.setenv("FORCE_COLOR", "1")  # rich takes every stream for a terminal
-    shown = liehom_("reproduce", "fig2", "--quick", "--progress")
-    assert "reproducing fig2" in shown.stderr
-    assert shown.stdout == silent.stdout
+def test_each_figure_is_a_step_of_the_progress_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[str] = []
+    monkeypatch.setattr("liehom.cli.reproduce.step", begun.append)
+    monkeypatch.setattr(liehom.paper, "reproduce", small)
+    assert liehom_("reproduce", "all", "--quick").stderr == ""
+    assert begun == [f"{name}, {k} of 8" for k, name in enumerate(NAMES, 1)]
 
 
 def test_reproduce_prints_one_object(tmp_path: Path) -> None:
