@@ -98,12 +98,15 @@ def say(message: str, code: int) -> int:
 
 
 def _wrapped(line: str) -> str:
-    """The line broken between words only, so that names and commands can be copied."""
+    """The line broken between words only, and not within `commands`, so that they can be copied."""
+    import re
     import shutil
     import textwrap
 
     width = max(shutil.get_terminal_size().columns - 1, 20)
-    return textwrap.fill(line, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    whole = re.sub("`[^`]*`", lambda found: found[0].replace(" ", "\0"), line)
+    made = textwrap.fill(whole, width, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    return made.replace("\0", " ")
 
 
 def _with_notes(error: BaseException) -> str:

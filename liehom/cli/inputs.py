@@ -75,7 +75,7 @@ def standard_input() -> BinaryIO:
     if sys.stdin is None:
         raise InputError("- is the file on standard input, which is closed: pipe a file into the command")
     if sys.stdin.isatty():
-        raise InputError("- is the file on standard input, which is the terminal: use  liehom ... - < FILE  or a pipe")
+        raise InputError("- is the file on standard input, which is the terminal: add `< FILE`, or use a pipe")
     content = _StandardInput(sys.stdin.buffer.read(current_limits().file_bytes + 1))
     if not content.getvalue().strip():
         raise InputError("- is the file on standard input, which is empty: has the command before the pipe failed?")

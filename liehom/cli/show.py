@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import math
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
+from shutil import get_terminal_size
 from typing import Any
 
 from liehom.cli.terminal.steps import step
@@ -67,14 +69,21 @@ def show_lines(lines: Sequence[str]) -> None:
     from rich.panel import Panel
     from rich.text import Text
 
-    body = Group(Text(lines[0], style="bold green"), *(Text(line) for line in lines[1:]))
-    Console().print(Panel(body, border_style="green", expand=False))
+    console = Console()
+    body = Group(Text(lines[0], style="bold green"), *(Text(_indented(line, console.width - 4)) for line in lines[1:]))
+    console.print(Panel(body, border_style="green", expand=False))
+
+
+def _indented(line: str, width: int) -> str:
+    """The line wrapped at a width; the lines below the first are indented by two spaces more."""
+    indent = line[: len(line) - len(line.lstrip())]
+    return textwrap.fill(line, max(width, 20), subsequent_indent=f"{indent}  ", break_on_hyphens=False)
 
 
 def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header: bool = True) -> None:
-    """Print a table; in a pipe, aligned plain lines."""
+    """Print a table; as aligned plain lines in a pipe, or if the terminal is too narrow for the longest words."""
     step("")
-    if not sys.stdout.isatty():
+    if not sys.stdout.isatty() or _least_width(columns, rows) > get_terminal_size().columns:
         shown = [columns, *rows] if header else list(rows)
         widths = [max(len(row[c]) for row in shown) for c in range(len(columns))] if shown else []
         for row in shown:
@@ -85,11 +94,25 @@ def show_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, header:
     from rich.text import Text
 
     table = Table()
-    for column in columns:
-        table.add_column(column)
+    for column, *cells in zip(columns, *rows, strict=True):
+        table.add_column(column, no_wrap=not _wraps(cells))
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     Console().print(table)
+
+
+def _wraps(cells: Sequence[str]) -> bool:
+    """Whether a column has spaces between words, and not only before a number without its sign."""
+    return any(" " in cell.strip() for cell in cells)
+
+
+def _least_width(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> int:
+    """Width of a table with lines between its cells, if the cells are wrapped between words wherever possible."""
+    width = 1
+    for name, *cells in zip(columns, *rows, strict=True):
+        parts = [word for cell in cells for word in cell.split()] if _wraps(cells) else cells
+        width += 3 + max(len(part) for part in [*parts, *name.split(), ""])
+    return width
 
 
 def short_vector(values: Sequence[str], limit: int = 100) -> str:

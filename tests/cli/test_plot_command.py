@@ -84,7 +84,7 @@ def test_a_solution_file_is_drawn_as_its_problem_is() -> None:
 @pytest.mark.parametrize(
     ("words", "named"),
     [
-        (("dynkin", "G2"), "for example: liehom plot dynkin E6 --output dynkin.png"),
+        (("dynkin", "G2"), "for example: `liehom plot dynkin E6 --output dynkin.png`"),
         (("dynkin",), "missing"),
         (("dynkin", "G3", "-o", "x.png"), "G3"),
         (("dynkin", "G2", "-o", "x.txt"), ".png"),

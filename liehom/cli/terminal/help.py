@@ -177,8 +177,7 @@ def _usage(error: _WrongUsage) -> str:
         return text
     command = error.ctx.command
     if isinstance(command, Group):
-        return f"{text}; `{error.ctx.command_path} --help` lists the commands"
+        return f"{text}{' ' if text.endswith('?') else '; '}`{error.ctx.command_path} --help` lists the commands"
     shown = (command.epilog or "").splitlines()[:1]
-    return "; ".join(
-        [text, *(f"for example: {line}" for line in shown), f"`{error.ctx.command_path} --help` says more"]
-    )
+    more = f"`{error.ctx.command_path} --help` says more"
+    return "; ".join([text, *(f"for example: `{line}`" for line in shown), more])

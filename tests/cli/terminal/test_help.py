@@ -127,7 +127,7 @@ def test_a_group_without_arguments_shows_its_help() -> None:
     ("words", "named"),
     [
         (("fulness", "x"), ["did you mean 'fullness'", "--help` lists the commands"]),
-        (("fullness",), ["missing argument 'PAIR'", 'for example: liehom fullness "so(4)/so(3)"']),
+        (("fullness",), ["missing argument 'PAIR'", 'for example: `liehom fullness "so(4)/so(3)"`']),
         (("fullness", "x", "--jsn"), ["--jsn", "fullness --help` says more"]),
         (("full-pairs", "x"), ["liehom full-pairs 3"]),
         (("atlas", "buil"), ["'build'", "atlas --help` lists the commands"]),
