@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple, TypeAlias, final
@@ -43,7 +44,7 @@ class Setting(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Points (..., N) at the end of a run, calls of the field, steps, and a message if the order was not kept."""
+    """Points (..., N) at the end of a run, calls of the field, steps, and a message if the order was lost."""
 
     points: Array
     calls: int
@@ -130,12 +131,14 @@ class ScipyMethod(Compared):
             return found
 
         span = float(self._span[0]), float(self._span[1])
-        made = solve_ivp(
-            rates, span, self._start.reshape(-1), self._name, rtol=setting.tolerance, atol=setting.tolerance
-        )
+        options = {"rtol": setting.tolerance, "atol": setting.tolerance}
+        with warnings.catch_warnings(record=True) as said:  # for example that the tolerance is replaced
+            warnings.simplefilter("always")
+            made = solve_ivp(rates, span, self._start.reshape(-1), self._name, **options)
         if not made.success:
             raise ConvergenceError(made.message)
-        return Outcome(made.y[:, -1].reshape(shape), int(made.nfev), len(made.t) - 1)
+        message = " ".join(dict.fromkeys(str(warning.message) for warning in said))
+        return Outcome(made.y[:, -1].reshape(shape), int(made.nfev), len(made.t) - 1, message)
 
 
 def compared_methods(

@@ -36,7 +36,7 @@ class WorkPrecisionRow(NamedTuple):
     cpu_time, wall_time : float
         Seconds of the process and of the clock, each the smallest of a few calls, without compilation.
     message : str
-        Why the run failed, or that the step did not keep its order; else empty.
+        Why the run failed, that the step did not keep its order, or what scipy warned of; else empty.
     """
 
     method: str
@@ -168,6 +168,8 @@ class WorkPrecisionTable(DisplayedTable):
         if any(error < row.floor for row in self.rows for error in (row.error, row.orbit_error)):
             notes.append(f"* not resolved: within a factor {MARGIN:.0f} of round-off or of the reference's accuracy")
         notes.append(f"times on {self.machine}, engine {self.engine}, without compilation")
+        if all(math.isnan(row.orbit_error) for row in self.rows) and not all(row.failed for row in self.rows):
+            notes.append("no orbit errors: they need a series as reference, and orbits that do not depend on time")
         if len(self.rows) < self.planned:
             notes.append(f"interrupted: {len(self.rows)} of {self.planned} runs are finished")
         return notes + [

@@ -83,6 +83,11 @@ def test_methods_of_scipy_integrate_ensembles_and_fields_that_depend_on_time() -
     assert all(row.error < 1e-7 for row in table.rows)
 
 
+def test_warnings_of_scipy_are_messages_of_rows() -> None:
+    (row,) = study(["scipy RK45"], dts=(), tolerances=[1e-14]).rows
+    assert not row.failed and "`rtol` is too small" in row.message
+
+
 def test_both_kinds_of_settings_are_sorted_by_method() -> None:
     table = study({"a": "rk4", "b": "scipy RK45"}, dts=(0.25, 0.5), tolerances=(1e-6, 1e-3))
     assert [(row.method, row.setting) for row in table.rows] == [
@@ -110,6 +115,7 @@ def test_a_step_that_cannot_expand_the_field_fails_alone_and_the_reference_is_on
     assert not any(row.failed for row in of(table, "rk4"))
     assert all(row.failed and row.message for row in of(table, repr(lh.LieTaylor(4))))
     smooth = study(["rk4"])
+    assert "no orbit errors" in str(table) and "no orbit errors" not in str(smooth)
     for row, wanted in zip(of(table, "rk4"), smooth.rows, strict=True):
         assert math.isnan(row.orbit_error) and row.error == pytest.approx(wanted.error, rel=1e-4)
 
