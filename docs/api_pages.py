@@ -276,6 +276,7 @@ class Writer:
             lines: list[str] = []
             for block in blocks():
                 if block.page == f"{self.folder}/{page}":
+                    lines += [] if block.title == title else [f".. rubric:: {block.title}", ""]
                     lines += table(rows(block.module, block.names), self.escape)
             parts.append(f"## [{title}]({page}.md)\n\n{purpose}\n\n{rst(lines)}")
         return "\n".join(parts)

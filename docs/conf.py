@@ -158,7 +158,14 @@ def setup(app: Any) -> None:
         if what in ("class", "exception"):
             lines += api_pages.members(*name.rsplit(".", 1), escaped)
 
+    def name_types(
+        app: Any, what: str, name: str, thing: Any, options: Any, *parts: str | None
+    ) -> tuple[str | None, ...]:
+        """Sphinx writes the type StepLike in a union as TypeAliasForwardRef('...StepLike')."""
+        return tuple(part and re.sub(r"TypeAliasForwardRef\('([\w.]+)'\)", r"\1", part) for part in parts)
+
     app.connect("source-read", expand)
+    app.connect("autodoc-process-signature", name_types)
     app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)

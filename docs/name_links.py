@@ -50,6 +50,8 @@ class Linker:
         made: set[tuple[int, str]] = set()
         for literal in list(doctree.findall(nodes.literal)):
             self.link(app, page, literal, made)
+        for reference in list(doctree.findall(nodes.reference)):
+            self.unlink_word(reference)
         if page.startswith("api/") and page.count("/") == 1:
             self.anchor(doctree)
 
@@ -85,6 +87,13 @@ class Linker:
         reference = nodes.reference("", "", internal=True, refuri=uri, reftitle=entry)
         literal.replace_self(reference)
         reference += literal
+
+    def unlink_word(self, reference: nodes.reference) -> None:
+        """In the type of a parameter, such as "array of shape (N,)", only types are links, not names of methods."""
+        entry = reference.get("refuri", "").rpartition("#")[2] or reference.get("refid", "")
+        kind = self.places[entry].objtype if entry in self.places else "class"
+        if isinstance(reference[0], addnodes.literal_emphasis) and kind not in ("class", "exception", "data", "type"):
+            reference.replace_self(reference.children)
 
     def anchor(self, doctree: nodes.document) -> None:
         """Rows of tables on the page of a package get the addresses that their entries had on this page."""
