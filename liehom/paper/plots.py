@@ -1,4 +1,4 @@
-"""Plots of Figures 1, 3 to 5 and 7, from tables of the same content."""
+"""Plots of Figures 1, 3 to 5 and 7 and of the separatrix experiment, most of them from tables of the same content."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from liehom.paper.table import Table, symbol
 from liehom.plotting.canvas import MARKERS, current_colours, matplotlib_module, new_figure, paper_colour
+from liehom.plotting.phase_plot import plot_phase_portrait
 from liehom.plotting.surfaces import Scene, space_axes, sphere
 from liehom.typing import Array
 
@@ -66,6 +67,30 @@ def _draw_sphere(axes: Axes, points: Array) -> None:
         scene.mark(surface, curve[0], "o", color=colour, markersize=5, markeredgecolor=paper_colour())
     scene.frame(1.0, ("$m_1$", "$m_2$", "$m_3$"))
     scene.limit(1.0)
+
+
+def draw_separatrices(moments: Array, curves: Mapping[str, Array]) -> Figure:
+    """Plot of trajectories of a triaxial body on its phase portrait, with a panel for each update.
+
+    Parameters
+    ----------
+    moments : array of shape (3,)
+        Principal moments.
+    curves : dict of update to array of shape (steps, 3)
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = new_figure(3.0 * len(curves), 3.2)
+    for axes, (name, curve) in zip(figure.subplots(1, len(curves), squeeze=False).flat, curves.items(), strict=True):
+        plot_phase_portrait(lambda m: (m * m / (2 * moments)).sum(axis=-1), axes, levels=1)
+        axes.get_legend().remove()
+        scene, surface = Scene(axes), sphere(1.0)
+        scene.curve(surface, curve.T, color=current_colours()[-1], linewidth=0.7, zorder=6)
+        scene.mark(surface, curve[0], "o", color=current_colours()[-1], markersize=5, markeredgecolor=paper_colour())
+        axes.set_title(symbol(name), loc="center", fontsize=13, y=1.0)
+    return figure
 
 
 # -- Figures 3 to 5 --------------------------------------------------------------------------------------

@@ -7,15 +7,19 @@ import numpy as np
 from liehom.instances.rigid_body.rigid_body import RigidBody
 from liehom.paper.energy_errors import kernels_agree, scale
 from liehom.paper.kernels import kernel
+from liehom.paper.plots import draw_separatrices
 from liehom.paper.printed_data import EULER
 from liehom.paper.printed_data import SEPARATRIX as PRINTED
 from liehom.paper.reproduction import Check, Reproduction
 from liehom.paper.samples import MOMENTS, SEED, Sample, averages, described, largest_energy_error, random_bodies, spread
 from liehom.paper.table import Table
+from liehom.paper.trajectories import trajectory
 from liehom.typing import Array
 
 SPAN, BATCHES = 500.0, 40
 ZERO = 1e-12
+SHOWN_DT = 0.1
+"""Step size of the plot."""
 
 
 def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
@@ -29,13 +33,15 @@ def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
     span, batches = (50.0, 2) if quick else (SPAN, BATCHES)
     sample = separatrix_sample(10 * batches, seed)
     dts = [dt for dt in PRINTED if not quick or dt > 0.05]
-    rows, largest, apart = [], 0.0, 0.0
+    rows, largest, apart, shown = [], 0.0, 0.0, 0
     for dt in dts:
         for name in EULER:
             errors = largest_energy_error(kernel(name, sample.body), sample.body, sample.points, dt, span)
             found = spread(averages(errors))
             paper = PRINTED[dt] if name == "eul_b" else None
             rows.append((dt, name, *found, paper, "" if paper is None else "yes" if found.has(paper) else "no"))
+            if name == "eul_b" and dt == SHOWN_DT:
+                shown = int(np.argmax(errors))
             if name != "eul_b":
                 largest = max(largest, float(errors.max()))
         steps = [np.stack(kernel(name, sample.body)(sample.points, dt)) for name in ("eul_o", "eul_i")]
@@ -53,7 +59,22 @@ def separatrix(quick: bool = False, seed: int = SEED) -> Reproduction:
         "starting points at uniform angles on the separatrices",
     )
     table = Table(f"Average of the largest energy errors of ten runs on [0, {span:g}]", columns, rows)
-    return Reproduction("separatrix", "The separatrix, section 4", law, {"": table}, checks)
+    return Reproduction(
+        "separatrix",
+        "The separatrix, section 4",
+        law,
+        {"": table},
+        checks,
+        draw=lambda: draw_separatrices(sample.moments[:, shown], _trajectories(sample, shown, span)),
+        shows=f"Trajectories with dt = {SHOWN_DT} on [0, {span:g}] from a point of a separatrix, on the phase portrait "
+        "of the body with the largest error.",
+    )
+
+
+def _trajectories(sample: Sample, shown: int, span: float) -> dict[str, Array]:
+    """Points (steps, 3) of the runs of one body, by update."""
+    one = Sample("triaxial", sample.moments[:, [shown]], sample.start[:, [shown]])
+    return {name: trajectory(name, one, span, SHOWN_DT)[:, :, 0] for name in EULER}
 
 
 def separatrix_sample(count: int, seed: int = SEED) -> Sample:

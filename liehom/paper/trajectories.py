@@ -116,7 +116,7 @@ def figure2(quick: bool = False, seed: int = FIGURE_SEED) -> Reproduction:
     )
 
 
-def trajectory(name: str, sample: Sample, span: float) -> Array:
+def trajectory(name: str, sample: Sample, span: float, dt: float = DT) -> Array:
     """Points of a run, an array of shape (steps + 1, 3, N).
 
     Examples
@@ -126,8 +126,8 @@ def trajectory(name: str, sample: Sample, span: float) -> Array:
     """
     update, m = kernel(name, sample.body), sample.points
     points = [np.stack(np.broadcast_arrays(*m))]
-    for _ in range(round(span / DT)):
-        m = update(m, DT)
+    for _ in range(round(span / dt)):
+        m = update(m, dt)
         points.append(np.stack(m))
     return np.stack(points)
 

@@ -271,6 +271,7 @@ def test_a_plot_has_its_caption_inside() -> None:
 
 def test_panels_of_figures_3_to_5_show_both_the_errors_here_and_those_of_the_paper() -> None:
     assert len(reproduce("fig7", quick=True).plot().axes) == 4
+    assert len(reproduce("separatrix", quick=True).plot().axes) == 3
     for name, rows, columns in (("fig3", 1, 6), ("fig4", 2, 4), ("fig5", 2, 6)):
         done = reproduce(name, quick=True)
         figure = done.plot()
