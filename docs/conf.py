@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]  # the pages document this tree, whatever is installed
 
 import api_pages  # noqa: E402 - found by the path that is set above
+import example_imports  # noqa: E402
 import formulas  # noqa: E402
 import page_links  # noqa: E402
 
@@ -122,6 +123,11 @@ def escaped(line: str) -> str:
     )
 
 
+def complete_examples(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Examples of docstrings begin with the imports that they need."""
+    example_imports.complete(lines, thing)
+
+
 def check_links(app: Any, exception: Exception | None) -> None:
     """A warning for each link of the built pages that leads nowhere, and for each picture without words."""
     if exception is None and app.builder.name == "html":
@@ -141,6 +147,7 @@ def link_notebook(app: Any, doctree: nodes.document) -> None:
 
 def setup(app: Any) -> None:
     """Register the renderer and the treatment of docstrings."""
+    app.connect("autodoc-process-docstring", complete_examples, priority=100)
     app.connect("autodoc-process-docstring", keep_bars, priority=900)
     app.connect("doctree-read", refuse_apostrophes)
     app.connect("build-finished", check_links)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import ast
 import codeop
 import doctest
+import importlib
 import inspect
 import re
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from IPython.core.inputtransformer2 import TransformerManager
 
-from tests.test_docs import PACKAGE, blocks, pages_with, read
+from tests.test_docs import DOCS, PACKAGE, blocks, pages_with, public_names, read
 
 PROMPT = ast.literal_eval(
     re.findall(r'^copybutton_prompt_text = (r".*")$', read("docs", "conf.py"), flags=re.MULTILINE)[0]
@@ -124,3 +126,35 @@ def test_empty_lines_end_statements_when_they_are_copied() -> None:
         """
     )
     assert copied(block) == "for k in range(2):\n    print(k)\n\nk"
+
+
+@pytest.fixture
+def example_imports(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.syspath_prepend(str(DOCS))
+    return importlib.import_module("example_imports")
+
+
+def test_examples_of_public_names_have_their_imports_on_the_pages(example_imports: Any) -> None:
+    import liehom as lh
+
+    for name in public_names():
+        thing = getattr(lh, name)
+        lines = (inspect.getdoc(thing) or "").split("\n")
+        example_imports.complete(lines, thing)
+        assert example_imports.undefined("\n".join(code_of("\n".join(lines)))) == set(), name
+
+
+def test_an_example_with_its_imports_runs_alone(example_imports: Any) -> None:
+    import liehom as lh
+
+    for thing in (lh.errors.displayed, lh.decide_fullness, lh.algebra.RootSystem.dominant, lh.LieAlgebra.is_isomorphic):
+        lines = (inspect.getdoc(thing) or "").split("\n")
+        example_imports.complete(lines, thing)
+        assert sum(line.startswith(">>> ") for line in lines) > 1
+        exec("\n".join(code_of("\n".join(lines))), {})
+
+
+def test_a_name_that_a_program_lacks_is_found(example_imports: Any) -> None:
+    assert example_imports.undefined("import numpy as np\nx = np.ones(3) + eye") == {"eye"}
+    assert example_imports.undefined("def f(x: Any) -> None:\n    return x\n") == {"Any"}
+    assert example_imports.undefined("try:\n    pass\nexcept ValueError as error:\n    print(error)") == set()
