@@ -83,6 +83,7 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     >>> save_solution(lh.integrators.integrate(field, (0, 1), [1.0, 0.0], dt=0.25), path)
     >>> with np.load(path) as file:
     ...     print(file["t"].shape, file["y"].shape, json.loads(str(file["report"]))["n_steps"])
+    ...
     (5,) (2, 5) 4
     >>> lh.Solution.load(path).n_steps
     4
