@@ -12,7 +12,7 @@ from typing import Any
 from docutils import nodes
 from docutils.utils.math import MathError
 from sphinx import addnodes
-from sphinx.util import logging
+from sphinx.util import inspect, logging
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]  # the pages document this tree, whatever is installed
@@ -58,6 +58,7 @@ autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
 # names, not the unions of half a page behind them
 autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike", **api_pages.type_aliases()}
+inspect.TypeAliasForwardRef.__repr__ = lambda self: self.name  # type: ignore[method-assign]  # inside unions and tuples
 python_use_unqualified_type_names = True
 napoleon_use_ivar = True  # an attribute described in a section is not described a second time
 napoleon_use_rtype = False
@@ -165,14 +166,7 @@ def setup(app: Any) -> None:
         if what in ("class", "exception"):
             lines += api_pages.members(*name.rsplit(".", 1), escaped)
 
-    def name_types(
-        app: Any, what: str, name: str, thing: Any, options: Any, *parts: str | None
-    ) -> tuple[str | None, ...]:
-        """Sphinx writes the type StepLike in a union as TypeAliasForwardRef('...StepLike')."""
-        return tuple(part and re.sub(r"TypeAliasForwardRef\('([\w.]+)'\)", r"\1", part) for part in parts)
-
     app.connect("source-read", expand)
-    app.connect("autodoc-process-signature", name_types)
     app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)

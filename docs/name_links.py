@@ -92,7 +92,7 @@ class Linker:
         """In the type of a parameter, such as "array of shape (N,)", only types are links, not names of methods."""
         entry = reference.get("refuri", "").rpartition("#")[2] or reference.get("refid", "")
         kind = self.places[entry].objtype if entry in self.places else "class"
-        if isinstance(reference[0], addnodes.literal_emphasis) and kind not in ("class", "exception", "data", "type"):
+        if isinstance(reference[0], nodes.emphasis) and kind not in ("class", "exception", "data", "type"):
             reference.replace_self(reference.children)
 
     def anchor(self, doctree: nodes.document) -> None:
