@@ -9,6 +9,7 @@ import typer
 from liehom.cli.guard import YES
 from liehom.cli.options import JsonOption, PairArgument, run
 from liehom.cli.terminal import completion
+from liehom.cli.terminal.steps import step
 
 if TYPE_CHECKING:
     from liehom.fullness import Verdict
@@ -55,7 +56,8 @@ def _show(text: str, output: str | None, certificate: str | None, opened: bool, 
     if output is not None:
         check_output(output, text, *([certificate] if certificate else []))
     given = _verdict(text, certificate)
-    verdict = decide_fullness(_pair(text)) if given is None else given
+    verdict = decide_fullness(_pair(text), progress=step) if given is None else given
+    step("page")
     file = Path(tempfile.mkdtemp(prefix="liehom-")) / "pair.html" if output is None else Path(output)
     size = len(pair_page(verdict, file).encode())
     if opened and not webbrowser.open(file.resolve().as_uri()):

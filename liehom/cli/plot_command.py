@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from liehom.errors import InputError, displayed
 
 if TYPE_CHECKING:
     from liehom.integrators import Solution
+    from liehom.io import Problem
 
 Call: TypeAlias = tuple[tuple[object, ...], dict[str, object]]
 """Arguments and named arguments of a function of `liehom.plotting`."""
@@ -26,6 +28,8 @@ Call: TypeAlias = tuple[tuple[object, ...], dict[str, object]]
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
 """Tolerances of the runs in a diagram of work and precision."""
 SIZE = re.compile(r"([0-9]+(?:\.[0-9]+)?)x([0-9]+(?:\.[0-9]+)?)", re.ASCII)
+MOVING = (".gif", ".html")
+"""Suffixes of moving pictures."""
 LARGEST = 50.0
 """Largest width and height of a picture, in inches."""
 
@@ -91,17 +95,26 @@ def _work_precision(file: str, methods: list[str]) -> Call:
     return (table,), {}
 
 
+def _quadric(file: str) -> Call:
+    from liehom.cli.problem_options import ProblemOptions, problem_of
+
+    problem = problem_of(file, ProblemOptions())
+    return (problem.representation, _integrated(problem)), {}
+
+
 def solution_argument(text: str) -> Solution:
     """Solution in an .npz file, or of the problem in a representation file, which is integrated."""
-    import numpy as np
-
     from liehom.cli.problem_options import ProblemOptions, problem_of
     from liehom.integrators import Solution
+
+    return Solution.load(text) if text.endswith(".npz") else _integrated(problem_of(text, ProblemOptions()))
+
+
+def _integrated(problem: Problem) -> Solution:
+    import numpy as np
+
     from liehom.integrators.propagator import without_order_warning
 
-    if text.endswith(".npz"):
-        return Solution.load(text)
-    problem = problem_of(text, ProblemOptions())
     step("integrating")
     with np.errstate(all="ignore"), without_order_warning():
         return problem.integrate(progress=lambda done: rename_step(f"integrating, {done:.0%} of the time span"))
@@ -116,7 +129,16 @@ PROBLEM = Annotated[
         autocompletion=completion.files(".json", ".npz"),
     ),
 ]
+FILE = Annotated[
+    str,
+    typer.Argument(
+        metavar="FILE",
+        help="Representation file with a problem, or - for one on standard input.",
+        autocompletion=completion.files(".json"),
+    ),
+]
 INTEGRAL = Annotated[str, typer.Argument(metavar="INTEGRAL", help="First integral, e.g. 'm0**2 + m1**2/2'.")]
+ENERGY = Annotated[str, typer.Argument(metavar="ENERGY", help="Energy, e.g. 'm0**2/2 + m1**2/4 + m2**2/6'.")]
 METHODS = Annotated[
     list[str],
     typer.Argument(
@@ -165,11 +187,19 @@ class Kind:
     read: Callable[..., Call]
     shows: str
     example: str
+    moving: str = ""
+    """The function that draws a moving picture, into a file that ends in .gif or .html."""
 
 
 RIGID = "examples/rigid_body.json"
 KINDS = (
-    Kind("trajectory", "plot_trajectory", (PROBLEM,), _solution, "the trajectory of a problem or a solution", RIGID),
+    Kind("trajectory", "plot_trajectory", (PROBLEM,), _solution, "the trajectory of a problem or a solution", RIGID,
+         "animate_trajectory"),
+    Kind("quadric", "plot_quadric", (FILE,), _quadric, "the quadric in space on which a trajectory is", RIGID),
+    Kind("spectrum", "plot_spectrum", (PROBLEM,), _solution,
+         "the eigenvalues of a trajectory of symmetric matrices over time", "examples/sym3_generic.json"),
+    Kind("phase-portrait", "plot_phase_portrait", (ENERGY,), _text,
+         "the phase portrait on the sphere of an energy", '"m0**2/2 + m1**2/4 + m2**2/6"'),
     Kind("energy-drift", "plot_energy_drift", (PROBLEM, INTEGRAL), _energy_drift,
          "the error of a first integral over time", f'{RIGID} "m0**2/2 + m1**2/4 + m2**2/6"'),
     Kind("work-precision", "plot_work_precision", (PROBLEM, METHODS), _work_precision,
@@ -190,7 +220,14 @@ KINDS = (
 """All pictures; one more is one more line."""
 
 OUTPUT = Annotated[
-    str, typer.Option("--output", "--out", "-o", metavar="OUT", help="File to write: .png, .svg or .pdf.")
+    str,
+    typer.Option(
+        "--output",
+        "--out",
+        "-o",
+        metavar="OUT",
+        help="File to write: .png, .svg or .pdf; for trajectories also .gif or .html.",
+    ),
 ]
 DARK = Annotated[bool, typer.Option("--dark", help="Draw light lines on a dark background.")]
 SIZED = Annotated[
@@ -221,22 +258,32 @@ def declared(kind: Kind) -> Callable[..., None]:
 def run_plot(kind: Kind, words: list[object], output: str, dark: bool, size: str | None) -> int:
     """Draw a picture and write it; returns the exit code."""
     from liehom import plotting
-    from liehom.cli.problem_options import check_plot_file
+    from liehom.cli.problem_options import PLOT_SUFFIXES, check_plot_file
     from liehom.plotting.canvas import finished, style
 
-    check_plot_file(output)
+    moves = bool(kind.moving) and os.path.splitext(output)[1].lower() in MOVING
+    check_plot_file(output, (*PLOT_SUFFIXES, *MOVING) if kind.moving else PLOT_SUFFIXES)
+    if moves and size is not None:
+        raise InputError("--size is for .png, .svg and .pdf files; moving pictures have one size")
     inches = None if size is None else inches_of(size)
     arguments, named = kind.read(*words)
     step("drawing")
     with style(dark=dark):
-        drawn = getattr(plotting, kind.function)(*arguments, **named)
-        figure = getattr(drawn, "figure", drawn)
-        if inches is not None:
-            figure.set_size_inches(*inches)
-        finished(figure, output)
+        if moves:
+            getattr(plotting, kind.moving)(*arguments, output, **named, progress=_drawing)
+        else:
+            drawn = getattr(plotting, kind.function)(*arguments, **named)
+            figure = getattr(drawn, "figure", drawn)
+            if inches is not None:
+                figure.set_size_inches(*inches)
+            finished(figure, output)
     step("")
     print(f"plot: {output}")
     return YES
+
+
+def _drawing(done: float) -> None:
+    rename_step(f"drawing, {done:.0%} of the frames")
 
 
 def inches_of(size: str) -> tuple[float, float]:

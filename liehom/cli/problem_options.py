@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from types import MappingProxyType
@@ -89,7 +89,7 @@ def problem_of(file: str, given: ProblemOptions) -> Problem:
     return made
 
 
-def check_plot_file(path: str | None) -> None:
+def check_plot_file(path: str | None, suffixes: Sequence[str] = PLOT_SUFFIXES) -> None:
     """Raise an error if a plot cannot be drawn or written; called before the work.
 
     Raises
@@ -97,12 +97,12 @@ def check_plot_file(path: str | None) -> None:
     InputError
         If matplotlib is not installed; names the extra that installs it.
     FormatError
-        If the folder does not exist, or the name does not end in .png, .pdf or .svg.
+        If the folder does not exist, or the name does not end in one of the suffixes.
     """
     if path is None:
         return
-    if os.path.splitext(path)[1].lower() not in PLOT_SUFFIXES:
-        raise FormatError(f"{path!r} is not the name of a plot: it must end in {', '.join(PLOT_SUFFIXES)}")
+    if os.path.splitext(path)[1].lower() not in suffixes:
+        raise FormatError(f"{path!r} is not the name of a plot: it must end in {', '.join(suffixes)}")
     check_target(path, force=True)
     if not can_plot():
         raise InputError("plots need matplotlib: install it with  pip install 'liehom[plot]'")

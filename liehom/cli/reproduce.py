@@ -12,6 +12,7 @@ import typer
 
 from liehom.cli.guard import NO, YES
 from liehom.cli.options import JsonOption, run
+from liehom.cli.terminal import completion
 from liehom.cli.terminal.steps import step
 
 if TYPE_CHECKING:
@@ -35,7 +36,14 @@ class Wanted:
 
 
 def reproduce(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Figure: fig1, ..., fig7, separatrix, or all.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME",
+            help="Figure: fig1, ..., fig7, separatrix, or all.",
+            autocompletion=completion.words(*completion.FIGURES),
+        ),
+    ],
     out: Annotated[
         str | None, typer.Option(metavar="DIR", help="Folder for tables and plots (default: print the tables).")
     ] = None,
@@ -55,7 +63,10 @@ def reproduce(
     ] = None,
     json: JsonOption = False,
 ) -> None:
-    """Reproduce figures of the paper: tables, plots, claims.  Exit code 0: all claims hold, 1: one does not."""
+    """Reproduce figures of the paper: tables, plots, claims.
+
+    The exit code is 0 if all claims hold, and 1 if one does not.
+    """
     run(lambda: run_reproduce(name, Wanted(out, format_, dark, resume, quick, seed, json)))
 
 

@@ -31,6 +31,8 @@ from liehom.typing import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+TITLE_INCHES = 0.09
+"""Width of a character of a title, at most on average."""
 Strip: TypeAlias = tuple[float, float, float, int]
 """Center, width and basis element of the part of a cell that shows one term of a bracket."""
 
@@ -279,7 +281,8 @@ def _draw_diagram(
     width, height = high - low
     unit = min(0.62, MAX_WIDTH / (width + 1.4))
     if ax is None:
-        ax = new_figure(max(unit * (width + 1.4), 3.6), unit * (height + 1.5) + (0.75 if full else 0.4)).add_subplot()
+        across = max(unit * (width + 1.4), 3.6, TITLE_INCHES * len(title))
+        ax = new_figure(across, unit * (height + 1.5) + (0.75 if full else 0.4)).add_subplot(anchor="W")
     ink = current_colours()[6]
     for i, row in enumerate(cartan):
         for j in range(i):

@@ -58,6 +58,24 @@ def test_the_suffix_decides_the_format(suffix: str, begins: bytes) -> None:
     assert Path(f"g2.{suffix}").read_bytes().startswith(begins)
 
 
+def test_trajectories_move_in_a_gif(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+
+    def animated(solution: lh.Solution, path: str, **named: Any) -> None:
+        calls.append(solution.y.shape)
+        named["progress"](0.5)
+        Path(path).write_bytes(b"GIF89a")
+
+    monkeypatch.setattr(lh.plotting, "animate_trajectory", animated)
+    assert liehom("plot", "trajectory", "examples/rigid_body.json", "-o", "orbit.gif").exit_code == 0
+    assert len(calls) == 1
+    sized = liehom("plot", "trajectory", "examples/rigid_body.json", "-o", "orbit.html", "--size", "2x2")
+    assert (sized.exit_code, sized.stdout) == (2, "")
+    assert "--size" in sized.stderr
+    assert liehom("plot", "dynkin", "G2", "-o", "g2.gif").exit_code == 2
+    assert os.listdir(".") == ["orbit.gif"]
+
+
 def test_dark_pictures_and_sizes() -> None:
     assert liehom("plot", "dynkin", "G2", "-o", "light.png", "--size", "4x2").exit_code == 0
     assert liehom("plot", "dynkin", "G2", "-o", "dark.png", "--size", "2x3", "--dark").exit_code == 0

@@ -8,6 +8,7 @@ import liehom as lh
 pytest.importorskip("matplotlib")
 
 from matplotlib.colors import to_hex
+from matplotlib.text import Text
 
 from liehom.plotting import plot_bracket_table, plot_dynkin, plot_satake, plot_vogan
 from liehom.plotting.canvas import COLOURS, new_figure
@@ -168,3 +169,12 @@ def test_bracket_tables_use_given_axes_and_refuse_other_input():
     for wrong in ("so(3)", lh.LieAlgebra({}, dimension=0), lh.so(12)):
         with pytest.raises(lh.InputError, match="dimension 1 to 60"):
             plot_bracket_table(wrong)
+
+
+def test_titles_of_narrow_diagrams_are_not_cut() -> None:
+    for form in ("su(3,2)", "sp(4,R)", "e6(-26)"):
+        ax = plot_satake(form)
+        ax.figure.draw_without_rendering()  # type: ignore[union-attr]
+        named = [artist for artist in ax.get_children() if isinstance(artist, Text) and form in artist.get_text()]
+        assert len(named) == 1
+        assert named[0].get_window_extent().x1 <= ax.figure.bbox.x1

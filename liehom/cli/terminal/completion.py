@@ -33,6 +33,7 @@ BASES = ("euler", "heun", "rk4", "cg3", "cf4", "gauss2", "lietaylor")
 EXPONENTIALS = ("exp", "cayley", "expm", "series", "rodrigues")
 CLOCKS = ("corrected", "nominal")
 ENGINES = ("numpy", "llvm", "jax")
+FIGURES = (*(f"fig{number}" for number in range(1, 8)), "separatrix", "all")
 SHELLS = ("bash", "zsh", "fish")
 
 

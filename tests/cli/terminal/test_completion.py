@@ -16,6 +16,7 @@ from liehom.cli.app import app
 from liehom.cli.terminal import completion
 from liehom.homogeneous import exponential_of
 from liehom.integrators import step_named
+from liehom.paper import NAMES
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -133,6 +134,7 @@ def test_completion_is_quick_and_imports_no_mathematics(shell_environment: dict[
 
 def test_the_words_are_those_of_the_library() -> None:
     assert completion.pair_names() == list(lh.catalog.pair_names())
+    assert set(completion.FIGURES) == {*NAMES, "all"}
     for name in completion.BASES:
         assert step_named(name) is not None
     for name in completion.EXPONENTIALS:
