@@ -129,7 +129,8 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
         '* The other columns are the cost of the steps. For a program with "included" in the column "call" they '
         "contain the cost of the call too. A dash means that no tested setting reaches the error.",
         *([earlier] if older else []),
-        "* Of a program with several methods each cell shows the cheapest one, which the next row names:",
+        "* Of a program with several methods each cell shows the cheapest one. The next row names it, or the first "
+        "column if it is the same in all cells:",
         "",
         *table(["name", "method"], ((SHORT.get(label, label), text) for label, text in EXPLAINED.items())),
         "The other programs run as follows:",
