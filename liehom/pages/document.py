@@ -10,8 +10,16 @@ from pathlib import Path
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.names import linear_combination
 from liehom.disk import check_target, write_atomically
-from liehom.errors import FormatError, InputError, UndecidedError, displayed
-from liehom.fullness import Full, NotFull, NumericallyFull, NumericallyNotFull, NumericallyUndecided, decide_fullness
+from liehom.errors import FormatError, InputError, LiehomError, displayed
+from liehom.fullness import (
+    Full,
+    NotFull,
+    NumericallyFull,
+    NumericallyNotFull,
+    NumericallyUndecided,
+    decide_fullness,
+    failure_report,
+)
 from liehom.fullness.verdict import Verdict
 from liehom.io import to_json
 from liehom.io.html_format import card_of
@@ -194,8 +202,11 @@ def _failures(verdict: Verdict) -> str:
     if pair.algebra.dimension > MAX_DESCRIBED:
         words = f"Not computed here, because dim g is above {MAX_DESCRIBED}; call verdict.where_it_fails() for it."
         return _section("failures", paragraph(words))
-    report = verdict.where_it_fails() if isinstance(verdict, NotFull) else None
-    if report is None or report.generic.holds is False:
+    try:
+        report = failure_report(pair, verdict.certificate)
+    except LiehomError as undecided:
+        return _section("failures", paragraph(f"Not computed: {undecided}"))
+    if report.generic.holds is False:
         return _section("failures", paragraph("Everywhere: (6.3) holds for no ψ outside h."))
     head = "(6.3) holds for generic ψ, and fails on a cone in g/h. In the coordinates x of g/h it contains:"
     if report.generic.holds is None:
@@ -215,18 +226,18 @@ def _failures(verdict: Verdict) -> str:
 
 # -- the pair ------------------------------------------------------------------------------------------------
 def _structure(pair: Pair) -> str:
-    blocks = []
+    blocks, parts = [], {}
     for name, part in (("g", pair.algebra), ("h", pair.subalgebra)):
         if part.dimension > MAX_DESCRIBED:
             words = f"{name} has dimension {part.dimension}; structure is described here up to {MAX_DESCRIBED}. "
             blocks.append(paragraph(words + "The command `liehom describe` has no such limit."))
             continue
+        parts[name] = part if isinstance(part, LieAlgebra) else part.as_algebra()
         try:
-            algebra = part if isinstance(part, LieAlgebra) else part.as_algebra()
-            blocks.append(code_block(f"{name}: {algebra.describe()}"))
-        except UndecidedError as undecided:
+            blocks.append(code_block(f"{name}: {parts[name].describe()}"))
+        except LiehomError as undecided:
             blocks.append(paragraph(f"The structure of {name} is not described: {undecided}"))
-    return _section("structure", *blocks, diagrams(pair, MAX_DESCRIBED))
+    return _section("structure", *blocks, diagrams(parts))
 
 
 def _isotropy(pair: Pair) -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -53,40 +52,42 @@ def bracket_picture(algebra: LieAlgebra) -> str:
     return picture(lambda: plot_bracket_table(algebra), "pattern", caption)
 
 
-def diagrams(pair: Pair, most: int) -> str:
-    """Satake diagrams of the simple factors of g and h, or why there are none."""
-    found, absent = Counter[str](), []
-    for name, part in (("g", pair.algebra), ("h", pair.subalgebra)):
-        if not 0 < part.dimension <= most:
+def diagrams(parts: Mapping[str, LieAlgebra]) -> str:
+    """Satake diagrams of the simple factors of algebras, or why there are none."""
+    found: dict[str, list[str]] = {}
+    absent = []
+    for name, algebra in parts.items():
+        if not algebra.dimension:
             continue
         try:
-            algebra = part if isinstance(part, LieAlgebra) else part.as_algebra()
             levi = algebra.levi_decomposition().levi.as_algebra()
             forms = [form.name for form in levi.real_forms()] if levi.dimension else []
         except LiehomError as unknown:  # floats, or real forms that are not decided
             absent.append(f"No Satake diagram of {name}: {unknown}.")
             continue
-        found.update(dict.fromkeys(forms, 0))
-        found.update(forms)
+        for form in forms:
+            found.setdefault(form, []).append(name)
         if not forms:
             absent.append(f"{name} is solvable, so it has no Satake diagram.")
     drawn = [
-        picture(lambda form=form: plot_satake(form), f"satake{i}", _satake_caption(form))  # type: ignore[misc]
-        for i, form in enumerate(list(found)[:MOST_DIAGRAMS])
+        picture(lambda form=form: plot_satake(form), f"satake{i}", _satake_caption(form, names))  # type: ignore[misc]
+        for i, (form, names) in enumerate(list(found.items())[:MOST_DIAGRAMS])
     ]
     if len(found) > MOST_DIAGRAMS:
         absent.append(f"The first {MOST_DIAGRAMS} of {len(found)} Satake diagrams are drawn.")
     return f'<div class="diagrams">{"".join(drawn)}</div>' + "".join(paragraph(words, "note") for words in absent)
 
 
-def _satake_caption(name: str) -> str:
+def _satake_caption(name: str, inside: Sequence[str]) -> str:
     satake = RealForm.of_name(name).satake
+    times = {part: f" ({inside.count(part)} times)" if inside.count(part) > 1 else "" for part in dict.fromkeys(inside)}
+    factor = " and ".join(part + often for part, often in times.items())
     black = f"{len(satake.black)} black" if satake.black else "no black nodes"
     arrows = f", {len(satake.arrows)} arrow{'s' if len(satake.arrows) > 1 else ''}" if satake.arrows else ""
     split = (
         f"restricted roots {satake.restricted_type}, real rank {satake.real_rank}" if satake.real_rank else "compact"
     )
-    return f"Satake diagram of {name}: type {satake.type}, {black}{arrows}; {split}"
+    return f"Satake diagram of {name}, a simple factor of {factor}: type {satake.type}, {black}{arrows}; {split}"
 
 
 def cone_picture(pair: Pair, report: FailureReport) -> str:

@@ -110,7 +110,9 @@ def _curves(part: FailureSet, size: int) -> Iterator[Array]:
     data = part.data
     if isinstance(data, RelativeInvariant):
         for factor in data.factors:
-            yield from _zeros([(np.array([int(x) for x in e]), float(c)) for e, c in factor.to_dict().items()], size)
+            terms = factor.to_dict()
+            largest = max(map(abs, terms.values()))  # its size does not matter, and may be too large for floats
+            yield from _zeros([(np.array([int(x) for x in e]), float(c / largest)) for e, c in terms.items()], size)
         return
     rows = data if isinstance(data, np.ndarray) else _floats(data)
     if part.kind == "null cone":
@@ -127,7 +129,10 @@ def _in_subspace(basis: Array) -> Array:
 
 
 def _floats(matrix: Matrix) -> Array:
-    return np.array([[matrix.field.to_float(x) for x in matrix.row(i)] for i in range(matrix.nrows)])
+    """The rows as floats, each up to a factor; a symmetric matrix up to one factor."""
+    symmetric = matrix.nrows == matrix.ncols
+    rows = [matrix] if symmetric else [matrix.select(rows=[i]) for i in range(matrix.nrows)]
+    return np.concatenate([(part / max(map(abs, part.entries()))).to_numpy() for part in rows])
 
 
 def _zeros(terms: Sequence[Term], size: int) -> Iterator[Array]:

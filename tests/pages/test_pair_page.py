@@ -239,6 +239,16 @@ def test_a_certificate_that_fails_makes_no_page(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_numbers_beyond_floats_have_a_page() -> None:
+    pair = lh.pair("affine(field(1,1,1,1))")
+    scales = [[10**400 if i == j and i % 2 else int(i == j) for j in range(8)] for i in range(8)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, "matplotlib_module", no_matplotlib)
+        page = Balance(lh.pair_page(pair.change_of_basis(scales)))
+    assert "Rounded eigenvalues: too large for floats." in page.text
+    assert "An exact count, with multiplicity: 2 of 4." in page.text
+
+
 # -- pictures ------------------------------------------------------------------------------------------------
 def test_the_points_of_the_cone_are_on_it() -> None:
     curves = json.loads(read("null cone in space").scripts[0])
@@ -262,6 +272,19 @@ def test_pictures_are_there_in_both_colours_with_a_caption() -> None:
 def test_without_matplotlib_a_sentence_stands_in_the_place_of_pictures(name: str) -> None:
     assert "<svg" not in page_of(name)
     assert "No picture: when this page was written, plots need matplotlib" in read(name).text
+
+
+def test_a_limit_leaves_the_verdict_and_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
+    def limited(*args: object) -> object:
+        raise lh.errors.LimitError("seconds", 2, 1, "this takes longer")
+
+    monkeypatch.setattr(pictures, "matplotlib_module", no_matplotlib)
+    monkeypatch.setattr(document, "failure_report", limited)
+    monkeypatch.setattr(lh.LieAlgebra, "describe", limited)
+    page = Balance(lh.pair_page(verdict_of("lines in the plane")))
+    assert "Not computed: this takes longer" in page.text
+    assert "The structure of h is not described: this takes longer" in page.text
+    assert "φ also vanishes on [h, η]" in page.text
 
 
 def test_where_the_condition_fails() -> None:

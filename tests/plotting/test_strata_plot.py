@@ -9,6 +9,7 @@ pytest.importorskip("matplotlib")
 
 from liehom.plotting import plot_eigenvalues, plot_failure_cone, plot_weyl_chamber
 from liehom.plotting.canvas import new_figure
+from liehom.plotting.strata_plot import failure_curves
 
 
 @pytest.mark.parametrize(
@@ -77,3 +78,25 @@ def test_the_chamber_has_the_angle_of_the_root_system(kind, angle):
     assert np.degrees(np.arccos(cosine)) == pytest.approx(angle)
     with pytest.raises(lh.InputError, match="rank 3"):
         plot_weyl_chamber("A3")
+
+
+@pytest.mark.parametrize("name", ["so(3,1)/so(2,1)", "affine(form(1,1,-3))", "sl(3)/B", "sl(2)/so(1,1)"])
+def test_the_cone_is_drawn_if_its_numbers_are_beyond_floats(name):
+    """A basis scaled by one factor of 400 digits changes only the size of the form, not its zeros."""
+    pair, other = lh.pair(name), lh.pair(name)
+    n = pair.algebra.dimension
+    other = pair.change_of_basis([[10**400 if i == j else 0 for j in range(n)] for i in range(n)])
+    first, second = (failure_curves(lh.failure_report(p), p.dimension) for p in (pair, other))
+    assert len(first) == len(second) > 0
+    for x, y in zip(first, second, strict=True):
+        np.testing.assert_allclose(x, y, atol=1e-9)
+
+
+def test_a_semidefinite_form_is_drawn_as_its_kernel():
+    """Of (x0^2 + x1^2) x2 the first factor changes no sign: its zeros are the axis, those of the second a plane."""
+    report = lh.failure_report(lh.pair("affine(blocks(so(2),gl(1)))"))
+    assert [part.kind for part in report.parts] == ["hypersurface", "subspace", "subspace"]
+    axis, circle, plane, line = failure_curves(report, 3)
+    assert axis.shape == line.shape == (3, 1)
+    np.testing.assert_allclose(abs(axis[:, 0]), [0, 0, 1], atol=1e-12)
+    assert abs(circle[2]).max() < 1e-12 > abs(plane[2]).max()

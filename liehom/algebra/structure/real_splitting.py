@@ -14,7 +14,7 @@ import itertools
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import gcd, lcm
+from math import gcd, lcm, log
 from typing import Any, Literal, final
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
@@ -308,9 +308,8 @@ def _valuation(number: int, prime: int) -> int:
 
 
 def _height(f: Polynomial) -> float:
-    """The largest size of a coefficient over QQ, relative to its degree; 0 over other fields."""
+    """Logarithm of the largest size of a coefficient over QQ, relative to its degree; 0 over other fields."""
     if f.field.degree > 1:
         return 0
     rationals = map(QQ.convert, f.coefficients[:-1])
-    sizes: list[float] = [max(abs(int(c.p)), int(c.q)) ** (1 / (f.degree - i)) for i, c in enumerate(rationals)]
-    return max(sizes)
+    return max(log(max(abs(int(c.p)), int(c.q))) / (f.degree - i) for i, c in enumerate(rationals))

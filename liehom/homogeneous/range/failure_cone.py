@@ -121,7 +121,7 @@ def failure_cone(
     found += [_null_cone(pair, form) for form in forms]
     found += [_subspace(pair, rows) for rows in subspaces]
     if certificate is not None and certificate.kind in ("dominance", "commutant"):
-        found.append(_eigenspace(pair, certificate))
+        found += _eigenspace(pair, certificate)
     return found
 
 
@@ -176,8 +176,11 @@ def _subspace(pair: Pair, rows: MatrixLike) -> FailureSet:
     return FailureSet("subspace", f"an invariant subspace of dimension {m} of g/h", basis)
 
 
-def _eigenspace(pair: Pair, certificate: CertificateLike) -> FailureSet:
-    """The sum W of the generalized eigenspaces with real part above the cut, with a numerical basis."""
+def _eigenspace(pair: Pair, certificate: CertificateLike) -> list[FailureSet]:
+    """The sum W of the generalized eigenspaces with real part above the cut, with a numerical basis.
+
+    Nothing if the numbers are too large for floats.
+    """
     from scipy.linalg import schur
 
     d = pair.dimension
@@ -192,10 +195,12 @@ def _eigenspace(pair: Pair, certificate: CertificateLike) -> FailureSet:
         complement = certificate.matrix("complement", d, pair.algebra.dimension)
         frame = (complement @ pair.subalgebra.quotient().projection).to_numpy().T
         what = "the commuting matrix of the certificate"
+    if not (np.isfinite(operator).all() and np.isfinite(frame).all()):
+        return []
     *_, vectors, size = schur(operator, sort=lambda re, im: re > cut)
     basis = (frame @ vectors[:, :size]).T
     text = f"the sum of the eigenspaces of {what} with real part above {cut:g}, of dimension {size} (basis numerical)"
-    return FailureSet("eigenspace", text, basis)
+    return [FailureSet("eigenspace", text, basis)]
 
 
 def _isotropy_of(pair: Pair, row: Matrix) -> Array:

@@ -36,6 +36,13 @@ def test_roots_do_not_depend_on_the_size_of_the_entries(digits: int) -> None:
     assert algebra.real_form() == "so(3) + sl(2,R)"
 
 
+def test_real_forms_do_not_depend_on_numbers_beyond_floats() -> None:
+    """A minimal polynomial of the centroid has coefficients of 400 digits."""
+    algebra = lh.so(3, 1)
+    scales = QQ.matrix([[10**400 * (i % 2) + (i + 1) % 2 if i == j else 0 for j in range(6)] for i in range(6)])
+    assert algebra.change_of_basis(scales).real_form() == "sl(2,C)"
+
+
 @pytest.mark.parametrize(("a", "b", "kind"), [(2, 2, "A1 + A1"), pytest.param(4, 3, "A2 + A3", marks=pytest.mark.slow)])
 def test_roots_of_the_levi_factor_of_a_scrambled_parabolic_subalgebra(a: int, b: int, kind: str) -> None:
     levi = scrambled(parabolic(a, b), 1, seed=0).levi_decomposition().levi
