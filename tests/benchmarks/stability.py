@@ -18,7 +18,7 @@ import numpy as np
 
 import liehom as lh
 from liehom.integrators import amplification
-from liehom.plotting.canvas import COLOURS, DARK_COLOURS, matplotlib_module, style
+from liehom.plotting.canvas import COLOURS, DARK_COLOURS, DASHES, new_figure, style
 
 MARKERS = ("<!-- stability: begin -->", "<!-- stability: end -->")
 GRID = np.array([0.2, 0.4, 0.6, 0.8, *np.arange(1, 2.05, 0.1), *np.arange(2.5, 6, 0.5), 8, 10, 30, 100, 1000])
@@ -144,24 +144,24 @@ def regions() -> list[tuple[str, list[tuple[str, Any]]]]:
 
 def draw(found: list[tuple[str, list[tuple[str, Any]]]], folder: Path) -> None:
     """stability_light.svg and stability_dark.svg: the boundaries of the regions where deviations do not grow."""
-    pyplot = matplotlib_module("figure")
     x = np.linspace(EXTENT[0], EXTENT[1], RESOLUTION)
     y = np.linspace(EXTENT[2], EXTENT[3], 2 * (RESOLUTION // 2) + 1)
     for kind, colours in (("light", COLOURS), ("dark", DARK_COLOURS)):
         with style(dark=kind == "dark"):
-            figure = pyplot.Figure(figsize=(9.5, 4.0), layout="constrained")
+            figure = new_figure(5.6, 8.4)
             figure.patch.set_alpha(0.0)
-            for axes, (title, maps) in zip(figure.subplots(1, len(found), sharey=True), found, strict=True):
-                for colour, (name, values) in zip(colours, maps, strict=False):
+            panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
+            for axes, (title, maps) in zip(panels, found, strict=True):
+                for colour, dashes, (name, values) in zip(colours, DASHES, maps, strict=False):
                     factor = np.minimum(np.nan_to_num(values, nan=2.0), 2.0)
-                    axes.contour(x, y, factor, levels=[1 + 1e-6], colors=[colour], linewidths=1.4)
-                    axes.plot([], [], color=colour, label=name)
+                    axes.contour(x, y, factor, levels=[1 + 1e-6], colors=[colour], linewidths=1.4, linestyles=[dashes])
+                    axes.plot([], [], dashes, color=colour, label=name)
                 axes.axhline(0, linewidth=0.5, color="#888888")
                 axes.axvline(0, linewidth=0.5, color="#888888")
-                axes.set_title(title, fontsize=9)
-                axes.set_xlabel("Re λ dt")
-                axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=1, fontsize=8)
-            figure.axes[0].set_ylabel("Im λ dt")
+                axes.set_title(title)
+                axes.set_ylabel("Im λ dt")
+                axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=10)
+            panels[-1].set_xlabel("Re λ dt")
             figure.savefig(folder / f"stability_{kind}.svg", metadata={"Date": None})
 
 
