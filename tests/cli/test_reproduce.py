@@ -105,7 +105,7 @@ def test_resume_computes_only_what_is_missing(tmp_path: Path, monkeypatch: pytes
 @pytest.mark.skipif(os.name != "posix", reason="another system sends no SIGINT to a process")
 def test_an_interrupted_reproduction_leaves_complete_figures_and_says_which(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    words = [sys.executable, "-m", "liehom", "reproduce", "all", "--format", "none", "--out", str(out)]
+    words = [sys.executable, "-m", "liehom", "reproduce", "all", "--quick", "--format", "none", "--out", str(out)]
     with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         end = monotonic() + 60
         while not (out / "fig1.json").exists() and monotonic() < end:
@@ -121,7 +121,7 @@ def test_an_interrupted_reproduction_leaves_complete_figures_and_says_which(tmp_
     assert stderr == told + "\n"
     listed = [json.loads((out / f"{name}.json").read_text())["files"].keys() | {f"{name}.json"} for name in finished]
     assert {path.name for path in out.iterdir()} == set().union(*listed)
-    assert all(stored(out, name, {"quick": False, "seed": None}, ()) for name in finished)
+    assert all(stored(out, name, {"quick": True, "seed": None}, ()) for name in finished)
 
 
 def test_an_interruption_before_the_first_figure_leaves_no_folder(

@@ -6,7 +6,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from liehom.paper import Reproduction, Table
+from liehom.paper import Check, Reproduction, Table
 from liehom.plotting.canvas import new_figure
 
 
@@ -20,4 +20,6 @@ def small(name: str, **settings: Any) -> Reproduction:
     """A figure that costs nothing."""
     table = Table("t", ("a",), [(len(name),)])
     given = {"quick": False, "seed": None} | settings
-    return Reproduction(name, name, "none", {"": table}, draw=axes_only, settings=given)
+    return Reproduction(
+        name, name, "none", {"": table}, (Check("1 = 1", "1", True, "1 = 2"),), draw=axes_only, settings=given
+    )
