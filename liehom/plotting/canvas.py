@@ -100,8 +100,9 @@ def style(*, dark: bool = False) -> AbstractContextManager[None]:
 
     Examples
     --------
+    >>> import liehom as lh
     >>> with style(dark=True):  # doctest: +SKIP
-    ...     ax = plot_dynkin("E8")
+    ...     ax = lh.plotting.plot_dynkin("E8")
     """
     context: AbstractContextManager[None] = matplotlib_module("").rc_context({**STYLE, **(DARK if dark else {})})
     return context
