@@ -226,7 +226,7 @@ OUTPUT = Annotated[
         "--out",
         "-o",
         metavar="OUT",
-        help="File to write: .png, .svg or .pdf; for trajectories also .gif or .html.",
+        help="File to write (.png, .svg or .pdf, for trajectories also .gif or .html).",
     ),
 ]
 DARK = Annotated[bool, typer.Option("--dark", help="Draw light lines on a dark background.")]
