@@ -18,7 +18,7 @@ from liehom.cli import guard
 from liehom.cli.app import app
 from liehom.cli.terminal.help import Command, Group
 
-SLOW = ("plot", "reproduce", "atlas build", "atlas families", "demo", "integrate", "order")
+SLOW = ("plot", "show", "reproduce", "atlas build", "atlas families", "demo", "integrate", "order")
 """Commands whose examples are parsed here and not run: their own tests run them."""
 
 
