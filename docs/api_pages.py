@@ -298,8 +298,9 @@ class Writer:
         found = []
         for name in sorted(dir(importlib.import_module(module)), key=str.lower):
             thing = getattr(importlib.import_module(module), name)
-            if id(thing) in places or (isinstance(thing, type) and issubclass(thing, BaseException)):
-                home, _, last = places.get(id(thing), f"liehom.errors.{name}").rpartition(".")
+            place = f"liehom.errors.{name}" if isinstance(thing, type) and issubclass(thing, BaseException) else ""
+            home, _, last = places.get(id(thing), place).rpartition(".")
+            if last == name:
                 found.append((f":py:obj:`lh.{name} <{home}.{last}>`", summary(home, last)))
         return rst(table(found, self.escape))
 

@@ -166,7 +166,13 @@ def setup(app: Any) -> None:
         if what in ("class", "exception"):
             lines += api_pages.members(*name.rsplit(".", 1), escaped)
 
+    def keep_colon(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+        """Before napoleon, which takes the words before a colon in the first line of a property for its type."""
+        if what in ("attribute", "data", "property") and lines and ":" in lines[0]:
+            lines.insert(0, "")
+
     app.connect("source-read", expand)
+    app.connect("autodoc-process-docstring", keep_colon, priority=100)
     app.connect("autodoc-process-docstring", add_members, priority=950)
     app.connect("builder-inited", pictures.draw)
     app.connect("html-page-context", page_tree.Navigation(), priority=100)

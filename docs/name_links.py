@@ -97,17 +97,17 @@ class Linker:
 
     def anchor(self, doctree: nodes.document) -> None:
         """Rows of tables on the page of a package get the addresses that their entries had on this page."""
-        seen = {name for node in doctree.findall(nodes.Element) for name in node.get("ids", [])}
+        rows: dict[str, nodes.Element] = {}
         for table in doctree.findall(nodes.table):
-            if "api-names" not in table["classes"]:
-                continue
-            for row in table.findall(nodes.row):
-                link = next(iter(row.findall(nodes.reference)), None)
-                page, _, entry = link.get("refuri", "").rpartition("#") if link is not None else ("", "", "")
-                if page and entry in self.places:
-                    ids = [name for name in self.places if f"{name}.".startswith(f"{entry}.") and name not in seen]
-                    row[0]["ids"] += sorted(ids)
-                    seen.update(ids)
+            for row in table.findall(nodes.row) if "api-names" in table["classes"] else ():
+                for link in list(row.findall(nodes.reference))[:1]:
+                    page, _, entry = link.get("refuri", "").rpartition("#")
+                    if page and entry in self.places:
+                        rows.setdefault(entry, row[0])
+        seen = {name for node in doctree.findall(nodes.Element) for name in node.get("ids", [])}
+        for name in sorted(self.places.keys() - seen):
+            if cell := rows.get(name) or rows.get(name.rpartition(".")[0]):  # its own row, or that of its class
+                cell["ids"].append(name)
 
     def report(self, app: Any, exception: Exception | None) -> None:
         """Log how many names were linked."""

@@ -118,3 +118,6 @@ def test_blocks_are_written_out_with_links_and_summaries() -> None:
     for name in public_names():
         thing = resolve(f"liehom.{name}")
         assert inspect.ismodule(thing) or f":py:obj:`lh.{name} <" in top, name
+    assert len(re.findall(r":py:obj:`lh\.", top)) == sum(
+        not inspect.ismodule(resolve(f"liehom.{n}")) for n in public_names()
+    )
