@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # a run in the background has an ignored SIGINT, which the processes that tests interrupt would inherit
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     sampling.whole = config.getoption("--slow") or config.getoption("benchmark_enable", default=False)
     # deadline: the suite shares two cores, so a slow example says nothing about the code;
     # derandomize: a run is the same run everywhere, and a failure found once is found again

@@ -276,10 +276,8 @@ def test_interrupt_is_130(tmp_path: Path) -> None:
     """A pair given through a pipe that never ends keeps the command waiting until it is interrupted."""
     pipe = tmp_path / "pipe.json"
     os.mkfifo(pipe)
-    # a test run in the background inherits an ignored SIGINT, and so would the command
-    listening = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
     process = subprocess.Popen(
-        [sys.executable, "-c", f"{listening}; from liehom.cli import main; main()", "fullness", str(pipe)],
+        [sys.executable, "-m", "liehom", "fullness", str(pipe)],
         cwd=ROOT,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -194,8 +194,7 @@ def test_a_run_that_failed_may_go_on_with_more_steps(tmp_path: Path) -> None:
 
 
 PROGRAM = """
-import signal, sys, time
-signal.signal(signal.SIGINT, signal.default_int_handler)  # which a test run in the background has switched off
+import sys, time
 import numpy as np
 import liehom as lh
 slow = float(sys.argv[2])
