@@ -354,9 +354,21 @@ def __getattr__(name: str) -> Any:
     elif name in _LAYERS:
         value = importlib.import_module(f"liehom.{name}")
     else:
-        raise AttributeError(f"module 'liehom' has no attribute {name!r}")
+        raise AttributeError(f"module 'liehom' has no attribute {name!r}{_hint(name)}")
     globals()[name] = value
     return value
+
+
+def _hint(name: str) -> str:
+    """Where a name that is not here may be; nothing for the names with which tools look for protocols."""
+    from difflib import get_close_matches
+
+    if name.startswith("_"):
+        return ""
+    if name.startswith(("plot_", "animate_")):
+        return f"; pictures are in liehom.plotting: liehom.plotting.{name}"
+    near = get_close_matches(name, [*_HOME, *_LAYERS], n=1, cutoff=0.75)
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def __dir__() -> list[str]:

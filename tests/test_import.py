@@ -7,6 +7,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parent.parent
 
 LIMIT_SECONDS = 0.3
@@ -64,3 +66,20 @@ def test_lazy_names_are_those_that_type_checkers_see() -> None:
     assert seen == liehom._HOME
     assert all(getattr(liehom, name).__name__ for name in seen if name not in ("QQ", "RR"))
     assert set(seen) <= set(dir(liehom))
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("decide_fulness", "'; did you mean 'decide_fullness'?"),
+        ("plot_trajectory", "'; pictures are in liehom.plotting: liehom.plotting.plot_trajectory"),
+        ("_repr_html_", "'"),
+        ("nothing_like_it", "'"),
+    ],
+)
+def test_a_name_that_is_elsewhere_is_pointed_to(name: str, hint: str) -> None:
+    import liehom
+
+    with pytest.raises(AttributeError) as caught:
+        getattr(liehom, name)
+    assert str(caught.value) == f"module 'liehom' has no attribute '{name}{hint}"

@@ -25,7 +25,10 @@ from liehom.scalars import RR, Field, Scalar, common_field
 EXAMPLES = "examples/"
 STANDARD_INPUT = "-"
 """Argument that denotes the file on standard input."""
-PAIR_HINT = '`liehom catalog` lists names, and `liehom catalog "so(4)/so(3)"` prints a pair file'
+PAIR_HINT = (
+    '`liehom catalog` lists names, `liehom catalog "so(4)/so(3)"` prints a pair file, '
+    "and `liehom describe` takes an algebra"
+)
 OBJECT_HINT = '`liehom describe "so(4,1)"` and `liehom describe examples/sym3.json` are examples'
 PROBLEM_HINT = "examples/rigid_body.json and examples/sym3.json are files of this kind"
 _TYPE = re.compile(r"[A-G][0-9]{1,2}", re.ASCII)

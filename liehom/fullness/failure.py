@@ -24,7 +24,7 @@ UNKNOWN = "unknown: the report was written by liehom 0.1.0"
 
 
 @final
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class FailureReport(Displayed):
     """Whether the range condition holds for generic psi, and certified subsets of the cone on which it fails.
 
@@ -49,6 +49,9 @@ class FailureReport(Displayed):
         # 0.1.0 did not write what it had searched
         for name, value in zip(self.__dataclass_fields__, (*state[:2], *(state[2:] or ((), (UNKNOWN,)))), strict=True):
             object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        return f"<{self}>"
 
     def __str__(self) -> str:
         if self.generic.holds is False:

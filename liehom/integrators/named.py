@@ -140,6 +140,8 @@ def _unknown(base: str) -> InputError:
     names = step_names()
     near = get_close_matches(base.lower(), names, n=1)
     hint = f"did you mean {displayed(near[0])}? " if near else ""
+    if base.lower() in ("corrected", "conserving"):
+        hint = f"liehom.{base.capitalize()} takes a step and is given as an object; "
     shown = repr(base) if len(base) <= 60 else repr(base[:57] + "...")
     return InputError(f"no step is called {shown}; {hint}known: {', '.join(names)}")
 

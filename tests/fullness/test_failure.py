@@ -47,6 +47,12 @@ def test_the_invariant_subspace_outside_of_the_quadric_is_listed() -> None:
     assert report.searched == (HYPERSURFACES, SUBSPACES) and report.not_searched == (OTHERS,)
 
 
+def test_a_report_is_shown_as_the_sentence_that_it_prints() -> None:
+    report = lh.decide_fullness(lh.pair("so(3,1)/so(2,1)")).where_it_fails()
+    assert repr(report) == f"<{report}>"
+    assert "the zeros of x0^2 + x1^2 - x2^2" in repr(report) and "data=" not in repr(report)
+
+
 def test_the_report_denies_nothing_that_it_has_not_searched() -> None:
     report = lh.decide_fullness(lh.pair("so(3,1)/so(2,1)")).where_it_fails()
     assert report.searched == (HYPERSURFACES, NONE) and report.not_searched == (OTHERS,)

@@ -83,6 +83,8 @@ def test_unknown_names_list_the_known_ones(name: str) -> None:
 def test_a_near_name_is_suggested() -> None:
     with pytest.raises(InputError, match="did you mean 'euler'"):
         step_named("eulr")
+    with pytest.raises(InputError, match=r"liehom\.Corrected takes a step"):
+        step_named("corrected")
 
 
 @pytest.mark.parametrize("order", [0, -1, True, 2.0, "3", float("nan")])

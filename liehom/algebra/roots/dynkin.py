@@ -224,6 +224,8 @@ def _parse_simple(name: str) -> tuple[str, int]:
         letter, rank = match[1], small_integer(match[2])
         if _LOWEST_RANK[letter] <= rank <= _HIGHEST_RANK.get(letter, rank):
             return letter, rank
+    if name != name.upper() and re.fullmatch(r"[A-G][1-9][0-9]*", name.upper()):
+        raise CatalogError(f"{displayed(name)} is not the type of a simple Lie algebra: write {name.upper()!r}")
     known = "A1, A2, ...; B1, ...; C1, ...; D3, ...; E6, E7, E8, F4, G2"
     raise CatalogError(f"{displayed(name)} is not the type of a simple Lie algebra; known: {known}")
 

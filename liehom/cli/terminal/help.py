@@ -177,7 +177,8 @@ def _usage(error: _WrongUsage) -> str:
         return text
     command = error.ctx.command
     if isinstance(command, Group):
-        return f"{text}{' ' if text.endswith('?') else '; '}`{error.ctx.command_path} --help` lists the commands"
+        known = "" if text.endswith("?") else f"; known: {', '.join(command.list_commands(error.ctx))}; "
+        return f"{text}{known or ' '}`{error.ctx.command_path} --help` lists the commands"
     shown = (command.epilog or "").splitlines()[:1]
     more = f"`{error.ctx.command_path} --help` says more"
     return "; ".join([text, *(f"for example: `{line}`" for line in shown), more])

@@ -55,6 +55,11 @@ class Pair(Displayed, Immutable):
             raise InputError(
                 f"expected a LieAlgebra and a subalgebra of it, got {displayed(algebra)}; names go to liehom.pair"
             )
+        if isinstance(subalgebra, LieAlgebra):
+            raise InputError(
+                f"expected a subalgebra of the Lie algebra, got {displayed(subalgebra)}: how it lies in g is "
+                "not given; write Pair(g, rows) with rows that span it, or Pair(g, g.subalgebra(rows))"
+            )
         self.algebra: LieAlgebra = algebra
         self.subalgebra: Subalgebra = (
             subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)

@@ -184,6 +184,11 @@ def test_type_that_is_not_simple_raises_catalog_error(name: str) -> None:
         lh.simple(name)
 
 
+def test_a_type_in_small_letters_is_answered_by_its_spelling() -> None:
+    with pytest.raises(CatalogError, match="write 'E6'"):
+        lh.root_system("e6")
+
+
 def test_centralizers_of_one_element() -> None:
     """Another system answers 3 and 78; a root vector of E6 has a centraliser of dimension 78 - 22."""
     so3 = lh.so(3)

@@ -130,6 +130,8 @@ def test_a_group_without_arguments_shows_its_help() -> None:
         (("fullness",), ["missing argument 'PAIR'", 'for example: `liehom fullness "so(4)/so(3)"`']),
         (("fullness", "x", "--jsn"), ["--jsn", "fullness --help` says more"]),
         (("full-pairs", "x"), ["liehom full-pairs 3"]),
+        (("plot", "so(4)/so(3)"), ["known: trajectory, ", "failure-cone", "plot --help` lists the commands"]),
+        (("show", "so(4,1)"), ["`liehom describe` takes an algebra"]),
         (("atlas", "buil"), ["'build'", "atlas --help` lists the commands"]),
     ],
 )

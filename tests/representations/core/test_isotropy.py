@@ -264,3 +264,8 @@ def test_the_isotropy_representation_of_a_pair() -> None:
     assert (whole.size, whole.algebra.dimension) == (0, 3)
     flat = lh.Pair(lh.abelian(2), []).isotropy_representation()
     assert (flat.size, flat.algebra.dimension) == (2, 0)
+
+
+def test_an_algebra_that_is_not_inside_is_refused_as_a_subalgebra() -> None:
+    with pytest.raises(InputError, match=r"so\(3\).* how it lies in g is not given"):
+        lh.Pair(lh.su(3), lh.so(3))  # type: ignore[arg-type]
