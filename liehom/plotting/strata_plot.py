@@ -99,10 +99,10 @@ def failure_curves(report: FailureReport, dimension: int) -> list[Array]:
 def _title(pair: Pair, holds: bool | None, drawn: int) -> str:
     name = f"{plain(pair.name)}: " if pair.name else ""
     if holds is False:
-        return f"{name}(6.3) holds for no ψ"
+        return f"{name}range condition holds for no ψ"
     if decide_fullness(pair):
-        return f"{name}full, (6.3) fails at 0 only"
-    return name + ("(6.3) fails on this cone" if drawn else "(6.3) fails on a cone that is not drawn")
+        return f"{name}full, range condition fails at 0 only"
+    return name + f"range condition fails on {'this cone' if drawn else 'a cone that is not drawn'}"
 
 
 def _curves(part: FailureSet, size: int) -> Iterator[Array]:

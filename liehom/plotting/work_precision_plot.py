@@ -74,8 +74,9 @@ def plot_work_precision(
             parts = [[row for row in mine if (row.dt is None) == adaptive] for adaptive in (False, True)]
             for rows in filter(None, parts):
                 draw_curve(ax, _curve(rows, k, cost, error, several=all(parts)))
+        ticks = matplotlib_module("ticker")
+        ax.xaxis.set_minor_formatter(ticks.FuncFormatter(lambda x, _: _small_label(x, *ax.get_xlim())))
         if against in ("calls", "steps"):
-            ticks = matplotlib_module("ticker")
             ax.xaxis.set_major_formatter(ticks.StrMethodFormatter("{x:,.0f}"))
             ax.xaxis.set_minor_formatter(ticks.LogFormatter(minor_thresholds=(1.5, 0.5)))
         ax.set_xlabel(name)
@@ -88,6 +89,22 @@ def plot_work_precision(
         else:  # next to the curves, which usually cross the whole axes
             figure.legend(loc="outside lower center", ncols=2, handlelength=3.0)
     return ax
+
+
+def _small_label(x: float, low: float, high: float) -> str:
+    r"""Label of a tick between powers of ten: only at 2 and 5 on more than half a decade, so that none overlap.
+
+    Examples
+    --------
+    >>> _small_label(2e-3, 1e-3, 2e-2), _small_label(3e-3, 1e-3, 2e-2), _small_label(3e-3, 2e-3, 4e-3)
+    ('$2\\\\times10^{-3}$', '', '$3\\\\times10^{-3}$')
+    """
+    decades = math.log10(high / low)
+    power = math.floor(math.log10(x) + 1e-9)
+    digit = round(x / 10.0**power)
+    if decades > 1.5 or (decades > 0.5 and digit not in (2, 5)):
+        return ""
+    return rf"${digit}\times10^{{{power}}}$"
 
 
 def _curve(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,17 @@ def test_errors_are_drawn_over_the_cost(against: str, error: str, x: list[float]
         np.testing.assert_allclose(line, [x, 10.0 ** -(2 * np.arange(1, 4) + y)])
     assert (ax.get_xscale(), ax.get_yscale(), len(data(ax))) == ("log", "log", 2)
     assert error in ax.get_ylabel() and labels(ax) == ["a", "b"]
+
+
+@pytest.mark.parametrize("span", [1.5, 3.0, 6.0, 18.0, 60.0, 900.0])
+def test_labels_of_short_axes_do_not_overlap(span: float) -> None:
+    ax = table(*(row("a", k, cpu_time=cost) for k, cost in ((1, 2e-3), (2, 2e-3 * span)))).plot()
+    ax.figure.canvas.draw()
+    shown = [tick.get_window_extent() for tick in ax.get_xticklabels(which="both") if tick.get_text()]
+    low, high = ax.bbox.x0, ax.bbox.x1
+    boxes = sorted((box.x0, box.x1) for box in shown if low <= (box.x0 + box.x1) / 2 <= high)
+    assert len(boxes) >= 2
+    assert all(left[1] < right[0] for left, right in pairwise(boxes))
 
 
 def test_methods_differ_in_color_dashes_and_markers() -> None:
