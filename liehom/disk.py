@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
 import secrets
@@ -149,6 +150,11 @@ def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
         raise FormatError(f"{text!r} is not the name of a file")
     target = Path(text)
     folder = target.parent
+    try:
+        target.lstat()
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise FormatError(f"{text!r} cannot be written: {error.strerror}") from None
     if not folder.is_dir():
         raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} does not exist")
     if target.is_dir():

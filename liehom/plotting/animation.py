@@ -190,10 +190,11 @@ class Actor:
 
 
 def _frames(seconds: float, fps: int) -> int:
-    if not 0 < fps <= 100 or not np.isfinite(seconds) or not 2 <= seconds * fps <= 5000:
+    numbers = all(isinstance(x, int | float | np.integer | np.floating) for x in (seconds, fps))
+    if not numbers or not 0 < fps <= 100 or not 2 <= seconds * fps <= 5000:
         raise InputError(
-            f"seconds = {displayed(seconds)} and fps = {displayed(fps)} are {seconds * fps:.6g} frames; expected from "
-            "2 to 5000 frames, at most 100 in a second"
+            f"seconds is {displayed(seconds)} and fps is {displayed(fps)}, expected numbers with a product from 2 to "
+            "5000, which is the number of frames, and fps at most 100"
         )
     return round(seconds * fps)
 

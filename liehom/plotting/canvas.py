@@ -150,7 +150,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 def _share_svg(figure: Any) -> None:
     for axes in figure.axes:
-        axes._repr_svg_ = figure._repr_svg_
+        axes._repr_svg_ = figure.figure._repr_svg_  # a subfigure has none
 
 
 def _svg(figure: Figure) -> str:
@@ -174,6 +174,26 @@ def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axe
         remedy = "in space: add_subplot(projection='3d')" if solid else "in the plane"
         raise InputError(f"this picture has dimension {dimension}, which needs axes {remedy}")
     return ax
+
+
+def plane_axes(ax: Axes | None, width: float, height: float) -> Axes:
+    """The axes in the plane that the caller gives, or else those of a new figure of this size in inches.
+
+    Raises
+    ------
+    InputError
+        If the given axes are in space, or have polar coordinates.
+    """
+    if ax is None:
+        return new_figure(width, height).add_subplot()
+    check_straight(ax)
+    return axes_of_dimension(ax, 2)
+
+
+def check_straight(ax: Axes) -> None:
+    """Raise `InputError` if axes have polar coordinates."""
+    if ax.name == "polar":
+        raise InputError("this picture has straight coordinates, which polar axes have not: use add_subplot() for it")
 
 
 def current_colours() -> tuple[str, ...]:
@@ -211,7 +231,7 @@ def figure_of(axes: Axes) -> Figure:
     """
     if not isinstance(axes, matplotlib_module("axes").Axes):
         raise InputError(f"expected axes of matplotlib, got {axes!r}")
-    figure: Figure = axes.figure
+    figure: Figure = axes.figure.figure  # of axes in a subfigure, the figure that has all of them
     return figure
 
 
@@ -228,7 +248,7 @@ def rendered(figure: Figure, kind: str, about: Mapping[str, str] | None = None) 
     """
     file = io.BytesIO()
     with style_unless(None):
-        figure.savefig(file, format=kind, metadata={**UNDATED.get(f".{kind}", {}), **(about or {})})
+        figure.savefig(file, format=kind, metadata={**UNDATED.get(f".{kind}", {}), **(about or {})} or None)
     return file.getvalue()
 
 

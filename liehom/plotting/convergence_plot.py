@@ -11,15 +11,15 @@ from liehom.errors import InputError
 from liehom.integrators import ConvergenceTable
 from liehom.plotting.canvas import (
     COLOURS,
-    GREY,
     MARKERS,
-    PALE,
+    current_colours,
     figure_of,
     finished,
     muted_colour,
-    new_figure,
+    pale_colour,
     paper_colour,
-    style,
+    plane_axes,
+    style_unless,
 )
 
 if TYPE_CHECKING:
@@ -95,12 +95,9 @@ def plot_convergence(
     names = [table.step for table in chosen] if labels is None else [str(label) for label in labels]
     if len(names) != len(chosen):
         raise InputError(f"there are {len(chosen)} tables and {len(names)} labels")
-    with style():
-        if axes is None:
-            figure = new_figure(6.4 if len(chosen) == 1 else 8.0, 4.8)
-            axes = figure.add_subplot()
-        else:
-            figure = figure_of(axes)
+    with style_unless(axes):
+        axes = plane_axes(axes, 6.4 if len(chosen) == 1 else 8.0, 4.8)
+        figure = figure_of(axes)
         curves = [curve for k, table in enumerate(chosen) for curve in _curves(table, k, len(chosen))]
         _frame(axes, chosen)
         for curve in curves:
@@ -130,7 +127,7 @@ def _curves(table: ConvergenceTable, k: int, count: int) -> list[Curve]:
                     [(h, e) for h, e, floor in rows if e > floor],
                     [(h, e) for h, e, floor in rows if e <= floor],
                     slope,
-                    COLOURS[number % len(COLOURS)],
+                    current_colours()[number % len(COLOURS)],
                     MARKERS[number % len(MARKERS)],
                     "-" if kind == "orbit" else "--",
                     hollow=kind == "trajectory",
@@ -175,13 +172,13 @@ def _explain(axes: Axes, tables: Sequence[ConvergenceTable], names: Sequence[str
     for k, (table, name) in enumerate(zip(tables, names, strict=True)):
         orders = ", ".join("–" if math.isnan(order) else f"{order:.2f}" for order in table.orders)
         look: dict[str, Any] = {
-            "color": COLOURS[k % len(COLOURS)],
+            "color": current_colours()[k % len(COLOURS)],
             "marker": MARKERS[k % len(MARKERS)],
             "markersize": 6,
         }
         axes.plot([math.nan], [math.nan], label=f"{name}\norders {orders}", **look)
-    for dashes, fill, kind in (("-", GREY, "orbit"), ("--", "white", "trajectory")):
-        axes.plot([math.nan], [math.nan], dashes, marker="o", markerfacecolor=fill, color=GREY, label=kind)
+    for dashes, fill, kind in (("-", muted_colour(), "orbit"), ("--", paper_colour(), "trajectory")):
+        axes.plot([math.nan], [math.nan], dashes, marker="o", markerfacecolor=fill, color=muted_colour(), label=kind)
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
 
 
@@ -203,11 +200,24 @@ def _draw_triangles(axes: Axes, curves: Sequence[Curve]) -> None:
         del high
         base = TRIANGLE_OFFSET * low
         corners = [(left, base), (right, base), (right, base * (right / left) ** p)]
-        axes.fill(*zip(*corners, strict=True), facecolor=PALE, edgecolor=GREY, linewidth=0.8, alpha=0.6, zorder=1)
+        axes.fill(
+            *zip(*corners, strict=True),
+            facecolor=pale_colour(),
+            edgecolor=muted_colour(),
+            linewidth=0.8,
+            alpha=0.6,
+            zorder=1,
+        )
         middle = math.sqrt(corners[1][1] * corners[2][1])
-        axes.annotate(str(p), (right, middle), (4, 0), textcoords="offset points", va="center", color=GREY)
+        axes.annotate(str(p), (right, middle), (4, 0), textcoords="offset points", va="center", color=muted_colour())
         axes.annotate(
-            "1", (math.sqrt(left * right), base), (0, -3), textcoords="offset points", ha="center", va="top", color=GREY
+            "1",
+            (math.sqrt(left * right), base),
+            (0, -3),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            color=muted_colour(),
         )
 
 

@@ -6,9 +6,10 @@ import contextlib
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
-from liehom.errors import ConvergenceError, InputError
+from liehom.errors import ConvergenceError, InputError, displayed
 from liehom.integrators import Solution
 from liehom.integrators.run.dense import DenseSolution
 from liehom.integrators.run.solution import interpolant
@@ -43,6 +44,28 @@ class Curves(NamedTuple):
     y: Array
     total: int
     every: int
+
+
+def real_numbers(value: npt.ArrayLike, what: str) -> Array:
+    """An argument as an array of floats.
+
+    Raises
+    ------
+    InputError
+        If it is not one of real numbers.
+
+    Examples
+    --------
+    >>> real_numbers([1, 2], "value")
+    array([1., 2.])
+    """
+    try:
+        found = np.asarray(value)
+        if found.dtype.kind not in "cSU":
+            return found.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{what}: found {displayed(value)}, expected real numbers")
 
 
 def steps_of(solution: Solution) -> Curves:

@@ -15,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralSource
-from liehom.errors import InputError, ShapeError
+from liehom.errors import InputError, ShapeError, displayed
 from liehom.integrators import Solution
-from liehom.plotting.canvas import DASHES, MARKERS, current_colours, new_figure, style_unless
-from liehom.plotting.curves import MAX_TRAJECTORIES
+from liehom.plotting.canvas import DASHES, MARKERS, current_colours, plane_axes, style_unless
+from liehom.plotting.curves import MAX_TRAJECTORIES, real_numbers
 from liehom.typing import Array
 
 if TYPE_CHECKING:
@@ -95,8 +95,7 @@ def plot_energy_drift(
     times = [part.times for _, parts in named for part in parts]
     logarithmic = largest_so_far and _decades(times) >= DECADES
     with style_unless(ax):
-        if ax is None:
-            ax = new_figure(6.4, 4.2).add_subplot()
+        ax = plane_axes(ax, 6.4, 4.2)
         colours = current_colours()
         for k, (label, parts) in enumerate(named):
             for i, part in enumerate(parts):
@@ -131,6 +130,8 @@ def _named(
         chosen = list(solutions) if isinstance(solutions, Sequence) else []
     if not chosen or not all(isinstance(solution, Solution) for solution in chosen):
         raise InputError(f"expected solutions as liehom.integrate returns them, got {found!r}")
+    if labels is not None and not isinstance(labels, Sequence):
+        raise InputError(f"labels are {displayed(labels)}, expected one string for each solution")
     names = [solution.report.step for solution in chosen] if labels is None else [str(label) for label in labels]
     if len(names) != len(chosen):
         raise InputError(f"there are {len(chosen)} solutions and {len(names)} labels")
@@ -140,17 +141,22 @@ def _named(
 def _trajectories(solution: Solution, F: IntegralSource, value: npt.ArrayLike | None) -> list[_Values]:
     """The values of F along each of the first trajectories of a solution."""
     y = np.asarray(solution.y)
-    exact = None if value is None else np.asarray(value, dtype=float)
+    if not y.size:
+        raise InputError("a solution has no point to draw: its ensemble or its t_eval is empty")
+    exact = None if value is None else real_numbers(value, "value")
     times = np.broadcast_to(np.asarray(solution.t), (*y.shape[:-2], y.shape[-1]))
     integral = FirstIntegral(F, y.shape[-2])
     found = []
     for t, points in zip(times.reshape(-1, y.shape[-1])[:MAX_TRAJECTORIES], y.reshape(-1, *y.shape[-2:]), strict=False):
         there = np.isfinite(t) & np.isfinite(points).all(axis=0)
-        values = np.asarray(integral(np.moveaxis(points[:, there], 0, -1)), dtype=float)
+        with np.errstate(all="ignore"):
+            values = np.asarray(integral(np.moveaxis(points[:, there], 0, -1)), dtype=float)
         try:
             initial = values[0] if exact is None else np.broadcast_to(exact, values[0].shape)
         except ValueError:
             raise ShapeError(f"value is {value!r}, F has {values.shape[-1]} components") from None
+        if not np.isfinite(initial).all():
+            raise InputError(f"F is {initial} at the initial point, expected finite numbers: give value= or another F")
         found.append(_Values(np.abs(t[there] - t[there][0]), values - initial, initial))
     return found
 

@@ -12,6 +12,7 @@ from liehom.correctors.conserving.first_integral import FirstIntegral, IntegralS
 from liehom.errors import InputError, displayed
 from liehom.homogeneous import GeneratorField
 from liehom.integrators import integrate
+from liehom.integrators.arguments import positive
 from liehom.plotting.canvas import current_colours, paper_colour, style_unless
 from liehom.plotting.surfaces import Quadric, Scene, space_axes, sphere
 from liehom.typing import Array
@@ -34,6 +35,8 @@ DEGENERATE = 1e-4
 """An eigenvalue of the linearization counts as 0 up to this fraction of the other or of the field's."""
 TANGENT = 1e-8
 """Largest admissible normal component of a field, relative to the field."""
+CONSERVED = 1e-6
+"""Largest admissible derivative of an energy along the field, relative to the product of their sizes."""
 TRAJECTORIES, LENGTH = 60, 1.2
 """Number of trajectories of a field without an energy, and their typical length in radians."""
 MARKERS = {
@@ -99,7 +102,8 @@ def plot_phase_portrait(
     Raises
     ------
     InputError
-        If matplotlib is not installed, or the field is not tangent to spheres in space, or depends on time.
+        If matplotlib is not installed, the field is not tangent to spheres in space, depends on time, or is 0 or not
+        finite on the sphere, or the energy is constant there or not a first integral of the field.
 
     Notes
     -----
@@ -115,9 +119,12 @@ def plot_phase_portrait(
     >>> import liehom as lh
     >>> ax = lh.plotting.plot_phase_portrait("m0**2/2 + m1**2/4 + m2**2/6")  # doctest: +SKIP
     """
+    if isinstance(levels, bool) or not isinstance(levels, int | np.integer) or levels < 0:
+        raise InputError(f"levels is {displayed(levels)}, expected an integer at least 0")
     flow = flow_of(field, energy, radius)
-    points = equilibria(flow)
-    with style_unless(ax):
+    radius = flow.radius
+    with style_unless(ax), np.errstate(all="ignore"):
+        points = equilibria(flow)
         scene = Scene(space_axes(ax))
         surface = sphere(radius)
         surface.draw(scene)
@@ -151,8 +158,7 @@ class Flow(NamedTuple):
 
 def flow_of(field: GeneratorField | IntegralSource, energy: IntegralSource | None, radius: float) -> Flow:
     """The arguments of `plot_phase_portrait`, checked."""
-    if not np.isfinite(radius) or radius <= 0:
-        raise InputError(f"the radius is {displayed(radius)}, expected a positive number")
+    radius = positive("radius", radius)
     if isinstance(field, GeneratorField):
         if field.representation.size != 3 or field.time_dependent:
             size = field.representation.size
@@ -172,13 +178,40 @@ def flow_of(field: GeneratorField | IntegralSource, energy: IntegralSource | Non
         def vector(m: Array) -> Array:
             return np.cross(m, np.asarray(known.gradient(m)[1], dtype=float)[..., 0, :])
 
-    starts = radius * spread_points(STARTS)
-    vectors = vector(starts)
+    starts = radius * _starts()
+    with np.errstate(all="ignore"):
+        vectors = vector(starts)
+    if not np.isfinite(vectors).all():
+        where = starts[np.argmin(np.isfinite(vectors).all(axis=-1))]
+        raise InputError(f"the field is not finite on the sphere, as at the point {where}")
     speed = float(np.linalg.norm(vectors, axis=-1).max())
     if not np.abs((vectors * starts).sum(axis=-1)).max() <= TANGENT * radius * speed:
         raise InputError("the field is not tangent to spheres: phase portraits are drawn on spheres about 0")
+    if integral is not None:
+        _check_energy(integral, starts, vectors)
+    elif speed == 0:
+        raise InputError("the field is 0 on the sphere, so that all points are equilibria")
     value = None if integral is None else lambda m: np.asarray(integral(m), dtype=float)[..., 0]
     return Flow(vector, value, float(radius), speed, field if isinstance(field, GeneratorField) else None)
+
+
+def _check_energy(energy: FirstIntegral, starts: Array, vectors: Array) -> None:
+    """Check that an energy is one function, is not constant on the sphere, and is a first integral of the field."""
+    count = np.shape(energy(starts))[-1]
+    if count != 1:
+        raise InputError(f"expected one energy, got {count}: their level sets are drawn in a picture each")
+    slopes = np.asarray(energy.gradient(starts)[1], dtype=float)[..., 0, :]
+    steepest, speeds = (np.linalg.norm(x, axis=-1).max() for x in (slopes, vectors))
+    across = np.linalg.norm(np.cross(starts, slopes), axis=-1).max()
+    if across <= TANGENT * np.linalg.norm(starts[0]) * steepest:
+        raise InputError("the energy is constant on the sphere, so that it has no level sets there")
+    if not np.abs((slopes * vectors).sum(axis=-1)).max() <= CONSERVED * steepest * speeds:
+        raise InputError("the energy is not a first integral of the field: it changes along trajectories")
+
+
+def _starts() -> Array:
+    """Points of the unit sphere from which equilibria are searched."""
+    return np.concatenate([spread_points(STARTS), np.eye(3), -np.eye(3)])
 
 
 def spread_points(count: int) -> Array:
@@ -191,10 +224,11 @@ def spread_points(count: int) -> Array:
 # -- equilibria ------------------------------------------------------------------------------------------
 def equilibria(flow: Flow) -> list[Equilibrium]:
     """The equilibria that Newton's method finds, each once."""
-    points = flow.radius * spread_points(STARTS)
-    points = np.concatenate([points, flow.radius * np.concatenate([np.eye(3), -np.eye(3)])])
+    points = flow.radius * _starts()
     for _ in range(ITERATIONS):
         frames, slopes, values = _linearized(flow, points)
+        there = np.isfinite(slopes).all(axis=(1, 2)) & np.isfinite(values).all(axis=1)
+        points, frames, slopes, values = (x[there] for x in (points, frames, slopes, values))
         moves = -(np.linalg.pinv(slopes, rcond=1e-8) @ values[..., None])[..., 0]
         sizes = np.linalg.norm(moves, axis=-1, keepdims=True)
         moves *= np.minimum(1.0, 0.3 * flow.radius / np.maximum(sizes, 1e-300))

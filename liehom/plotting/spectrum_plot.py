@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from liehom.errors import InputError, ShapeError, displayed
 from liehom.integrators import Solution
-from liehom.plotting.canvas import DASHES, current_colours, new_figure, style_unless
+from liehom.plotting.canvas import DASHES, current_colours, plane_axes, style_unless
+from liehom.plotting.curves import real_numbers
 from liehom.typing import Array
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 Trajectory: TypeAlias = Solution | tuple[npt.ArrayLike, npt.ArrayLike]
 """A solution, or times (n,) and points (N, n)."""
+ASYMMETRY = 1e-8
+"""Distance from symmetric matrices that counts as round-off, relative to the largest entry."""
 
 
 def plot_spectrum(
@@ -46,7 +49,7 @@ def plot_spectrum(
     Raises
     ------
     InputError
-        If matplotlib is not installed, or there is nothing to draw.
+        If matplotlib is not installed, there is nothing to draw, or matrices are not symmetric or Hermitian.
     ShapeError
         If points do not have the k (k + 1) / 2 coordinates of symmetric matrices, or there are several trajectories in
         one solution.
@@ -69,7 +72,7 @@ def plot_spectrum(
     if not curves:
         raise InputError("there is no trajectory to draw")
     with style_unless(ax):
-        ax = new_figure(6.0, 3.8).add_subplot() if ax is None else ax
+        ax = plane_axes(ax, 6.0, 3.8)
         colours = current_colours()
         for label, (t, values), dashes in zip(named, curves, DASHES * len(curves), strict=False):
             for i, line in enumerate(values.T):
@@ -94,7 +97,7 @@ def spectrum(trajectory: Trajectory, matrices: Callable[[Array], npt.ArrayLike] 
     if isinstance(trajectory, Solution):
         t, y = np.asarray(trajectory.t, dtype=float), np.asarray(trajectory.y, dtype=float)
     elif isinstance(trajectory, Sequence) and len(trajectory) == 2:
-        t, y = (np.asarray(part, dtype=float) for part in trajectory)
+        t, y = (real_numbers(part, "times and points") for part in trajectory)
     else:
         raise InputError(f"expected a solution, or times and points, got {displayed(trajectory)}")
     if y.ndim != 2 or t.shape != y.shape[1:]:
@@ -103,7 +106,10 @@ def spectrum(trajectory: Trajectory, matrices: Callable[[Array], npt.ArrayLike] 
     if found.ndim != 3 or found.shape[0] != len(t) or found.shape[1] != found.shape[2]:
         raise ShapeError(f"the matrices have shape {found.shape}, expected ({len(t)}, k, k)")
     there = np.isfinite(t) & np.isfinite(found).all(axis=(1, 2))
-    return t[there], np.linalg.eigvalsh(found[there])
+    t, found = t[there], found[there]
+    if not np.allclose(found, np.swapaxes(found, 1, 2).conj(), atol=ASYMMETRY * float(np.abs(found).max(initial=0.0))):
+        raise InputError("the matrices are not symmetric or Hermitian: only of such matrices eigenvalues are drawn")
+    return t, np.linalg.eigvalsh(found)
 
 
 def _symmetric(points: Array) -> Array:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 
 from liehom.errors import InputError
-from liehom.plotting.canvas import GREY, matplotlib_module, new_figure, pale_colour
+from liehom.plotting.canvas import GREY, check_straight, matplotlib_module, new_figure, pale_colour
 from liehom.typing import Array, BooleanArray
 
 if TYPE_CHECKING:
@@ -34,10 +34,17 @@ HEIGHTS, ANGLES = 121, 241
 
 
 def space_axes(ax: Axes | None, size: float = 5.6) -> AnyAxes:
-    """Axes for a drawing of a surface: new ones in space, or those of the caller, in space or in the plane."""
+    """Axes for a drawing of a surface: new ones in space, or those of the caller, in space or in the plane.
+
+    Raises
+    ------
+    InputError
+        If the given axes have polar coordinates.
+    """
     axes: AnyAxes = ax
     if ax is None:
         axes = new_figure(size, size).add_subplot(projection="3d", elev=ELEVATION, azim=AZIMUTH)
+    check_straight(axes)
     if axes.name == "3d":
         axes.set_proj_type("ortho")
         axes.computed_zorder = False
@@ -299,4 +306,4 @@ _SHEETS = ("hyperboloid of two sheets", "cone")
 
 def sphere(radius: float) -> Quadric:
     """The sphere of this radius about 0."""
-    return Quadric(np.eye(3), radius**2)
+    return Quadric(np.eye(3), radius**2, radius * np.eye(3))

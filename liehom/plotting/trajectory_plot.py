@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,11 +18,11 @@ from liehom.plotting.canvas import (
     figure_of,
     finished,
     matplotlib_module,
-    new_figure,
     paper_colour,
+    plane_axes,
     style_unless,
 )
-from liehom.plotting.curves import Curves, constant_norm, curves_of, steps_of
+from liehom.plotting.curves import MAX_TRAJECTORIES, Curves, constant_norm, curves_of, real_numbers, steps_of
 from liehom.plotting.surfaces import AnyAxes, Quadric, Scene, space_axes, sphere
 from liehom.representations import Representation
 from liehom.typing import Array
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_LINES = 8
+TITLED = 3
+"""Quadrics that the title of a picture names."""
 LEVEL_TOLERANCE = 1e-6
 """Variation of an invariant form along trajectories that is admissible, relative to |Q| |m|^2."""
 
@@ -169,13 +171,20 @@ def plot_quadric(
     if isinstance(through, Solution):
         curves = curves_of(through)
         layer = Layer(curves.t, curves.y, "-")
-    y = np.asarray(through, dtype=float).reshape(-1, 3, 1) if layer is None else layer.y
+        y = layer.y
+    else:
+        y = _points(through)
     if y.shape[1] != 3:
         raise InputError(f"quadrics are drawn in space; the solution has {y.shape[1]} coordinates")
     surfaces = _surfaces(matrix, y)
+    shown = list(dict.fromkeys(surfaces))
+    if len(shown) > MAX_TRAJECTORIES:
+        raise InputError(
+            f"the points are on {len(shown)} quadrics; at most {MAX_TRAJECTORIES} are drawn in one picture"
+        )
     with style_unless(ax):
         scene = Scene(space_axes(ax))
-        for surface in dict.fromkeys(surfaces):
+        for surface in shown:
             surface.draw(scene)
         if layer is not None:
             for k, (surface, points) in enumerate(zip(surfaces, y, strict=True)):
@@ -187,9 +196,18 @@ def plot_quadric(
         low, high = (f([s.bounds()[i] for s in surfaces], axis=0) for i, f in enumerate((np.min, np.max)))
         scene.frame(high, ("$m_0$", "$m_1$", "$m_2$"), whole=not surfaces[0].closed)
         scene.limit((high - low) / 2, (high + low) / 2, zoom=1.0)
-        scene.axes.set_title(", ".join(dict.fromkeys(f"{s.kind}, $c$ = {s.level:.4g}" for s in surfaces)), loc="left")
+        title = ", ".join(f"{s.kind}, $c$ = {s.level:.4g}" for s in shown[:TITLED])
+        scene.axes.set_title(title + (f", and {len(shown) - TITLED} more" if len(shown) > TITLED else ""), loc="left")
     axes: Axes = scene.axes
     return axes
+
+
+def _points(through: npt.ArrayLike) -> Array:
+    """Points of the caller, (k, 3, 1)."""
+    points = real_numbers(through, "the points")
+    if not points.size or points.shape[-1:] != (3,) or not np.isfinite(points).all():
+        raise InputError(f"expected a solution, or finite points of shape (3,) or (..., 3), got {displayed(through)}")
+    return points.reshape(-1, 3, 1)
 
 
 def invariant_form(form: Representation | npt.ArrayLike) -> Array:
@@ -207,7 +225,7 @@ def invariant_form(form: Representation | npt.ArrayLike) -> Array:
             found = f"{len(forms)} independent invariant forms" if form.size == 3 else f"{form.size} coordinates"
             raise InputError(f"expected a representation on space with one invariant form; this one has {found}")
         return np.array(forms[0].to_numpy(), dtype=float)
-    matrix = np.asarray(form, dtype=float)
+    matrix = real_numbers(form, "the form")
     if matrix.shape != (3, 3) or not np.allclose(matrix, matrix.T) or not matrix.any():
         raise InputError(f"expected a symmetric 3 x 3 matrix that is not 0, got {displayed(form)}")
     return matrix
@@ -236,7 +254,8 @@ def chosen_coordinates(coordinates: Sequence[int] | None, size: int) -> tuple[li
     >>> chosen_coordinates((2, 0), 3)
     ([2, 0], ['$m_2$', '$m_0$'])
     """
-    chosen = list(range(size)) if coordinates is None else list(coordinates)
+    given: list[Any] = list(coordinates) if isinstance(coordinates, Iterable) else []
+    chosen = list(range(size)) if coordinates is None else [int(i) if isinstance(i, np.integer) else i for i in given]
     if not chosen or any(isinstance(i, bool) or not isinstance(i, int) or not 0 <= i < size for i in chosen):
         raise InputError(f"coordinates are indices from 0 to {size - 1}, got {displayed(coordinates)}")
     return chosen, [f"$m_{i}$" if i < 10 else f"$m_{{{i}}}$" for i in chosen]
@@ -283,7 +302,7 @@ def mark_ends(scene: Scene, y: Array, surfaces: Sequence[Quadric | None]) -> Non
 def draw_scenery(y: Array, names: Sequence[str], ax: Axes | None) -> tuple[Scene, Quadric | None]:
     """Axes for trajectories (k, 2, n) or (k, 3, n); for three coordinates of constant norm, with the sphere."""
     if y.shape[1] == 2:
-        flat: AnyAxes = new_figure(5.4, 5.0).add_subplot() if ax is None else ax
+        flat: AnyAxes = plane_axes(ax, 5.4, 5.0)
         flat.set(xlabel=names[0], ylabel=names[1])
         flat.set_aspect("equal", adjustable="datalim")
         return Scene(flat), None
@@ -324,7 +343,7 @@ def _box(scene: Scene, y: Array, names: Sequence[str]) -> None:
 
 # -- over time --------------------------------------------------------------------------------------------
 def _over_time(layers: Sequence[Layer], names: Sequence[str], ax: Axes | None) -> AnyAxes:
-    axes: AnyAxes = new_figure(7.0, 4.2).add_subplot() if ax is None else ax
+    axes: AnyAxes = plane_axes(ax, 7.0, 4.2)
     colours = current_colours()
     for layer in layers:
         for k, (times, points) in enumerate(zip(layer.t, layer.y, strict=True)):
@@ -344,7 +363,7 @@ def _over_time(layers: Sequence[Layer], names: Sequence[str], ax: Axes | None) -
 
 
 def _as_colours(layer: Layer, ax: Axes | None) -> AnyAxes:
-    axes: AnyAxes = new_figure(7.0, 4.2).add_subplot() if ax is None else ax
+    axes: AnyAxes = plane_axes(ax, 7.0, 4.2)
     there = np.isfinite(layer.t[0])
     times, points = layer.t[0][there], layer.y[0][:, there]
     most = float(np.abs(points).max(initial=0)) or 1.0

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 
 from liehom.errors import InputError
 from liehom.integrators import WorkPrecisionRow, WorkPrecisionTable
-from liehom.plotting.canvas import DASHES, MARKERS, current_colours, matplotlib_module, new_figure, style_unless
+from liehom.plotting.canvas import (
+    DASHES,
+    MARKERS,
+    current_colours,
+    figure_of,
+    matplotlib_module,
+    plane_axes,
+    style_unless,
+)
 from liehom.plotting.convergence_plot import Curve, draw_curve, draw_floor
 
 if TYPE_CHECKING:
@@ -57,16 +65,13 @@ def plot_work_precision(
     """
     if not isinstance(table, WorkPrecisionTable):
         raise InputError(f"expected a table as liehom.work_precision returns it, got {table!r}")
-    if against not in COSTS:
+    if not isinstance(against, str) or against not in COSTS:
         raise InputError(f"against is {against!r}, expected one of {', '.join(map(repr, COSTS))}")
     if error not in ("trajectory", "orbit"):
         raise InputError(f"error is {error!r}, expected 'trajectory' or 'orbit'")
     name, cost = COSTS[against]
     with style_unless(ax):
-        figure = None
-        if ax is None:
-            figure = new_figure(6.4, 5.2)
-            ax = figure.add_subplot()
+        own, ax = ax is None, plane_axes(ax, 6.4, 5.2)
         ax.set_xscale("log")
         ax.set_yscale("log")
         for k, method in enumerate(table.methods):
@@ -84,10 +89,10 @@ def plot_work_precision(
         ax.set_title(f"$t$ = {table.t_span[0]:.4g} to {table.t_span[1]:.4g}")
         lost = [row for row in table.rows if _error(row, error) <= row.floor]
         draw_floor(ax, max((row.floor for row in lost), default=0.0), [_error(row, error) for row in lost])
-        if figure is None:
+        if not own:
             ax.legend(loc="best", handlelength=3.0)
         else:  # next to the curves, which usually cross the whole axes
-            figure.legend(loc="outside lower center", ncols=2, handlelength=3.0)
+            figure_of(ax).legend(loc="outside lower center", ncols=2, handlelength=3.0)
     return ax
 
 

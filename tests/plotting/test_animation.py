@@ -114,3 +114,14 @@ def test_many_coordinates_must_be_chosen() -> None:
     field = lh.GeneratorField(lh.defining(lh.so(9)), np.arange(1.0, 37))
     with pytest.raises(InputError, match="up to 8 coordinates"):
         stage(lh.integrate(field, (0, 1), np.eye(9)[0], dt=0.5))
+
+
+@pytest.mark.parametrize("options", [{"seconds": "a"}, {"fps": "20"}, {"fps": 1j}, {"seconds": None}])
+def test_lengths_that_are_not_numbers_are_refused(options: Any) -> None:
+    with pytest.raises(InputError, match="expected numbers"):
+        animate_trajectory(SOL, **options)
+
+
+def test_coordinates_over_time_are_not_in_space() -> None:
+    with pytest.raises(InputError, match="axes in the plane"):
+        animate_trajectory(SOL, ax=new_figure(2, 2).add_subplot(projection="3d"))

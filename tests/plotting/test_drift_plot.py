@@ -123,3 +123,21 @@ def test_labels_are_counted_and_integrals_checked() -> None:
         plot_energy_drift(run(), lambda m: m[0])
     with pytest.raises(InputError, match="axes of matplotlib"):
         plot_energy_drift(run(), ENERGY, "axes")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("solution", "F", "options", "match"),
+    [
+        (run(start=np.zeros((0, 3))), ENERGY, {}, "no point"),
+        (run(t_eval=[]), ENERGY, {}, "no point"),
+        (run(), ENERGY, {"value": "x"}, "value"),
+        (run(), ENERGY, {"value": 1j}, "value"),
+        (run(), ENERGY, {"value": float("nan")}, "finite"),
+        (run(), "sqrt(m0 - 5)", {}, "finite"),
+        (run(), ENERGY, {"labels": 3}, "labels"),
+        (run(), ENERGY, {"ax": new_figure(2, 2).add_subplot(projection="3d")}, "axes"),
+    ],
+)
+def test_nothing_is_drawn_without_points_and_finite_values(solution: Any, F: Any, options: Any, match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        plot_energy_drift(solution, F, **options)

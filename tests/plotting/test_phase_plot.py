@@ -12,6 +12,7 @@ from liehom.instances import RigidBody
 
 pytest.importorskip("matplotlib")
 
+from liehom.errors import InputError
 from liehom.plotting import plot_phase_portrait
 from liehom.plotting.canvas import COLOURS, DARK_COLOURS, new_figure, style
 from liehom.plotting.phase_plot import between, equilibria, flow_of
@@ -139,3 +140,27 @@ def test_other_arguments_raise(arguments: tuple[Any, ...], match: str) -> None:
     names = ("field", "ax", "energy", "radius")
     with pytest.raises(lh.InputError, match=match):
         plot_phase_portrait(**dict(zip(names, arguments, strict=False)))
+
+
+@pytest.mark.parametrize(
+    ("field", "options", "match"),
+    [
+        ("m0**2 + m1**2 + m2**2", {}, "constant on the sphere"),
+        ("1/m0", {}, "not finite"),
+        ("log(m0)", {}, "not finite"),
+        (["m0", "m1"], {}, "one energy, got 2"),
+        (BODY.field(), {"energy": "m0"}, "not a first integral"),
+        (lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: m), {}, "the field is 0"),
+        (ENERGY, {"radius": "a"}, "radius"),
+        (ENERGY, {"levels": 2.5}, "levels"),
+        (ENERGY, {"ax": new_figure(2, 2).add_subplot(projection="polar")}, "polar"),
+    ],
+)
+def test_pictures_that_would_not_be_true_are_refused(field: Any, options: Any, match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        plot_phase_portrait(field, **options)
+
+
+def test_small_spheres_have_portraits() -> None:
+    assert len(equilibria(flow_of(ENERGY, None, 1e-6))) == 6
+    assert plot_phase_portrait(ENERGY, radius=1e-6).lines

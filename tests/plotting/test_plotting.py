@@ -17,6 +17,7 @@ import liehom as lh
 from liehom.errors import FormatError, InputError
 from liehom.integrators import ConvergenceTable
 from liehom.plotting import plot_convergence, plot_trajectory
+from liehom.plotting.canvas import DARK_COLOURS, new_figure, style
 
 matplotlib = pytest.importorskip("matplotlib")
 Figure = pytest.importorskip("matplotlib.figure").Figure
@@ -383,3 +384,53 @@ def test_axes_of_the_caller_are_shown_as_the_caller_shows_them() -> None:
     ax = Figure().add_subplot()
     assert lh.plotting.plot_dynkin("G2", ax) is ax
     assert not hasattr(ax, "_repr_svg_")
+
+
+def test_axes_of_another_kind_are_refused() -> None:
+    flat, solid = new_figure(2, 2).add_subplot(), new_figure(2, 2).add_subplot(projection="3d")
+    polar = new_figure(2, 2).add_subplot(projection="polar")
+    sol = solution(3)
+    for ax, options in ((solid, {"over_time": True}), (solid, {"coordinates": (0, 1)}), (polar, {}), (flat.figure, {})):
+        with pytest.raises(InputError, match="axes"):
+            plot_trajectory(sol, ax=ax, **options)
+    for ax in (solid, polar):
+        with pytest.raises(InputError, match="axes"):
+            plot_convergence(table(), axes=ax)
+        with pytest.raises(InputError, match="axes"):
+            plot_trajectory(solution(9), ax=ax)
+
+
+def test_axes_in_a_subfigure_give_the_whole_figure(tmp_path: Path) -> None:
+    whole = new_figure(8, 4)
+    part = whole.subfigures(1, 2)[0]
+    assert plot_trajectory(solution(2), tmp_path / "part.svg", ax=part.add_subplot()) is whole
+
+
+@pytest.mark.parametrize("suffix", [".JPG", ".webp", ".tiff", ".eps"])
+def test_formats_without_metadata_are_written(suffix: str, tmp_path: Path) -> None:
+    plot_trajectory(solution(2), tmp_path / f"curve{suffix}")
+    assert (tmp_path / f"curve{suffix}").stat().st_size > 1000
+
+
+def test_names_that_are_too_long_are_refused_before_the_work(tmp_path: Path) -> None:
+    with pytest.raises(FormatError, match="too long"):
+        plot_trajectory(solution(2), tmp_path / f"{'x' * 300}.png")
+
+
+def test_small_spheres_are_spheres() -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), [1, 2, 3])
+    figure = plot_trajectory(lh.integrate(field, (0, 1), [1e-6, 0.0, 0.0], dt=0.1))
+    assert "$|m|$ = 1e-06" in figure.axes[0].get_title(loc="left")
+
+
+def test_coordinates_are_integers_of_any_kind() -> None:
+    sol = solution(3)
+    assert holds(plot_trajectory(sol, coordinates=np.array([2, 0]), show="steps"), sol.y[[2, 0]])
+    with pytest.raises(InputError, match="coordinates are indices"):
+        plot_trajectory(sol, coordinates=1)  # type: ignore[arg-type]
+
+
+def test_tables_on_dark_pages_have_light_lines() -> None:
+    with style(dark=True):
+        figure = plot_convergence(table())
+    assert {line.get_color() for line in figure.axes[0].lines} & set(DARK_COLOURS)

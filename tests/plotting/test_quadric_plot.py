@@ -11,6 +11,7 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
+from liehom.errors import InputError
 from liehom.plotting import plot_quadric
 from liehom.plotting.canvas import COLOURS, GREY, new_figure
 
@@ -80,3 +81,16 @@ def test_points_and_a_matrix_in_axes_in_the_plane() -> None:
 def test_other_forms_and_trajectories_raise(form: Any, through: Any, match: str) -> None:
     with pytest.raises(lh.InputError, match=match):
         plot_quadric(form, through)
+
+
+@pytest.mark.parametrize("through", [[], [1, 2], [np.nan, 0, 0], [1j, 0, 0], "abc", None])
+def test_other_points_are_refused(through: Any) -> None:
+    with pytest.raises(InputError, match="expected"):
+        plot_quadric(FORM, through)
+
+
+def test_a_picture_has_a_limited_number_of_surfaces() -> None:
+    with pytest.raises(InputError, match="60 quadrics"):
+        plot_quadric(np.eye(3), np.outer(np.arange(1, 61), [1.0, 0.0, 0.0]))
+    ax = plot_quadric(np.eye(3), np.outer(np.arange(1, 6), [1.0, 0.0, 0.0]))
+    assert ax.get_title(loc="left").endswith("and 2 more")

@@ -11,7 +11,9 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
+from liehom.errors import InputError
 from liehom.plotting import plot_spectrum
+from liehom.plotting.canvas import new_figure
 
 SPACE = lh.instances.SymmetricMatrices(3)
 FIELD = lh.instances.toda_flow(3)
@@ -79,3 +81,17 @@ def test_other_input_raises(trajectories: Any, error: type[Exception], match: st
 def test_matrices_of_the_wrong_shape_raise() -> None:
     with pytest.raises(lh.ShapeError, match="k, k"):
         plot_spectrum(SOL, matrices=lambda m: m)
+
+
+@pytest.mark.parametrize(
+    ("trajectory", "options", "match"),
+    [
+        (SOL, {"matrices": lambda y: np.arange(9.0 * len(y)).reshape(-1, 3, 3)}, "not symmetric"),
+        (([0, 1], [[1j, 1], [0, 2], [3, 1]]), {}, "real numbers"),
+        (("a", "b"), {}, "real numbers"),
+        (SOL, {"ax": new_figure(2, 2).add_subplot(projection="3d")}, "axes"),
+    ],
+)
+def test_other_matrices_numbers_and_axes_are_refused(trajectory: Any, options: Any, match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        plot_spectrum(trajectory, **options)

@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liehom.correctors.step import ExponentialLike
-from liehom.errors import InputError, LiehomError, LimitError, SeriesError, ShapeError
+from liehom.errors import InputError, LiehomError, LimitError, SeriesError, ShapeError, displayed
 from liehom.homogeneous import GeneratorField
 from liehom.homogeneous.fields.field import check_point
+from liehom.integrators.arguments import positive
 from liehom.integrators.convergence.compared_methods import (
     Compared,
     Methods,
@@ -120,12 +121,22 @@ def work_precision(
         raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
     start = points_of(y0)
     check_point(field.representation, start)
+    if not start.size:
+        raise ShapeError(f"y0 has shape {start.shape}: an empty ensemble has no errors to compare")
     span = span_of(t_span, start.dtype)
     settings = _settings(dts, tolerances)
     if isinstance(repeats, bool) or not isinstance(repeats, int | np.integer) or repeats < 1:
         raise InputError(f"repeats is {repeats!r}, expected an integer at least 1")
+    positive("max_steps", max_steps)
     chosen = compared_methods(
-        methods, field, span, start, exponential=exponential, clock=clock, engine=engine, max_steps=max_steps
+        methods,
+        field,
+        span,
+        start,
+        exponential=exponential,
+        clock=clock,
+        engine=engine,
+        max_steps=max_steps,
     )
     runs = [(method, setting) for setting in settings for method in chosen if method.takes(setting)]
     if lazy := [method.label for method in chosen if not any(method is m for m, _ in runs)]:
@@ -191,8 +202,11 @@ def _exact(
     if isinstance(given, tuple):
         try:
             points, accuracy = np.asarray(given[0], dtype=np.longdouble), float(given[1])
+            known = len(given) == 2 and 0 <= accuracy < math.inf and bool(np.isfinite(points).all())
         except (TypeError, ValueError, IndexError):
-            raise InputError(f"reference is {given!r}, expected a Reference or (points, accuracy)") from None
+            known = False
+        if not known:
+            raise InputError(f"reference is {displayed(given)}, expected a Reference or (points, accuracy)")
         if points.shape != start.shape:
             raise ShapeError(f"the reference has points of shape {points.shape}, y0 has shape {start.shape}")
         return _Exact(points, accuracy, "given points", last, None, False)

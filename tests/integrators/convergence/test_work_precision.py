@@ -281,3 +281,20 @@ def test_the_table_is_shown_as_text_markdown_latex_and_html() -> None:
 
 def test_the_function_is_at_the_top() -> None:
     assert lh.work_precision is work_precision is module_of_function
+
+
+@pytest.mark.parametrize(
+    ("y0", "options", "match"),
+    [
+        (np.zeros((0, 3)), {}, "empty ensemble"),
+        ([0.6, 0.0, 0.8], {"max_steps": "a"}, "max_steps"),
+        ([0.6, 0.0, 0.8], {"max_steps": -1}, "max_steps"),
+        ([0.6, 0.0, 0.8], {"reference": ([0.6, 0.0, float("nan")], 1e-3)}, "reference"),
+        ([0.6, 0.0, 0.8], {"reference": ([0.6, 0.0, 0.8], -1.0)}, "reference"),
+        ([0.6, 0.0, 0.8], {"reference": ([0.6, 0.0, 0.8], 1.0, 2.0)}, "reference"),
+    ],
+)
+def test_studies_without_a_meaning_are_refused(y0: Any, options: Any, match: str) -> None:
+    field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
+    with pytest.raises((InputError, ShapeError), match=match):
+        lh.work_precision(field, ["rk4"], (0, 1), y0, dts=[0.5], **options)
