@@ -102,7 +102,7 @@ def _small_label(x: float, low: float, high: float) -> str:
     Examples
     --------
     >>> _small_label(2e-3, 1e-3, 2e-2), _small_label(3e-3, 1e-3, 2e-2), _small_label(3e-3, 2e-3, 4e-3)
-    ('$2\\\\times10^{-3}$', '', '$3\\\\times10^{-3}$')
+    ('$2\\times10^{-3}$', '', '$3\\times10^{-3}$')
     """
     decades = math.log10(high / low)
     power = math.floor(math.log10(x) + 1e-9)
