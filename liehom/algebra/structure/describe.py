@@ -19,7 +19,7 @@ def describe(algebra: LieAlgebra) -> str:
     if not algebra.field.exact:
         lines += _series(algebra)
         lines.append(f"Killing form of signature {killing} (positive, negative, zero), numerically")
-        lines.append("structure theory is exact: make the algebra exact by lh.rationalize for more")
+        lines.append("structure theory is exact: lh.rationalize(g).exact has more")
         return "\n  ".join(lines)
     if algebra.dimension == 0:
         return "\n  ".join([*lines, "the zero algebra"])
