@@ -130,6 +130,27 @@ def _flush_folder(folder: Path) -> None:
             os.close(handle)
 
 
+def write_file(path: str | os.PathLike[str], content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
+    """`write_atomically` for the files that a caller names.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be written; an existing file is then unchanged.
+
+    Examples
+    --------
+    >>> write_file("no/such/folder/out.csv", b"")
+    Traceback (most recent call last):
+    ...
+    liehom.errors.FormatError: 'no/such/folder/out.csv' cannot be written: No such file or directory
+    """
+    try:
+        write_atomically(path, content)
+    except OSError as error:
+        raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+
+
 def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Raise `FormatError` if a file cannot be written; called before the work.
 

@@ -9,7 +9,7 @@ from typing import Any, Literal, overload
 
 from liehom.algebra.core.lie_algebra import LieAlgebra
 from liehom.algebra.core.subalgebra import Subalgebra
-from liehom.disk import write_atomically
+from liehom.disk import write_file
 from liehom.errors import FormatError
 from liehom.io import algebra_file, pair_file, representation_file
 from liehom.io.json_reader import CHECKSUM, Source, json_checksum, kind_of, parse_object, read_object, shown
@@ -246,10 +246,7 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
     if checksum:
         data[CHECKSUM] = json_checksum(data)
     text = _laid_out(data)
-    try:
-        write_atomically(path, text.encode())
-    except OSError as error:
-        raise FormatError(f"{str(path)!r} cannot be written: {error.strerror}") from None
+    write_file(path, text.encode())
 
 
 def _laid_out(data: dict[str, Any]) -> str:

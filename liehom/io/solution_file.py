@@ -13,8 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
-from liehom.disk import check_target, write_atomically
-from liehom.errors import FormatError
+from liehom.disk import check_target, write_file
 
 if TYPE_CHECKING:
     from liehom.integrators import Report, Solution
@@ -101,10 +100,7 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
         np.savez(file, **arrays)
         check_target(target, force=force)  # again: another process may have made the file meanwhile
 
-    try:
-        write_atomically(target, content)
-    except OSError as error:
-        raise FormatError(f"{str(path)!r} cannot be written: {error.strerror or error}") from None
+    write_file(target, content)
 
 
 def plain(value: Any) -> Any:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from liehom.algebra import LieAlgebra
 from liehom.algebra.core.names import linear_combination
-from liehom.disk import check_target, write_atomically
-from liehom.errors import FormatError, InputError, LiehomError, displayed
+from liehom.disk import check_target, write_file
+from liehom.errors import InputError, LiehomError, displayed
 from liehom.fullness import (
     Full,
     NotFull,
@@ -100,10 +100,7 @@ def pair_page(pair: Pair | Verdict, path: str | os.PathLike[str] | None = None) 
     verdict = decide_fullness(pair) if isinstance(pair, Pair) else pair
     page = _page(verdict)
     if path is not None:
-        try:
-            write_atomically(path, page.encode())
-        except OSError as error:
-            raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+        write_file(path, page.encode())
     return page
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from liehom.disk import check_target, write_atomically
+from liehom.disk import check_target, write_file
 from liehom.errors import FormatError, InputError, displayed
 from liehom.integrators import Solution
 from liehom.integrators.run.progress import Progress
@@ -219,10 +219,7 @@ def _write(animation: FuncAnimation, target: Path, fps: int) -> None:
             file = Path(folder) / "animation.gif"
             animation.save(file, writer=matplotlib_module("animation").PillowWriter(fps=fps), dpi=DPI)
             content = file.read_bytes()
-    try:
-        write_atomically(target, content)
-    except OSError as error:
-        raise FormatError(f"{str(target)!r} cannot be written: {error.strerror or error}") from None
+    write_file(target, content)
 
 
 def page(player: str, title: str) -> str:

@@ -15,7 +15,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from liehom.disk import check_target, write_atomically
+from liehom.disk import check_target, write_file
 from liehom.errors import FormatError, InputError
 
 if TYPE_CHECKING:
@@ -268,8 +268,5 @@ def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
     if suffix not in known:
         raise FormatError(f"{os.fspath(path)!r} is not the name of a plot: it must end in one of {', '.join(known)}")
     check_target(target, force=True)
-    try:
-        write_atomically(target, rendered(figure, suffix[1:]))
-    except OSError as error:
-        raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+    write_file(target, rendered(figure, suffix[1:]))
     return figure

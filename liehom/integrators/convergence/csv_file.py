@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 
-from liehom.disk import check_target, write_atomically
+from liehom.disk import check_target, write_file
 from liehom.display import comma_separated
-from liehom.errors import FormatError
 
 
 def csv_file(
@@ -35,8 +34,5 @@ def csv_file(
     if path is None:
         return text
     check_target(path, force=force)
-    try:
-        write_atomically(path, text.encode())
-    except OSError as error:
-        raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+    write_file(path, text.encode())
     return text

@@ -17,7 +17,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-from liehom.disk import check_target, checksum, write_atomically
+from liehom.disk import check_target, checksum, write_file
 from liehom.display import Displayed
 from liehom.errors import FormatError, OrderWarning
 from liehom.integrators.run.checkpoint import MARK, UNREADABLE
@@ -130,10 +130,7 @@ class Solution(Displayed):
         """
         check_target(path, force=force)
         content = archive(self)
-        try:
-            write_atomically(path, lambda file: np.savez(file, **content))  # type: ignore[arg-type]
-        except OSError as error:
-            raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+        write_file(path, lambda file: np.savez(file, **content))  # type: ignore[arg-type]
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Solution:
