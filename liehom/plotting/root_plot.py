@@ -16,7 +16,7 @@ from liehom.algebra.roots.root_system import RootSystem, root_system
 from liehom.errors import InputError
 from liehom.plotting.canvas import GREY, MARKERS, axes_of_dimension, current_colours, paper_colour, style_unless
 from liehom.plotting.surfaces import AnyAxes
-from liehom.representations.highest_weight import character
+from liehom.representations.highest_weight import character, weyl_dimension
 from liehom.typing import Array, IntegerArray
 
 if TYPE_CHECKING:
@@ -27,6 +27,8 @@ READABLE = 9.0
 WIDTH = 230.0
 """Width in points of a picture of the default size, from which diameters follow."""
 LEGEND_ROWS = 6
+LARGEST = 1_000_000
+"""Largest dimension of a module whose weights are drawn; they are a few ten thousand points at most."""
 VIEW = (22.0, 72.0)
 """Elevation and azimuth, in degrees, from which few roots of A3, B3 and C3 hide one another."""
 
@@ -101,8 +103,8 @@ def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes
     Raises
     ------
     ShapeError, InputError
-        If matplotlib is not installed, the rank is not 1, 2 or 3, the axes do not have this dimension, or the weight
-        is not dominant.
+        If matplotlib is not installed, the rank is not 1, 2 or 3, the axes do not have this dimension, the weight is
+        not dominant, or the module has a dimension above 1,000,000.
 
     Examples
     --------
@@ -113,6 +115,9 @@ def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes
     >>> ax = lh.plotting.plot_weights("B3", (2, 0, 0))  # doctest: +SKIP
     """
     system = _of_small_rank(kind, "a weight diagram")
+    dimension = weyl_dimension(system, highest_weight)
+    if dimension > LARGEST:
+        raise InputError(f"a picture shows the weights of a module of dimension at most {LARGEST}, found {dimension}")
     weights = character(system, highest_weight)
     cartan = np.array(system.cartan, dtype=float)
     points = _padded(np.array(list(weights), dtype=float) @ np.linalg.inv(cartan) @ simple_root_coordinates(system))

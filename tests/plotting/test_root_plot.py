@@ -131,6 +131,8 @@ def test_given_axes_are_used_and_must_have_the_dimension():
         plot_root_system("A2", "axes")
     with pytest.raises(lh.InputError, match="dominant"):
         plot_weights("A2", (1, -1))
+    with pytest.raises(lh.InputError, match="at most 1000000, found 1003003001"):
+        plot_weights("A2", (1000, 1000))
 
 
 @pytest.mark.parametrize(("dark", "colours"), [(False, COLOURS), (True, DARK_COLOURS)])
