@@ -137,7 +137,7 @@ def figure4(quick: bool = False, seed: int = SEED) -> Reproduction:
     Examples
     --------
     >>> sorted(figure4(quick=True).tables)
-    ['', 'printed', 'slopes']
+    ['', 'as_printed', 'printed', 'slopes']
     """
     size, setting = scale(quick, seed), SETTINGS[1]
     misprints = (
