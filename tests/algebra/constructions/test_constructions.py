@@ -184,9 +184,10 @@ def test_type_that_is_not_simple_raises_catalog_error(name: str) -> None:
         lh.simple(name)
 
 
-def test_a_type_in_small_letters_is_answered_by_its_spelling() -> None:
-    with pytest.raises(CatalogError, match="write 'E6'"):
-        lh.root_system("e6")
+@pytest.mark.parametrize(("name", "spelling"), [("e6", "E6"), ("a2", "A2")])
+def test_a_type_in_small_letters_is_answered_by_its_spelling(name: str, spelling: str) -> None:
+    with pytest.raises(CatalogError, match=f"write '{spelling}'"):
+        lh.root_system(name)
 
 
 def test_centralizers_of_one_element() -> None:
