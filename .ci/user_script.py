@@ -11,16 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 import liehom as lh
-from liehom.atlas import Atlas
-from liehom.integrators import DenseSolution
-from liehom.scalars import ExactMatrix, Matrix
-from liehom.typing import Array
+from liehom.base.typing import Array
+from liehom.exact.scalars import ExactMatrix, Matrix
+from liehom.flow.run import DenseSolution
+from liehom.studies.atlas import Atlas
 
 g = lh.so(3)
 assert_type(g.bracket([1, 0, 0], [0, 1, 0]), npt.NDArray[Any])
 assert_type(g.killing_form(), Matrix)
 assert_type(g.center(), lh.Subalgebra)
-assert_type(g.root_system(), lh.RootSystem)
+assert_type(g.root_system(), lh.algebra.RootSystem)
 assert_type(lh.adjoint(g).isotropy([1, 0, 0]), lh.Subalgebra)
 assert_type(lh.QQ.matrix([[1, 2]]), ExactMatrix)
 assert_type(lh.decide_fullness(lh.pair("so(4)/so(3)")).certificate, lh.Certificate | None)

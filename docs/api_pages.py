@@ -2,14 +2,14 @@
 
 A page of docs/api names what it documents, in reading order; summaries and entries come from the docstrings.
 
-    ```{entries} liehom.algebra
+    ```{entries} liehom.exact.algebra
     Subalgebra Homomorphism LieAlgebra.bracket
     ```
 
 becomes a table with one row for each name, and below it the entries. Without names all public names of the module are
 taken. Methods that are named (`LieAlgebra.bracket`) are left out of the entry of their class. Three more blocks make
-tables only: `{summary} liehom.algebra` for each page that it lists, below the page of the module, `{pages}` with a
-row for each page that it lists, and `{names} liehom` for the top level.
+tables only: `{summary} liehom.exact.algebra` for each page that it lists, below the page of the module, `{pages}` with
+a row for each page that it lists, and `{names} liehom` for the top level.
 
 The module needs no Sphinx, so that the tests read the pages by it too.
 """
@@ -61,27 +61,28 @@ def member_names(cls: type) -> list[str]:
 
 
 def public_names(module: str) -> list[str]:
-    """Names that a package hands on (`X as X`) or a module defines, in the order of the source."""
+    """Names that the stub of a package lists, else `__all__`, else what a module defines, in the order of the file."""
     loaded = importlib.import_module(module)
-    listed = getattr(loaded, "__all__", None)
-    tree = ast.parse(inspect.getsource(loaded))
+    stub = Path(str(loaded.__file__)).with_suffix(".pyi")
+    tree = ast.parse((stub if stub.is_file() else stub.with_suffix(".py")).read_text(encoding="utf-8"))
+    listed: list[str] | None = None if stub.is_file() else getattr(loaded, "__all__", None)
     names: list[str] = []
     for node in tree.body:
-        if isinstance(node, ast.ImportFrom):
-            names += [alias.name for alias in node.names if alias.asname == alias.name]
+        if isinstance(node, ast.ImportFrom) and stub.is_file():
+            names += [alias.asname or alias.name for alias in node.names]
         elif isinstance(node, ast.ClassDef | ast.FunctionDef):
             names.append(node.name)
         elif isinstance(node, ast.AnnAssign | ast.Assign):
             target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
             names += [target.id] if isinstance(target, ast.Name) and written(loaded, target.id) else []
-    public = [name for name in dict.fromkeys(names) if not name.startswith("_")]
-    return [name for name in public if not listed or name in listed]
+    return [name for name in listed or dict.fromkeys(names) if not name.startswith("_")]
 
 
 @functools.cache
 def written(module: ModuleType, name: str) -> str:
     """The string below the assignment of a name, in the module or where the module has the name from; "" if none."""
-    body = ast.parse(inspect.getsource(module)).body
+    stub = Path(str(module.__file__)).with_suffix(".pyi")
+    body = ast.parse(stub.read_text(encoding="utf-8") if stub.is_file() else inspect.getsource(module)).body
     for node, after in zip(body, [*body[1:], ast.Pass()], strict=True):
         if isinstance(node, ast.ImportFrom) and name in [alias.asname or alias.name for alias in node.names]:
             return written(importlib.import_module(str(node.module)), name)
@@ -132,15 +133,15 @@ def order(folder: Path) -> Iterator[Path]:
 @functools.cache
 def blocks(folder: Path = FOLDER) -> tuple[Block, ...]:
     """All entries of docs/api, page after page."""
-    found = []
+    listed = []
     for path in order(folder):
         text, page = path.read_text(encoding="utf-8"), path.relative_to(folder).with_suffix("").as_posix()
         for match in BLOCK.finditer(text):
             if match[1] == "entries":
                 heading = re.findall(r"^#+ (.*)$", text[: match.start()], flags=re.MULTILINE)[-1]
                 names = tuple(match[3].split()) or tuple(public_names(match[2]))
-                found.append(Block(page, heading, match[2], names))
-    return tuple(found)
+                listed.append(Block(page, heading, match[2], names))
+    return tuple(listed)
 
 
 def entries() -> Iterator[str]:
@@ -227,6 +228,13 @@ def title_and_purpose(page: str, folder: str) -> tuple[str, str]:
     return title.removeprefix("# "), moved
 
 
+@functools.cache
+def page_module(page: str) -> str:
+    """The module that a page is about: that of its first block."""
+    text = (FOLDER / f"{page}.md").read_text(encoding="utf-8")
+    return match[2] if (match := BLOCK.search(text)) else "liehom.base.errors"
+
+
 def is_package(module: str) -> bool:
     return hasattr(importlib.import_module(module), "__path__")
 
@@ -283,26 +291,28 @@ class Writer:
 
     def pages(self, _: str, pages: list[str]) -> str:
         """A row for each page: title, module, and the first line of the module's docstring."""
-        found = []
+        lines = []
         for page in pages:
             path = posixpath.normpath(f"{self.folder}/{page}")
-            module = "liehom" if page == "top-level" else f"liehom.{posixpath.basename(page)}"
+            module = page_module(path)
             about = str(importlib.import_module(module).__doc__).splitlines()[0].removeprefix("liehom: ")
             title, _purpose = title_and_purpose(path, self.folder)
-            found.append((f":doc:`{title} </{path}>`", f"``{module}``: {about[0].lower()}{about[1:]}"))
-        return self.contents(pages) + rst(table(found, self.escape))
+            lines.append((f":doc:`{title} </{path}>`", f"``{module}``: {about[0].lower()}{about[1:]}"))
+        return self.contents(pages) + rst(table(lines, self.escape))
 
     def names(self, module: str, _: list[str]) -> str:
+        """A row for each name of a package that is not a module; its entry is where its object has one."""
         places = {id(find(block.module, name)): f"{block.module}.{name}" for block in blocks() for name in block.names}
         self.declared.add(module)
-        found = []
-        for name in sorted(dir(importlib.import_module(module)), key=str.lower):
-            thing = getattr(importlib.import_module(module), name)
-            place = f"liehom.errors.{name}" if isinstance(thing, type) and issubclass(thing, BaseException) else ""
-            home, _, last = places.get(id(thing), place).rpartition(".")
+        lines = []
+        for name in sorted(public_names(module), key=str.lower):
+            thing = find(module, name)
+            is_error = isinstance(thing, type) and issubclass(thing, BaseException)
+            place = f"liehom.base.errors.{name}" if is_error else places.get(id(thing), "")
+            home, _, last = place.rpartition(".")
             if last == name:
-                found.append((f":py:obj:`lh.{name} <{home}.{last}>`", summary(home, last)))
-        return rst(table(found, self.escape))
+                lines.append((f":py:obj:`lh.{name} <{place}>`", summary(home, last)))
+        return rst(table(lines, self.escape))
 
     def contents(self, pages: Iterable[str]) -> str:
         return "\n".join(["```{toctree}", ":hidden:", "", *pages, "```", "", ""])

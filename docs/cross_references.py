@@ -22,27 +22,31 @@ from typing import Any
 OURS = re.compile(r"(?<![\w./])(?:lh|liehom)((?:\.[A-Za-z_]\w*)+)")
 NAME = re.compile(r"([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)(\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\))?")
 VARIABLES = {
-    "g": ["liehom.algebra.LieAlgebra"],
-    "algebra": ["liehom.algebra.LieAlgebra"],
-    "h": ["liehom.algebra.Subalgebra"],
-    "subalgebra": ["liehom.algebra.Subalgebra"],
-    "family": ["liehom.algebra.LieAlgebraFamily"],
-    "form": ["liehom.algebra.RealForm"],
-    "rho": ["liehom.representations.Representation"],
-    "representation": ["liehom.representations.Representation"],
-    "pair": ["liehom.representations.Pair"],
-    "verdict": ["liehom.fullness.NotFull", "liehom.fullness.Full", "liehom.fullness.NumericallyNotFull"],
-    "certificate": ["liehom.fullness.Certificate"],
-    "sol": ["liehom.integrators.Solution"],
-    "solution": ["liehom.integrators.Solution"],
-    "report": ["liehom.integrators.Report"],
-    "propagator": ["liehom.integrators.Propagator"],
-    "field": ["liehom.homogeneous.GeneratorField", "liehom.scalars.Field"],
-    "step": ["liehom.correctors.Step"],
-    "table": ["liehom.integrators.ConvergenceTable"],
-    "action": ["liehom.homogeneous.Action"],
-    "module": ["liehom.representations.HighestWeightModule"],
-    "body": ["liehom.instances.RigidBody"],
+    "g": ["liehom.exact.algebra.LieAlgebra"],
+    "algebra": ["liehom.exact.algebra.LieAlgebra"],
+    "h": ["liehom.exact.algebra.Subalgebra"],
+    "subalgebra": ["liehom.exact.algebra.Subalgebra"],
+    "family": ["liehom.exact.algebra.LieAlgebraFamily"],
+    "form": ["liehom.exact.algebra.RealForm"],
+    "rho": ["liehom.exact.representations.Representation"],
+    "representation": ["liehom.exact.representations.Representation"],
+    "pair": ["liehom.exact.representations.Pair"],
+    "verdict": [
+        "liehom.exact.fullness.NotFull",
+        "liehom.exact.fullness.Full",
+        "liehom.exact.fullness.NumericallyNotFull",
+    ],
+    "certificate": ["liehom.exact.fullness.Certificate"],
+    "sol": ["liehom.flow.run.Solution"],
+    "solution": ["liehom.flow.run.Solution"],
+    "report": ["liehom.flow.run.Report"],
+    "propagator": ["liehom.flow.propagation.Propagator"],
+    "field": ["liehom.flow.action.GeneratorField", "liehom.exact.scalars.Field"],
+    "step": ["liehom.flow.steps.Step"],
+    "table": ["liehom.flow.convergence.ConvergenceTable"],
+    "action": ["liehom.flow.action.Action"],
+    "module": ["liehom.exact.representations.HighestWeightModule"],
+    "body": ["liehom.studies.rigid_body.RigidBody"],
 }
 """The classes of variables by their names, as the pages use them."""
 
@@ -50,7 +54,7 @@ WORDS = frozenset(["abelian", "adjoint", "affine", "character", "conformal", "de
 """Names of functions that pages use as values and adjectives; they are linked with `lh.` or arguments only."""
 
 
-def found(path: str) -> Any:
+def object_at(path: str) -> Any:
     """The object of a dotted path from `liehom`, and None if there is none; modules are imported on the way."""
     names = path.split(".")
     thing: Any = importlib.import_module(names[0])
@@ -69,7 +73,7 @@ def found(path: str) -> Any:
 def parameters(path: str) -> frozenset[str]:
     """Names of the parameters of an entry."""
     try:
-        return frozenset(inspect.signature(found(path)).parameters)
+        return frozenset(inspect.signature(object_at(path)).parameters)
     except (TypeError, ValueError):
         return frozenset()
 
@@ -95,7 +99,7 @@ class Names:
                 self.members[last].add(entry)
             elif "." in entry:
                 self.top[last].add(entry)
-                thing = found(entry)
+                thing = object_at(entry)
                 if callable(thing) or type(thing).__module__.startswith("liehom"):
                     self.by_object[id(thing)] = entry
             self.parameters |= parameters(entry)
@@ -113,17 +117,19 @@ class Names:
         """
         if path in self.entries:
             return path
-        thing = found(path)
+        thing = object_at(path)
         if thing is None:
             raise LookupError(path)
         if inspect.ismodule(thing):
             return None
         owner, _, last = path.rpartition(".")
-        return self.by_object.get(id(thing)) or (self.of_member(owner, last) if inspect.isclass(found(owner)) else None)
+        return self.by_object.get(id(thing)) or (
+            self.of_member(owner, last) if inspect.isclass(object_at(owner)) else None
+        )
 
     def of_member(self, owner: str, last: str) -> str | None:
         """The entry of a member of a class, or of a class from which it has the member; else that of the class."""
-        cls = found(owner)
+        cls = object_at(owner)
         for base in cls.__mro__:
             entry = f"{self.by_object.get(id(base))}.{last}"
             if entry in self.entries:
@@ -162,7 +168,7 @@ class Names:
         first, _, rest = match[1].partition(".")
         if rest:
             return self.dotted(first, rest)
-        inner = within and within.count(".") > 1
+        inner = within in self.entries
         if inner and (entry := self.near(first, within)):
             return entry
         if not inner and f"{within}.{first}" in self.entries and not (match[2] and self.is_constructor(first)):
@@ -171,7 +177,7 @@ class Names:
 
     def is_constructor(self, name: str) -> bool:
         """Whether a name with arguments, such as `affine(so(3))`, is rather one of the catalogue."""
-        thing = found(f"liehom.algebra.{name}")
+        thing = object_at(f"liehom.exact.algebra.{name}")
         return inspect.isroutine(thing) and ".constructions." in thing.__module__
 
     def dotted(self, first: str, rest: str) -> str | None:
@@ -181,13 +187,14 @@ class Names:
         if first not in VARIABLES and len(owners) > 1:
             return None
         for owner in owners:
-            if not more and inspect.isclass(found(owner)) and (entry := self.of_member(owner, last)):
+            if not more and inspect.isclass(object_at(owner)) and (entry := self.of_member(owner, last)):
                 return entry
-        return f"liehom.{first}.{rest}" if f"liehom.{first}.{rest}" in self.entries else None
+        path = f"liehom.{first}.{rest}"
+        return None if object_at(path) is None else self.of_path(path)
 
     def near(self, name: str, within: str) -> str | None:
         """The entry of a name in a docstring: a member of the same class, or a name of the same package."""
-        owner = within if inspect.isclass(found(within)) else within.rpartition(".")[0]
+        owner = within if inspect.isclass(object_at(within)) else within.rpartition(".")[0]
         if name in parameters(within) or (owner in self.entries and name in parameters(owner)):
             return None
         if f"{owner}.{name}" in self.entries and (owner in self.entries or name not in self.parameters):

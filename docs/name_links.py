@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
+import api_pages
 from cross_references import Names
 from docutils import nodes
 from sphinx import addnodes
@@ -56,7 +57,7 @@ class Linker:
             self.anchor(doctree)
 
     def link(self, app: Any, page: str, literal: nodes.literal, made: set[tuple[int, str]]) -> None:
-        above, within, package = [], "", page.split("/")[1].replace("-", "_") if page.startswith("api/") else ""
+        above, within = [], ""
         node = literal.parent
         while node is not None:
             if isinstance(node, UNLINKED):
@@ -66,7 +67,7 @@ class Linker:
                 within = node[0]["ids"][0]
             node = node.parent
         try:
-            around = within or (f"liehom.{package}" if package else "")
+            around = within or (api_pages.page_module(page) if page.startswith("api/") else "")
             entry = self.names.meant(literal.astext(), around, bare_names_are_keys=page in KEYS)
         except LookupError as error:
             if page not in PAST:

@@ -21,7 +21,7 @@ class PairPage(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         name = self.arguments[0]
-        for file in Path(lh.pages.__path__[0]).iterdir():
+        for file in Path(lh.io.__path__[0]).iterdir():
             self.env.note_dependency(str(file))
         target = Path("_static", f"pair_{re.sub('[^a-z0-9]+', '_', name)}.html")
         written = Path(self.env.app.outdir) / target

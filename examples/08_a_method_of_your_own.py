@@ -6,7 +6,7 @@ import liehom as lh
 
 
 # A step: the midpoint method with one exponential.
-class Midpoint(lh.OneExponential):
+class Midpoint(lh.steps.OneExponential):
     order = 2
 
     def generator(self, action, psi, m, t, h):

@@ -26,6 +26,6 @@ assert form.equal(form.factor[1], (h - w1) * (h - w2) * (h - w3) / x.dot(x))
 point, moments = np.array([0.6, 0.48, 0.64]), {"w1": 1.0, "w2": 0.5, "w3": 0.25}
 values = np.array([1.0, 0.5, 0.25])
 field = lh.GeneratorField(rho, lambda m: (np.sum(m * m * values, -1, keepdims=True) - values) * m)
-found = lh.correction(field, lh.Euler(), point, 2)
+found = lh.steps.correction(field, lh.Euler(), point, 2)
 print(form.function(1)(point, **moments), found.zeta[1])
 assert np.allclose(form.function(1)(point, **moments), found.zeta[1])

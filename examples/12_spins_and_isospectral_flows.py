@@ -3,7 +3,7 @@
 import numpy as np
 
 import liehom as lh
-from liehom.instances import double_bracket_flow
+from liehom.studies.isospectral import double_bracket_flow
 
 # Five coupled spins with damping: the energy falls, no spin changes its length.
 chain = lh.LandauLifshitz((5,), exchange=1.0, anisotropy=0.5, damping=0.1)
@@ -16,7 +16,7 @@ assert all(np.diff(energies) < 0)
 assert np.allclose(np.linalg.norm(sol.y[..., -1], axis=-1), 1, atol=1e-13)
 
 # The double bracket flow S' = [S, [S, N]] sorts the eigenvalues along the diagonal, and keeps them.
-matrices = lh.SymmetricMatrices(3)
+matrices = lh.instances.SymmetricMatrices(3)
 start = np.array([[2.0, 0.5, 0.3], [0.5, 1.0, 0.2], [0.3, 0.2, 3.0]])
 sol = lh.integrate(double_bracket_flow(np.diag([3.0, 2.0, 1.0])), (0, 20), matrices.to_vector(start), rtol=1e-8)
 end = matrices.to_matrix(sol.y[:, -1])

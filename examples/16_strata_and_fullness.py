@@ -8,12 +8,12 @@ import liehom as lh
 
 STUDIES = {
     "SO(k) on symmetric k x k matrices": [lh.symmetric_strata(k) for k in (2, 3, 4, 5)],
-    "SU(k) on Hermitian k x k matrices": [lh.hermitian_strata(k) for k in (2, 3, 4)],
+    "SU(k) on Hermitian k x k matrices": [lh.orbits.hermitian_strata(k) for k in (2, 3, 4)],
     "SO(p) x SO(q) on p x q matrices": [
         lh.rectangular_strata(p, q) for p, q in ((1, 3), (2, 2), (2, 3), (3, 3), (4, 4))
     ],
-    "SO(k) on skew-symmetric k x k matrices": [lh.skew_strata(k) for k in (3, 4, 5, 6, 7)],
-    "SL(2, R) on binary forms of degree n": [lh.binary_form_strata(n) for n in (2, 3, 4, 6)],
+    "SO(k) on skew-symmetric k x k matrices": [lh.orbits.skew_strata(k) for k in (3, 4, 5, 6, 7)],
+    "SL(2, R) on binary forms of degree n": [lh.orbits.binary_form_strata(n) for n in (2, 3, 4, 6)],
 }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import liehom as lh
 from liehom import io
-from liehom.algebra import matrices as families
+from liehom.exact.algebra import linear as families
 from liehom.testing import random_unimodular
 
 HERE = Path(__file__).resolve().parent

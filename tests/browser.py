@@ -1,7 +1,5 @@
 """A headless browser for tests of pages; tests that need it are skipped without one."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from pathlib import Path

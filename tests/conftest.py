@@ -1,8 +1,8 @@
 """Options shared by the whole suite: `--slow`, samples of expensive tables, and hypothesis without a clock."""
 
-from __future__ import annotations
-
+import os
 import signal
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
@@ -10,6 +10,10 @@ from hypothesis import settings
 
 from tests import sampling
 from tests.costs import Costs
+
+# before numpy is loaded: workers that share the cores compute many small products, on which more threads only wait
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -32,13 +36,37 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(Costs(config.getoption("--costs")))
 
 
+def runs_whole(config: pytest.Config) -> bool:
+    """Whether nothing is left out: with --slow, for benchmarks, and for a test that is asked for by name."""
+    return sampling.whole or any("::" in argument for argument in config.args)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> Generator[None]:
+    """Leave cases out before pytest makes items of them, which takes longer than to run most of them."""
+    yield
+    calls = metafunc._calls
+    if not calls or runs_whole(metafunc.config):
+        return
+    fast = [call for call in calls if all(mark.name != "slow" for mark in call.marks)]
+    chosen = sampling.kept(
+        sampling.module_of(metafunc.definition.path),
+        metafunc.definition.name,
+        [call.id for call in fast],
+        sampling.table(),
+    )
+    if not chosen:  # a test without cases would run without its parameters
+        calls[0].marks.append(pytest.mark.slow.mark)
+    calls[:] = [fast[i] for i in chosen] or calls[:1]
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     if config.getoption("--slow"):
         return
     slow = {item for item in items if item.get_closest_marker("slow")}
-    named = {arg.split("::")[-1] for arg in config.args if "::" in arg}  # a test asked for by name runs whole
-    if not named and not sampling.whole:
-        slow.update(sampling.left_out([item for item in items if item not in slow], sampling.table()))
+    if not runs_whole(config):
+        tables = sampling.table()
+        slow |= {item for item in items if item.name in tables.get(sampling.module_of(item.path), {}).get("slow", ())}
     if slow:
         config.hook.pytest_deselected(items=[item for item in items if item in slow])
         items[:] = [item for item in items if item not in slow]

@@ -1,7 +1,5 @@
 """What each test module costs, in CPU seconds: `python -m pytest -n 2 --costs tests/costs.md` writes the table."""
 
-from __future__ import annotations
-
 import os
 from collections import defaultdict
 from collections.abc import Iterator

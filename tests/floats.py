@@ -1,7 +1,5 @@
 """Pairs and algebras as arrays of floats, in rotated bases and scaled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

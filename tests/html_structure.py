@@ -1,7 +1,5 @@
 """Reading of HTML in tests: whether elements are closed in order, and what is in them."""
 
-from __future__ import annotations
-
 from html.parser import HTMLParser
 
 VOID = {"br", "hr", "img", "link", "meta"}

@@ -3,36 +3,42 @@
 Written anew by `python -m tests.public_names > tests/public_names.txt`.
 """
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from liehom.base.lazy import stub_names
+
 FILE = Path(__file__).with_suffix(".txt")
 PACKAGES = [
     "liehom",
-    "liehom.errors",
-    "liehom.scalars",
-    "liehom.algebra",
-    "liehom.representations",
-    "liehom.series",
-    "liehom.homogeneous",
-    "liehom.fullness",
-    "liehom.correctors",
-    "liehom.integrators",
-    "liehom.instances",
-    "liehom.catalog",
-    "liehom.atlas",
+    *(f"liehom.base.{module}" for module in ("budget", "disk", "errors", "pytrees", "store", "tasks")),
+    *(
+        f"liehom.exact.{package}"
+        for package in ("scalars", "algebra", "representations", "orbits", "fullness", "pauli", "catalog")
+    ),
+    *(
+        f"liehom.flow.{package}"
+        for package in (
+            "tracing",
+            "series",
+            "action",
+            "steps",
+            "methods",
+            "run",
+            "engines",
+            "propagation",
+            "convergence",
+            "bodies",
+            "spins",
+        )
+    ),
+    *(f"liehom.studies.{package}" for package in ("instances", "paper", "atlas")),
     "liehom.io",
-    "liehom.parallel",
     "liehom.plotting",
-    "liehom.pages",
-    "liehom.paper",
     "liehom.testing",
-    "liehom.tracing",
 ]
 
 
@@ -59,21 +65,24 @@ def members(name: str, cls: type) -> Iterator[str]:
 
 
 def exported(package: str) -> list[str]:
-    """What a package hands on: every `X as X` of its `__init__`, and what it defines there itself."""
+    """The names of the stub of a package, those of `__all__`, or those that a module defines itself."""
     module = importlib.import_module(package)
-    text = Path(str(module.__file__)).read_text(encoding="utf-8")
-    handed = set(re.findall(r"import (\w+) as \1\b", text))
-    own = {n for n, v in vars(module).items() if getattr(v, "__module__", None) == package and not n.startswith("_")}
-    return sorted(handed | own)
+    stub = Path(str(module.__file__)).with_suffix(".pyi")
+    if stub.exists():
+        return sorted(stub_names(stub))
+    own = [n for n, v in vars(module).items() if getattr(v, "__module__", None) == package and not n.startswith("_")]
+    return sorted(getattr(module, "__all__", own))
 
 
 def lines() -> Iterator[str]:
+    written = set()
     for package in PACKAGES:
         for name in exported(package):
             thing = getattr(importlib.import_module(package), name)
             if inspect.isclass(thing):
                 yield f"{package}.{name}{parameters(thing)}"
-                if package != "liehom":  # written once, under the package that the class comes from
+                if package != "liehom" and thing not in written:  # once, under the first package that lists the class
+                    written.add(thing)
                     yield from members(f"{package}.{name}", thing)
             elif callable(thing):
                 yield f"{package}.{name}{parameters(thing)}"

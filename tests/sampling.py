@@ -5,12 +5,11 @@ are so expensive that only `--slow` runs them. The sample is the same in every r
 fractional part of i times the golden ratio, so that any number of cases is spread over all axes of a table.
 """
 
-from __future__ import annotations
-
 import tomllib
-from collections import defaultdict
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any
 
 FILE = Path(__file__).with_name("samples.toml")
 ROOT = FILE.parent.parent
@@ -20,19 +19,15 @@ EXAMPLES_PER_DEFAULT_EXAMPLE = 4  # hypothesis draws this many times more exampl
 whole = False  # set by conftest before any test module is imported
 
 
-class Item(Protocol):
-    """What of a pytest item decides whether it is in the sample."""
-
-    name: str
-    path: Path
-
-
-I = TypeVar("I", bound=Item)
-
-
+@cache
 def table() -> dict[str, dict[str, Any]]:
     """For each test module, `sample` (test: number of cases by default) and `slow` (cases that only `--slow` runs)."""
     return tomllib.loads(FILE.read_text(encoding="utf-8"))
+
+
+def module_of(path: Path) -> str:
+    """The name of a test module in the tables."""
+    return path.relative_to(ROOT).as_posix() if path.is_relative_to(ROOT) else ""
 
 
 def spread(count: int, size: int) -> set[int]:
@@ -40,33 +35,22 @@ def spread(count: int, size: int) -> set[int]:
     return set(sorted(range(count), key=lambda i: (i + 1) * GOLDEN_RATIO % 1)[:size])
 
 
-def left_out(items: list[I], tables: dict[str, dict[str, Any]]) -> list[I]:
-    """The items that do not run by default.
+def kept(module: str, test: str, ids: Sequence[str], tables: dict[str, dict[str, Any]]) -> list[int]:
+    """The indices of the cases of a parametrized test that run by default.
 
     Raises
     ------
     ValueError
-        If a table names a slow case that its module does not have, since the case would run by default in silence.
+        If a table names a slow case that the test does not have, since the case would run by default in silence.
     """
-    cases: dict[tuple[str, str], list[I]] = defaultdict(list)
-    names: dict[str, set[str]] = defaultdict(set)
-    out = []
-    for item in items:
-        module = item.path.relative_to(ROOT).as_posix() if item.path.is_relative_to(ROOT) else ""
-        entry = tables.get(module, {})
-        names[module].add(item.name)
-        test = item.name.split("[")[0]
-        if item.name in entry.get("slow", ()):
-            out.append(item)
-        elif test in entry.get("sample", ()):
-            cases[module, test].append(item)
-    for module, found in names.items():
-        if missing := set(tables.get(module, {}).get("slow", ())) - found:
-            raise ValueError(f"{FILE.name}: {module} has no case {sorted(missing)}")
-    for (module, test), group in cases.items():
-        kept = spread(len(group), tables[module]["sample"][test])
-        out += [item for i, item in enumerate(group) if i not in kept]
-    return out
+    entry = tables.get(module, {})
+    slow = {name for name in entry.get("slow", ()) if name.startswith(f"{test}[")}
+    names = [f"{test}[{case}]" for case in ids]
+    if missing := slow - set(names):
+        raise ValueError(f"{FILE.name}: {module} has no case {sorted(missing)}")
+    left = [i for i, name in enumerate(names) if name not in slow]
+    sample = spread(len(left), entry.get("sample", {}).get(test, len(left)))
+    return [i for k, i in enumerate(left) if k in sample]
 
 
 def examples(count: int) -> int:

@@ -1,7 +1,5 @@
 """What README and docs promise: names exist, examples run, files parse, public names are explained."""
 
-from __future__ import annotations
-
 import ast
 import contextlib
 import doctest
@@ -24,8 +22,6 @@ DOCS = ROOT / "docs"
 PACKAGE = Path(str(importlib.import_module("liehom").__file__)).parent
 MAPPED = ("paper-map.md", "notation.md")
 BUILTIN = {"ArithmeticError", "AttributeError", "TypeError", "ValueError"}
-NO_API_PAGE = {"display", "immutable", "__init__", "__main__", "cli", "errors", "compatibility"}
-"""Besides them: docs/command-line.md on cli, docs/errors.md on errors, docs/formats.md on compatibility."""
 
 
 def read(*parts: str) -> str:
@@ -37,7 +33,7 @@ def blocks(text: str, language: str) -> list[str]:
 
 
 def resolve(dotted: str) -> Any:
-    """The object behind a dotted name: attributes first, since a module of 0.1.0 may have the name of a function."""
+    """The object behind a dotted name: attributes first."""
     first, *rest = dotted.split(".")
     found: Any = importlib.import_module(first)
     for length, name in enumerate(rest, 2):
@@ -60,7 +56,7 @@ def test_name_in_the_paper_map_or_the_notation_exists(name: str) -> None:
 
 def test_resolving_a_name_that_does_not_exist_fails() -> None:
     with pytest.raises(AttributeError):
-        resolve("liehom.errors.NoSuchThing")
+        resolve("liehom.base.errors.NoSuchThing")
 
 
 @pytest.mark.parametrize("path", sorted(set(re.findall(r"`(tests/[^`]+)`", read("docs", "paper-map.md")))))
@@ -72,7 +68,7 @@ def test_test_in_the_paper_map_exists(path: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(\w+Error)`", read("docs", "errors.md"))) - BUILTIN))
 def test_error_in_the_table_exists(name: str) -> None:
-    assert issubclass(resolve(f"liehom.errors.{name}"), resolve("liehom.errors.LiehomError"))
+    assert issubclass(resolve(f"liehom.base.errors.{name}"), resolve("liehom.base.errors.LiehomError"))
 
 
 def test_readme_begins_with_two_commands_of_one_line() -> None:
@@ -245,26 +241,11 @@ def test_json_on_the_page_is_read_and_is_full(page: str, tmp_path: Path) -> None
     assert all(lh.decide_fullness(pair).full for pair in pairs)
 
 
-def test_every_layer_has_an_api_page() -> None:
-    there = {path.stem for path in (DOCS / "api").glob("*.md")}
-    layers = {path.stem for path in PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()}
-    assert layers - there - NO_API_PAGE == set()
-
-
 def public_names() -> list[str]:
-    """What `liehom/__init__.py` exports: `__all__`, or every `X as X`."""
-    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
-    names = {
-        alias.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-        if alias.asname == alias.name
-    }
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
-            names.update(ast.literal_eval(node.value))
-    return sorted(name for name in names if not name.startswith("_"))
+    """The names of the top level, by its stub."""
+    from liehom.base.lazy import names
+
+    return sorted(names("liehom"))
 
 
 def test_there_are_public_names() -> None:
@@ -285,7 +266,7 @@ def test_names_in_tables_and_answers_exist(page: str) -> None:
 def test_names_of_methods_in_the_list_of_tasks_exist() -> None:
     import liehom as lh
 
-    owners = {"g": lh.LieAlgebra, "rho": lh.Representation, "verdict": lh.NotFull}
+    owners = {"g": lh.LieAlgebra, "rho": lh.Representation, "verdict": lh.fullness.NotFull}
     found = re.findall(r"`(g|rho|verdict)\.(\w+)", read("docs", "tasks.md"))
     assert {owner for owner, _ in found} == set(owners)
     assert [f"{o}.{name}" for o, name in found if not hasattr(owners[o], name) and name != "certificate"] == []

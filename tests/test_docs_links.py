@@ -1,7 +1,5 @@
 """The check of built pages finds dead links, pictures without words and tags that do not match."""
 
-from __future__ import annotations
-
 import importlib
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Formulas of the pages: what the translation must keep, and what the strict build must refuse."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Names in prose lead to the entry that they denote, and to none where they denote several things."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -11,31 +9,31 @@ from tests.test_docs import DOCS, resolve
 from tests.test_docs_api import api_pages, load
 
 cross_references = load("cross_references")
-ERRORS = [f"liehom.errors.{name}" for name in api_pages.public_names("liehom.errors")]
+ERRORS = [f"liehom.base.errors.{name}" for name in api_pages.public_names("liehom.base.errors")]
 NAMES = cross_references.Names([*api_pages.entries(), *ERRORS])
 
 DENOTES = {
-    "lh.integrate": "liehom.integrators.integrate",
-    "liehom.integrate": "liehom.integrators.integrate",
-    "liehom.integrators.integrate": "liehom.integrators.integrate",
-    "liehom.integrators.integration.integrate": "liehom.integrators.integrate",
-    "lh.so(3)": "liehom.algebra.so",
-    "with lh.limits(seconds=60):": "liehom.budget.limits",
-    "lh.decide_fullness(lh.Pair(g, h))": "liehom.fullness.decide_fullness",
-    "lh.QQ": "liehom.scalars.QQ",
-    "lh.LieAlgebra.killing_form": "liehom.algebra.LieAlgebra.killing_form",
-    "Pair.is_primitive": "liehom.representations.Pair.is_primitive",
-    "NotFull.verify": "liehom.fullness.NotFull.verify",
-    "RKMK.prepare": "liehom.correctors.Step.prepare",
-    "Solution.y": "liehom.integrators.Solution",
-    "g.killing_form()": "liehom.algebra.LieAlgebra.killing_form",
-    "rho.isotropy(point)": "liehom.representations.Representation.isotropy",
-    "algebra.over(RR)": "liehom.algebra.LieAlgebra.over",
-    "atlas.sweep": "liehom.atlas.sweep",
-    "decide_fullness": "liehom.fullness.decide_fullness",
-    "UndecidedError": "liehom.errors.UndecidedError",
-    'RKMK("rk4")': "liehom.integrators.RKMK",
-    "levi_decomposition": "liehom.algebra.LieAlgebra.levi_decomposition",
+    "lh.integrate": "liehom.flow.propagation.integrate",
+    "liehom.integrate": "liehom.flow.propagation.integrate",
+    "lh.propagation.integrate": "liehom.flow.propagation.integrate",
+    "liehom.flow.propagation.integration.integrate": "liehom.flow.propagation.integrate",
+    "lh.so(3)": "liehom.exact.algebra.so",
+    "with lh.limits(seconds=60):": "liehom.base.budget.limits",
+    "lh.decide_fullness(lh.Pair(g, h))": "liehom.exact.fullness.decide_fullness",
+    "lh.QQ": "liehom.exact.scalars.QQ",
+    "lh.LieAlgebra.killing_form": "liehom.exact.algebra.LieAlgebra.killing_form",
+    "Pair.is_primitive": "liehom.exact.representations.Pair.is_primitive",
+    "NotFull.verify": "liehom.exact.fullness.NotFull.verify",
+    "RKMK.prepare": "liehom.flow.steps.Step.prepare",
+    "Solution.y": "liehom.flow.run.Solution",
+    "g.killing_form()": "liehom.exact.algebra.LieAlgebra.killing_form",
+    "rho.isotropy(point)": "liehom.exact.representations.Representation.isotropy",
+    "algebra.over(RR)": "liehom.exact.algebra.LieAlgebra.over",
+    "atlas.sweep": "liehom.studies.atlas.sweep",
+    "decide_fullness": "liehom.exact.fullness.decide_fullness",
+    "UndecidedError": "liehom.base.errors.UndecidedError",
+    'RKMK("rk4")': "liehom.flow.methods.RKMK",
+    "levi_decomposition": "liehom.exact.algebra.LieAlgebra.levi_decomposition",
 }
 DENOTES_NOTHING = [
     "so",  # a word of two letters
@@ -63,29 +61,35 @@ def test_ambiguous_name_denotes_nothing(text: str) -> None:
     assert NAMES.meant(text) is None
 
 
-@pytest.mark.parametrize("text", ["lh.no_such_name", "liehom.algebra.no_such_name", "lh.LieAlgebra.no_such_method()"])
+@pytest.mark.parametrize(
+    "text", ["lh.no_such_name", "liehom.exact.algebra.no_such_name", "lh.LieAlgebra.no_such_method()"]
+)
 def test_path_that_leads_nowhere_is_an_error(text: str) -> None:
     with pytest.raises(LookupError, match="no_such"):
         NAMES.meant(text)
 
 
 def test_docstring_means_members_of_its_own_class_first_and_parameters_never() -> None:
-    assert NAMES.meant("order", "liehom.integrators.Heun") == "liehom.integrators.Heun.order"
-    assert NAMES.meant("order", "liehom.integrators.Composition") is None  # a parameter there
-    assert NAMES.meant("quotient", "liehom.algebra.Subalgebra.places") == "liehom.algebra.Subalgebra.quotient"
-    assert NAMES.meant("quotient", "liehom.algebra.LieAlgebra.center") == "liehom.algebra.LieAlgebra.quotient"
-    assert "ideal" in cross_references.parameters("liehom.algebra.LieAlgebra.quotient")
-    assert NAMES.meant("ideal", "liehom.algebra.LieAlgebra.quotient") is None
+    assert NAMES.meant("order", "liehom.flow.methods.Heun") == "liehom.flow.methods.Heun.order"
+    assert NAMES.meant("order", "liehom.flow.methods.Composition") is None  # a parameter there
+    assert (
+        NAMES.meant("quotient", "liehom.exact.algebra.Subalgebra.places") == "liehom.exact.algebra.Subalgebra.quotient"
+    )
+    assert (
+        NAMES.meant("quotient", "liehom.exact.algebra.LieAlgebra.center") == "liehom.exact.algebra.LieAlgebra.quotient"
+    )
+    assert "ideal" in cross_references.parameters("liehom.exact.algebra.LieAlgebra.quotient")
+    assert NAMES.meant("ideal", "liehom.exact.algebra.LieAlgebra.quotient") is None
 
 
 def test_pages_of_a_package_mean_its_own_names() -> None:
     assert NAMES.meant("chi") is None
-    assert NAMES.meant("chi", "liehom.correctors") == "liehom.correctors.chi"
+    assert NAMES.meant("chi", "liehom.flow.steps") == "liehom.flow.steps.chi"
     assert NAMES.meant("Problem", "liehom.io") == "liehom.io.Problem"
 
 
 def test_keys_of_files_are_not_names() -> None:
-    assert NAMES.meant("structure_constants") == "liehom.algebra.LieAlgebra.structure_constants"
+    assert NAMES.meant("structure_constants") == "liehom.exact.algebra.LieAlgebra.structure_constants"
     assert NAMES.meant("structure_constants", bare_names_are_keys=True) is None
     assert NAMES.meant("lh.load", bare_names_are_keys=True) == "liehom.io.load"
 

@@ -1,7 +1,5 @@
 """Pictures of the pages: each is on a page, and its program in the gallery draws it."""
 
-from __future__ import annotations
-
 import importlib
 import io
 import re

@@ -1,7 +1,5 @@
 """Equal objects are equal and hash equal, in this process and in another; names are not compared."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import subprocess
@@ -12,14 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import liehom as lh
 from tests.sampling import examples
 
 ROOT2 = lh.number_field("sqrt(2)")
-SAME = lh.NumberField("b", [-2, 0, 1], (1, 2))  # the same field by another name
+SAME = lh.scalars.NumberField("b", [-2, 0, 1], (1, 2))  # the same field by another name
 MAKERS: dict[str, Callable[[], Any]] = {
     "matrix": lambda: lh.QQ.matrix([["1/2", 1], [0, 3]]),
     "matrix over a number field": lambda: ROOT2.matrix([["sqrt(2)/2", 1]]),
@@ -31,7 +28,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "large algebra": lambda: lh.simple("E6"),
     "subalgebra": lambda: lh.so(4).subalgebra([[2, 0, 0, 0, 0, 0]]),
     "float subalgebra": lambda: lh.so(3).over(lh.RR).subalgebra([[0.6, 0.8, 0.0]]),
-    "homomorphism": lambda: lh.Homomorphism.identity(lh.sl(2)),
+    "homomorphism": lambda: lh.algebra.Homomorphism.identity(lh.sl(2)),
     "representation": lambda: lh.defining(lh.su(2)),
     "float representation": lambda: lh.defining(lh.su(2)).over(lh.RR),
     "pair": lambda: lh.pair("so(4)/so(3)"),
@@ -127,10 +124,10 @@ def test_hash_of_a_large_algebra_is_quick() -> None:
 
 def test_float_subspaces_of_other_bases_hash_equal() -> None:
     """Equality over floats is up to the tolerance of the field, and rotated bases are equal."""
-    plane = lh.Subspace(lh.RR, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 3)
-    turned = lh.Subspace(lh.RR, [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]], 3)
+    plane = lh.scalars.Subspace(lh.RR, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 3)
+    turned = lh.scalars.Subspace(lh.RR, [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]], 3)
     assert plane == turned and hash(plane) == hash(turned)
-    exact = lh.Subspace(lh.QQ, [[1, 0, 0], [0, 1, 0]], 3)
+    exact = lh.scalars.Subspace(lh.QQ, [[1, 0, 0], [0, 1, 0]], 3)
     assert exact != plane and plane != exact
 
 

@@ -1,7 +1,5 @@
 """Every script of examples/ runs, and its files are what the committed script writes."""
 
-from __future__ import annotations
-
 import json
 import runpy
 from pathlib import Path

@@ -1,17 +1,14 @@
 """No answer over floats changes if the data are multiplied by a number from 1e-12 to 1e12, or rotated orthogonally."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import liehom as lh
-from liehom.catalog import CLAIMS
-from liehom.errors import JacobiError, NotASubalgebraError, RepresentationError, UndecidedError
+from liehom.base.errors import JacobiError, NotASubalgebraError, RepresentationError, UndecidedError
+from tests.exact.catalog.claims import CLAIMS
 from tests.floats import constants_of, pair_of, rotated, rotation
 from tests.sampling import examples
 

@@ -1,7 +1,5 @@
 """Fuzz of every door: files, certificates, values. Only documented errors come out, and nothing is executed."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Iterator
@@ -11,16 +9,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, example, given, settings, strategies as st
 from typer.testing import CliRunner
 
 import liehom as lh
-from liehom import errors, io
+from liehom import io
+from liehom.base import errors
 from liehom.cli.app import app
-from liehom.fullness.certificates.certificate import Certificate
-from liehom.scalars import QQ, common_field, number_field
-from liehom.scalars.fields import grammar
+from liehom.exact.fullness.certificate import Certificate
+from liehom.exact.scalars import grammar
+from liehom.exact.scalars.number_fields import common_field, number_field
+from liehom.exact.scalars.rational import QQ
 from tests.campaigns.door_inputs import ATTACKS, MONSTERS, SENTINEL, places
 from tests.sampling import examples
 

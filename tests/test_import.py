@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
 import tomllib
+from inspect import ismodule
 from pathlib import Path
 
 import pytest
+
+from liehom.base.lazy import names
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -51,28 +55,46 @@ def test_version_is_the_one_of_the_package() -> None:
     assert liehom.__version__ == metadata["project"]["version"]
 
 
-def test_lazy_names_are_those_that_type_checkers_see() -> None:
-    import ast
-    from pathlib import Path
-
+def test_the_top_level_has_the_names_of_its_stub_and_no_others() -> None:
     import liehom
 
-    tree = ast.parse(Path(liehom.__file__ or "").read_text(encoding="utf-8"))
-    guarded = next(node for node in tree.body if isinstance(node, ast.If))
-    seen = {a.asname: node.module for node in guarded.body if isinstance(node, ast.ImportFrom) for a in node.names}
-    packages = {name for name, module in seen.items() if module == "liehom"}
-    assert packages == set(liehom._LAYERS)
-    seen = {name: module for name, module in seen.items() if name not in packages}
-    assert seen == liehom._HOME
-    assert all(getattr(liehom, name).__name__ for name in seen if name not in ("QQ", "RR"))
-    assert set(seen) <= set(dir(liehom))
+    listed = set(names("liehom"))
+    public = {name for name in dir(liehom) if not name.startswith("__")}
+    namespace: dict[str, object] = {}
+    exec("from liehom import *", namespace)
+    assert listed == public == namespace.keys() - {"__builtins__"}
+    assert not public & {"Any", "sys", "logging", "lazy", "place_of", "TYPE_CHECKING"}
+    assert all(namespace[name] is getattr(liehom, name) for name in listed)
+
+
+def test_names_are_those_of_the_modules_that_define_them() -> None:
+    import liehom
+
+    modules = [thing for name in names("liehom") if ismodule(thing := getattr(liehom, name))]
+    for package in [liehom, *(module for module in modules if hasattr(module, "__path__"))]:
+        for name, (home, attribute) in names(package.__name__).items():
+            place, thing = importlib.import_module(home), getattr(package, name)
+            assert thing is getattr(place, attribute, thing), name
+            assert hasattr(place, attribute) or thing.__name__ == f"{home}.{attribute}"
+
+
+def test_no_finder_of_imports_is_installed() -> None:
+    before, after = python(
+        "import sys; n = len(sys.meta_path), len(sys.path_hooks); import liehom as lh; lh.integrate, lh.pair;"
+        "print(*n); print(len(sys.meta_path), len(sys.path_hooks))"
+    ).splitlines()
+    assert before == after
 
 
 @pytest.mark.parametrize(
     ("name", "hint"),
     [
         ("decide_fulness", "'; did you mean 'decide_fullness'?"),
-        ("plot_trajectory", "'; pictures are in liehom.plotting: liehom.plotting.plot_trajectory"),
+        ("plot_trajectory", "'; it is in liehom.plotting: from liehom import plotting"),
+        ("so_star", "'; it is in liehom.algebra: from liehom import algebra"),
+        ("HeavyTop", "'; it is in liehom.bodies: from liehom import bodies"),
+        ("Limits", "'; it is in liehom.budget: from liehom import budget"),
+        ("Sphere", "'; it is in liehom.instances: from liehom import instances"),
         ("_repr_html_", "'"),
         ("nothing_like_it", "'"),
     ],
@@ -83,3 +105,10 @@ def test_a_name_that_is_elsewhere_is_pointed_to(name: str, hint: str) -> None:
     with pytest.raises(AttributeError) as caught:
         getattr(liehom, name)
     assert str(caught.value) == f"module 'liehom' has no attribute '{name}{hint}"
+
+
+def test_a_name_that_a_package_lacks_is_an_attribute_error() -> None:
+    import liehom
+
+    with pytest.raises(AttributeError, match=r"module 'liehom.exact.algebra' has no attribute 'no_such'"):
+        liehom.algebra.no_such  # noqa: B018

@@ -1,7 +1,5 @@
 """Ctrl-C ends every long operation within a second, with exit code 130 on the command line."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -20,7 +18,7 @@ BEGIN = """
 import random, sys
 import liehom as lh
 from liehom.cli.guard import guarded
-from liehom.scalars import QQ
+from liehom.exact.scalars import QQ
 
 def dense(n, seed, size=3):
     rng = random.Random(seed)
@@ -51,7 +49,7 @@ OPERATIONS = {
     "constructor": "again(lambda: lh.so(40))",
     "module": 'again(lambda: lh.highest_weight_module("F4", (0, 0, 0, 1)))',
     "characteristic polynomial": "again(lambda: QQ.matrix(dense(150, 3, 10**30)).characteristic_coefficients())",
-    "free nilpotent": "again(lambda: lh.free_nilpotent(2, 9))",
+    "free nilpotent": "again(lambda: lh.algebra.free_nilpotent(2, 9))",
 }
 
 

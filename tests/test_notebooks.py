@@ -3,8 +3,6 @@
 They are executed by the build of the documentation, in which a cell that fails or warns fails the build.
 """
 
-from __future__ import annotations
-
 import ast
 import builtins
 import importlib

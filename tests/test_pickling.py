@@ -1,7 +1,5 @@
 """What is sent to another process arrives: exact objects, fields, steps, spaces, verdicts, errors."""
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Callable
 from typing import Any
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom import errors
+from liehom.base import errors
 
 SPHERE = "so(3)/so(2)"
 
@@ -66,7 +64,7 @@ def test_a_vector_field() -> None:
     assert np.array_equal(sent(field).psi(m), field.psi(m))
 
 
-STEPS = [lh.Euler(), lh.LieTaylor(4), lh.RKMK("rk45"), lh.Corrected(lh.Euler(), 3), lh.CommutatorFree4()]
+STEPS = [lh.Euler(), lh.LieTaylor(4), lh.RKMK("rk45"), lh.Corrected(lh.Euler(), 3), lh.methods.CommutatorFree4()]
 
 
 @pytest.mark.parametrize("step", STEPS, ids=repr)
@@ -80,7 +78,8 @@ def test_a_step_and_what_it_gives(step: lh.Step) -> None:
 
 
 @pytest.mark.parametrize(
-    "make", [lambda: lh.Sphere(3), lambda: lh.RigidBody([1.0, 2.0, 3.0]), lambda: lh.SymmetricMatrices(3)]
+    "make",
+    [lambda: lh.instances.Sphere(3), lambda: lh.RigidBody([1.0, 2.0, 3.0]), lambda: lh.instances.SymmetricMatrices(3)],
 )
 def test_a_space(make: Callable[[], Any]) -> None:
     assert repr(sent(make())) == repr(make())

@@ -1,7 +1,5 @@
 """The public names and their parameters change only on purpose: the file is written anew and the changelog says it."""
 
-from __future__ import annotations
-
 from difflib import unified_diff
 
 from tests import public_names

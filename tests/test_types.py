@@ -1,7 +1,5 @@
 """Signatures name their types: a bare Any is an exception, and the list of exceptions only shrinks."""
 
-from __future__ import annotations
-
 import ast
 import tomllib
 from collections.abc import Iterator
@@ -52,7 +50,7 @@ def exceptions() -> set[str]:
 def test_files_with_a_bare_any_are_listed_and_listed_files_have_one() -> None:
     found = {path.relative_to(PACKAGE.parent).as_posix(): bare(path) for path in FILES}
     with_any = {path for path, count in found.items() if count}
-    assert not with_any - exceptions(), "name the type, see liehom/typing.py"
+    assert not with_any - exceptions(), "name the type, see liehom/base/typing.py"
     assert not exceptions() - with_any, "no longer an exception: take it off the list in pyproject.toml"
 
 

@@ -9,8 +9,7 @@ import numpy as np
 
 import liehom as lh
 from liehom.plotting.canvas import DASHES, GREY, new_figure
-from liehom.plotting.diagram_plot import node_places, plot_dynkin
-from liehom.plotting.root_plot import simple_root_coordinates
+from liehom.plotting.diagram_plot import node_places, plot_dynkin, simple_root_coordinates
 from pictures import picture
 
 CLASS_B = {"A7": {0, 1, 5, 6}, "B6": {0}, "C6": set(), "D6": {0}, "E6": {0, 5}, "E7": set()}
@@ -73,7 +72,7 @@ def draw_weights(axes: Any, kind: str, top: tuple[int, ...], colours: Sequence[s
         if any(x and y for x, y in zip(top, beta, strict=True)):
             x, y = (np.array([start, start - np.array(beta) @ simple]) @ up).T
             axes.plot(x, y, color=colours[0], linewidth=1.2, zorder=1)
-    for weight, multiplicity in lh.character(kind, top).items():
+    for weight, multiplicity in lh.representations.character(kind, top).items():
         point = np.array(weight) @ fundamental @ up
         axes.plot(*point, "o", color=colours[0], markersize=7, zorder=3)
         if multiplicity > 1:

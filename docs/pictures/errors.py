@@ -35,7 +35,7 @@ def energy_drift_of_steps(colours: Sequence[str]) -> Any:
 
 
 @cache
-def _study() -> lh.integrators.WorkPrecisionTable:
+def _study() -> lh.convergence.WorkPrecisionTable:
     """The study of docs/which-step.md; times are not drawn, so one call of each run is enough."""
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
     methods = {

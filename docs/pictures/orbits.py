@@ -9,7 +9,7 @@ import numpy as np
 
 import liehom as lh
 from liehom.plotting.canvas import new_figure
-from liehom.plotting.surfaces import AZIMUTH, ELEVATION, Scene, space_axes, sphere
+from liehom.plotting.phase_plot import AZIMUTH, ELEVATION, Scene, space_axes, sphere
 from pictures import picture
 
 FIELD = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / np.array([1.0, 2.0, 3.0]))

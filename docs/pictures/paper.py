@@ -12,9 +12,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from liehom.paper import Table, reproduce
-from liehom.paper.efficiency import PANELS
-from liehom.paper.plots import draw_costs, draw_errors
+from liehom.studies.paper.efficiency import PANELS
+from liehom.studies.paper.figures import reproduce
+from liehom.studies.paper.plots import draw_costs, draw_errors
+from liehom.studies.paper.table import Table
 from pictures import picture
 
 TABLES = Path(__file__).resolve().parent.parent / "_static" / "reproduction"

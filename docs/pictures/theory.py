@@ -40,7 +40,7 @@ def circles_of_isotropy(colours: Sequence[str]) -> Any:
     moments = np.array([1.0, 2.0, 3.0])
     field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / moments)
     m = np.array([0.6, 0.0, 0.8])
-    zeta = lh.correction(field, lh.Euler(), m, order=2).zeta[1]
+    zeta = lh.steps.correction(field, lh.Euler(), m, order=2).zeta[1]
     psi, best = -m / moments, zeta @ m
     along = np.cross(psi, m) / np.linalg.norm(np.cross(psi, m))
     seen = np.array([along, np.cross(m, along)])
@@ -72,7 +72,9 @@ def landing_on_a_circle(colours: Sequence[str]) -> Any:
     turn, h = np.linspace(-0.4, 2.0, 200), 1.2
     axes.plot(np.cos(turn), np.sin(turn), color=GREY, linewidth=2.0, label="the orbit")
     times = np.linspace(0, h, 60)
-    flow = lh.flow_series(lh.GeneratorField(lh.defining(lh.so(2)), lambda m: 0 * m[..., :1] + 1), [1.0, 0.0], order=3)
+    flow = lh.steps.flow_series(
+        lh.GeneratorField(lh.defining(lh.so(2)), lambda m: 0 * m[..., :1] + 1), [1.0, 0.0], order=3
+    )
     terms = np.array(flow.points.coefficients)
     for n, dash in zip((1, 2, 3), ("--", "-.", ":"), strict=True):
         curve = sum(np.outer(term, times**k) for k, term in enumerate(terms[: n + 1]))

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.plotting.animation import stage
 from liehom.plotting.canvas import new_figure
+from liehom.plotting.trajectory_plot import stage
 from pictures import picture
 
 BODY = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / np.array([1.0, 2.0, 3.0]))

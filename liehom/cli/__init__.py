@@ -1,15 +1,15 @@
 """The command line: every command parses its options, calls the library, and prints the result.
 
-`app` has the group of commands and the short ones; modules that end in `_command` or `_commands`, `reproduce` and the
-wing `integration` hold the others, `demo` the tour. `inputs` reads files, pairs, points and numbers from arguments,
-`problem_options` overrides the problem of a file. `show` prints results, `options` are shared options, and `guard` maps
-exceptions to exit codes. The wing `terminal` has help, completion and the steps of long commands. Only `guard` is
-imported before a command runs. docs/command-line.md describes the commands.
+`app` has the group of commands and the short ones; `objects`, `integration`, `reproduce`, `plot_command` and
+`atlas_command` hold the others. `inputs` reads files, pairs, points and numbers from arguments and has the shared
+options, `guard` maps exceptions to exit codes, prints results and the steps of long commands. A command imports the
+mathematics that it needs when it runs. docs/command-line.md describes the commands.
 """
 
 from __future__ import annotations
 
 import errno
+import gc
 import sys
 
 
@@ -19,6 +19,7 @@ def main() -> None:
 
     repair_streams()
     output = sys.stdout
+    gc.disable()  # until a command runs: loading makes many objects, none of them garbage
     try:
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
@@ -37,3 +38,5 @@ def main() -> None:
         if error.filename is not None:
             raise
         sys.exit(close_output(error))
+    finally:
+        gc.enable()

@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import sys
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from liehom.budget import limits, parsed_limits
+from liehom.base.budget import limits, parsed_limits
+from liehom.base.errors import FormatError
 from liehom.cli import (
-    classify_commands,
-    describe_command,
-    fullness_commands,
-    page_command,
+    completion,
+    integration as numerical_commands,
+    objects as classify_commands,
+    objects as describe_command,
+    objects as fullness_commands,
+    objects as page_command,
     reproduce,
 )
-from liehom.cli.guard import NUMERICAL, YES, guarded
-from liehom.cli.integration import numerical_commands
-from liehom.cli.options import FileArgument, JsonOption, PairArgument, command, run
-from liehom.cli.terminal import completion
-from liehom.cli.terminal.help import COMPLETE, Group, LateGroup, examples
-from liehom.cli.terminal.steps import step
+from liehom.cli.guard import NUMERICAL, YES, guarded, short_vector, show_json, show_result, show_rows, step
+from liehom.cli.help import Group, LateGroup, examples
+from liehom.cli.inputs import FileArgument, JsonOption, PairArgument, command, run
+
+if TYPE_CHECKING:
+    from liehom.exact.scalars.field import Field
 
 HELP = """Lie algebras, isotropy and fullness: exact answers with proofs; integration on homogeneous spaces.
 
 Exit codes: 0 yes or done, 1 no, 2 malformed input, 3 numerical or undecided, 70 a bug, 74 no output, 130 interrupted.
 """
+# Commands that ``liehom`` without arguments suggests
 TRY_FIRST = (
     ('liehom fullness "so(4)/so(3)"', "Is this pair full, and why?"),
     ('liehom describe "so(4,1)"', "What is this Lie algebra?"),
@@ -36,7 +39,6 @@ TRY_FIRST = (
     ("liehom demo", "Take a tour of a few seconds."),
     ("liehom --help", "List all commands."),
 )
-"""Commands that ``liehom`` without arguments suggests."""
 
 
 class LimitsFirst(Group):
@@ -65,13 +67,7 @@ class Atlas(LateGroup):
 
 
 def limits_first(args: list[str]) -> list[str]:
-    """The arguments with all ``--limit`` in front.
-
-    Examples
-    --------
-    >>> limits_first(["fullness", "--limit", "digits=9", "so(3)/so(2)", "--limit=seconds=1"])
-    ['--limit', 'digits=9', '--limit=seconds=1', 'fullness', 'so(3)/so(2)']
-    """
+    """The arguments with all ``--limit`` in front."""
     first: list[str] = []
     rest: list[str] = []
     remaining = iter(args)
@@ -92,7 +88,6 @@ app: typer.Typer = typer.Typer(
     help=HELP,
     epilog=examples(*(line for line, _ in TRY_FIRST[:-1])),
     invoke_without_command=True,
-    add_completion=False,  # its scripts do not quote parentheses, so names of pairs become syntax errors
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -103,10 +98,6 @@ def _version(wanted: bool) -> None:
         package = sys.modules["liehom"]  # loaded before this module; layers do not import upward
         typer.echo(f"liehom {package.__version__}")
         raise typer.Exit
-
-
-if COMPLETE in os.environ:
-    completion.enable()
 
 
 @app.callback()
@@ -165,9 +156,7 @@ def isotropy(
 
 def _isotropy(file: str, point: str | None, as_json: bool) -> int:
     from liehom.cli.inputs import point_in, problem_argument, shown_name
-    from liehom.cli.show import short_vector, show_answer, show_json
-    from liehom.errors import FormatError
-    from liehom.scalars import RR
+    from liehom.exact.scalars.floating import RR
 
     problem = problem_argument(file)
     rho, at = problem.representation, list(problem.point or ())
@@ -182,21 +171,16 @@ def _isotropy(file: str, point: str | None, as_json: bool) -> int:
     dimension = rho.algebra.dimension
     write = rho.field.format
     rows = [[write(x) for x in row] for row in isotropy.rows()]
-    code = YES if rho.field.exact else NUMERICAL
-    if as_json:
-        show_json(
-            {
-                "dimension": dimension,
-                "isotropy_dimension": isotropy.dimension,
-                "orbit_dimension": dimension - isotropy.dimension,
-                "point": [write(x) for x in at],
-                "isotropy": rows,
-                "appended": [list(pair) for pair in rho.appended],
-                "field": rho.field.name,
-                "proved": rho.field.exact,
-            }
-        )
-        return code
+    data = {
+        "dimension": dimension,
+        "isotropy_dimension": isotropy.dimension,
+        "orbit_dimension": dimension - isotropy.dimension,
+        "point": [write(x) for x in at],
+        "isotropy": rows,
+        "appended": [list(pair) for pair in rho.appended],
+        "field": rho.field.name,
+        "proved": rho.field.exact,
+    }
     facts = [
         ("representation", f"{shown_name(file)}: dim g = {dimension} on {rho.field.name}^{rho.size}"),
         ("point", short_vector([write(x) for x in at])),
@@ -206,10 +190,15 @@ def _isotropy(file: str, point: str | None, as_json: bool) -> int:
     facts += [("isotropy" if i == 0 else "", short_vector(row)) for i, row in enumerate(rows[:12])]
     if len(rows) > 12:
         facts.append(("", f"... and {len(rows) - 12} more rows"))
-    label = "" if rho.field.exact else " (numerical)"
     sentence = f"the isotropy subalgebra has dimension {isotropy.dimension}, the orbit {dimension - isotropy.dimension}"
-    show_answer(sentence + label, facts, code)
-    return code
+    return _shown(as_json, data, sentence, facts, rho.field)
+
+
+def _shown(as_json: bool, data: dict[str, Any], sentence: str, facts: list[tuple[str, str]], field: Field) -> int:
+    """Print an answer, which is numerical over floats; returns the exit code."""
+    return show_result(
+        as_json, data, *((sentence, facts, YES) if field.exact else (f"{sentence} (numerical)", facts, NUMERICAL))
+    )
 
 
 @command(app, 'liehom range "so(3,1)/so(2,1)"', 'liehom range "so(4)/so(3)" --psi 0,1,0,0,0,1', name="range")
@@ -226,30 +215,23 @@ def range_(
 
 def _range(text: str, psi: str | None, as_json: bool) -> int:
     from liehom.cli.inputs import pair_argument, pair_facts, pair_line, row_in
-    from liehom.cli.show import short_vector, show_answer, show_json
-    from liehom.homogeneous.range.range_condition import range_condition
+    from liehom.exact.orbits.range import range_condition
 
     pair = pair_argument(text)
     row = None if psi is None else row_in(pair.field, psi, "psi")
     step("range condition")
-    found = range_condition(pair, row)
-    exact = pair.field.exact
+    condition = range_condition(pair, row)
     write = pair.field.format
-    missing = None if found.missing is None else [write(x) for x in found.missing]
-    tested = [write(x) for x in found.psi]
-    code = YES if exact else NUMERICAL
-    if as_json:
-        data: dict[str, Any] = {"holds": found.holds, "rank": found.rank, "missing": missing}
-        data |= {"equilibrium": found.equilibrium, "psi": tested, "message": found.message}
-        show_json({**data, "generic": found.generic, "proved": exact, "pair": pair_facts(text, pair)})
-        return code
-    sentence = str(found)
-    rows = [("pair", pair_line(text, pair)), ("rank", f"{found.rank} of dim g/h = {pair.dimension}")]
+    missing = None if condition.missing is None else [write(x) for x in condition.missing]
+    tested = [write(x) for x in condition.psi]
+    data: dict[str, Any] = {"holds": condition.holds, "rank": condition.rank, "missing": missing}
+    data |= {"equilibrium": condition.equilibrium, "psi": tested, "message": condition.message}
+    data |= {"generic": condition.generic, "proved": pair.field.exact, "pair": pair_facts(text, pair)}
+    rows = [("pair", pair_line(text, pair)), ("rank", f"{condition.rank} of dim g/h = {pair.dimension}")]
     rows.append(("psi" if row is not None else "sample psi", short_vector(tested)))
     if missing is not None:
         rows.append(("missing", f"the covector {short_vector(missing)} vanishes on h, psi and [h, psi]"))
-    show_answer(sentence + ("" if exact else " (numerical)"), rows, code)
-    return code
+    return _shown(as_json, data, str(condition), rows, pair.field)
 
 
 command(app, 'liehom classify "so(6)/u(3)"')(classify_commands.classify)
@@ -258,9 +240,7 @@ command(app, 'liehom describe "so(4,1)"', 'liehom describe "e(3)/so(3)"', "lieho
     describe_command.describe
 )
 command(
-    app,
-    'liehom show "so(3,1)/so(2,1)" -o cone.html',
-    'liehom catalog "sl(2)/so(1,1)" | liehom show - -o lines.html',
+    app, 'liehom show "so(3,1)/so(2,1)" -o cone.html', 'liehom catalog "sl(2)/so(1,1)" | liehom show - -o lines.html'
 )(page_command.show)
 command(
     app,
@@ -302,19 +282,14 @@ def catalog(
 
 
 def _catalog(name: str | None, as_json: bool) -> int:
-    from liehom.catalog import pair, pair_names
-    from liehom.cli.show import show_json, show_table
-    from liehom.io import to_json
+    from liehom.exact.catalog.pairs import pair, pair_names
+    from liehom.io.files import to_json
 
     if name is not None:
         show_json(to_json(pair(name)))
         return YES
     names = list(pair_names())
-    if as_json:
-        show_json({"pairs": names})
-        return YES
-    show_table(["pairs of the catalogue"], [[name] for name in names], header=False)
-    return YES
+    return show_rows(as_json, {"pairs": names}, ["pairs of the catalogue"], [[name] for name in names], header=False)
 
 
 @command(app, "liehom demo", "liehom demo --plot errors.png")
@@ -322,11 +297,8 @@ def demo(plot: numerical_commands.PlotOption = None, json: JsonOption = False) -
     """Show a tour: fullness with verified certificates, isotropy and integration."""
 
     def action() -> int:
-        from liehom.cli.demo import run_demo
+        from liehom.cli.reproduce import run_demo
 
         return run_demo(plot, json)
 
     run(action)
-
-
-command(app, "liehom completion bash", 'eval "$(liehom completion bash)"')(completion.completion)

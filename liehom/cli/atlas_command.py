@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
-from liehom.cli.guard import YES
-from liehom.cli.options import JsonOption, command, run
-from liehom.cli.terminal import completion
-from liehom.cli.terminal.help import Group
-from liehom.cli.terminal.steps import rename_step, step
-from liehom.errors import InputError, displayed
+from liehom.base.errors import InputError, displayed
+from liehom.cli import completion
+from liehom.cli.guard import NO, YES, rename_step, show_rows, step
+from liehom.cli.help import Group
+from liehom.cli.inputs import JsonOption, command, run
 
 if TYPE_CHECKING:
-    from liehom.atlas import Entry
+    from liehom.studies.atlas.entry import Entry
 
 FamilyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Family, once or more often (default: all families).")
@@ -29,18 +28,13 @@ def families(json: JsonOption = False) -> None:
     """List the families and their numbers of pairs."""
 
     def action() -> int:
-        from liehom.atlas import FAMILIES, recipes
-        from liehom.cli.show import show_json, show_table
+        from liehom.studies.atlas.all_families import FAMILIES, recipes
 
         counts = {}
         for name in FAMILIES:
             step(f"pairs of the family {name}")
             counts[name] = sum(1 for _ in recipes([name]))
-        if json:
-            show_json(counts)
-        else:
-            show_table(["family", "pairs"], [[name, str(count)] for name, count in counts.items()])
-        return YES
+        return show_rows(json, counts, ["family", "pairs"], [[name, str(count)] for name, count in counts.items()])
 
     run(action)
 
@@ -56,7 +50,7 @@ def build(
         str | None,
         typer.Option(metavar="DIR", help="Folder from which an interrupted build continues (default: none)."),
     ] = None,
-    processes: Annotated[int, typer.Option(metavar="N", min=1, help="Number of processes (default: 1).")] = 1,
+    processes: Annotated[int, typer.Option(metavar="N", min=1, help="Number of processes.")] = 1,
     force: Annotated[bool, typer.Option("--force", help="Replace the files if they exist.")] = False,
     json: JsonOption = False,
 ) -> None:
@@ -73,10 +67,8 @@ def _build(
     from concurrent.futures import ProcessPoolExecutor
     from functools import partial
 
-    from liehom import atlas as built
-    from liehom.cli.guard import NO
-    from liehom.cli.show import show_json, show_table
-    from liehom.disk import check_target
+    from liehom.base.disk import check_target
+    from liehom.studies import atlas as built
 
     for path in (out, table):
         if path is not None:
@@ -85,19 +77,16 @@ def _build(
     done = [0]
     step("first pairs")
     try:
-        made = built.write_entries(out, _counted(built.build(names, executor=executor, store=store), done))
+        content = built.write_entries(out, _counted(built.build(names, executor=executor, store=store), done))
     except KeyboardInterrupt:
         kept = f"in {store}: the same command continues" if store else "not stored: with --store DIR they would be"
         raise KeyboardInterrupt(f" after {done[0]} pairs, which are {kept}; {out} is not written") from None
     step("table")
     if table is not None:
-        built.write_table(table, made)
-    counts: dict[str, dict[str, Any]] = made["counts"]
-    if as_json:
-        show_json(counts)
-    else:
-        heads = list(next(iter(counts.values()), {}))
-        show_table(["family", *heads], [[name, *(str(n) for n in own.values())] for name, own in counts.items()])
+        built.write_table(table, content)
+    counts: dict[str, dict[str, Any]] = content["counts"]
+    heads, rows = next(iter(counts.values()), {}), [[x, *map(str, own.values())] for x, own in counts.items()]
+    show_rows(as_json, counts, ["family", *heads], rows)
     return NO if any(own["undecided"] for own in counts.values()) else YES
 
 
@@ -130,10 +119,9 @@ def show(
     """Print rows of the table of a file, or with --json the entries with their certificates."""
 
     def action() -> int:
-        from liehom.atlas import FAMILIES
-        from liehom.atlas.table_rows import COLUMNS, read_entries, table_row
         from liehom.cli.inputs import file_argument
-        from liehom.cli.show import show_json, show_table
+        from liehom.studies.atlas.all_families import FAMILIES
+        from liehom.studies.atlas.sweeps import COLUMNS, read_entries, table_row
 
         _require("family", family or (), FAMILIES)
         _require("letter", (letter.upper(),) if letter else (), "ABC")
@@ -148,18 +136,14 @@ def show(
             ):
                 rows.append([_text(cell) for cell in cells])
                 entries.append(entry.to_json() if json else None)
-        if json:
-            show_json({"entries": entries})
-        else:
-            show_table(COLUMNS, rows)
-        return YES
+        return show_rows(json, {"entries": entries}, COLUMNS, rows)
 
     run(action)
 
 
-def _require(what: str, given: Iterable[str], known: Iterable[str]) -> None:
+def _require(what: str, values: Iterable[str], known: Iterable[str]) -> None:
     """Raise `InputError` for a value of an option that nothing has."""
-    for value in given:
+    for value in values:
         if value not in set(known):
             raise InputError(f"there is no {what} {displayed(value)}; expected one of {', '.join(known)}")
 

@@ -11,27 +11,23 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias, final
 
 import typer
 
-from liehom.cli.guard import YES
-from liehom.cli.options import command, run
-from liehom.cli.terminal import completion
-from liehom.cli.terminal.help import Group
-from liehom.cli.terminal.steps import rename_step, step
-from liehom.errors import InputError, displayed
+from liehom.base.errors import InputError, displayed
+from liehom.cli import completion
+from liehom.cli.guard import YES, rename_step, step
+from liehom.cli.help import Group
+from liehom.cli.inputs import command, run
 
 if TYPE_CHECKING:
-    from liehom.integrators import Solution
-    from liehom.io import Problem
+    from liehom.flow.run.solution import Solution
+    from liehom.io.object_files import Problem
 
 Call: TypeAlias = tuple[tuple[object, ...], dict[str, object]]
 """Arguments and named arguments of a function of `liehom.plotting`."""
 
-TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
-"""Tolerances of the runs in a diagram of work and precision."""
+TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)  # Tolerances of the runs in a diagram of work and precision
 SIZE = re.compile(r"([0-9]+(?:\.[0-9]+)?)x([0-9]+(?:\.[0-9]+)?)", re.ASCII)
-MOVING = (".gif", ".html")
-"""Suffixes of moving pictures."""
-LARGEST = 50.0
-"""Largest width and height of a picture, in inches."""
+MOVING = (".gif", ".html")  # Suffixes of moving pictures
+LARGEST = 50.0  # Largest width and height of a picture, in inches
 
 
 # -- arguments ---------------------------------------------------------------------------------------------
@@ -47,11 +43,11 @@ def _weights(kind: str, weight: str) -> Call:
 
 
 def _algebra(text: str) -> Call:
-    from liehom.algebra import LieAlgebra
     from liehom.cli.inputs import object_argument
+    from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 
-    found = object_argument(text)
-    return (found if isinstance(found, LieAlgebra) else found.algebra,), {}
+    loaded = object_argument(text)
+    return (loaded if isinstance(loaded, LieAlgebra) else loaded.algebra,), {}
 
 
 def _pair(text: str) -> Call:
@@ -62,8 +58,8 @@ def _pair(text: str) -> Call:
 
 def _points(points: list[str] | None) -> Call:
     from liehom.cli.inputs import number_value, row_values
-    from liehom.io.number_lists import vector
-    from liehom.scalars import RR
+    from liehom.exact.scalars.floating import RR
+    from liehom.io.json_reader import vector
 
     rows = [[number_value(str(x)) for x in row_values(text, "point")] for text in points or ()]
     return (), {"points": [vector(row, "point", floats=True).numbers(RR) for row in rows]}
@@ -78,8 +74,8 @@ def _energy_drift(file: str, integral: str) -> Call:
 
 
 def _work_precision(file: str, methods: list[str]) -> Call:
-    from liehom.cli.problem_options import ProblemOptions, problem_of
-    from liehom.integrators import work_precision
+    from liehom.cli.inputs import ProblemOptions, problem_of
+    from liehom.flow.convergence.costs import work_precision
 
     problem = problem_of(file, ProblemOptions())
     span = problem.options["t_span"]
@@ -96,7 +92,7 @@ def _work_precision(file: str, methods: list[str]) -> Call:
 
 
 def _quadric(file: str) -> Call:
-    from liehom.cli.problem_options import ProblemOptions, problem_of
+    from liehom.cli.inputs import ProblemOptions, problem_of
 
     problem = problem_of(file, ProblemOptions())
     return (problem.representation, _integrated(problem)), {}
@@ -104,8 +100,8 @@ def _quadric(file: str) -> Call:
 
 def solution_argument(text: str) -> Solution:
     """Solution in an .npz file, or of the problem in a representation file, which is integrated."""
-    from liehom.cli.problem_options import ProblemOptions, problem_of
-    from liehom.integrators import Solution
+    from liehom.cli.inputs import ProblemOptions, problem_of
+    from liehom.flow.run.solution import Solution
 
     return Solution.load(text) if text.endswith(".npz") else _integrated(problem_of(text, ProblemOptions()))
 
@@ -113,7 +109,7 @@ def solution_argument(text: str) -> Solution:
 def _integrated(problem: Problem) -> Solution:
     import numpy as np
 
-    from liehom.integrators.propagator import without_order_warning
+    from liehom.flow.propagation.propagator import without_order_warning
 
     step("integrating")
     with np.errstate(all="ignore"), without_order_warning():
@@ -171,8 +167,7 @@ POINTS = Annotated[
     typer.Argument(metavar="[POINT]", help="Eigenvalues of matrices to mark, e.g. 1,1,2 (default: none)."),
 ]
 OBJECT = Annotated[
-    str,
-    typer.Argument(metavar="FILE|NAME", help="Name of an algebra, file, or -.", autocompletion=completion.anything),
+    str, typer.Argument(metavar="FILE|NAME", help="Name of an algebra, file, or -.", autocompletion=completion.anything)
 ]
 
 
@@ -192,6 +187,7 @@ class Kind:
 
 
 RIGID = "examples/rigid_body.json"
+# All pictures; one more is one more line
 KINDS = (
     Kind("trajectory", "plot_trajectory", (PROBLEM,), _solution, "the trajectory of a problem or a solution", RIGID,
          "animate_trajectory"),
@@ -217,7 +213,6 @@ KINDS = (
          "the orbit types of symmetric 3 x 3 matrices by their eigenvalues", "1,1,2 1,2,3"),
     Kind("brackets", "plot_bracket_table", (OBJECT,), _algebra, "the table of brackets of an algebra", '"so(3,1)"'),
 )  # fmt: skip
-"""All pictures; one more is one more line."""
 
 OUTPUT = Annotated[
     str,
@@ -239,8 +234,8 @@ def declared(kind: Kind) -> Callable[..., None]:
     """Function of a command that draws a kind of picture, with the parameters that typer reads."""
     names = [f"argument{i}" for i in range(len(kind.arguments))]
 
-    def draw(output: str, dark: bool = False, size: str | None = None, **given: object) -> None:
-        run(lambda: run_plot(kind, [given[name] for name in names], output, dark, size))
+    def draw(output: str, dark: bool = False, size: str | None = None, **words: object) -> None:
+        run(lambda: run_plot(kind, [words[name] for name in names], output, dark, size))
 
     place = Parameter.POSITIONAL_OR_KEYWORD
     parameters = [Parameter("output", place, annotation=OUTPUT)]
@@ -258,7 +253,7 @@ def declared(kind: Kind) -> Callable[..., None]:
 def run_plot(kind: Kind, words: list[object], output: str, dark: bool, size: str | None) -> int:
     """Draw a picture and write it; returns the exit code."""
     from liehom import plotting
-    from liehom.cli.problem_options import PLOT_SUFFIXES, check_plot_file
+    from liehom.cli.inputs import PLOT_SUFFIXES, check_plot_file
     from liehom.plotting.canvas import finished, style
 
     moves = bool(kind.moving) and os.path.splitext(output)[1].lower() in MOVING
@@ -287,20 +282,9 @@ def _drawing(done: float) -> None:
 
 
 def inches_of(size: str) -> tuple[float, float]:
-    """Width and height in inches from a string.
-
-    Raises
-    ------
-    InputError
-        If the string is not of this form, or a picture of this size is too large to be made.
-
-    Examples
-    --------
-    >>> inches_of("6x4.5")
-    (6.0, 4.5)
-    """
-    found = SIZE.fullmatch(size.strip())
-    width, height = (float(x) for x in found.groups()) if found else (0.0, 0.0)
+    """Width and height in inches from a string."""
+    match = SIZE.fullmatch(size.strip())
+    width, height = (float(x) for x in match.groups()) if match else (0.0, 0.0)
     if not (0 < width <= LARGEST and 0 < height <= LARGEST):
         raise InputError(f"--size is {displayed(size)}, expected a width and a height in inches, such as 6x4")
     return width, height

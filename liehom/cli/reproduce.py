@@ -1,22 +1,30 @@
-"""Command `reproduce`: the figures of the paper, printed as tables, or written into a folder."""
+"""Commands `reproduce` and `demo`."""
 
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, final
 
 import typer
 
-from liehom.cli.guard import NO, YES
-from liehom.cli.options import JsonOption, run
-from liehom.cli.terminal import completion
-from liehom.cli.terminal.steps import step
+from liehom.base.errors import FormatError, InputError
+from liehom.cli import completion
+from liehom.cli.guard import NO, YES, show_json, show_table, step
+from liehom.cli.inputs import JsonOption, check_plot_file, examples_folder, run
+from liehom.cli.integration import measured, table_json
 
 if TYPE_CHECKING:
-    from liehom.paper import Reproduction
+    from liehom.exact.fullness.verdict import Verdict
+    from liehom.exact.representations.core.pair import Pair
+    from liehom.flow.convergence.orders import ConvergenceTable
+    from liehom.studies.paper.reproduction import Reproduction
+
+# Command `reproduce`: the figures of the paper, printed as tables, or written into a folder.
 
 ALL = "all"
 
@@ -72,9 +80,7 @@ def reproduce(
 
 def run_reproduce(name: str, wanted: Wanted) -> int:
     """Compute the tables, write or print them, and print the claims; returns the exit code."""
-    from liehom.cli.show import show_json
-    from liehom.errors import InputError
-    from liehom.paper import NAMES
+    from liehom.studies.paper.figures import NAMES
 
     if name != ALL and name not in NAMES:
         raise InputError(f"there is no figure {name!r} to reproduce, expected one of {', '.join(NAMES)}, {ALL}")
@@ -101,9 +107,8 @@ def run_reproduce(name: str, wanted: Wanted) -> int:
 
 def _checked_formats(wanted: Wanted) -> tuple[str, ...]:
     """Formats of the plots; raises an error if the files could not be written later."""
-    from liehom.cli.problem_options import can_plot
-    from liehom.errors import InputError
-    from liehom.paper import FORMATS
+    from liehom.cli.inputs import can_plot
+    from liehom.studies.paper.reproduction import FORMATS
 
     if wanted.out is None:
         if wanted.formats is not None or wanted.dark or wanted.resume:
@@ -125,8 +130,6 @@ def _checked_formats(wanted: Wanted) -> tuple[str, ...]:
 
 def _check_folder(out: str) -> None:
     """Raise an error if a folder neither exists nor can be made, or is not writable."""
-    from liehom.errors import FormatError
-
     folder = Path(os.path.abspath(out))
     there = next(path for path in (folder, *folder.parents) if path.exists())
     if not out or not there.is_dir() or not os.access(there, os.W_OK):
@@ -135,22 +138,22 @@ def _check_folder(out: str) -> None:
 
 def _stored(name: str, formats: Sequence[str], wanted: Wanted) -> dict[str, Any] | None:
     """JSON object of a figure that is complete in the folder, with the paths of its files; None if it is not."""
-    from liehom.paper import stored
+    from liehom.studies.paper.reproduction import stored
 
     folder = str(wanted.out)
-    found = stored(folder, name, {"quick": wanted.quick, "seed": wanted.seed}, formats, dark=wanted.dark)
-    if found is None:
+    figure = stored(folder, name, {"quick": wanted.quick, "seed": wanted.seed}, formats, dark=wanted.dark)
+    if figure is None:
         return None
-    files = [str(Path(folder) / file) for file in (*found.pop("files"), f"{name}.json")]
-    return {key: value for key, value in found.items() if key not in ("formats", "dark", "liehom")} | {"files": files}
+    files = [str(Path(folder) / file) for file in (*figure.pop("files"), f"{name}.json")]
+    return {key: value for key, value in figure.items() if key not in ("formats", "dark", "liehom")} | {"files": files}
 
 
 def _figure(name: str, formats: Sequence[str], wanted: Wanted) -> dict[str, Any]:
     """JSON object of a figure with the paths of its files, after it is written, or read with --resume."""
-    from liehom.paper import reproduce
+    from liehom.studies.paper.figures import reproduce
 
-    if wanted.resume and (found := _stored(name, formats, wanted)) is not None:
-        return found
+    if wanted.resume and (figure := _stored(name, formats, wanted)) is not None:
+        return figure
     done = reproduce(name, quick=wanted.quick, seed=wanted.seed)
     if wanted.out is None:
         return done.to_json() | {"files": [], "lines": _lines(done)}
@@ -170,15 +173,13 @@ def _how_to_continue(names: Sequence[str], out: str) -> str:
 # -- printing --------------------------------------------------------------------------------------------
 def _lines(done: Reproduction) -> list[tuple[str, Sequence[str], list[list[str]]]]:
     """Captions, columns and rows of the tables of a figure."""
-    from liehom.paper.table import shown_rows
+    from liehom.studies.paper.table import shown_rows
 
     return [(done.caption(key), table.columns, shown_rows(table)) for key, table in done.tables.items()
             if table.in_markdown]  # fmt: skip
 
 
 def _show(done: list[dict[str, Any]], formats: Sequence[str], out: str | None) -> None:
-    from liehom.cli.show import show_table
-
     for data in done:
         if out is None:
             print(f"{data['title']}\n{data['sample']}\n")
@@ -201,3 +202,161 @@ def _show(done: list[dict[str, Any]], formats: Sequence[str], out: str | None) -
 
 def _short(text: str, limit: int = 70) -> str:
     return text if len(text) <= limit else text[: limit - 4] + " ..."
+
+
+# Command `demo`: a tour through the example files.
+
+PAIRS: tuple[tuple[str, str], ...] = (
+    ("so4_so3", "the sphere S^3"),
+    ("so5_so4_scrambled", "the sphere S^4 in a random basis"),
+    ("g2_su3", "the sphere S^6 under G2"),
+    ("sl3_P1", "the projective plane"),
+    ("so31_so21", "de Sitter space: the null cone is in the way"),
+    ("anisotropic", "so(x^2 + y^2 - 3 z^2) and translations: null vectors only over QQ(sqrt(3))"),
+    ("ellipsoid_sqrt2", "the ellipsoid x^2 + y^2 + sqrt(2) z^2 = 1"),
+    ("so4_so3_float", "the sphere S^3 in floating point"),
+)
+
+RUNS: tuple[tuple[str, int, str], ...] = (
+    ("rigid_body", 1, "Euler, rigid body"),
+    ("rigid_body", 4, "Euler corrected to order 4, rigid body"),
+    ("sym3_generic", 4, "the same, eigenvalues 1, 2, 3"),
+)
+SPAN, SIZES = (0.0, 2.0), (0.1, 0.05, 0.025, 0.0125)
+
+
+def run_demo(plot: str | None, as_json: bool) -> int:
+    """Decide, verify and integrate the example files, print the results, draw the errors; returns the exit code."""
+    check_plot_file(plot)
+    folder = examples_folder()
+    start = time.perf_counter()
+    if as_json:
+        verdicts = [{"file": f"{name}.json", **_decided(folder, name)[1].to_json()} for name, _ in PAIRS]
+        tables = _convergence(folder)
+        integration = [{"file": f"{name}.json", **table_json(table)} for name, table in tables]
+        facts = {"examples": str(folder), "verdicts": verdicts, "integration": integration}
+        _plot([table for _, table in tables], plot)
+        show_json({**facts, "picture": plot})
+        return YES
+    print(f"Files from {folder}\n")
+    _tour_of_verdicts(folder)
+    _tour_of_a_certificate(folder)
+    _tour_of_isotropy(folder)
+    _tour_of_the_range_condition(folder)
+    _tour_of_integration(folder, plot)
+    print(f"\nDone in {time.perf_counter() - start:.1f} s. Next: liehom fullness FILE, liehom catalog, liehom --help")
+    return YES
+
+
+def _decided(folder: Path, name: str) -> tuple[Pair, Verdict]:
+    from liehom.exact.fullness.decide import decide_fullness
+    from liehom.io.files import load_pair
+
+    pair = load_pair(folder / f"{name}.json")
+    verdict = decide_fullness(pair)
+    if verdict.certificate is not None:
+        verdict.verify()
+    return pair, verdict
+
+
+def _tour_of_verdicts(folder: Path) -> None:
+    print("1. Is h full in g, that is: [h, eta] + R eta + h = g for every eta outside h?\n")
+    rows = []
+    for name, meaning in PAIRS:
+        pair, verdict = _decided(folder, name)
+        answer = "full" if verdict.full else "not full"
+        kind = f"{verdict.certificate.kind}, verified" if verdict.certificate is not None else "none: numerical"
+        dimensions = f"{pair.algebra.dimension}/{pair.subalgebra.dimension}"
+        rows.append((f"{name}.json", dimensions, pair.field.name, answer, kind, meaning))
+    show_table(("file", "dim g/dim h", "over", "verdict", "certificate", "what it is"), rows)
+
+
+def _tour_of_a_certificate(folder: Path) -> None:
+    from liehom.exact.fullness.verdict import NotFull
+
+    print("\n2. Why, in one sentence each\n")
+    for name in ("g2_su3", "so31_so21"):
+        pair, verdict = _decided(folder, name)
+        print(f"  {name}: {verdict}")
+        if isinstance(verdict, NotFull) and verdict.eta is not None:
+            eta = ", ".join(pair.field.format(x) for x in verdict.eta)
+            print(f"    eta = ({eta}): the rank is {verdict.rank} of {pair.dimension} there")
+
+
+def _tour_of_isotropy(folder: Path) -> None:
+    from liehom.exact.fullness.decide import decide_fullness
+    from liehom.io.files import load_problem
+
+    print("\n3. Isotropy at a point: SO(3) conjugates symmetric 3 x 3 matrices (a b c; b d e; c e f)\n")
+    rho = load_problem(folder / "sym3.json").representation
+    rows = []
+    for text, point in (
+        ("diag(1, 1, 2)", [1, 0, 0, 1, 0, 2]),
+        ("diag(1, 2, 3)", [1, 0, 0, 2, 0, 3]),
+        ("the identity", [1, 0, 0, 1, 0, 1]),
+    ):
+        pair = rho.pair(point)
+        answer = "full" if decide_fullness(pair).full else "not full"
+        rows.append((text, str(pair.subalgebra.dimension), str(rho.orbit_dimension(point)), answer))
+    show_table(("point", "dim isotropy", "dim orbit", "full"), rows)
+
+
+def _tour_of_the_range_condition(folder: Path) -> None:
+    from liehom.exact.fullness.verdict import NotFull
+    from liehom.exact.orbits.range import range_condition
+
+    print("\n4. The range condition in de Sitter space: at a generic psi, on the null cone, inside h\n")
+    pair, verdict = _decided(folder, "so31_so21")
+    for text, psi in (
+        ("generic", None),
+        ("null", verdict.eta if isinstance(verdict, NotFull) else None),
+        ("in h", pair.subalgebra.rows()[0]),
+    ):
+        condition = range_condition(pair, psi)
+        state = {True: "holds", False: "fails", None: "not decided"}[condition.holds]
+        print(f"  {text:<8} {state}: rank {condition.rank} of {condition.dimension}; {condition.message}")
+
+
+def _convergence(folder: Path) -> list[tuple[str, ConvergenceTable]]:
+    """Pairs (name of the file, table of orders) of all runs."""
+    from liehom.io.files import load_problem
+
+    tables = []
+    for name, order, _ in RUNS:
+        problem = load_problem(folder / f"{name}.json")
+        options = MappingProxyType({**problem.options, "base": "euler", "order": order, "t_span": SPAN})
+        tables.append((name, measured(replace(problem, options=options), SIZES)))
+    return tables
+
+
+def _tour_of_integration(folder: Path, plot: str | None) -> None:
+    from liehom.flow.propagation.propagator import without_order_warning
+    from liehom.io.files import load_problem
+
+    print(
+        "\n5. Integration: a rigid body on the sphere by Euler's step, and by the same step corrected to order 4 along"
+    )
+    print("   the isotropy of each point, which is full in so(3); the errors are measured\n")
+    tables = _convergence(folder)
+    for _, table in tables[:-1]:
+        _print_indented(str(table))
+    print("   Symmetric matrices with eigenvalues 1, 2, 3 have no isotropy and nothing is gained, as the report says\n")
+    _print_indented(str(tables[-1][1]))
+    problem = load_problem(folder / "sym3_generic.json")
+    with without_order_warning():
+        report = problem.integrate(t_span=SPAN).report
+    _print_indented("\n".join(str(report).splitlines()[1:3]))
+    _plot([table for _, table in tables], plot)
+    print(f"Plot of these errors: {plot}" if plot else "liehom demo --plot errors.png  draws these errors")
+
+
+def _print_indented(text: str) -> None:
+    print("".join(f"  {line}\n" for line in text.splitlines()))
+
+
+def _plot(tables: list[ConvergenceTable], path: str | None) -> None:
+    """Draw the errors, if there is a path."""
+    if path is not None:
+        from liehom.plotting.error_plot import plot_convergence
+
+        plot_convergence(tables, path, labels=[label for _, _, label in RUNS])

@@ -7,27 +7,27 @@ import os
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, overload
 
-from liehom.algebra.core.lie_algebra import LieAlgebra
-from liehom.algebra.core.subalgebra import Subalgebra
-from liehom.disk import write_file
-from liehom.errors import FormatError
-from liehom.io import algebra_file, pair_file, representation_file
-from liehom.io.json_reader import CHECKSUM, Source, json_checksum, kind_of, parse_object, read_object, shown
-from liehom.io.problem_file import Problem
-from liehom.representations.core.pair import Pair
-from liehom.representations.core.representation import Representation
-from liehom.typing import VectorLike
+from liehom.base.disk import MARK, write_file
+from liehom.base.errors import FormatError
+from liehom.base.typing import VectorLike
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.algebra.core.subalgebra import Subalgebra
+from liehom.exact.representations.core.pair import Pair
+from liehom.exact.representations.core.representation import Representation
+from liehom.io import object_files
+from liehom.io.json_reader import Source, json_checksum, kind_of, parse_object, read_object, shown
+from liehom.io.object_files import Problem
 
 READERS: dict[str, Callable[[Mapping[str, Any]], LieAlgebra | Subalgebra | Pair | Representation]] = {
-    algebra_file.FORMAT: algebra_file.read_algebra,
-    pair_file.SUBALGEBRA: pair_file.read_subalgebra,
-    pair_file.FORMAT: pair_file.read_pair,
-    representation_file.FORMAT: representation_file.read_representation,
+    object_files.ALGEBRA_FORMAT: object_files.read_algebra,
+    object_files.SUBALGEBRA: object_files.read_subalgebra,
+    object_files.PAIR_FORMAT: object_files.read_pair,
+    object_files.REPRESENTATION_FORMAT: object_files.read_representation,
 }
 KINDS = {
-    algebra_file.FORMAT: "an algebra file",
-    pair_file.SUBALGEBRA: "a subalgebra file",
-    pair_file.FORMAT: "a pair file",
+    object_files.ALGEBRA_FORMAT: "an algebra file",
+    object_files.SUBALGEBRA: "a subalgebra file",
+    object_files.PAIR_FORMAT: "a pair file",
 }
 
 
@@ -81,14 +81,14 @@ def load_pair(path: Source) -> Pair:
     >>> load_pair(path)
     <pair of dimensions 3/1 over QQ>
     """
-    found = load(path)
-    if isinstance(found, LieAlgebra):
+    loaded = load(path)
+    if isinstance(loaded, LieAlgebra):
         raise FormatError("this is an algebra file, which names no subalgebra, so it describes no pair")
-    if isinstance(found, Subalgebra):
-        return Pair(found.algebra, found)
-    if not isinstance(found, Pair):
+    if isinstance(loaded, Subalgebra):
+        return Pair(loaded.algebra, loaded)
+    if not isinstance(loaded, Pair):
         raise FormatError("this representation file has no 'point', so it describes no pair")
-    return found
+    return loaded
 
 
 def load_problem(path: Source) -> Problem:
@@ -140,7 +140,7 @@ def from_json(data: Mapping[str, Any]) -> LieAlgebra | Subalgebra | Pair | Repre
     >>> from_json({"dimension": 2, "structure_constants": [[0, 1, 2, "1"]], "subalgebra": []})
     Traceback (most recent call last):
     ...
-    liehom.errors.FormatError: structure_constants[0]: the index k = 2 is out of range, expected 0 to 1
+    liehom.base.errors.FormatError: structure_constants[0]: the index k = 2 is out of range, expected 0 to 1
     """
     return READERS[_format(data)](data)
 
@@ -148,7 +148,7 @@ def from_json(data: Mapping[str, Any]) -> LieAlgebra | Subalgebra | Pair | Repre
 def _problem(data: Mapping[str, Any]) -> Problem:
     if _format(data) in KINDS:
         raise FormatError(f"this is {KINDS[_format(data)]}, expected a representation file, with 'matrices'")
-    return representation_file.read_problem(data)
+    return object_files.read_problem(data)
 
 
 def _format(data: object) -> str:
@@ -157,7 +157,7 @@ def _format(data: object) -> str:
         raise FormatError(f"a file holds one JSON object {{...}}, this is {kind_of(data)}")
     stated = data.get("format")
     if stated == "liehom-classification":
-        raise FormatError("this is a classification, not a pair; liehom.Classification.from_json reads it")
+        raise FormatError("this is a classification, not a pair; liehom.fullness.Classification.from_json reads it")
     if stated == "liehom-certificate" or {"full", "proved"} <= data.keys():
         kind = "a certificate" if stated is not None else "a verdict"
         raise FormatError(
@@ -168,7 +168,7 @@ def _format(data: object) -> str:
         *others, last = map(repr, READERS)
         raise FormatError(f"format is {shown(stated)}, expected {', '.join(others)} or {last}")
     if stated is None:
-        return representation_file.FORMAT if "matrices" in data else pair_file.FORMAT
+        return object_files.REPRESENTATION_FORMAT if "matrices" in data else object_files.PAIR_FORMAT
     return str(stated)
 
 
@@ -189,18 +189,18 @@ def to_json(obj: object, *, point: VectorLike | None = None) -> dict[str, Any]:
     [[0, 1, 1, '1/2']]
     """
     if isinstance(obj, LieAlgebra):
-        return algebra_file.write_algebra(obj)
+        return object_files.write_algebra(obj)
     if isinstance(obj, Subalgebra):
-        return pair_file.write_subalgebra(obj)
+        return object_files.write_subalgebra(obj)
     if isinstance(obj, Pair):
-        return pair_file.write_pair(obj)
+        return object_files.write_pair(obj)
     if isinstance(obj, Representation):
-        return representation_file.write_representation(obj, point)
+        return object_files.write_representation(obj, point)
     if isinstance(obj, Mapping):
         return dict(obj)
-    made = getattr(obj, "to_json", None)
-    if callable(made):
-        return dict(made())
+    method = getattr(obj, "to_json", None)
+    if callable(method):
+        return dict(method())
     raise FormatError(
         f"a {type(obj).__name__} has no file format; expected a (sub)algebra, pair, representation or certificate"
     )
@@ -218,7 +218,7 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
         The point of a representation file.
     checksum : bool
         Whether the file has a checksum, so that reading it notices every change. The file cannot then be edited
-        without deleting the key `checksum`, and liehom 0.1.0 does not read it.
+        without deleting the key `checksum`.
 
     Raises
     ------
@@ -244,9 +244,8 @@ def dump(obj: object, path: str | os.PathLike[str], *, point: VectorLike | None 
     """
     data = to_json(obj, point=point)
     if checksum:
-        data[CHECKSUM] = json_checksum(data)
-    text = _laid_out(data)
-    write_file(path, text.encode())
+        data[MARK] = json_checksum(data)
+    write_file(path, _laid_out(data).encode())
 
 
 def _laid_out(data: dict[str, Any]) -> str:

@@ -10,42 +10,23 @@ import json
 import math
 import os
 from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
-
-from liehom.disk import check_target, write_file
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from liehom.integrators import Report, Solution
+    from liehom.flow.run.records import Report
+    from liehom.flow.run.solution import Solution
 
 FORMAT = "liehom-solution"
 
 
 def report_json(report: Report) -> dict[str, Any]:
-    """JSON object of a report; a number that is not finite is null.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
-    >>> report = lh.integrators.integrate(field, (0, 1), [1.0, 0.0]).report
-    >>> report_json(report)["order"], report_json(report)["singular_value"]
-    (8, None)
-    """
-    made = {entry.name: plain(getattr(report, entry.name)) for entry in dataclasses.fields(report)}
-    return {**made, "range_condition": report.range_condition}
+    """JSON object of a report; a number that is not finite is null."""
+    entries = {entry.name: plain(getattr(report, entry.name)) for entry in dataclasses.fields(report)}
+    return {**entries, "range_condition": report.range_condition}
 
 
 def summary_json(solution: Solution) -> dict[str, Any]:
-    """JSON object of a run's outcome: status, message, counts and the report.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
-    >>> summary_json(lh.integrators.integrate(field, (0, 1), [1.0, 0.0], dt=0.25))["n_steps"]
-    4
-    """
+    """JSON object of a run's outcome: status, message, counts and the report."""
     return {
         "success": bool(solution.success),
         "status": int(solution.status),
@@ -79,7 +60,7 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     >>> import liehom as lh
     >>> field = lh.GeneratorField(lh.defining(lh.so(2)), [1])
     >>> path = os.path.join(tempfile.mkdtemp(), "rotation.npz")
-    >>> save_solution(lh.integrators.integrate(field, (0, 1), [1.0, 0.0], dt=0.25), path)
+    >>> save_solution(lh.propagation.integrate(field, (0, 1), [1.0, 0.0], dt=0.25), path)
     >>> with np.load(path) as file:
     ...     print(file["t"].shape, file["y"].shape, json.loads(str(file["report"]))["n_steps"])
     ...
@@ -89,28 +70,14 @@ def save_solution(solution: Solution, path: str | os.PathLike[str], *, force: bo
     """
     import numpy as np
 
-    from liehom.integrators.run.solution import archive
+    from liehom.flow.run.solution import write_solution
 
-    target = Path(path)
-    check_target(target, force=force)
     text = json.dumps({"format": FORMAT, "version": 1, **summary_json(solution)}, allow_nan=False)
-    arrays: dict[str, Any] = dict(archive(solution, report=np.array(text)))
-
-    def content(file: BinaryIO) -> None:
-        np.savez(file, **arrays)
-        check_target(target, force=force)  # again: another process may have made the file meanwhile
-
-    write_file(target, content)
+    write_solution(solution, path, force, report=np.array(text))
 
 
 def plain(value: Any) -> Any:
-    """JSON value of Python data: numpy scalars and arrays become numbers and lists, numbers that are not finite null.
-
-    Examples
-    --------
-    >>> plain((1, float("inf"), {"x": "a"}))
-    [1, None, {'x': 'a'}]
-    """
+    """JSON value of Python data: numpy scalars and arrays as numbers and lists, null if not finite."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if dataclasses.is_dataclass(value) and not isinstance(value, type):

@@ -1,26 +1,27 @@
-"""Figures, their style and their files; the one module that loads matplotlib.
-
-The colours are those of Okabe and Ito, which people with any kind of colour vision can distinguish. Lines also differ
-in their markers or dashes.
-"""
+"""Figures, their style and their files."""
 
 from __future__ import annotations
 
 import io
 import os
-from collections.abc import Mapping
+import re
+import warnings
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from liehom.disk import check_target, write_file
-from liehom.errors import FormatError, InputError
+from liehom.base.disk import check_target, write_file
+from liehom.base.errors import FormatError, InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+# Figures, their style and their files; the one module that loads matplotlib. The colours are those of Okabe and Ito,
+# which people with any kind of colour vision can distinguish. Lines also differ in their markers or dashes.
 
 # Okabe and Ito without yellow, which is pale on white; grey for the background
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -31,8 +32,7 @@ DARK_GREY, DARK_PALE = "#999999", "#4a4a4a"
 # the same hues, light enough for a dark page
 DARK_COLOURS = ("#56B4E9", "#E69F00", "#2ECC9A", "#E59AC4", "#F0E442", "#FF8C5A", "#DDDDDD")
 
-MAX_NAME = 20
-"""Characters of a name in a picture."""
+MAX_NAME = 20  # Characters of a name in a picture
 
 STYLE: dict[str, object] = {
     "font.size": 10,
@@ -58,6 +58,7 @@ STYLE: dict[str, object] = {
     "svg.hashsalt": "liehom",  # equal plots are equal files
 }
 TEXT = ("text.color", "axes.labelcolor", "axes.titlecolor", "xtick.labelcolor", "ytick.labelcolor", "legend.labelcolor")
+# What `style` sets for a dark page, besides `STYLE`
 DARK: dict[str, object] = {
     **dict.fromkeys(TEXT, "#dddddd"),
     "grid.color": "#3a3a3a",
@@ -65,24 +66,12 @@ DARK: dict[str, object] = {
     "axes.facecolor": "none",
     "figure.facecolor": "#131416",
 }
-"""What `style` sets for a dark page, besides `STYLE`."""
 # metadata that would contain the time of writing, so that equal plots would be different files
 UNDATED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 
 def matplotlib_module(name: str) -> Any:
-    """Module of matplotlib such as ``matplotlib_module("figure")``, imported at the first call.
-
-    Raises
-    ------
-    InputError
-        If matplotlib is not installed; names the extra.
-
-    Examples
-    --------
-    >>> matplotlib_module("figure").__name__  # doctest: +SKIP
-    'matplotlib.figure'
-    """
+    """Module of matplotlib such as ``matplotlib_module("figure")``, imported at the first call."""
     try:
         import_module("matplotlib")
     except ModuleNotFoundError:
@@ -104,18 +93,11 @@ def style(*, dark: bool = False) -> AbstractContextManager[None]:
     >>> with style(dark=True):  # doctest: +SKIP
     ...     ax = lh.plotting.plot_dynkin("E8")
     """
-    context: AbstractContextManager[None] = matplotlib_module("").rc_context({**STYLE, **(DARK if dark else {})})
-    return context
+    return matplotlib_module("").rc_context({**STYLE, **(DARK if dark else {})})
 
 
 def style_unless(ax: Axes | None) -> AbstractContextManager[object]:
-    """The style of the library for new figures, unless `style` is active; for axes that are given, that of the caller.
-
-    Raises
-    ------
-    InputError
-        If `ax` is not None and not axes of matplotlib.
-    """
+    """The style of the library for new figures, unless `style` is active; for given axes, the caller's."""
     if ax is not None:
         figure_of(ax)
         return nullcontext()
@@ -123,29 +105,18 @@ def style_unless(ax: Axes | None) -> AbstractContextManager[object]:
 
 
 def plain(name: str) -> str:
-    """A name as text of a picture: not too long, every character can be written to a file, no dollar begins a formula.
-
-    Examples
-    --------
-    >>> plain("x_$1$")
-    'x_\\\\$1\\\\$'
-    """
+    """A name as text of a picture: short, of characters that a file can hold, and without a formula."""
     short = name if len(name) <= MAX_NAME else f"{name[:MAX_NAME]}..."
-    writable = "".join(c if c.isprintable() else "\ufffd" for c in short)
-    return writable.replace("$", r"\$")
+    return "".join(c if c.isprintable() else "\ufffd" for c in short).replace("$", r"\$")
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Figure of this size in inches, in no window and not registered with pyplot.
-
-    A notebook shows it, or any of its axes, as a picture if it is the last line of a cell.
-    """
+    """Figure of this size in inches, in no window and not registered with pyplot; notebooks show it as a picture."""
     figure: Any = matplotlib_module("figure").Figure(figsize=(width, height), layout="constrained")
     # IPython asks for this method; matplotlib has it only for figures that are registered with pyplot
     figure._repr_svg_ = partial(_svg, figure)
     figure.add_axobserver(_share_svg)
-    made: Figure = figure
-    return made
+    return figure
 
 
 def _share_svg(figure: Any) -> None:
@@ -158,13 +129,7 @@ def _svg(figure: Figure) -> str:
 
 
 def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axes:
-    """The axes that the caller gives, or else new ones: low for dimension 1, square for 2, in space for 3.
-
-    Raises
-    ------
-    InputError
-        If the given axes have another dimension.
-    """
+    """The axes that the caller gives, or else new ones: low for dimension 1, square for 2, in space for 3."""
     solid = dimension == 3
     if ax is None:
         return new_figure(size, 0.4 * size if dimension == 1 else size).add_subplot(
@@ -177,13 +142,7 @@ def axes_of_dimension(ax: Axes | None, dimension: int, size: float = 4.8) -> Axe
 
 
 def plane_axes(ax: Axes | None, width: float, height: float) -> Axes:
-    """The axes in the plane that the caller gives, or else those of a new figure of this size in inches.
-
-    Raises
-    ------
-    InputError
-        If the given axes are in space, or have polar coordinates.
-    """
+    """The axes in the plane that the caller gives, or else those of a new figure of this size in inches."""
     if ax is None:
         return new_figure(width, height).add_subplot()
     check_straight(ax)
@@ -222,30 +181,14 @@ def _is_dark() -> bool:
 
 
 def figure_of(axes: Axes) -> Figure:
-    """Figure that the axes of the caller belong to.
-
-    Raises
-    ------
-    InputError
-        If `axes` are not axes of matplotlib.
-    """
+    """Figure that the axes of the caller belong to."""
     if not isinstance(axes, matplotlib_module("axes").Axes):
         raise InputError(f"expected axes of matplotlib, got {axes!r}")
-    figure: Figure = axes.figure.figure  # of axes in a subfigure, the figure that has all of them
-    return figure
+    return axes.figure.figure  # of axes in a subfigure, the figure that has all of them
 
 
 def rendered(figure: Figure, kind: str, about: Mapping[str, str] | None = None) -> bytes:
-    """Content of a file of this kind, such as "svg", with the same bytes for equal figures.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-    kind : str
-        Suffix of the file without its dot.
-    about : dict of str to str, optional
-        Metadata of the file, with the keys of its format: `Title`, and `Description` or for PDF `Subject`.
-    """
+    """Content of a file of this kind, such as "svg", with the same bytes for equal figures."""
     file = io.BytesIO()
     with style_unless(None):
         figure.savefig(file, format=kind, metadata={**UNDATED.get(f".{kind}", {}), **(about or {})} or None)
@@ -253,13 +196,7 @@ def rendered(figure: Figure, kind: str, about: Mapping[str, str] | None = None) 
 
 
 def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
-    """The figure, after it is written to a file if a path is given.
-
-    Raises
-    ------
-    FormatError
-        If matplotlib has no format with this suffix, the folder does not exist, or the file cannot be written.
-    """
+    """The figure, after it is written to a file if a path is given."""
     if path is None:
         return figure
     target = Path(os.fspath(path))
@@ -270,3 +207,32 @@ def finished(figure: Figure, path: str | os.PathLike[str] | None) -> Figure:
     check_target(target, force=True)
     write_file(target, rendered(figure, suffix[1:]))
     return figure
+
+
+# SVG of a picture for a page of HTML that contains it, instead of a file of its own.
+
+Drawing: TypeAlias = "Callable[[], Axes]"  # A function that draws a picture
+
+_HEAD = re.compile(r"^.*?(?=<svg )", re.DOTALL)
+_METADATA = re.compile(r"<metadata>.*?</metadata>|<style.*?</style>", re.DOTALL)
+_SIZE = re.compile(r'(?<=<svg )(.*?)width="([0-9.]+)pt" height="([0-9.]+)pt"', re.DOTALL)
+_NAMED = re.compile(r'(\bid="|url\(#|href="#)')
+_DIGITS = re.compile(r"(\.\d\d)\d+")
+
+
+def inline_svg(draw: Drawing, name: str, *, dark: bool = False) -> str:
+    """An element `svg` for a page of HTML, as a string."""
+    file = io.BytesIO()
+    text_stays = matplotlib_module("").rc_context({"svg.fonttype": "none"})
+    with style(dark=dark), text_stays, warnings.catch_warnings():
+        # the browser has fonts of its own
+        warnings.filterwarnings("ignore", r"Glyph .* missing from font")
+        axes = draw()
+        axes.set_title("", loc="left")
+        figure = figure_of(axes)
+        figure.patch.set_alpha(0.0)
+        figure.savefig(file, format="svg", metadata=UNDATED[".svg"])
+    text = _METADATA.sub("", _HEAD.sub("", file.getvalue().decode(), count=1))
+    text = _SIZE.sub(lambda m: f'aria-hidden="true" style="width:{float(m[2]) * 4 / 3:.0f}px" {m[1]}', text, count=1)
+    text = _NAMED.sub(rf"\1{name}-", _DIGITS.sub(r"\1", text))
+    return re.sub(r"\s*\n\s*", " ", text).replace("> <", "><").strip()

@@ -1,8 +1,4 @@
-"""Plots of Dynkin, Satake and Vogan diagrams, and of bracket tables.
-
-Nodes are in Bourbaki's order, numbered from 0. Several lines in a bond are an angle of 135 or 150 degrees between the
-simple roots, and its arrow points to the shorter root.
-"""
+"""Plots of Dynkin, Satake and Vogan diagrams, bracket tables, roots and weights."""
 
 from __future__ import annotations
 
@@ -11,14 +7,17 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 import numpy as np
 
-from liehom.algebra import LieAlgebra
-from liehom.algebra.roots.dynkin import cartan_matrix, parse_type
-from liehom.algebra.roots.real_form import RealForm
-from liehom.algebra.roots.satake import SatakeDiagram
-from liehom.algebra.roots.vogan import VoganDiagram
-from liehom.errors import InputError, ShapeError, displayed
+from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.typing import Array, IntegerArray
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.algebra.roots.diagrams import SatakeDiagram, VoganDiagram
+from liehom.exact.algebra.roots.real_form import RealForm
+from liehom.exact.algebra.roots.root_system import RootSystem, cartan_matrix, parse_type, root_system
+from liehom.exact.representations.highest_weight.characters import character, weyl_dimension
 from liehom.plotting.canvas import (
     GREY,
+    MARKERS,
+    axes_of_dimension,
     current_colours,
     matplotlib_module,
     new_figure,
@@ -26,20 +25,22 @@ from liehom.plotting.canvas import (
     plain,
     style_unless,
 )
-from liehom.typing import Array
+from liehom.plotting.phase_plot import AnyAxes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TITLE_INCHES = 0.09
-"""Width of a character of a title, at most on average."""
+# Plots of Dynkin, Satake and Vogan diagrams, and of bracket tables. Nodes are in Bourbaki's order, numbered from 0.
+# Several lines in a bond are an angle of 135 or 150 degrees between the simple roots, and its arrow points to the
+# shorter root.
+
+TITLE_INCHES = 0.09  # Width of a character of a title, at most on average
+# Center, width and basis element of the part of a cell that shows one term of a bracket
 Strip: TypeAlias = tuple[float, float, float, int]
-"""Center, width and basis element of the part of a cell that shows one term of a bracket."""
 
 Diagram = TypeVar("Diagram", SatakeDiagram, VoganDiagram)
 
-NODE = 0.17
-"""The radius of a node, at which its bonds end; neighbours are at distance 1."""
+NODE = 0.17  # The radius of a node, at which its bonds end; neighbours are at distance 1
 MAX_WIDTH = 12.0
 MAX_BRACKETS = 60
 
@@ -175,19 +176,14 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
         The cell in row i and column j has a strip for each term of [e_i, e_j], in the colour that e_k has at the margin
         and with the sign of the coefficient. Its name, and the coefficient if not 1, are written where there is room.
 
-    Raises
-    ------
-    InputError
-        If matplotlib is not installed, `algebra` is not a Lie algebra, or its dimension is 0 or above 60.
-
     Examples
     --------
     >>> import liehom as lh
     >>> ax = lh.plotting.plot_bracket_table(lh.so(4))  # doctest: +SKIP
     """
     if not isinstance(algebra, LieAlgebra) or not 0 < algebra.dimension <= MAX_BRACKETS:
-        found = f"dimension {algebra.dimension}" if isinstance(algebra, LieAlgebra) else displayed(algebra)
-        raise InputError(f"a bracket table is drawn for a Lie algebra of dimension 1 to {MAX_BRACKETS}; got {found}")
+        actual = f"dimension {algebra.dimension}" if isinstance(algebra, LieAlgebra) else displayed(algebra)
+        raise InputError(f"a bracket table is drawn for a Lie algebra of dimension 1 to {MAX_BRACKETS}; got {actual}")
     n = algebra.dimension
     side = float(np.clip(1.6 + 0.32 * n, 3.2, 9.0))
     with style_unless(ax):
@@ -223,18 +219,7 @@ def plot_bracket_table(algebra: LieAlgebra, ax: Axes | None = None) -> Axes:
 
 
 def node_places(kind: str, arrows: Iterable[tuple[int, int]] = ()) -> Array:
-    """The places (r, 2) of the nodes of a diagram, simple components below one another.
-
-    Components of type A and E6 are folded in two lines if arrows join their nodes. If arrows join two components, the
-    second is the mirror image of the first.
-
-    Examples
-    --------
-    >>> node_places("D4").tolist()
-    [[0.0, 0.0], [1.0, 0.0], [2.0, 0.5], [2.0, -0.5]]
-    >>> node_places("A3", [(0, 2)]).tolist()
-    [[0.0, 0.5], [1.0, 0.0], [0.0, -0.5]]
-    """
+    """The places (r, 2) of the nodes: components below one another, folded or mirrored where arrows join nodes."""
     places: list[Array] = []
     base, start = 0.0, 0
     joined = list(arrows)
@@ -346,18 +331,17 @@ def _label_shift(neighbours: Array) -> Array:
     directions = np.array([(0, -1), (0, 1), (1, 0), (-1, 0), (-0.75, -0.75), (-0.75, 0.75)], dtype=float)
     nearness = (unit @ (directions / np.linalg.norm(directions, axis=1)[:, None]).T).max(axis=0, initial=-1.0)
     free = nearness < 0.4
-    shift: Array = 0.4 * directions[int(np.argmax(free) if free.any() else np.argmin(nearness.round(6)))]
-    return shift
+    return 0.4 * directions[int(np.argmax(free) if free.any() else np.argmin(nearness.round(6)))]
 
 
 def _named(form: object, data: type[Diagram]) -> tuple[str, RealForm | Diagram]:
     """The prefix of the title and the real form; a diagram, which has no name, as it is."""
     if isinstance(form, data):
         return "", form
-    found = RealForm.of_name(form) if isinstance(form, str) else form
-    if not isinstance(found, RealForm):
+    real_form = RealForm.of_name(form) if isinstance(form, str) else form
+    if not isinstance(real_form, RealForm):
         raise InputError(f"expected the name of a real form, a RealForm or a {data.__name__}, got {displayed(form)}")
-    return f"{found.name}: ", found
+    return f"{real_form.name}: ", real_form
 
 
 def _element_colours(n: int) -> list[str]:
@@ -402,3 +386,190 @@ def _write_terms(ax: Axes, algebra: LieAlgebra, strips: Sequence[Strip], colours
         text = name if one else f"{algebra.field.show(value).lstrip('-')}·{name}"
         if size >= 4 and 0.62 * size * len(text) < width * points:
             ax.text(x, y + 0.27, text, color=_ink(colours[k]), fontsize=size, ha="center", va="center", zorder=4)
+
+
+# Plots of root systems and of the weights of irreducible modules, for rank 1, 2 and 3. Coordinates are taken in an
+# orthonormal basis of the span of the roots, in which the simple roots are the rows of the Cholesky factor of their
+# Gram matrix. So the first simple root points along the first axis, and lengths and angles are those of the root
+# system, with (a, a) = 2 for the short roots of each component.
+
+# Least diameter, in points, of a point with its multiplicity in it; smaller points show it by their size only
+READABLE = 9.0
+WIDTH = 230.0  # Width in points of a picture of the default size, from which diameters follow
+LEGEND_ROWS = 6
+LARGEST = 1_000_000  # Largest dimension of a module whose weights are drawn; they are a few ten thousand points at most
+VIEW = (22.0, 72.0)  # Elevation and azimuth, in degrees, from which few roots of A3, B3 and C3 hide one another
+
+
+def plot_root_system(kind: str | RootSystem, ax: Axes | None = None) -> Axes:
+    """Draw the roots of a root system of rank 1, 2 or 3, with the simple roots named.
+
+    Parameters
+    ----------
+    kind : str or RootSystem
+        'A2', 'G2', 'B3', 'A1 + A1', or the result of ``algebra.root_system()``.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw in, for rank 3 with ``projection="3d"``; by default new ones.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        With one colour for each length of roots. Negative roots are pale, and gray edges join nearest roots of one
+        length.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> ax = lh.plotting.plot_root_system("G2")  # doctest: +SKIP
+    >>> ax = lh.plotting.plot_root_system("B3")  # doctest: +SKIP
+    """
+    system = _of_small_rank(kind, "a root system")
+    simple = simple_root_coordinates(system)
+    norms = np.array([system.norm(root) for root in system.roots])
+    with style_unless(ax):
+        ax = axes_of_dimension(ax, system.rank)
+        colours = current_colours()
+        for k, norm in enumerate(sorted(set(norms.tolist()))):
+            roots = _padded(system.root_matrix()[norms == norm] @ simple)
+            _plot(ax, _nearest(roots), color=GREY, linewidth=0.6, zorder=1)
+            positive, negative = roots[: len(roots) // 2], roots[len(roots) // 2 :]
+            for part, alpha in ((negative, 0.4), (positive, 1.0)):
+                rays = _segments(0 * part, part)
+                _plot(ax, rays, color=colours[k], alpha=alpha, linewidth=1.8, zorder=2)
+                text = f"{len(roots)} roots with $(\\alpha, \\alpha) = {norm}$" if part is positive else None
+                _plot(ax, part, marker=MARKERS[k], linestyle="", color=colours[k], alpha=alpha, label=text, zorder=3)
+        gap = 0.16 * float(np.sqrt(norms.max()))
+        for node, root in enumerate(_padded(simple)):
+            _write(ax, _beside(root, gap), f"$\\alpha_{node}$")
+        _finish(ax, _padded(system.root_matrix() @ simple), f"{system.type}: {system.number_of_roots} roots")
+    return ax
+
+
+def plot_weights(kind: str | RootSystem, highest_weight: Sequence[int], ax: Axes | None = None) -> Axes:
+    """Draw the weights of an irreducible module with their multiplicities, for rank 1, 2 or 3.
+
+    Parameters
+    ----------
+    kind : str or RootSystem
+        'A2', 'G2', 'B3', 'A1 + A1', or the result of ``algebra.root_system()``.
+    highest_weight : sequence of int
+        Dominant, in fundamental coordinates, in Bourbaki's numbering.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw in, for rank 3 with ``projection="3d"``; by default new ones.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        Gray edges join weights that differ by a short root. Multiplicities above 1 are written into their points; in
+        diagrams of many weights the points grow with their multiplicity instead.
+
+    Examples
+    --------
+    The adjoint representation of sl(3), and the 27 of so(7):
+
+    >>> import liehom as lh
+    >>> ax = lh.plotting.plot_weights("A2", (1, 1))  # doctest: +SKIP
+    >>> ax = lh.plotting.plot_weights("B3", (2, 0, 0))  # doctest: +SKIP
+    """
+    system = _of_small_rank(kind, "a weight diagram")
+    dimension = weyl_dimension(system, highest_weight)
+    if dimension > LARGEST:
+        raise InputError(f"a picture shows the weights of a module of dimension at most {LARGEST}, found {dimension}")
+    weights = character(system, highest_weight)
+    cartan = np.array(system.cartan, dtype=float)
+    points = _padded(np.array(list(weights), dtype=float) @ np.linalg.inv(cartan) @ simple_root_coordinates(system))
+    times = np.array(list(weights.values()))
+    with style_unless(ax):
+        ax = axes_of_dimension(ax, system.rank)
+        index = {weight: i for i, weight in enumerate(weights)}
+        for root in np.array([a for a in system.positive_roots if system.norm(a) == 2]) @ np.array(system.cartan):
+            lower = [
+                (i, index.get(tuple(x - y for x, y in zip(weight, root.tolist(), strict=True))))
+                for weight, i in index.items()
+            ]
+            ends = np.array([pair for pair in lower if pair[1] is not None], dtype=int).reshape(-1, 2)
+            _plot(ax, _segments(points[ends[:, 0]], points[ends[:, 1]]), color=GREY, linewidth=0.6, zorder=1)
+        _draw_multiplicities(ax, points, times)
+        top = tuple(int(x) for x in highest_weight)
+        _write(ax, _beside(points[0], 0.14 * abs(points).max()), r"$\lambda$")
+        where = f"$\\lambda$ = {top if len(top) > 1 else top[0]}"
+        _finish(ax, points, f"{system.type}, {where}: dimension {times.sum()}, {len(points)} weights")
+    return ax
+
+
+def _draw_multiplicities(ax: Axes, points: Array, times: IntegerArray) -> None:
+    """A point for each weight, with its multiplicity in it if there is room between nearest weights."""
+    colours = current_colours()
+    room = min(13.0, 0.85 * WIDTH * np.sqrt(2) / (2.3 * abs(points).max() + 0.2))
+    values = np.unique(times)
+    named = values[np.unique(np.linspace(0, len(values) - 1, LEGEND_ROWS).astype(int))]
+    for k in values.tolist():
+        size = (6.0 if k == 1 else room) if room >= READABLE else room * (0.3 + 0.7 * k / times.max())
+        options = {"marker": "o", "linestyle": "", "color": colours[min(k, 2) - 1], "markersize": size, "zorder": 3}
+        _plot(ax, points[times == k], label=f"multiplicity {k}" if k in named else None, **options)
+        for point in points[times == k] if room >= READABLE and k > 1 else ():
+            _write(ax, point, str(k), color=paper_colour(), fontsize=8, zorder=10)
+
+
+def simple_root_coordinates(system: RootSystem) -> Array:
+    """The simple roots as rows of a lower triangular matrix (r, r): coordinates in an orthonormal basis."""
+    gram = np.array(system.cartan, dtype=float) * np.array(system.norms, dtype=float) / 2
+    return np.asarray(np.linalg.cholesky(gram), dtype=float)
+
+
+def _of_small_rank(kind: str | RootSystem, what: str) -> RootSystem:
+    system = kind if isinstance(kind, RootSystem) else root_system(kind)
+    if not 1 <= system.rank <= 3:
+        raise InputError(
+            f"{what} is drawn for rank 1, 2 or 3; {system.type} has rank {system.rank}: plot_dynkin draws every rank"
+        )
+    return system
+
+
+def _padded(points: Array) -> Array:
+    """Points (k, 1) on a line as points of the plane; others unchanged."""
+    return np.hstack([points, np.zeros_like(points)]) if points.shape[1] == 1 else points
+
+
+def _segments(starts: Array, ends: Array) -> Array:
+    """Segments as one curve with gaps, shape (3 k, d)."""
+    gaps = np.full_like(starts, np.nan, dtype=float)
+    return np.stack([starts, ends, gaps], axis=1).reshape(-1, starts.shape[1])
+
+
+def _nearest(points: Array) -> Array:
+    """Segments between the pairs of points at the smallest distance."""
+    distance = np.linalg.norm(points[:, None] - points, axis=2)
+    least = distance[distance > 0].min()
+    pairs = np.argwhere(np.triu(abs(distance - least) < 1e-9))
+    return _segments(points[pairs[:, 0]], points[pairs[:, 1]])
+
+
+def _plot(ax: AnyAxes, points: Array, **options: object) -> None:
+    ax.plot(*points.T, **options)
+
+
+def _write(ax: AnyAxes, point: Array, text: str, **options: object) -> None:
+    ax.text(*point, text, ha="center", va="center", **options)
+
+
+def _beside(point: Array, gap: float) -> Array:
+    """Place for the name of a point: a little further from 0."""
+    size = float(np.linalg.norm(point))
+    return point * (1 + gap / size) if size else point + gap
+
+
+def _finish(ax: AnyAxes, points: Array, title: str) -> None:
+    """Equal scales around the points, no frame, title and legend."""
+    size = 1.15 * max(float(abs(points).max()), 0.5) + 0.1
+    low = size if points[:, 1].any() else 0.2 * size  # less for points on a line
+    limits = {"xlim": (-size, size), "ylim": (-low, low)}
+    if ax.name == "3d":
+        ax.view_init(elev=VIEW[0], azim=VIEW[1])
+        ax.set(zlim=(-size, size), **limits)
+        ax.set_box_aspect((1, 1, 1), zoom=1.5)
+    else:
+        ax.set(aspect="equal", **limits)
+    ax.set_axis_off()
+    ax.set_title(title, loc="left")
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.04), ncols=2, fontsize=8)

@@ -7,25 +7,25 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from liehom.algebra.roots.root_system import root_system
-from liehom.errors import InputError, displayed
-from liehom.fullness import FailureReport, decide_fullness, failure_report
-from liehom.homogeneous import FailureSet, RelativeInvariant, adjoint_strata, symmetric_strata
+from liehom.base.errors import InputError, displayed
+from liehom.base.typing import Array
+from liehom.exact.algebra.roots.root_system import root_system
+from liehom.exact.fullness.decide import decide_fullness
+from liehom.exact.fullness.verdict import FailureReport, failure_report
+from liehom.exact.orbits.cone import FailureSet, RelativeInvariant
+from liehom.exact.orbits.strata import adjoint_strata, symmetric_strata
+from liehom.exact.representations.core.pair import Pair
+from liehom.exact.scalars.field import Matrix
 from liehom.plotting.canvas import GREY, axes_of_dimension, current_colours, new_figure, plain, style_unless
-from liehom.plotting.root_plot import simple_root_coordinates
-from liehom.plotting.surfaces import AZIMUTH, ELEVATION, AnyAxes, Scene, sphere
-from liehom.representations import Pair
-from liehom.scalars import Matrix
-from liehom.typing import Array
+from liehom.plotting.diagram_plot import simple_root_coordinates
+from liehom.plotting.phase_plot import AZIMUTH, ELEVATION, AnyAxes, Scene, sphere
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Term: TypeAlias = tuple[Array, float]
-"""Exponents and coefficient of one term of a polynomial."""
+Term: TypeAlias = tuple[Array, float]  # Exponents and coefficient of one term of a polynomial
 
-GRID = 181
-"""Points of the half circle on which zeros are looked for."""
+GRID = 181  # Points of the half circle on which zeros are looked for
 
 
 def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
@@ -43,11 +43,6 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
     matplotlib.axes.Axes
         With the coordinates of ``pair.coordinates``, and the cone cut off at the unit sphere.
 
-    Raises
-    ------
-    InputError
-        If matplotlib is not installed, dim g/h is not 2 or 3, or the axes do not have this dimension.
-
     Notes
     -----
     Drawn are the parts that ``verdict.where_it_fails()`` lists: zeros of the relative invariant, null cones, and
@@ -59,8 +54,8 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
     >>> ax = lh.plotting.plot_failure_cone(lh.pair("so(3,1)/so(2,1)"))  # doctest: +SKIP
     """
     if not isinstance(pair, Pair) or pair.dimension not in (2, 3):
-        found = f"a pair with dim g/h = {pair.dimension}" if isinstance(pair, Pair) else repr(pair)
-        raise InputError(f"the failure cone is drawn for pairs with dim g/h = 2 or 3; got {found}")
+        actual = f"a pair with dim g/h = {pair.dimension}" if isinstance(pair, Pair) else repr(pair)
+        raise InputError(f"the failure cone is drawn for pairs with dim g/h = 2 or 3; got {actual}")
     report = failure_report(pair)
     with style_unless(ax):
         colours = current_colours()
@@ -74,25 +69,7 @@ def plot_failure_cone(pair: Pair, ax: Axes | None = None) -> Axes:
 
 
 def failure_curves(report: FailureReport, dimension: int) -> list[Array]:
-    """Curves on the unit sphere whose rays make up the parts of a failure cone in dimension 2 or 3.
-
-    Returns
-    -------
-    list of array (dimension, k)
-        Points in order; a single point stands for the line that it spans.
-
-    Raises
-    ------
-    InputError
-        If matplotlib, which finds the contours in dimension 3, is not installed.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> report = lh.failure_report(lh.pair("sl(2)/so(1,1)"))
-    >>> len(failure_curves(report, 2))
-    4
-    """
+    """Curves on the unit sphere whose rays make up the parts of a failure cone in dimension 2 or 3."""
     return [curve for part in report.parts for curve in _curves(part, dimension)]
 
 
@@ -164,8 +141,7 @@ def _zeros(terms: Sequence[Term], size: int) -> Iterator[Array]:
 
 def _value(m: Array, exponents: Array, coefficients: Array) -> Array:
     """A polynomial at points (..., 3)."""
-    found: Array = np.prod(m[..., None, :] ** exponents, axis=-1) @ coefficients
-    return found
+    return np.prod(m[..., None, :] ** exponents, axis=-1) @ coefficients
 
 
 def _prepare(ax: Axes) -> None:
@@ -212,11 +188,6 @@ def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]
     -------
     matplotlib.axes.Axes
 
-    Raises
-    ------
-    InputError
-        If matplotlib is not installed, or a point is not three numbers with a positive sum.
-
     Notes
     -----
     The corners are matrices of rank 1. On the medians two eigenvalues agree. There the orbits are projective planes,
@@ -230,7 +201,7 @@ def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]
     """
     if any(len(point) != 3 or not sum(point) > 0 for point in points):
         raise InputError(f"a point has three eigenvalues with a positive sum; got {displayed(points)}")
-    given = np.array([list(point) for point in points], dtype=float).reshape(-1, 3)
+    marked = np.array([list(point) for point in points], dtype=float).reshape(-1, 3)
     corners = np.array([[0.0, 1.0], [-np.sqrt(3) / 2, -0.5], [np.sqrt(3) / 2, -0.5]])
     with style_unless(ax):
         colours = current_colours()
@@ -248,8 +219,8 @@ def plot_eigenvalues(ax: Axes | None = None, *, points: Sequence[Sequence[float]
             ax.plot([], [], color=colours[colour], linewidth=6 if number == 3 else 2.2, label=text)
         for corner, text in zip(corners, ("(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)"), strict=True):
             ax.annotate(text, corner, 1.14 * corner - (0, 0.02), ha="center", va="center")
-        if given.size:
-            ax.plot(*(given / given.sum(axis=1, keepdims=True) @ corners).T, "x", color=GREY, markersize=7, zorder=5)
+        if marked.size:
+            ax.plot(*(marked / marked.sum(axis=1, keepdims=True) @ corners).T, "x", color=GREY, markersize=7, zorder=5)
         ax.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-0.75, 1.25))
         ax.set_axis_off()
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.02), fontsize=8)
@@ -270,11 +241,6 @@ def plot_weyl_chamber(kind: str, ax: Axes | None = None) -> Axes:
     -------
     matplotlib.axes.Axes
         With the isotropy algebra of the compact form at the inside, the walls and the corner of the chamber.
-
-    Raises
-    ------
-    InputError
-        If matplotlib is not installed, or the rank is not 2.
 
     Examples
     --------

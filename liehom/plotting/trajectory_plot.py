@@ -1,16 +1,27 @@
-"""Plots of solutions as curves in the plane, in space and on quadrics, or as coordinates over time."""
+"""Plots of solutions as curves, coordinates and animations."""
 
 from __future__ import annotations
 
+import contextlib
+import html
 import os
-from collections.abc import Iterable, Sequence
+import re
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicSpline
 
-from liehom.errors import InputError, displayed
-from liehom.integrators import Solution
+from liehom.base.disk import check_target, write_file
+from liehom.base.errors import ConvergenceError, FormatError, InputError, displayed
+from liehom.base.typing import Array
+from liehom.exact.representations.core.representation import Representation
+from liehom.flow.run.options import Progress
+from liehom.flow.run.solution import DenseSolution, Solution, interpolant
 from liehom.plotting.canvas import (
     DASHES,
     GREY,
@@ -22,20 +33,130 @@ from liehom.plotting.canvas import (
     plane_axes,
     style_unless,
 )
-from liehom.plotting.curves import MAX_TRAJECTORIES, Curves, constant_norm, curves_of, real_numbers, steps_of
-from liehom.plotting.surfaces import AnyAxes, Quadric, Scene, space_axes, sphere
-from liehom.representations import Representation
-from liehom.typing import Array
+from liehom.plotting.phase_plot import FAINT, AnyAxes, Quadric, Scene, only, space_axes, sphere
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+# Points of solutions as curves: smooth between the steps, with a limit for the number of points.
+
+MAX_TRAJECTORIES = 50
+CURVE_POINTS = 400  # Number of points of a curve, unless there are more steps
+MAX_STEPS_MADE = 400  # Steps are made again for trajectories with at most this number of them
+MAX_POINTS = 20_000  # Of a trajectory with more steps, only some are drawn
+SPHERE_TOLERANCE = 1e-6  # |m| counts as constant if it varies by at most this fraction
+
+
+class Curves(NamedTuple):
+    """Trajectories to draw, with t (k, n) and y (k, N, n), NaN after an end; every `every`-th step, k of `total`."""
+
+    t: Array
+    y: Array
+    total: int
+    every: int
+
+
+def real_numbers(value: npt.ArrayLike, what: str) -> Array:
+    """An argument as an array of floats."""
+    try:
+        numbers = np.asarray(value)
+        if numbers.dtype.kind not in "cSU":
+            return numbers.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{what}: found {displayed(value)}, expected real numbers")
+
+
+def steps_of(solution: Solution) -> Curves:
+    """The points of the steps of the first trajectories."""
+    if not isinstance(solution, Solution):
+        raise InputError(f"expected a solution as liehom.integrate returns it, got {solution!r}")
+    y = np.asarray(solution.y, dtype=float)
+    if not y.size:
+        raise InputError("the solution has no point to draw: its ensemble or its t_eval is empty")
+    t = np.broadcast_to(np.asarray(solution.t, dtype=float), (*y.shape[:-2], y.shape[-1]))
+    t, y = t.reshape(-1, t.shape[-1]), y.reshape(-1, *y.shape[-2:])
+    every = -(-t.shape[-1] // MAX_POINTS) or 1
+    kept = np.unique(np.r_[0 : t.shape[-1] : every, t.shape[-1] - 1])
+    return Curves(t[:MAX_TRAJECTORIES, kept], y[:MAX_TRAJECTORIES][..., kept], len(y), every)
+
+
+def curves_of(solution: Solution) -> Curves:
+    """The first trajectories as smooth curves: steps made again with fractions of their size, or the cubic spline in
+    time (if steps are not known, or more than 400 in 50 trajectories), on the sphere if |m| is constant.
+    """
+    steps = steps_of(solution)
+    points = steps.t.shape[-1]
+    if points < 2:
+        return steps
+    if steps.total <= MAX_TRAJECTORIES and points <= MAX_STEPS_MADE + 1:
+        # an implicit step of another size need not have a solution
+        with contextlib.suppress(ConvergenceError, np.linalg.LinAlgError):
+            known = interpolant(solution)
+            if known is not None:
+                return _made_again(steps, known)
+    parts = [_splined(t, y, max(1, 2 * CURVE_POINTS // points)) for t, y in zip(steps.t, steps.y, strict=True)]
+    return steps._replace(t=np.stack([t for t, _ in parts]), y=np.stack([y for _, y in parts]))
+
+
+def _made_again(steps: Curves, known: DenseSolution) -> Curves:
+    """The curves that the method draws between its steps."""
+    times = _times(steps.t)
+    y = np.asarray(known(times), dtype=float).reshape(steps.total, -1, len(times))
+    low, high = np.nanmin(steps.t, axis=-1)[:, None], np.nanmax(steps.t, axis=-1)[:, None]
+    y = np.where(((times >= low) & (times <= high))[:, None, :], y, np.nan)
+    return steps._replace(t=np.broadcast_to(times, (steps.total, len(times))), y=y)
+
+
+def constant_norm(y: Array) -> float | None:
+    """|m| for points (k, N, n), if it is the same for all points and positive."""
+    norms = np.linalg.norm(y, axis=1)
+    low, high = float(np.nanmin(norms)), float(np.nanmax(norms))
+    return (low + high) / 2 if low > 0 and high - low <= SPHERE_TOLERANCE * high else None
+
+
+def _times(t: Array) -> Array:
+    """About `CURVE_POINTS` times, in the direction of integration, and among them those of steps that agree."""
+    if np.unique(t[:, :1]).size == 1 and bool((t == t[:1]).all()):
+        return _divided(t[0], max(2, CURVE_POINTS // t.shape[-1]))
+    first = t[0, 0]
+    last = np.nanmin(t) if first == np.nanmax(t) else np.nanmax(t)
+    return np.linspace(first, last, CURVE_POINTS)
+
+
+def _divided(t: Array, parts: int) -> Array:
+    """Times, and between any two of them further ones, so that there are `parts` intervals for one."""
+    within = t[:-1, None] + np.diff(t)[:, None] * (np.arange(parts) / parts)
+    return np.append(within.reshape(-1), t[-1])
+
+
+def _splined(t: Array, y: Array, parts: int) -> tuple[Array, Array]:
+    """The spline through points (N, n), at times filled up with NaN; the points themselves if times do not increase."""
+    there = np.isfinite(t) & np.isfinite(y).all(axis=0)
+    count, size = int(there.sum()), parts * (t.shape[-1] - 1) + 1
+    times, points = t[there], y[:, there]
+    if count > 1 and parts > 1:
+        direction = 1.0 if times[-1] > times[0] else -1.0
+        if bool((direction * np.diff(times) > 0).all()):
+            fine = _divided(times, parts)
+            smooth = CubicSpline(direction * times, points, axis=1)(direction * fine)
+            norm = constant_norm(points[None])
+            if norm is not None:
+                smooth *= norm / np.linalg.norm(smooth, axis=0)
+            smooth[:, ::parts] = points
+            times, points = fine, smooth
+    filled = np.full(size, np.nan), np.full((len(y), size), np.nan)
+    filled[0][: len(times)], filled[1][:, : len(times)] = times, points
+    return filled
+
+
+# Plots of solutions as curves in the plane, in space and on quadrics, or as coordinates over time.
+
 MAX_LINES = 8
-TITLED = 3
-"""Quadrics that the title of a picture names."""
-LEVEL_TOLERANCE = 1e-6
-"""Variation of an invariant form along trajectories that is admissible, relative to |Q| |m|^2."""
+TITLED = 3  # Quadrics that the title of a picture names
+LEVEL_TOLERANCE = 1e-6  # Variation of an invariant form along trajectories that is admissible, relative to |Q| |m|^2
 
 
 class Layer(NamedTuple):
@@ -90,9 +211,9 @@ def plot_trajectory(
     -----
     The number of coordinates decides:
 
-    * two: curves in the plane;
-    * three: curves in space, with the sphere if |m| is constant (parts behind the sphere are pale);
-    * four to eight: coordinates over time;
+    * two: curves in the plane,
+    * three: curves in space, with the sphere if |m| is constant (parts behind the sphere are pale),
+    * four to eight: coordinates over time,
     * more: the coordinates of the first trajectory as colours, at the steps.
 
     Between two steps the curve follows the method: the step is made again with fractions of its size, so that all
@@ -148,11 +269,6 @@ def plot_quadric(
     -------
     matplotlib.axes.Axes
 
-    Raises
-    ------
-    InputError
-        If matplotlib is not installed, there is no such form, or Q does not have the same value along a trajectory.
-
     Notes
     -----
     Drawn are spheres, ellipsoids, hyperboloids of one and two sheets, cones and elliptic cylinders: the sheets on which
@@ -198,8 +314,7 @@ def plot_quadric(
         scene.limit((high - low) / 2, (high + low) / 2, zoom=1.0)
         title = ", ".join(f"{s.kind}, $c$ = {s.level:.4g}" for s in shown[:TITLED])
         scene.axes.set_title(title + (f", and {len(shown) - TITLED} more" if len(shown) > TITLED else ""), loc="left")
-    axes: Axes = scene.axes
-    return axes
+    return scene.axes
 
 
 def _points(through: npt.ArrayLike) -> Array:
@@ -211,19 +326,12 @@ def _points(through: npt.ArrayLike) -> Array:
 
 
 def invariant_form(form: Representation | npt.ArrayLike) -> Array:
-    """The matrix Q (3, 3) of the first argument of `plot_quadric`.
-
-    Examples
-    --------
-    >>> import liehom as lh
-    >>> invariant_form(lh.defining(lh.so(2, 1))).tolist()
-    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]
-    """
+    """The matrix Q (3, 3) of the first argument of `plot_quadric`."""
     if isinstance(form, Representation):
         forms = form.invariant_forms().symmetric if form.size == 3 else []
         if len(forms) != 1:
-            found = f"{len(forms)} independent invariant forms" if form.size == 3 else f"{form.size} coordinates"
-            raise InputError(f"expected a representation on space with one invariant form; this one has {found}")
+            actual = f"{len(forms)} independent invariant forms" if form.size == 3 else f"{form.size} coordinates"
+            raise InputError(f"expected a representation on space with one invariant form; this one has {actual}")
         return np.array(forms[0].to_numpy(), dtype=float)
     matrix = real_numbers(form, "the form")
     if matrix.shape != (3, 3) or not np.allclose(matrix, matrix.T) or not matrix.any():
@@ -239,23 +347,17 @@ def _surfaces(form: Array, y: Array) -> list[Quadric]:
     if not np.nanmax(np.abs(values - levels[:, None]), initial=0.0) <= LEVEL_TOLERANCE * scale:
         raise InputError("Q does not have the same value along a trajectory, so that it is not an invariant form of it")
     distinct = np.unique(np.round(levels / (LEVEL_TOLERANCE * scale or 1.0)), return_inverse=True)[1].reshape(-1)
-    made = {}
+    quadrics = {}
     for number in np.unique(distinct):
         points = np.concatenate([part[:, np.isfinite(part).all(axis=0)] for part in y[distinct == number]], axis=1)
-        made[number] = Quadric(form, float(levels[distinct == number].mean()), points)
-    return [made[number] for number in distinct]
+        quadrics[number] = Quadric(form, float(levels[distinct == number].mean()), points)
+    return [quadrics[number] for number in distinct]
 
 
 def chosen_coordinates(coordinates: Sequence[int] | None, size: int) -> tuple[list[int], list[str]]:
-    """The indices of the coordinates to draw, checked, and their names.
-
-    Examples
-    --------
-    >>> chosen_coordinates((2, 0), 3)
-    ([2, 0], ['$m_2$', '$m_0$'])
-    """
-    given: list[Any] = list(coordinates) if isinstance(coordinates, Iterable) else []
-    chosen = list(range(size)) if coordinates is None else [int(i) if isinstance(i, np.integer) else i for i in given]
+    """The indices of the coordinates to draw, checked, and their names."""
+    indices: list[Any] = list(coordinates) if isinstance(coordinates, Iterable) else []
+    chosen = list(range(size)) if coordinates is None else [int(i) if isinstance(i, np.integer) else i for i in indices]
     if not chosen or any(isinstance(i, bool) or not isinstance(i, int) or not 0 <= i < size for i in chosen):
         raise InputError(f"coordinates are indices from 0 to {size - 1}, got {displayed(coordinates)}")
     return chosen, [f"$m_{i}$" if i < 10 else f"$m_{{{i}}}$" for i in chosen]
@@ -375,3 +477,193 @@ def _as_colours(layer: Layer, ax: Axes | None) -> AnyAxes:
     axes.invert_yaxis()
     axes.figure.colorbar(mesh, ax=axes, label="$m_i$", pad=0.02).outline.set_edgecolor(GREY)
     return axes
+
+
+# Animations of trajectories, in memory or as a GIF or an HTML page.
+
+MAX_ANIMATED = 10
+SUFFIXES = (".gif", ".html")
+DPI = 100
+TAIL = 0.25  # The bright part of a curve, as a fraction of the time span
+SYMBOLS = {
+    "fa fa-minus": "\N{MINUS SIGN}",
+    "fa fa-fast-backward": "|\N{BLACK LEFT-POINTING POINTER}",
+    "fa fa-step-backward": "\N{LEFT-POINTING ANGLE BRACKET}",
+    "fa fa-play fa-flip-horizontal": "\N{BLACK LEFT-POINTING POINTER}",
+    "fa fa-pause": "||",
+    "fa fa-play": "\N{BLACK RIGHT-POINTING POINTER}",
+    "fa fa-step-forward": "\N{RIGHT-POINTING ANGLE BRACKET}",
+    "fa fa-fast-forward": "\N{BLACK RIGHT-POINTING POINTER}|",
+    "fa fa-plus": "+",
+}
+
+
+def animate_trajectory(
+    solution: Solution,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    seconds: float = 6.0,
+    fps: int = 20,
+    coordinates: Sequence[int] | None = None,
+    over_time: bool = False,
+    ax: Axes | None = None,
+    progress: bool | Callable[[float], object] | None = None,
+) -> FuncAnimation:
+    """Animation of a solution of `integrate`: points that move along the trajectories, at most 10 of them.
+
+    Parameters
+    ----------
+    solution : Solution
+    path : path, optional
+        File to write: .gif, or .html for a page with buttons that needs no other file and no network.
+    seconds : float, optional
+        Length of the animation, in which the whole time span passes.
+    fps : int, optional
+        Frames in a second.
+    coordinates, over_time, ax
+        As for `plot_trajectory`. For more than three coordinates, they are drawn over time.
+    progress : bool or callable, optional
+        Whether to show the progress of writing on standard error, by default if that is a terminal; or a function of
+        the fraction done.
+
+    Returns
+    -------
+    matplotlib.animation.FuncAnimation
+        In a notebook, ``IPython.display.HTML(animation.to_jshtml())`` shows it.
+
+    Raises
+    ------
+    InputError
+        If matplotlib is not installed, or an argument is not of this kind.
+    FormatError
+        If the path has another suffix, or cannot be written.
+
+    Notes
+    -----
+    Curves are those of `plot_trajectory`. A file is written as a whole: an interrupted call leaves no file, or the one
+    that was there before.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m / [1.0, 2.0, 3.0])
+    >>> sol = lh.integrate(field, (0, 10), [0.6, 0.0, 0.8])
+    >>> animation = animate_trajectory(sol, "polhode.gif")  # doctest: +SKIP
+    """
+    target = None if path is None else _target(path)
+    frames = _frames(seconds, fps)
+    show = progress if progress is not None else target is not None and sys.stderr.isatty()
+    with style_unless(ax):
+        actors = stage(solution, coordinates, over_time=over_time, ax=ax)
+    with Progress(show, "drawing") as report:
+
+        def draw(frame: int) -> list[object]:
+            report.update(lambda: (frame + 1) / frames, last=frame == frames - 1)
+            return [line for actor in actors for line in actor.move(frame / (frames - 1))]
+
+        animation: FuncAnimation = matplotlib_module("animation").FuncAnimation(
+            actors[0].scene.axes.figure, draw, frames=frames, interval=1000 / fps, blit=False
+        )
+        if target is not None:
+            _write(animation, target, fps)
+    return animation
+
+
+def stage(
+    solution: Solution, coordinates: Sequence[int] | None = None, *, over_time: bool = False, ax: Axes | None = None
+) -> list[Actor]:
+    """The trajectories of an animation, drawn in the axes with what does not move."""
+    curves = curves_of(solution)
+    chosen, names = chosen_coordinates(coordinates, curves.y.shape[1])
+    if len(chosen) > MAX_LINES:
+        raise InputError(f"an animation shows up to {MAX_LINES} coordinates, got {len(chosen)}: choose coordinates=")
+    times, y = curves.t[:MAX_ANIMATED], curves.y[:MAX_ANIMATED][:, chosen]
+    if over_time or len(chosen) not in (2, 3):
+        # each coordinate is a curve in the plane of time and value
+        y = np.stack([np.broadcast_to(times[:, None], y.shape), y], axis=2).reshape(-1, 2, y.shape[-1])
+        times, names = np.repeat(times, len(chosen), axis=0), ["time $t$", "coordinates"]
+    scene, surface = draw_scenery(y, names, ax)
+    if names[0] == "time $t$":
+        scene.axes.set_aspect("auto")
+    span = float(np.nanmax(np.abs(times - times[:, :1])))
+    cast = zip(times, y, strict=True)
+    return [Actor(scene, surface, t, points, span, look(k, len(y))) for k, (t, points) in enumerate(cast)]
+
+
+class Actor:
+    """A trajectory of an animation: its whole curve, faint, its bright tail, and the point that moves."""
+
+    def __init__(
+        self, scene: Scene, surface: Quadric | None, t: Array, points: Array, span: float, style: Mapping[str, object]
+    ) -> None:
+        there = np.isfinite(t) & np.isfinite(points).all(axis=0)
+        self.scene, self.surface = scene, surface
+        self.points: Array = points[:, there]
+        self.passed: Array = np.abs(t[there] - t[there][0])
+        self.span = span
+        scene.plot(self.points, **{**style, "linewidth": 0.8, "alpha": FAINT, "zorder": 1})
+        blank = self.points[:, :1] * np.nan
+        self.lines: list[AnyAxes] = []
+        for mark, more in (("-", {"linewidth": 2.2}), ("-", {"alpha": FAINT}), ("o", {"markersize": 8, "zorder": 5})):
+            scene.plot(blank, mark, **{**style, **more})
+            self.lines.append(scene.axes.lines[-1])
+
+    def move(self, fraction: float) -> list[AnyAxes]:
+        """Show the trajectory up to a fraction of the time span; returns the lines that have changed."""
+        now = fraction * self.span
+        place = np.array([np.interp(now, self.passed, x) for x in self.points])[:, None]
+        tail = (self.passed > now - TAIL * self.span) & (self.passed <= now)
+        points = np.concatenate([self.points[:, tail], place], axis=1)
+        hidden = (
+            np.zeros(points.shape[1], dtype=bool)
+            if self.surface is None
+            else self.surface.hidden(points, self.scene.eye)
+        )
+        for line, part in zip(self.lines, (only(points, ~hidden), only(points, hidden), place), strict=True):
+            self.scene.move(line, part)
+        self.lines[2].set_alpha(FAINT if hidden[-1] else 1.0)
+        return self.lines
+
+
+def _frames(seconds: float, fps: int) -> int:
+    numbers = all(isinstance(x, int | float | np.integer | np.floating) for x in (seconds, fps))
+    if not numbers or not 0 < fps <= 100 or not 2 <= seconds * fps <= 5000:
+        raise InputError(
+            f"seconds is {displayed(seconds)} and fps is {displayed(fps)}, expected numbers with a product from 2 to "
+            "5000, which is the number of frames, and fps at most 100"
+        )
+    return round(seconds * fps)
+
+
+def _target(path: str | os.PathLike[str]) -> Path:
+    """The file to write, checked before the work."""
+    target = Path(os.fspath(path))
+    if target.suffix.lower() not in SUFFIXES:
+        raise FormatError(f"{os.fspath(path)!r} is not the name of an animation: it must end in .gif or .html")
+    check_target(target, force=True)
+    return target
+
+
+def _write(animation: FuncAnimation, target: Path, fps: int) -> None:
+    """Write a GIF or a page, as a whole or not at all."""
+    if target.suffix.lower() == ".html":
+        # no frame is left out, however large the page
+        with matplotlib_module("").rc_context({"animation.embed_limit": 2.0**20, "savefig.dpi": DPI}):
+            content = page(animation.to_jshtml(fps=fps), target.stem).encode()
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "animation.gif"
+            animation.save(file, writer=matplotlib_module("animation").PillowWriter(fps=fps), dpi=DPI)
+            content = file.read_bytes()
+    write_file(target, content)
+
+
+def page(player: str, title: str) -> str:
+    """A page with matplotlib's player, whose symbols are characters instead of a font from the network."""
+    player = re.sub(r"<link [^>]*>", "", player)
+    for name, symbol in SYMBOLS.items():
+        player = player.replace(f'<i class="{name}"></i>', symbol)
+    return (
+        f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{html.escape(title)}</title></head>\n'
+        f"<body>\n{player}\n</body>\n</html>\n"
+    )

@@ -6,8 +6,6 @@ prints a table; with --page it replaces the table between the markers of the pag
 energy_drift_light.svg and energy_drift_dark.svg. All runs are compiled by LLVM, in one thread.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Callable, Sequence
@@ -17,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import liehom as lh
-from liehom.plotting import plot_energy_drift
 from liehom.plotting.canvas import new_figure, style
+from liehom.plotting.drift_plot import plot_energy_drift
 
 DT = 0.1
 SAMPLES = 600
@@ -38,8 +36,6 @@ class System(NamedTuple):
 
 
 class Row(NamedTuple):
-    """What a run has shown."""
-
     name: str
     order: int
     times: Any
@@ -62,8 +58,8 @@ def spin() -> System:
         "Conserving(Heun)": lh.Conserving(lh.Heun(), energy),
         "Corrected(Heun, 4)": lh.Corrected(lh.Heun(), 4),
         "SphericalMidpoint": lh.SphericalMidpoint(),
-        "VariationalMidpoint": lh.VariationalMidpoint(),
-        "Composition(SphericalMidpoint, 4)": lh.Composition(lh.SphericalMidpoint(), 4),
+        "VariationalMidpoint": lh.methods.VariationalMidpoint(),
+        "Composition(SphericalMidpoint, 4)": lh.methods.Composition(lh.SphericalMidpoint(), 4),
     }
     field = lh.hamiltonian_field(lh.so(3), energy, sign=1)
     return System(
@@ -91,10 +87,10 @@ def body() -> System:
         "Heun": lh.Heun(),
         "RKMK rk4": lh.RKMK("rk4"),
         "Conserving(Heun)": lh.Conserving(lh.Heun(), energy),
-        "MoserVeselov": lh.MoserVeselov(),
-        "IsospectralMidpoint": lh.IsospectralMidpoint(),
-        "Splitting": lh.Splitting(),
-        "Composition(Splitting, 4)": lh.Composition(lh.Splitting(), 4),
+        "MoserVeselov": lh.methods.MoserVeselov(),
+        "IsospectralMidpoint": lh.methods.IsospectralMidpoint(),
+        "Splitting": lh.methods.Splitting(),
+        "Composition(Splitting, 4)": lh.methods.Composition(lh.methods.Splitting(), 4),
     }
     field = lh.hamiltonian_field(lh.so(4), energy, sign=-1)
     start = np.array([3.0, -1.0, 2.0, 1.5, 0.5, -2.0])
@@ -102,7 +98,6 @@ def body() -> System:
 
 
 def measured(system: System, name: str, count: int) -> Row:
-    """A run of `count` steps."""
     end = count * DT
     times = np.union1d(np.geomspace(DT, end, SAMPLES // 2), np.linspace(0, end, SAMPLES // 2 + 1))
     propagator = lh.Propagator(system.field, system.steps[name], engine="llvm")
@@ -121,7 +116,6 @@ def measured(system: System, name: str, count: int) -> Row:
 
 
 def table(found: Sequence[tuple[System, Sequence[Row]]], count: int) -> str:
-    """The rows as Markdown."""
     lines = [
         f"{count:,} steps of size {DT}, compiled by LLVM. Errors are relative to the values at the initial point.",
         "",
@@ -173,8 +167,7 @@ def main() -> None:
     text = table(found, given.steps)
     print(text)
     if given.page:
-        page = given.page.read_text(encoding="utf-8")
-        before, rest = page.split(MARKERS[0])
+        before, rest = given.page.read_text(encoding="utf-8").split(MARKERS[0])
         _, after = rest.split(MARKERS[1])
         given.page.write_text(f"{before}{MARKERS[0]}\n\n{text}\n{MARKERS[1]}{after}", encoding="utf-8")
     if given.pictures:

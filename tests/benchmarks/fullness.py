@@ -3,8 +3,6 @@
 Reading the JSON text and the proofs of the axioms are included; checking the certificate is shown beside.
 """
 
-from __future__ import annotations
-
 import statistics
 import sys
 import time
@@ -24,7 +22,6 @@ NAMED = [
 
 
 def seconds(action: Callable[[], Any], rounds: int = 3) -> float:
-    """The least time of some rounds."""
     found = []
     for _ in range(rounds):
         start = time.perf_counter()
@@ -45,7 +42,6 @@ def floor(n: int, entries: int) -> float:
 
 
 def main() -> None:
-    """Print the table (milliseconds)."""
     print(f"{'milliseconds':46}{'decide':>12}{'check':>12}{'product':>12}")
     for scrambled in (False, True):
         texts = [text_of(name, scrambled) for name in small()]
@@ -55,8 +51,7 @@ def main() -> None:
         kind = "scrambled" if scrambled else "plain"
         line(f"median of {len(texts)} pairs, dim g <= 30, {kind}", statistics.median(times), statistics.median(checks))
         line(f"the slowest of them ({small()[times.index(max(times))]})", max(times), max(checks))
-    large = [("so(40)/so(39)", False)] if "--large" in sys.argv else []
-    for name, scrambled in NAMED + large:
+    for name, scrambled in NAMED + ([("so(40)/so(39)", False)] if "--large" in sys.argv else []):
         text = text_of(name, scrambled)
         verdict = decided(text)
         n = verdict.pair.algebra.dimension

@@ -8,8 +8,6 @@ what lies between them too.  Arithmetic: the operations of the step, counted in 
 both is measured in the same run, by copying an array and by chains of multiplications and additions.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import time
@@ -19,9 +17,9 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.compiled.jax_kernel import enabled_x64
-from liehom.integrators.compiled.traced_step import traced_step
-from liehom.tracing import needed
+from liehom.flow.engines.jax_kernel import enabled_x64
+from liehom.flow.engines.traced_step import traced_step
+from liehom.flow.tracing.graph import needed
 from tests.benchmarks.integration_methods import jitted
 
 H = 0.01
@@ -85,8 +83,7 @@ def bodies(count: int, steps: int, methods: tuple[lh.Step, ...]) -> list[dict[st
         integrated = _integrated(field, step)
         for name, run in (("a propagator", integrated), ("the step in jax.jit", lambda m, n, loop=loop: loop(m, H, n))):
             time_of_step = per_step(lambda n, run=run: run(y0, n), steps)
-            end = np.asarray(run(y0, steps)).reshape(count, 3)
-            error = float(np.abs(np.linalg.norm(end, axis=-1) - 1).max())
+            error = float(np.abs(np.linalg.norm(np.asarray(run(y0, steps)).reshape(count, 3), axis=-1) - 1).max())
             rows.append(_row(f"{count} rigid bodies, {step!r}, {name}", count, time_of_step, operations, error))
     return rows
 
@@ -157,7 +154,6 @@ def measured(
 
 
 def main() -> None:
-    """Print the report."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--bodies", type=int, default=10**6)
     parser.add_argument("--grid", type=int, default=1024)

@@ -4,8 +4,6 @@ python -m tests.benchmarks.gradients            # all problems, in CPU seconds
 python -m tests.benchmarks.gradients attitude   # one of them
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable
@@ -23,8 +21,7 @@ LANES, STEPS, H = 100, 100, 0.02
 @cache
 def attitude() -> tuple[lh.GeneratorField, Callable[[int], Any], int]:
     """A rigid body on R^13: so(3) turns its quaternion, angular velocity, position and velocity."""
-    rho = lh.adjoint(lh.so(3))
-    turns = [np.asarray(a.to_numpy(), float) for a in rho.matrices]
+    turns = [np.asarray(a.to_numpy(), float) for a in lh.adjoint(lh.so(3)).matrices]
     quaternion = []
     for a in range(3):
         q = np.zeros((4, 4))
@@ -85,7 +82,6 @@ def row(name: str, field: lh.GeneratorField, starts: Any, step: Any) -> str:
 
 
 def main(names: list[str]) -> None:
-    """Print a row for each problem and method."""
     import jax
 
     jax.config.update("jax_enable_x64", True)

@@ -4,8 +4,6 @@ Of compiled steps the time of the machine code alone is taken, and the number of
 the machine; of steps on numpy arrays what `integrate` takes for each step.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -14,8 +12,9 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.compiled.traced_step import traced_step
-from liehom.tracing import Kernel, needed
+from liehom.flow.engines.traced_step import traced_step
+from liehom.flow.tracing.graph import needed
+from liehom.flow.tracing.machine import Kernel
 from tests.benchmarks.integration_problems import Problem, rigid_body, sphere4
 
 WIDTH, LANES = 16, 1024
@@ -63,7 +62,6 @@ def array_step(field: lh.GeneratorField, step: Any, m: Any, rounds: int = 3) -> 
 
 
 def slope(x: Sequence[float], y: Sequence[float]) -> float:
-    """The exponent, by least squares of logarithms."""
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 

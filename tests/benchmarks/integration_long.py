@@ -1,7 +1,5 @@
 """Long times and many spins: T = 10^4 on S^2, and a closed chain of 10^4 spins."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -43,7 +41,6 @@ def _one(problem: Problem, solver: Solver, span: float, setting: float, count: i
 
 
 def long_runs(*, span: float = 1e4, spins: int = 10_000) -> list[dict[str, Any]]:
-    """Rows of the table."""
     rows = []
     ours = [Solver(LLVM, n, integrate(n, "llvm"), (), "llvmlite", True) for n in ("E4", "T8", "S16", "C2")]
     own = Solver(LLVM, "exact orbit", integrate("exact orbit", "llvm"), (), "llvmlite", True)

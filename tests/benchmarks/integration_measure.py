@@ -5,8 +5,6 @@ count, and compilation does not (it is done before).  With fixed steps the cost 
 and so much for each step, both from two runs of different length.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable
@@ -16,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.convergence.work_precision import timed
+from liehom.flow.convergence.costs import timed
 from tests.benchmarks.integration_peers import Solver, extended_reference, sample_times
 from tests.benchmarks.integration_problems import Problem
 
@@ -68,7 +66,7 @@ def orbit_errors(problem: Problem, y: Any, exact: Any) -> Any:
         size = np.linalg.norm(points, axis=-1) - np.linalg.norm(start, axis=-1)
         return np.maximum(np.abs(level), np.abs(size).reshape(*lead, -1).max(-1))
     m = exact.astype(float)
-    flow = lh.flow_series(problem.field, m, 8, np.zeros(m.shape[:-1]))
+    flow = lh.steps.flow_series(problem.field, m, 8, np.zeros(m.shape[:-1]))
     terms = [y - exact, *[-flow.point(k) for k in range(1, 9)]]
     s = np.zeros(m.shape[:-1])
     for _ in range(20):
@@ -102,7 +100,6 @@ def errors(problem: Problem, solver: Solver, setting: float) -> tuple[float, flo
 
 
 def accuracy(problem: Problem, solver: Solver, settings: tuple[float, ...] | None = None) -> list[Point]:
-    """Errors along the ladder of settings, until they are those of round-off."""
     found: list[Point] = []
     for setting in settings or solver.settings:
         value = setting * problem.slow if solver.fixed else setting
@@ -179,7 +176,6 @@ def cost_of(problem: Problem, measured: dict[str, Any], setting: float, *, call:
 
 
 def is_known(measured: dict[str, Any], setting: float) -> bool:
-    """Whether the cost was measured at a setting."""
     if "at" in measured:
         return repr(setting) in measured["at"]
     return "step" in measured or repr(setting) in measured["settings"]

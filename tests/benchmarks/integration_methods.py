@@ -6,16 +6,15 @@ measured once.  Spins that act on each other are not compiled by `integrate`; th
 it, made of the public pieces of the library.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 
 import numpy as np
 
 import liehom as lh
-from liehom.correctors import Conserving, Generator, apply_factors
-from liehom.instances.rigid_body.exact_orbit import ExactOrbit
+from liehom.flow.steps.conserving import Conserving
+from liehom.flow.steps.step import Generator, apply_factors
+from liehom.studies.rigid_body_updates import ExactOrbit
 from tests.benchmarks.integration_peers import LADDER, Solve, Solver, sample_times
 from tests.benchmarks.integration_problems import Problem, rigid_body
 
@@ -91,7 +90,6 @@ def _flat(problem: Problem, y: Any, samples: int) -> Any:
 
 
 def step_of(name: str, problem: Problem) -> tuple[Any, str]:
-    """A step by its letters, and its exponential."""
     if name in KEEPING:
         return Conserving(KEEPING[name], problem.energy), "exp"
     return STEPS[name]
@@ -99,7 +97,6 @@ def step_of(name: str, problem: Problem) -> tuple[Any, str]:
 
 @cache
 def propagator(problem: Problem, name: str, engine: str) -> lh.Propagator:
-    """The method of that name for a problem, made once."""
     if name == "adaptive":
         return lh.Propagator(problem.field, engine=engine)
     if name == "DOP853":
@@ -113,8 +110,6 @@ def propagator(problem: Problem, name: str, engine: str) -> lh.Propagator:
 
 
 def integrate(name: str, engine: str) -> Solve:
-    """A call with fixed steps."""
-
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
         run = propagator(problem, name, engine)
         sol = run((0.0, span), _shaped(problem, starts), dt=setting, t_eval=sample_times(span, samples))
@@ -124,8 +119,6 @@ def integrate(name: str, engine: str) -> Solve:
 
 
 def adaptive(name: str, engine: str) -> Solve:
-    """A call with adaptive steps."""
-
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
         run, times = propagator(problem, name, engine), sample_times(span, samples)
         sol = run((0.0, span), _shaped(problem, starts), rtol=setting, atol=setting, t_eval=times)
@@ -160,7 +153,7 @@ def under_jit(name: str) -> Solve:
     """A step of the library under ``jax.jit``, for spins that act on each other."""
 
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        from liehom.integrators.compiled.jax_kernel import enabled_x64
+        from liehom.flow.engines.jax_kernel import enabled_x64
 
         steps = max(1, round(span / samples / setting))
         with enabled_x64():
@@ -193,7 +186,6 @@ def names_for(problem: Problem) -> list[str]:
 
 
 def solvers(problem: Problem) -> list[Solver]:
-    """The rows of liehom for a problem."""
     if problem.coupled:
         return _coupled_solvers()
     rows = []

@@ -4,8 +4,6 @@ docs/performance-integration.md has all tables, and docs/performance.md a summar
 multiples of those of liehom. What is generated is between marks.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -25,7 +23,6 @@ BY, NARROW = "its cheapest method", "\u00a0"
 
 
 def shown(x: float | None, digits: int = 2) -> str:
-    """A number with `digits` significant digits."""
     if x is None or not math.isfinite(x):
         return "-"
     if x and not 1e-3 <= abs(x) < 1e5:
@@ -35,7 +32,6 @@ def shown(x: float | None, digits: int = 2) -> str:
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Lines of a Markdown table."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     return [*lines, *("| " + " | ".join(row) + " |" for row in rows), ""]
 
@@ -72,7 +68,6 @@ def _missing(name: str, rows: list[dict[str, Any]], width: int) -> list[str]:
 
 
 def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
-    """Tables and picture of a problem."""
     found = groups(data["methods"])
     title = f"{problem.title[0].upper()}{problem.title[1:]}"
     words = f"errors over CPU time for each program: {problem.title}"
@@ -106,7 +101,6 @@ def problem_part(problem: Problem, data: dict[str, Any]) -> list[str]:
 
 # -- the other parts -----------------------------------------------------------------------------------------
 def conditions_part(data: dict[str, Any]) -> list[str]:
-    """Conditions of the measurements, and abbreviations of the methods."""
     c = data["conditions"]
     versions = ", ".join(f"{name} {version}" for name, version in c["versions"].items())
     loads = [p["load"] for p in data["problems"].values()]
@@ -145,7 +139,6 @@ def conditions_part(data: dict[str, Any]) -> list[str]:
 
 
 def targets_part(data: dict[str, Any]) -> list[str]:
-    """Table of the targets, the measured values, and whether the targets are met."""
     k = data["targets"]
     by_name = {p.name: p for p in problems()}
     rows = []
@@ -184,7 +177,6 @@ def targets_part(data: dict[str, Any]) -> list[str]:
 
 
 def growth_part(data: dict[str, Any]) -> list[str]:
-    """Table of the exponents of the cost of a step."""
     rows = [
         [
             row["what"],
@@ -206,7 +198,6 @@ def growth_part(data: dict[str, Any]) -> list[str]:
 
 
 def long_part(data: dict[str, Any]) -> list[str]:
-    """Table of the errors after long times, and for many spins."""
     rows = [
         [row["problem"], row["method"], shown(row["setting"]), shown(row["T"]), "not installed", "", ""]
         if "missing" in row

@@ -27,56 +27,31 @@ LADDER = tuple(1.6 * 2.0**-k for k in range(12))
 
 @dataclass(frozen=True)
 class Solver:
-    """A row of the tables.
+    """A row of the tables."""
 
-    Attributes
-    ----------
-    group : str
-        Rows of one group are one program; the best of them stands in the tables.
-    label : str
-        The method, in few letters.
-    needs : str
-        A module that must be there.
-    fixed : bool
-        Whether the settings are step sizes, so that the cost is that of a call and that of so many steps.
-    accuracy : Solver or None
-        Whose errors are those of this one, where they make the same steps.
-    counts : tuple of int
-        The sizes of ensembles it is measured on.
-    lanes : int
-        How many trajectories are taken for 10^4 of them, where more take longer each.
-    sample : int
-        Errors are measured on so many at most.
-    varying : bool
-        Whether a step of another size costs something else, as it iterates.
-    """
-
-    group: str
-    label: str
+    group: str  # rows of one group are one program; the best of them stands in the tables
+    label: str  # the method, in few letters
     solve: Solve
     settings: Tolerances
-    needs: str = "numpy"
-    fixed: bool = False
-    accuracy: Solver | None = None
+    needs: str = "numpy"  # a module that must be there
+    fixed: bool = False  # whether the settings are step sizes, so that the cost is that of a call and of so many steps
+    accuracy: Solver | None = None  # whose errors are those of this one, where they make the same steps
     fits: Callable[[Problem], bool] = field(default=lambda problem: True)
-    counts: tuple[int, ...] = (1, 10, 10_000)
-    lanes: int = 10**9
-    sample: int = 64
-    varying: bool = False
+    counts: tuple[int, ...] = (1, 10, 10_000)  # the sizes of ensembles it is measured on
+    lanes: int = 10**9  # how many trajectories are taken for 10^4 of them, where more take longer each
+    sample: int = 64  # errors are measured on so many at most
+    varying: bool = False  # whether a step of another size costs something else, as it iterates
 
     @property
     def installed(self) -> bool:
-        """Whether its module is there."""
         return importlib.util.find_spec(self.needs) is not None
 
     @property
     def name(self) -> str:
-        """Of group and method."""
         return f"{self.group}, {self.label}" if self.label else self.group
 
 
 def sample_times(span: float, samples: int) -> Any:
-    """span/samples, 2 span/samples, ..., span."""
     return span * np.arange(1, samples + 1) / samples
 
 
@@ -101,8 +76,7 @@ def _scipy(problem: Problem, starts: Any, span: float, setting: float, samples: 
 def _taylor(problem: Problem, batch: int, tolerance: float, extended: bool = False) -> Any:
     import heyoka
 
-    names = [f"x{i}" for i in range(problem.size)]
-    variables = heyoka.make_vars(*names)
+    variables = heyoka.make_vars(*[f"x{i}" for i in range(problem.size)])
     system = list(zip(variables, problem.rates(list(variables)), strict=True))
     options: dict[str, Any] = {} if extended else {"tol": tolerance, "fast_math": True}
     if problem.size > 10:
@@ -181,11 +155,10 @@ def _diffrax_run(problem: Problem, method: str, samples: int) -> Any:
 
 def _diffrax(method: str) -> Solve:
     def solve(problem: Problem, starts: Any, span: float, setting: float, samples: int) -> Any:
-        from liehom.integrators.compiled.jax_kernel import enabled_x64
+        from liehom.flow.engines.jax_kernel import enabled_x64
 
         with enabled_x64():
-            run = _diffrax_run(problem, method, samples)
-            made = run(starts, sample_times(span, samples), setting)
+            made = _diffrax_run(problem, method, samples)(starts, sample_times(span, samples), setting)
             return np.moveaxis(np.asarray(made), 1, 0)
 
     return solve

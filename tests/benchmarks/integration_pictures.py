@@ -4,15 +4,13 @@
 column of a phone allows with readable letters, so panels are below one another.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from liehom.plotting.canvas import MARKERS, current_colours, matplotlib_module, muted_colour, new_figure, style
-from liehom.plotting.convergence_plot import Curve, draw_curve
+from liehom.plotting.error_plot import Curve, draw_curve
 from tests.benchmarks.integration_methods import EAGER, IN_JIT, JAX, LLVM
 from tests.benchmarks.integration_problems import Problem, problems
 from tests.benchmarks.integration_targets import best, curve
@@ -37,7 +35,6 @@ def groups(methods: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
 
 
 def picture_name(problem: Problem) -> str:
-    """File name of the plot of a problem, without its kind and suffix."""
     plain = problem.name.lower().translate(
         str.maketrans({"⁴": "4", "³": "3", "²": "2", "(": "", ")": "", ",": "", " ": "_"})
     )
@@ -83,8 +80,7 @@ def _of_problem(problem: Problem, data: dict[str, Any]) -> Any:
             front = _front([p for r in measured for p in curve(problem, r, count, orbit=orbit)])
             if front:
                 index, dashes = LOOKS[name]
-                look = current_colours()[index], MARKERS[index], dashes
-                draw_curve(ax, Curve(name, front, [], math.nan, *look))
+                draw_curve(ax, Curve(name, front, [], math.nan, current_colours()[index], MARKERS[index], dashes))
         what = ("energy" if problem.energy is not None else "distance from the orbit") if orbit else "trajectory"
         ax.set(title=f"{problem.name}: {what}", ylim=(1e-14, 1), ylabel="error")
     panels[1].set_xlabel("µs for each of 10,000 trajectories" if count == MANY else "µs for one trajectory")
@@ -142,6 +138,5 @@ def _of_ratios(data: dict[str, Any], target: float = 1e-6) -> Any:
     panels[1].set_xlabel(
         "CPU time of other programs / CPU time of liehom\n(left of 1 liehom costs more, right of 1 less)"
     )
-    entries = panels[0].get_legend_handles_labels()
-    figure.legend(*entries, loc="outside lower center", ncols=2, fontsize=10)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=10)
     return figure

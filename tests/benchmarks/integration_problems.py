@@ -4,8 +4,6 @@ A problem gives the generator to liehom, and to the others the equation m' = X(m
 kernels in numba) or as arrays with coordinates on the first axis (`rows`, for scipy and diffrax).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -69,7 +67,6 @@ class Problem:
 
     @property
     def size(self) -> int:
-        """Coordinates of a point."""
         return int(np.prod(self.shape))
 
     def starts(self, count: int) -> Any:
@@ -100,7 +97,6 @@ def _cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
 # -- on S^2 --------------------------------------------------------------------------------------------------
 @cache
 def rigid_body() -> Problem:
-    """m' = m x Om m."""
     w = np.array(INVERSE_MOMENTS)
     a, b, c = INVERSE_MOMENTS
 
@@ -211,7 +207,6 @@ def sphere4() -> Problem:
 
 @cache
 def sphere3() -> Problem:
-    """The same on S^3."""
     rng, rho = np.random.default_rng(5), lh.defining(lh.so(4))
     linear, constant = rng.normal(size=(6, 4)), rng.normal(size=6)
     return Problem(
@@ -243,7 +238,7 @@ def projective_plane() -> Problem:
 @cache
 def isospectral() -> Problem:
     """S' = [A(S), S] with A(S) affine in S, on symmetric matrices with the eigenvalues 1/3, ..., 2: no isotropy."""
-    space = lh.SymmetricMatrices(6)
+    space = lh.instances.SymmetricMatrices(6)
     rho = lh.sym_conjugation(6)
     rng = np.random.default_rng(0)
     constant, linear = 0.5 * rng.normal(size=15), 0.02 * rng.normal(size=(15, 21))
@@ -278,8 +273,7 @@ def chain(count: int = SPINS) -> Problem:
         x = m.reshape(count, 3, *m.shape[1:])
         h = exchange * (xp.roll(x, 1, axis=0) + xp.roll(x, -1, axis=0))
         h0, h1, h2 = h[:, 0], h[:, 1], h[:, 2] + 2 * k * x[:, 2]
-        made = _cross([h0, h1, h2], [x[:, 0], x[:, 1], x[:, 2]])
-        return xp.stack(made, axis=1).reshape(m.shape)
+        return xp.stack(_cross([h0, h1, h2], [x[:, 0], x[:, 1], x[:, 2]]), axis=1).reshape(m.shape)
 
     def start(number: int, rng: Any) -> Any:
         m = rng.normal(size=(number, count, 3))
@@ -303,5 +297,4 @@ def chain(count: int = SPINS) -> Problem:
 
 
 def problems() -> list[Problem]:
-    """All of them."""
     return [rigid_body(), quartic(), spin(), chain(), sphere3(), sphere4(), projective_plane(), isospectral()]

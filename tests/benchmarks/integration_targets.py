@@ -4,8 +4,6 @@
 numpy by hand, (e) compile time, (f) one trajectory, (g) exponents.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import tempfile
@@ -17,8 +15,8 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.integrators.compiled.traced_step import traced_step
-from liehom.tracing import Kernel, padded
+from liehom.flow.engines.traced_step import traced_step
+from liehom.flow.tracing.machine import Kernel, padded
 from tests.benchmarks import test_compiled as by_hand
 from tests.benchmarks.integration_measure import cost_of, is_known, matched
 from tests.benchmarks.integration_problems import Problem
@@ -80,8 +78,7 @@ def _arrays(m: Any, count: int, rounds: int) -> dict[str, float]:
 
 def compile_time(order: int) -> dict[str, float]:
     """Seconds for a corrected step on S^4, with an empty cache and then with what it has kept."""
-    rng = np.random.default_rng(1)
-    a, b = rng.normal(size=(2, 5, 10))
+    a, b = np.random.default_rng(1).normal(size=(2, 5, 10))
     field = lh.GeneratorField(lh.defining(lh.so(5)), lambda m: m @ a + (m * m) @ b)
     before = os.environ.get("LIEHOM_CACHE_DIR")
 

@@ -7,8 +7,6 @@ are made outside of the timed part. Times are processor time, the smallest of se
 dependency group `bench`; without it its column is empty.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from importlib import import_module
@@ -31,7 +29,6 @@ def seconds(action: Callable[[], Any]) -> tuple[float, Any]:
 
 
 def peer(words: list[str]) -> Callable[[], int] | None:
-    """The dimension by PennyLane, or None if it is not installed."""
     try:
         pennylane = import_module("pennylane")
     except ImportError:
@@ -41,7 +38,6 @@ def peer(words: list[str]) -> Callable[[], int] | None:
 
 
 def rows() -> list[tuple[str, int, int, float, float | None]]:
-    """Model, sites, dimension, seconds here, seconds of PennyLane."""
     found = []
     for name, model in MODELS.items():
         for sites in SITES:

@@ -5,8 +5,6 @@ too quick for its clock (milliseconds) is repeated on further fresh objects.  Ru
 table that is shown where GAP is not installed.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import platform
@@ -39,7 +37,6 @@ end;;
 
 
 def installed() -> bool:
-    """Whether `gap` is on the path."""
     return shutil.which("gap") is not None
 
 
@@ -52,8 +49,7 @@ def seconds_of(gap: Gap, task: Task, rounds: int = ROUNDS) -> float | str:
         gap.begin(f"{TIMED}{setup}")
         spent = float(gap.ask("Float( Runtime() / 1000 )", task.limit))
         while len(found) < rounds:
-            text = gap.ask(f"Float( Seconds_( function() return {make}; end, {run} ) )", task.limit)
-            found.append(float(text))
+            found.append(float(gap.ask(f"Float( Seconds_( function() return {make}; end, {run} ) )", task.limit)))
             if found[0] > 5:
                 break
     except Timeout:
@@ -76,13 +72,11 @@ def measured(rows: Sequence[Task]) -> dict[str, float | str]:
 
 
 def committed() -> dict[str, Any]:
-    """The table in the repository: version, date, machine, seconds."""
     table: dict[str, Any] = json.loads(TABLE.read_text(encoding="utf-8"))
     return table
 
 
 def machine() -> str:
-    """What the figures were taken on."""
     names = [line.split(":", 1)[1].strip() for line in _cpu_lines() if line.startswith("model name")]
     return f"{names[0] if names else platform.machine()}, {len(names) or '?'} cores, {platform.system()}"
 
@@ -93,7 +87,6 @@ def _cpu_lines() -> list[str]:
 
 
 def main() -> None:
-    """Measure the rows whose name contains one of the arguments (all, by default) and write the table."""
     with Gap() as gap:
         gap.begin("")
         version = gap.ask("GAPInfo.Version", 30).strip()

@@ -6,8 +6,6 @@ measures some problems, or "targets", "growth", "long", and keeps the other figu
 `--long` adds T = 10^4 and a chain of 10^4 spins.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.metadata
 import json
@@ -25,7 +23,6 @@ SECTIONS = ("targets", "growth", "long")
 
 
 def conditions() -> dict[str, Any]:
-    """Machine, date, versions, load."""
     versions = {"Python": platform.python_version()}
     for name in PROGRAMS:
         try:
@@ -53,7 +50,6 @@ def _processor() -> str:
 
 
 def measured(problem: Any, counts: tuple[int, ...]) -> dict[str, Any]:
-    """The figures of a problem."""
     from tests.benchmarks.integration_measure import accuracy, cost, drift
     from tests.benchmarks.integration_methods import solvers
     from tests.benchmarks.integration_peers import PEERS
@@ -79,12 +75,10 @@ def measured(problem: Any, counts: tuple[int, ...]) -> dict[str, Any]:
 
 
 def save(data: dict[str, Any]) -> None:
-    """Keep the figures."""
     DATA.write_text(json.dumps(_rounded(data), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def _rounded(x: Any) -> Any:
-    """Four digits: figures are not better than that."""
     if isinstance(x, float):
         return float(f"{x:.4g}")
     if isinstance(x, dict):
@@ -93,7 +87,6 @@ def _rounded(x: Any) -> Any:
 
 
 def main() -> None:
-    """Measure, save, draw, write."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="*", default=None)
     parser.add_argument("--long", action="store_true")
@@ -111,7 +104,6 @@ def main() -> None:
 
 
 def measure(data: dict[str, Any], only: list[str] | None, long: bool) -> None:
-    """Fill in the figures, section by section."""
     from tests.benchmarks.integration_growth import growth
     from tests.benchmarks.integration_long import long_runs
     from tests.benchmarks.integration_problems import problems

@@ -6,8 +6,6 @@ prints a table; with --page it replaces the table between the markers of the pag
 stability_light.svg and stability_dark.svg.
 """
 
-from __future__ import annotations
-
 import argparse
 import warnings
 from collections.abc import Callable
@@ -17,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import liehom as lh
-from liehom.integrators import amplification
+from liehom.flow.methods.stability import amplification
 from liehom.plotting.canvas import COLOURS, DARK_COLOURS, DASHES, new_figure, style
 
 MARKERS = ("<!-- stability: begin -->", "<!-- stability: end -->")
@@ -71,8 +69,7 @@ def systems() -> list[System]:
     def brackets(rate: float) -> lh.GeneratorField:
         return lh.instances.double_bracket_flow(rate * np.diag([0.0, 1 / 3, 1.0]))
 
-    x = DISTANCE * rng.uniform(-1, 1, size=(STARTS, 3))
-    near = space.act(x, np.broadcast_to(rest, (STARTS, 6)))
+    near = space.act(DISTANCE * rng.uniform(-1, 1, size=(STARTS, 3)), np.broadcast_to(rest, (STARTS, 6)))
     made.append(System("double bracket, Sym(3)", brackets, near, lambda y: np.linalg.norm(y - rest, axis=-1)))
     return made
 
@@ -82,7 +79,7 @@ STEP_LIST: dict[str, lh.Step] = {
     **{f"Euler, order {n}": lh.Corrected(lh.Euler(), n) for n in (2, 3, 4)},
     "backward Euler": lh.BackwardEuler(),
     **{f"backward Euler, order {n}": lh.Corrected(lh.BackwardEuler(), n) for n in (2, 3, 4)},
-    "Rosenbrock, order 4": lh.Rosenbrock("rodas4"),
+    "Rosenbrock, order 4": lh.methods.Rosenbrock("rodas4"),
 }
 
 
@@ -106,7 +103,6 @@ def limit(system: System, step: lh.Step, clock: str) -> float:
 
 
 def table() -> str:
-    """The table of limits, in Markdown."""
     found = systems()
     heads = [
         f"{s.title}{', nominal' if clock == 'nominal' else ''}" for s in found for clock in ("corrected", "nominal")
@@ -174,8 +170,7 @@ def main() -> None:
         draw(regions(), given.pictures)
     made = table()
     if given.page is not None:
-        text = given.page.read_text(encoding="utf-8")
-        before, rest = text.split(MARKERS[0])
+        before, rest = given.page.read_text(encoding="utf-8").split(MARKERS[0])
         after = rest.split(MARKERS[1])[1]
         given.page.write_text(f"{before}{MARKERS[0]}\n\n{made}\n\n{MARKERS[1]}{after}", encoding="utf-8")
 

@@ -6,8 +6,6 @@ prints a table of CPU times of the whole call; with --page it replaces the table
 each method the largest tolerance is taken whose error at the end is at most the target.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 import warnings
@@ -19,7 +17,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import liehom as lh
-from liehom.integrators import step_named
+from liehom.flow.methods.named import step_named
 
 MARKERS = ("<!-- stiff: begin -->", "<!-- stiff: end -->")
 TARGET = 1e-5
@@ -98,7 +96,6 @@ def systems() -> list[System]:
 
 
 def timed(run: Callable[[], Any]) -> tuple[float, Any]:
-    """The least CPU time of some calls, in seconds, and the result."""
     best, found = np.inf, None
     for _ in range(REPEATS):
         begin = time.process_time()
@@ -123,14 +120,12 @@ def matched(run: Callable[[float], Any], end: Any) -> tuple[float, float, float]
 
 
 def rows(system: System) -> list[str]:
-    """Rows of the table for one system."""
     made = []
     start, many = system.starts[0], system.starts
     exact = solve_ivp(system.right, (0, system.end), start, method="Radau", rtol=1e-9, atol=1e-10).y[:, -1]
 
     def peer(y0: Any, tolerance: float) -> Any:
-        sol = solve_ivp(system.right, (0, system.end), y0, method="Radau", rtol=tolerance, atol=tolerance)
-        return sol.y[:, -1]
+        return solve_ivp(system.right, (0, system.end), y0, method="Radau", rtol=tolerance, atol=tolerance).y[:, -1]
 
     def own(name: str, y0: Any, engine: str, tolerance: float) -> Any:
         try:
@@ -170,8 +165,7 @@ def main() -> None:
     ]  # fmt: skip
     print("\n".join(made))
     if given.page is not None:
-        text = given.page.read_text(encoding="utf-8")
-        before, rest = text.split(MARKERS[0])
+        before, rest = given.page.read_text(encoding="utf-8").split(MARKERS[0])
         after = rest.split(MARKERS[1])[1]
         given.page.write_text(
             f"{before}{MARKERS[0]}\n\n" + "\n".join(made) + f"\n\n{MARKERS[1]}{after}", encoding="utf-8"

@@ -5,8 +5,6 @@ installed and `--gap` is given, else its committed figures are shown.  `--write`
 docs/performance-exact.md, and a summary of it into docs/performance.md.
 """
 
-from __future__ import annotations
-
 import gc
 import re
 import statistics
@@ -50,12 +48,10 @@ class Row:
 
 
 def shown(seconds: float) -> str:
-    """Two significant digits."""
     return f"{seconds:.2g}" if seconds < 10 else f"{seconds:.0f}"
 
 
 def least(gap: float | str) -> float:
-    """What GAP took at least."""
     if isinstance(gap, str):
         return float(gap[1:]) if gap.startswith(">") else 0.0
     return gap
@@ -93,7 +89,6 @@ def _timed(actions: Sequence[Callable[[], Any]]) -> float:
 
 
 def table(rows: list[Row], peer: str) -> str:
-    """The rows in Markdown."""
     head = ["task", "liehom, s", "GAP, s", "GAP / liehom", "Sage / liehom", "dgcv / liehom", "target met"]
     lines = [head, ["---"] * len(head), *(row.cells() for row in rows)]
     return "\n".join([peer, "", *("| " + " | ".join(line) + " |" for line in lines)])
@@ -116,14 +111,12 @@ def summary(text: str) -> str:
 
 
 def put(page: Path, text: str) -> None:
-    """Write a text between the markers of a page."""
     old = page.read_text(encoding="utf-8")
     before, after = old.partition(BEGIN)[0], old.partition(END)[2]
     page.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
 
 
 def main() -> None:
-    """Measure, print, and write if asked."""
     chosen = tasks()
     if "--gap" in sys.argv and installed():
         figures, peer = measured(chosen), f"GAP in the same run, on {machine()}."

@@ -5,8 +5,6 @@ A task prepares fresh objects (nothing is cached in them), does one thing that i
 of it that is timed.  Figures of Sage and dgcv were taken beside GAP's on one machine, and are scaled by GAP's.
 """
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -15,11 +13,11 @@ from functools import cache
 from typing import Any
 
 import liehom as lh
-from liehom.algebra import LieAlgebra
-from liehom.algebra.closure.closure import lie_closure
-from liehom.algebra.core.jacobi import prove_jacobi
-from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.algebra.core.subalgebra import products
+from liehom.exact.algebra.core.jacobi import prove_jacobi
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.algebra.core.structure_constants import StructureConstants
+from liehom.exact.algebra.core.subalgebra import products
+from liehom.exact.algebra.linear.closure import lie_closure
 
 Action = Callable[[], Any]
 Question = Callable[[LieAlgebra], Any]
@@ -29,20 +27,15 @@ DIMENSIONS = (10, 20, 50)
 
 @dataclass(frozen=True)
 class Task:
-    """One row of the table.
-
-    `factor`: demanded are at most factor times the seconds of GAP. `limit`: GAP is stopped after so many seconds by the
-    clock.
-    `others`: {program: (its seconds, GAP's seconds beside it)}.
-    """
+    """One row of the table."""
 
     name: str
     prepare: Callable[[], Action]
     expected: Any
     gap: InGap
-    limit: float = 60.0
-    factor: float | None = None
-    others: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    limit: float = 60.0  # GAP is stopped after so many seconds by the clock
+    factor: float | None = None  # demanded are at most factor times the seconds of GAP
+    others: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # program: its seconds, GAP's beside it
 
     @property
     def large(self) -> bool:
@@ -173,14 +166,12 @@ def of_mixed(name: str, question: Question, in_gap: str, expected: Mapping[int, 
             algebra = fresh(mixed(n))
             return lambda: question(algebra)
 
-        gap = (lh.to_gap(mixed(n)), "LieAlgebraByStructureConstants( Rationals, L_T )", in_gap)
+        gap = (lh.io.to_gap(mixed(n)), "LieAlgebraByStructureConstants( Rationals, L_T )", in_gap)
         made.append(Task(f"{name}, dim {n}", prepare, expected[n], gap, **chosen))
     return made
 
 
 def of_e8(name: str, question: Question, in_gap: str, expected: Any, **more: Any) -> Task:
-    """A question about E8 in its Chevalley basis."""
-
     def prepare() -> Action:
         algebra = fresh(exceptional("E8"))
         return lambda: question(algebra)
@@ -207,8 +198,6 @@ def of_module(kind: str, weight: tuple[int, ...], size: int, dimension: int) -> 
 
 
 def of_closure(n: int, **more: Any) -> Task:
-    """The Lie closure of two skew matrices."""
-
     def prepare() -> Action:
         pair = skew_pair(n)
         return lambda: lie_closure(pair).algebra.dimension
@@ -241,7 +230,6 @@ def _derived(algebra: LieAlgebra) -> int:
 
 
 def tasks() -> list[Task]:
-    """All rows of the table."""
     build = Task(
         "build, E8", lambda: lambda: lh.chevalley("E8").dimension, 248, ("", '"E"', BUILD), others=SEEN["build"]
     )
@@ -273,11 +261,7 @@ def tasks() -> list[Task]:
         *of_mixed("direct sum decomposition", lambda g: len(g.direct_sum_decomposition()),
                   "L -> Length( DirectSumDecomposition( L ) )", {20: 3, 50: 4}, factor={50: 1 / 5}),
     ]  # fmt: skip
-    modules = [
-        _of_forms(),
-        *of_module("F4", (0, 0, 0, 1), 26, 28),
-        *of_module("E7", (0, 0, 0, 0, 0, 0, 1), 56, 78),
-    ]
+    modules = [_of_forms(), *of_module("F4", (0, 0, 0, 1), 26, 28), *of_module("E7", (0, 0, 0, 0, 0, 0, 1), 56, 78)]
     closures = [
         of_closure(6, others={"Sage": (0.42, 0.006)}),
         of_closure(10, others={"Sage": (11.0, 0.98)}),

@@ -7,8 +7,6 @@ the certificate. The first process kills itself (SIGKILL) when it has half of th
 call, and gets all of them.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import json
@@ -110,7 +108,6 @@ def started(count: int, kind: str, workers: int, store: Path, last: int = 0) -> 
 
 
 def lines(store: Path) -> int:
-    """Number of entries in the store."""
     return sum(file.read_bytes().count(b"\n") for file in store.glob("records-*.jsonl"))
 
 
@@ -147,8 +144,7 @@ def main() -> None:
     parser.add_argument("--run", action="store_true", help="only the sweep, in this process; prints figures as JSON")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        store = options.store or Path(folder) / "store"
-        call = options.count, options.executor, options.workers, store
+        call = options.count, options.executor, options.workers, (options.store or Path(folder) / "store")
         if options.run:
             print(json.dumps(run(*call, options.last)))
             return

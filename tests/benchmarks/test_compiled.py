@@ -7,8 +7,6 @@ In the ordinary run each benchmark is executed once, as a test. For figures:
 Processor times of both sides are taken in turns and the least are compared, on one thread.
 """
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import subprocess
@@ -21,8 +19,8 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.integrators.compiled.traced_step import traced_step
-from liehom.tracing import Kernel, padded
+from liehom.flow.engines.traced_step import traced_step
+from liehom.flow.tracing.machine import Kernel, padded
 from tests.benchmarks import whole_call
 
 LANES, STEPS, H = 10_000, 200, 0.01
@@ -78,7 +76,6 @@ def compiled(step: Any, width: int, *, nominal: bool, points: Any) -> Callable[[
 
 
 def least(run: Callable[[Any, int], None], x: Any, count: int) -> float:
-    """Nanoseconds per lane and step."""
     x = x.copy()
     begin = time.thread_time()
     run(x, count)
@@ -158,8 +155,7 @@ def test_eager_ensemble_against_numpy_by_hand(benchmark: Any) -> None:
 @pytest.mark.benchmark(group="tracing and compiling order 6 on S^4: seconds")
 def test_compile_time(benchmark: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LIEHOM_CACHE_DIR", str(tmp_path))
-    rng = np.random.default_rng(1)
-    a, b = rng.normal(size=(2, 5, 10))
+    a, b = np.random.default_rng(1).normal(size=(2, 5, 10))
     field = lh.GeneratorField(lh.defining(lh.so(5)), lambda m: m @ a + (m * m) @ b)
     order = 6 if benchmark.enabled else 2
 
@@ -177,6 +173,5 @@ def test_compile_time(benchmark: Any, tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_whole_calls_are_measured() -> None:
-    case = whole_call.CASES[1]
-    found = whole_call.row(case, lanes=20, rounds=1)
+    found = whole_call.row(whole_call.CASES[1], lanes=20, rounds=1)
     assert all(cost > 0 and error < 1e-5 for cost, error in found.values())

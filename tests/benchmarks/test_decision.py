@@ -5,8 +5,6 @@ In the ordinary run each benchmark is executed once, as a test. For figures:
     python -m pytest tests/benchmarks -n 0 --benchmark-enable --benchmark-group-by=group
 """
 
-from __future__ import annotations
-
 import json
 import random
 import statistics
@@ -21,11 +19,11 @@ import pytest
 import liehom as lh
 from liehom.testing import random_unimodular
 from tests import sampling
+from tests.exact.catalog.claims import CLAIMS
 
 
 @cache
 def small() -> list[str]:
-    """The catalogue pairs with dim g at most 30."""
     return [name for name in lh.catalog.pair_names() if lh.pair(name).algebra.dimension <= 30]
 
 
@@ -39,7 +37,6 @@ def text_of(name: str, scrambled: bool) -> str:
 
 
 def seconds(action: Callable[[], Any]) -> float:
-    """What one call takes."""
     start = time.perf_counter()
     action()
     return time.perf_counter() - start
@@ -55,7 +52,7 @@ def decided(text: str) -> Any:
 def test_catalogue(benchmark: Any, scrambled: bool) -> None:
     names = small() if benchmark.enabled or sampling.whole else small()[::5]
     texts = [text_of(name, scrambled) for name in names]
-    claims = [lh.catalog.CLAIMS[name].full for name in names]
+    claims = [CLAIMS[name].full for name in names]
 
     def median() -> tuple[float, list[bool]]:
         seconds, verdicts = [], []
@@ -76,20 +73,17 @@ def test_catalogue(benchmark: Any, scrambled: bool) -> None:
 )
 @pytest.mark.benchmark(group="one pair")
 def test_pair(benchmark: Any, name: str, scrambled: bool) -> None:
-    text = text_of(name, scrambled)
-    assert benchmark.pedantic(decided, args=(text,), rounds=3).full
+    assert benchmark.pedantic(decided, args=(text_of(name, scrambled),), rounds=3).full
 
 
 @pytest.mark.slow
 @pytest.mark.benchmark(group="one pair")
 def test_so40(benchmark: Any) -> None:
-    text = text_of("so(40)/so(39)", False)
-    assert benchmark.pedantic(decided, args=(text,), rounds=1).full
+    assert benchmark.pedantic(decided, args=(text_of("so(40)/so(39)", False),), rounds=1).full
 
 
 @pytest.mark.benchmark(group="median of the catalogue, dim g <= 30")
 def test_construction(benchmark: Any) -> None:
-    """Pairs by name: matrices, brackets, subalgebra."""
     names = small()[::4]
 
     def median() -> float:

@@ -1,7 +1,5 @@
 """The benchmark of energies over many steps, with few of them: its table, its page and its plots."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -19,8 +17,7 @@ def test_symplectic_rows_do_not_drift_and_others_do() -> None:
     assert rows["Heun"].energy.max() > 3 * early["Heun"]
     assert rows["Conserving(Heun)"].energy.max() < 1e-14
     assert max(row.casimir for row in rows.values()) < 1e-12
-    text = table([(system, list(rows.values()))], count)
-    assert text.count("\n| `") == len(rows)
+    assert table([(system, list(rows.values()))], count).count("\n| `") == len(rows)
 
 
 def test_plots_are_drawn_for_both_themes(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """Every program of the integration benchmarks once, tiny; that they solve the same problems; and what reports show."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -14,8 +12,7 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from tests.benchmarks import gpu, straight_line, which_step
-from tests.benchmarks import integration_measure as measure
+from tests.benchmarks import gpu, integration_measure as measure, straight_line, which_step
 from tests.benchmarks.integration_growth import slope
 from tests.benchmarks.integration_long import long_runs
 from tests.benchmarks.integration_methods import integrate, under_jit
@@ -104,8 +101,7 @@ def test_peers_solve_a_field_on_the_four_sphere(group: str) -> None:
 def test_a_chain_of_spins_by_all_its_programs() -> None:
     problem = chain(4)
     starts, wanted = end(problem)
-    solvers = [Solver("", "RK4", integrate("RK4", "numpy"), (), fixed=True), *PEERS[:2], *PEERS[-2:-1]]
-    for solver in solvers:
+    for solver in [Solver("", "RK4", integrate("RK4", "numpy"), (), fixed=True), *PEERS[:2], *PEERS[-2:-1]]:
         if solver.installed:
             made = solver.solve(problem, starts, SPAN, settings_of(solver), 1)[0]
             np.testing.assert_allclose(made, wanted, rtol=0, atol=1e-7)
@@ -187,8 +183,7 @@ def test_growth_and_long_runs_are_measured() -> None:
     rows = growth(tiny=True)
     assert {row["against"] for row in rows} == {"order", "dim g", "N"}
     assert all(min(row["y"]) > 0 for row in rows)
-    energies = [row["energy"] for row in long_runs(span=1.0, spins=8) if "missing" not in row]
-    assert max(energies) < 1e-4
+    assert max(row["energy"] for row in long_runs(span=1.0, spins=8) if "missing" not in row) < 1e-4
 
 
 def test_many_bodies_and_a_grid_of_spins_by_jax() -> None:

@@ -6,8 +6,6 @@ In the ordinary run each row is done once, as a test of its answer.  For figures
     python -m tests.benchmarks.structure_report
 """
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
@@ -25,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MEMORY = """
 import resource
 import liehom as lh
-from liehom.algebra.core.jacobi import prove_jacobi
+from liehom.exact.algebra.core.jacobi import prove_jacobi
 g = lh.chevalley("E8")
 prove_jacobi(g.table, g.basis_names)
 x = [7 * i % 19 - 9 for i in range(248)]
@@ -86,8 +84,7 @@ def test_a_summary_names_the_tasks_that_take_longer_here() -> None:
     ("here", "gap", "factor", "kept"), [(1.0, 0.5, 3.0, True), (1.0, 0.3, 3.0, False), (1.0, "> 60", 1 / 5, True)]
 )
 def test_a_demand_is_a_ratio(here: float, gap: float | str, factor: float, kept: bool) -> None:
-    task = Task("row", lambda: lambda: None, None, ("", "", ""), factor=factor)
-    assert compared(task, here, gap).kept is kept
+    assert compared(Task("row", lambda: lambda: None, None, ("", "", ""), factor=factor), here, gap).kept is kept
 
 
 @pytest.mark.slow

@@ -1,7 +1,5 @@
 """The sweep that is killed and resumed, with few pairs: every entry once, and nothing decided twice."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -4,8 +4,6 @@ They are from the figures of docs/performance-integration.md. The costs are thos
 for each of 10,000 trajectories to T = 100.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -32,7 +30,6 @@ COLUMNS = (
 
 
 def lines() -> list[str]:
-    """The sentence on the machine, and the table."""
     data = json.loads(DATA.read_text(encoding="utf-8"))
     rows: dict[str, list[str]] = {label: [] for label in STEPS}
     for name, orbit, error, _ in COLUMNS:
@@ -40,8 +37,7 @@ def lines() -> list[str]:
         measured = {row["label"]: row for row in data["problems"][name]["methods"] if row["group"] == LLVM}
         for label, cells in rows.items():
             row = measured.get(label)
-            cost = best(problem, [row], 10_000, error, orbit=orbit, call=False)[0] if row else None
-            cells.append(shown(cost))
+            cells.append(shown(best(problem, [row], 10_000, error, orbit=orbit, call=False)[0] if row else None))
     head = [heading for *_, heading in COLUMNS]
     conditions = data["conditions"]
     where = f"Measured {conditions['date']} on one core of {conditions['cores']} ({conditions['processor']})."

@@ -7,8 +7,6 @@ best of several calls; peers are called the same way in the same process, where 
 medians over some trajectories, at the end, from heyoka in extended precision, or from our Taylor steps without it.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import sys
 import time
@@ -136,7 +134,6 @@ def _exact(problem: Problem, starts: Any) -> Any:
 
 
 def main(names: Sequence[str]) -> None:
-    """Print the rows whose names begin with one of these."""
     for case in CASES:
         if names and not case.name.startswith(tuple(names)):
             continue

@@ -29,17 +29,18 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parent.parent.parent))
 
 import liehom as lh
-from liehom.catalog import CLAIMS
-from liehom.errors import CertificateError
-from liehom.fullness import decide
-from liehom.fullness.certificates import certificate_writer
-from liehom.fullness.search.exact_dominance import ExactDominance
-from liehom.fullness.traceless_isotropy_action import TracelessIsotropyAction
-from liehom.representations.invariants.intertwiners import commutant
-from liehom.scalars import QQ, NumberField, Polynomial
-from liehom.scalars.roots.roots import real_part_cut
-from tests.fullness.mutations import at, leaves, lists, mutant, put
-from tests.fullness.support import affine, over, without_cheap_points
+from liehom.base.errors import CertificateError
+from liehom.exact.fullness import certificate_writer, decide
+from liehom.exact.fullness.isotropy_action import TracelessIsotropyAction
+from liehom.exact.fullness.search.dominance import ExactDominance
+from liehom.exact.representations.invariants.intertwiners import commutant
+from liehom.exact.scalars.number_fields import NumberField
+from liehom.exact.scalars.polynomial import Polynomial
+from liehom.exact.scalars.rational import QQ
+from liehom.exact.scalars.roots import real_part_cut
+from tests.exact.catalog.claims import CLAIMS
+from tests.exact.fullness.mutations import at, leaves, lists, mutant, put
+from tests.exact.fullness.support import affine, over, without_cheap_points
 
 Json = dict[str, Any]
 FIELDS: dict[str, Any] = {
@@ -63,8 +64,6 @@ SAVED = 1000
 
 @dataclass(frozen=True)
 class Case:
-    """A pair over a field, with its verdict."""
-
     name: str
     over: str
 
@@ -75,11 +74,9 @@ class Case:
 
 @functools.cache
 def pair_of(case: Case) -> lh.Pair:
-    """The pair of a case."""
     where = FIELDS[case.over]
     if case.name in NATIVE:
-        sign = -1 if case.full else 1
-        return affine([where.matrix([[0, where.generator * sign], [1, 0]])], where)
+        return affine([where.matrix([[0, where.generator * (-1 if case.full else 1)], [1, 0]])], where)
     return lh.pair(case.name) if where is QQ else over(lh.pair(case.name), where)
 
 
@@ -136,7 +133,6 @@ def shift_an_index(data: Json, rng: random.Random) -> None:
 
 
 def transpose(data: Json, rng: random.Random) -> None:
-    """A matrix by its transpose."""
     names = [k for k, v in data.items() if isinstance(v, list) and v and isinstance(v[0], list)]
     if names:
         rows = data[name := rng.choice(names)]
@@ -187,8 +183,7 @@ def malformed(case: Case, rng: random.Random, _: Sequence[Case]) -> Json:
 def transplanted(case: Case, rng: random.Random, cases: Sequence[Case]) -> Json:
     """A certificate of another pair or field, of a pair of the same dimensions if there is one."""
     shape = pair_of(case).algebra.dimension, pair_of(case).subalgebra.dimension
-    same = [c for c in cases if c != case and dimensions(c) == shape]
-    other = rng.choice(same or cases)
+    other = rng.choice([c for c in cases if c != case and dimensions(c) == shape] or cases)
     made = copy.deepcopy(rng.choice(proofs(other)))
     if other.over != case.over and rng.random() < 0.5:  # the numbers as numbers of the field of the pair
         made.pop("field", None)
@@ -200,7 +195,6 @@ def transplanted(case: Case, rng: random.Random, cases: Sequence[Case]) -> Json:
 
 
 def dimensions(case: Case) -> tuple[int, int]:
-    """Dimensions of g and h, without the pair itself."""
     if case.name in NATIVE:
         return 3, 1
     return CLAIMS[case.name].algebra_dimension, CLAIMS[case.name].isotropy_dimension
@@ -220,9 +214,7 @@ def small(rng: random.Random) -> Fraction:
 
 
 def some(pair: lh.Pair, rng: random.Random, count: int, of: Any) -> Any:
-    """Random combinations of the rows of a matrix."""
-    weights = pair.field.matrix([[small(rng) for _ in range(of.nrows)] for _ in range(count)], (count, of.nrows))
-    return weights @ of
+    return pair.field.matrix([[small(rng) for _ in range(of.nrows)] for _ in range(count)], (count, of.nrows)) @ of
 
 
 def by_hand_full(pair: lh.Pair, rng: random.Random) -> tuple[str, Json]:
@@ -286,7 +278,6 @@ class Campaign:
     seconds: float = 0.0
 
     def cases(self, where: str) -> list[Case]:
-        """The pairs over one field."""
         return [Case(name, where) for name in (*self.names, *(NATIVE if where != "QQ" else ()))]
 
     def certificate(self, number: int) -> tuple[str, Case, Json]:
@@ -347,12 +338,10 @@ KINDS = ("trivial", "full", "witness", "commutant", "dominance")
 
 
 def total(figures: Counter[str], begins: str) -> int:
-    """Number of certificates whose outcome begins so."""
     return sum(n for key, n in figures.items() if key.split(" | ")[3].startswith(begins))
 
 
 def table(campaign: Campaign) -> str:
-    """The figures as a page section in Markdown."""
     strategies = list(STRATEGIES)
     rows: dict[str, Counter[str]] = defaultdict(Counter)
     for key, n in campaign.figures.items():
@@ -379,7 +368,6 @@ def table(campaign: Campaign) -> str:
 
 
 def main() -> None:
-    """Read the command line; see the docstring of the module."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--count", type=int, default=200_000)
     parser.add_argument("--seed", type=int, default=0)

@@ -7,8 +7,6 @@ exchanged, numbers and booleans edited in JSON. Files of single objects have a c
 figures/damage.json.
 """
 
-from __future__ import annotations
-
 import argparse
 import collections
 import json
@@ -24,10 +22,10 @@ from typing import Any
 import numpy as np
 
 import liehom as lh
-from liehom.errors import LiehomError
-from liehom.integrators.run import checkpoint
+from liehom.base.errors import LiehomError
+from liehom.base.store import Records, open_store
+from liehom.flow.run import solution as checkpoint
 from liehom.io.json_reader import read_object
-from liehom.parallel import Records, open_store
 
 FIGURES = Path(__file__).with_name("figures") / "damage.json"
 PAIRS = ["so(4)/so(3)", "so(3,1)/so(2,1)", "sl(3)/P1", "su(3)/u(2)", "g2/su(3)", "so(5)/so(4)"]
@@ -129,14 +127,12 @@ def same_shards(first: Any, second: Any) -> bool:
 def shards(path: Path, fingerprint: str | None) -> Callable[[], Any]:
     def read() -> Any:
         store = Records(open_store(path, fingerprint))
-        names = store.names()
-        return {name: store.load(name) for name in sorted(names)}
+        return {name: store.load(name) for name in sorted(store.names())}
 
     return read
 
 
 def written_again(file: Path) -> dict[str, Any]:
-    """The JSON object of what a file holds."""
     data = read_object(file)
     read = lh.Certificate.from_json if data.get("format") == "liehom-certificate" else lh.io.from_json
     return {"": lh.io.to_json(read(data))}
@@ -150,7 +146,7 @@ def subjects(folder: Path) -> list[Subject]:
     starts = np.random.default_rng(0).standard_normal((4, 3))
     made = []
     for name in ("runs", "runs.zarr"):
-        lh.integrators.integrate_ensemble(field, (0, 1), starts, chunk=2, store=folder / name, dt=0.25)
+        lh.propagation.integrate_ensemble(field, (0, 1), starts, chunk=2, store=folder / name, dt=0.25)
         inside = [f for f in sorted((folder / name).rglob("*")) if f.is_file() and not f.name.startswith(".")]
         made.append(Subject(f"ensemble store ({name})", inside, shards(folder / name, None), same_shards))
     state = {"t": np.linspace(0, 1, 5), "y": starts, "count": np.array(3)}
@@ -172,7 +168,6 @@ def subjects(folder: Path) -> list[Subject]:
 
 
 def campaign(count: int, seed: int) -> dict[str, Any]:
-    """Counts of outcomes by subject and damage."""
     rng = random.Random(seed)
     found: dict[str, collections.Counter[str]] = {}
     with tempfile.TemporaryDirectory() as name, warnings.catch_warnings():

@@ -1,7 +1,5 @@
 """Inputs of the campaign against the doors: for each door a function that draws a call and describes it."""
 
-from __future__ import annotations
-
 import copy
 import json
 import os
@@ -20,10 +18,12 @@ from typer.testing import CliRunner
 
 import liehom as lh
 from liehom import io
-from liehom.algebra import RealForm
-from liehom.catalog.algebras import EXAMPLES as ALGEBRAS
 from liehom.cli.app import app
-from liehom.scalars import QQ, RR, common_field, number_field
+from liehom.exact.algebra.roots.real_form import RealForm
+from liehom.exact.catalog.algebras import EXAMPLES as ALGEBRAS
+from liehom.exact.scalars.floating import RR
+from liehom.exact.scalars.number_fields import common_field, number_field
+from liehom.exact.scalars.rational import QQ
 
 Call = Callable[[], object]
 Json = Any
@@ -56,35 +56,12 @@ ATTACKS = [
     "!!python/object/apply:os.system ['touch executed_by_liehom']",
 ]
 MONSTERS = [
-    "9**9**9**9",
-    "10**100000000",
-    "2**4096**2",
-    "((((2**4096)**4096)**4096)**4096)",
-    "1/(1 - 1)",
-    "0**-1",
-    "(" * 10_000 + "1" + ")" * 10_000,
-    "-" * 10_000 + "1",
-    "sqrt(" * 10_000 + "2" + ")" * 10_000,
-    "sqrt(" * 60 + "2" + ")" * 60,
-    " + ".join(f"sqrt({p})" for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)),
-    "sqrt(" + "123456789" * 40 + "1)",
-    "2**-4096",
-    "1" + "+1" * 20_000,
-    "1" + "*2" * 20_000,
-    "1" + "/3" * 2_000,
-    "\0",
-    "1\n",
-    "\ud800",
-    "١٢٣",
-    "1_000",
-    "0x10",
-    "1e5",
-    "inf",
-    "nan",
-    "sqrt(4)",
-    "",
-    " ",
-]
+    "9**9**9**9", "10**100000000", "2**4096**2", "((((2**4096)**4096)**4096)**4096)", "1/(1 - 1)", "0**-1",
+    "(" * 10_000 + "1" + ")" * 10_000, "-" * 10_000 + "1", "sqrt(" * 10_000 + "2" + ")" * 10_000,
+    "sqrt(" * 60 + "2" + ")" * 60, " + ".join(f"sqrt({p})" for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)),
+    "sqrt(" + "123456789" * 40 + "1)", "2**-4096", "1" + "+1" * 20_000, "1" + "*2" * 20_000, "1" + "/3" * 2_000, "\0",
+    "1\n", "\ud800", "١٢٣", "1_000", "0x10", "1e5", "inf", "nan", "sqrt(4)", "", " ",
+]  # fmt: skip
 LONG = [
     "7" * 5_000,
     "-" + "7" * 12_000,
@@ -127,8 +104,7 @@ def mutated_text(rng: random.Random, text: str) -> str:
                 ["(", ")", ",", "/", "+", "-", "9" * rng.choice((1, 30, 5000)), "é", "\0"]
             )
         elif characters:
-            other = rng.randrange(len(characters))
-            characters[place % len(characters)] = characters[other]
+            characters[place % len(characters)] = characters[rng.randrange(len(characters))]
     return "".join(characters)
 
 
@@ -159,7 +135,6 @@ def number_of(rng: random.Random) -> object:
 
 
 def vector_of(rng: random.Random, length: int) -> object:
-    """A vector of about this length, or something else."""
     kind = rng.randrange(10)
     length = max(0, length + rng.choice([0, 0, 0, 0, 1, -1, 5]))
     if kind < 5:
@@ -170,7 +145,6 @@ def vector_of(rng: random.Random, length: int) -> object:
 
 
 def matrix_of(rng: random.Random, rows: int, columns: int) -> object:
-    """A matrix of about this shape, or something else."""
     kind = rng.randrange(10)
     if kind < 4:
         return [[rng.choice([0, 0, 0, 1, -1, 2]) for _ in range(columns)] for _ in range(rows)]
@@ -184,7 +158,6 @@ def matrix_of(rng: random.Random, rows: int, columns: int) -> object:
 
 
 def array_of(rng: random.Random, shape: tuple[int, ...]) -> object:
-    """An array of numpy of this shape, of any type."""
     kind = rng.choice(
         ["int8", "int64", "uint8", "float32", "float64", "complex128", "object", "U3", "bool", "datetime64[D]"]
     )
@@ -195,7 +168,6 @@ def array_of(rng: random.Random, shape: tuple[int, ...]) -> object:
 
 
 def odd(rng: random.Random, depth: int = 0) -> object:
-    """Any Python object."""
     kind = rng.randrange(12)
     if kind < 4 or depth > 3:
         return number_of(rng)
@@ -206,8 +178,7 @@ def odd(rng: random.Random, depth: int = 0) -> object:
     if kind == 6:
         return {str(rng.randrange(3)): odd(rng, depth + 1) for _ in range(rng.randrange(3))}
     if kind == 7:
-        shape = tuple(rng.randrange(4) for _ in range(rng.randrange(4)))
-        return array_of(rng, shape)
+        return array_of(rng, tuple(rng.randrange(4) for _ in range(rng.randrange(4))))
     if kind == 8:
         return rng.choice(
             [lh.so(3), lh.pair("so(3)/so(2)"), lh.adjoint(lh.so(3)), QQ.identity(2), RR.identity(2), QQ, int]
@@ -232,7 +203,7 @@ def files() -> dict[str, Json]:
     made["algebra"] = io.to_json(lh.heisenberg(1))
     made["subalgebra"] = io.to_json(lh.pair("so(4)/so(3)").subalgebra)
     made["representation"] = io.to_json(lh.adjoint(lh.so(3)))
-    made["field"] = io.to_json(lh.so_form([["sqrt(2)", 0, 0], [0, 1, 0], [0, 0, -1]]))
+    made["field"] = io.to_json(lh.algebra.so_form([["sqrt(2)", 0, 0], [0, 1, 0], [0, 0, -1]]))
     return made
 
 
@@ -241,7 +212,6 @@ CERTIFIED = ("so(3)/so(2)", "sl(2)/so(1,1)", "so(2,1)/so(2)", "affine(gl(2))", "
 
 @cache
 def certificates() -> dict[str, Json]:
-    """JSON objects of certificates of small pairs."""
     return {name: lh.decide_fullness(lh.pair(name)).certificate.to_json() for name in CERTIFIED}
 
 
@@ -254,7 +224,6 @@ def places(data: Json, here: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 
 
 def json_of(rng: random.Random, depth: int = 0) -> Json:
-    """A JSON value."""
     kind = rng.randrange(10)
     if kind < 2 and depth < 4:
         return [json_of(rng, depth + 1) for _ in range(rng.randrange(4))]
@@ -268,7 +237,6 @@ def json_of(rng: random.Random, depth: int = 0) -> Json:
 
 
 def mutated(rng: random.Random, original: Json) -> Json:
-    """A JSON object with one to three changes."""
     data = copy.deepcopy(original)
     for _ in range(rng.randrange(1, 4)):
         paths = list(places(data))
@@ -299,7 +267,6 @@ def door_json(rng: random.Random) -> tuple[Call, str]:
 
 
 def written(data: Json) -> str:
-    """JSON, with integers of any length."""
     before = sys_digits()
     try:
         return json.dumps(data)
@@ -317,7 +284,6 @@ def sys_digits(value: int = 0) -> int:
 
 
 def door_text(rng: random.Random) -> tuple[Call, str]:
-    """Text of files, damaged."""
     text = mutated_text(rng, written(rng.choice([*files().values(), *certificates().values()])))
     return (lambda: rng.choice([io.loads, io.json_reader.parse_object])(text)), text
 
@@ -356,7 +322,6 @@ def door_number_field(rng: random.Random) -> tuple[Call, str]:
 
 
 def str_of(value: object) -> str:
-    """A description that never fails."""
     try:
         return repr(value)[:300]
     except Exception as error:  # noqa: BLE001  a repr of numbers too long, or too deep
@@ -442,11 +407,11 @@ def door_matrices(rng: random.Random) -> tuple[Call, str]:
         lambda: lh.Representation(algebra("so(3)"), matrices),
         lambda: lh.affine_of(matrices),
         lambda: lh.semidirect_sum(algebra("so(3)"), matrices),
-        lambda: lh.central_extension(algebra("so(3)"), matrices),
-        lambda: lh.almost_abelian(matrices),
-        lambda: lh.so_form(matrices),
-        lambda: lh.sp_form(matrices),
-        lambda: lh.realification(matrices),
+        lambda: lh.algebra.central_extension(algebra("so(3)"), matrices),
+        lambda: lh.algebra.almost_abelian(matrices),
+        lambda: lh.algebra.so_form(matrices),
+        lambda: lh.algebra.sp_form(matrices),
+        lambda: lh.algebra.realification(matrices),
         lambda: QQ.matrix(matrices).inverse(),
         lambda: RR.matrix(matrices).rank(),
     ]
@@ -467,7 +432,6 @@ def door_representation(rng: random.Random) -> tuple[Call, str]:
 
 # -- names and constructors ------------------------------------------------------------------------------
 def name_of(rng: random.Random) -> str:
-    """A name of the catalogue, changed."""
     known = [
         *ALGEBRAS,
         "so(3)/so(2)",
@@ -509,80 +473,29 @@ def door_name(rng: random.Random) -> tuple[Call, str]:
 
 
 CONSTRUCTORS = [
-    "abelian",
-    "affine",
-    "bargmann",
-    "bianchi",
-    "canonical_real_form",
-    "cartan_matrix",
-    "character",
-    "chevalley",
-    "conformal",
-    "direct_sum",
-    "dominant_character",
-    "dual_weight",
-    "dynkin_diagram",
-    "euclidean",
-    "filiform",
-    "free_nilpotent",
-    "frobenius_schur_indicator",
-    "galilei",
-    "gl",
-    "heisenberg",
-    "highest_weight_module",
-    "oscillator",
-    "parabolic_subalgebra",
-    "poincare",
-    "real_forms",
-    "real_module",
-    "real_module_type",
-    "root_system",
-    "simple",
-    "sl",
-    "so",
-    "so_star",
-    "sp",
-    "spin_representation",
-    "spinor_type",
-    "strictly_upper_triangular",
-    "su",
-    "sym_conjugation",
-    "tensor_product_decomposition",
-    "trivial",
-    "u",
-    "upper_triangular",
-    "weyl_dimension",
-    "weyl_orbit",
-    "defining",
-    "low_dimensional",
-    "schroedinger",
-]
+    "abelian", "affine", "bargmann", "bianchi", "canonical_real_form", "cartan_matrix", "character", "chevalley",
+    "conformal", "direct_sum", "dominant_character", "dual_weight", "dynkin_diagram", "euclidean", "filiform",
+    "free_nilpotent", "frobenius_schur_indicator", "galilei", "gl", "heisenberg", "highest_weight_module",
+    "oscillator", "parabolic_subalgebra", "poincare", "real_forms", "real_module", "real_module_type", "root_system",
+    "simple", "sl", "so", "so_star", "sp", "spin_representation", "spinor_type", "strictly_upper_triangular", "su",
+    "sym_conjugation", "tensor_product_decomposition", "trivial", "u", "upper_triangular", "weyl_dimension",
+    "weyl_orbit", "defining", "low_dimensional", "schroedinger",
+]  # fmt: skip
 
 
 def door_constructor(rng: random.Random) -> tuple[Call, str]:
     name = rng.choice(CONSTRUCTORS)
     pool: list[Any] = [
-        "A2",
-        "B3",
-        "G2",
-        "E8",
-        "so(3,1)",
-        "R",
-        "C",
-        "H",
-        (1, 0),
-        [1, 1],
-        (0, 0, 1),
-        (10**6, 1),
-        algebra("so(3)"),
-    ]
+        "A2", "B3", "G2", "E8", "so(3,1)", "R", "C", "H", (1, 0), [1, 1], (0, 0, 1), (10**6, 1), algebra("so(3)"),
+    ]  # fmt: skip
     arguments = [
         rng.choice(
             [rng.randrange(-1, 5), rng.choice(pool), rng.choice([33, 64, 100, 4096, 10**9]), odd(rng), number_of(rng)]
         )
         for _ in range(rng.choice([1, 1, 2, 2, 3]))
     ]
-    return (lambda: getattr(lh, name)(*arguments)), f"{name}{str_of(arguments)}"
+    home = next(home for home in (lh, lh.algebra, lh.representations) if hasattr(home, name))
+    return (lambda: getattr(home, name)(*arguments)), f"{name}{str_of(arguments)}"
 
 
 # -- other programs, integration, the command line -------------------------------------------------------

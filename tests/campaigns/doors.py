@@ -34,7 +34,7 @@ from types import FrameType
 from typing import Any
 
 import liehom as lh
-from liehom.errors import InternalError, LiehomError, LimitError
+from liehom.base.errors import InternalError, LiehomError, LimitError
 from tests.campaigns.door_inputs import DOORS, Call
 
 FIGURES = Path(__file__).with_name("figures") / "doors.json"
@@ -131,7 +131,6 @@ class Campaign:
     offenders: list[dict[str, Any]] = field(default_factory=list)
 
     def record(self, number: int, name: str, found: str, fault: str, spent: float) -> None:
-        """Count one input."""
         self.figures[f"{name} | {found}"] += 1
         self.slowest = max(self.slowest, spent)
         if found == "offenders":
@@ -141,7 +140,6 @@ class Campaign:
         self.done = number + 1
 
     def run(self, count: int, output: Path | None = None) -> None:
-        """Go on until `count` inputs are done."""
         context = mp.get_context("fork")
         while self.done < count:
             start = time.monotonic()
@@ -165,7 +163,6 @@ class Campaign:
                 output.write_text(json.dumps(self.to_json(), indent=1) + "\n", encoding="utf-8")
 
     def to_json(self) -> dict[str, Any]:
-        """The figures, by door."""
         rows: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(OUTCOMES, 0))
         for key, number in sorted(self.figures.items()):
             name, found = key.split(" | ")
@@ -181,13 +178,11 @@ class Campaign:
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Campaign:
-        """The campaign that has these figures."""
         figures = Counter({f"{row['class']} | {name}": row[name] for row in data["rows"] for name in OUTCOMES})
         return cls(data["seed"], data["count"], data["seconds"], data["slowest"], figures, data["offenders"])
 
 
 def main() -> None:
-    """Read the command line; see the docstring of the module."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=0)

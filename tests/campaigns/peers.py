@@ -5,8 +5,6 @@
 Each call runs in a process of its own with bounded time and memory. The outcomes go to figures/peers.json.
 """
 
-from __future__ import annotations
-
 import importlib.metadata
 import json
 import resource
@@ -18,7 +16,7 @@ FIGURES = Path(__file__).with_name("figures") / "peers.json"
 SECONDS = 10
 MEMORY = 4 * 1024**3
 LIBRARIES = ("liehom", "sympy", "python-flint", "networkx")
-BEGIN = "import liehom as lh, sympy, flint, networkx as nx, os\nfrom liehom.scalars import QQ\n"
+BEGIN = "import liehom as lh, sympy, flint, networkx as nx, os\nfrom liehom.exact.scalars import QQ\n"
 
 # input -> library: the call; no entry where a library has no such door
 CALLS: dict[str, dict[str, str]] = {
@@ -44,10 +42,7 @@ CALLS: dict[str, dict[str, str]] = {
         "sympy": "sympy.sympify('(' * 100_000 + '1' + ')' * 100_000)",
         "networkx": "nx.parse_gml('graph ' + '[ a ' * 100_000)",
     },
-    "an empty JSON object": {
-        "liehom": "lh.from_json({})",
-        "networkx": "nx.node_link_graph({})",
-    },
+    "an empty JSON object": {"liehom": "lh.from_json({})", "networkx": "nx.node_link_graph({})"},
     "NaN where a number is expected": {
         "liehom": "lh.LieAlgebra({(0, 1): {0: float('nan')}})",
         "sympy": "sympy.Matrix([[float('nan')]]).inv()",
@@ -59,20 +54,15 @@ CALLS: dict[str, dict[str, str]] = {
         "python-flint": "flint.fmpz_mat(10**6, 10**6)",
         "networkx": "nx.complete_graph(10**6)",
     },
-    "a file without end: `/dev/zero`": {
-        "liehom": "lh.load('/dev/zero')",
-        "networkx": "nx.read_gml('/dev/zero')",
-    },
+    "a file without end: `/dev/zero`": {"liehom": "lh.load('/dev/zero')", "networkx": "nx.read_gml('/dev/zero')"},
 }
 
 
 def bounded() -> None:
-    """Bounds of the process of a call."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
 def outcome(call: str) -> str:
-    """What a call does, in a few words."""
     try:
         done = subprocess.run(
             [sys.executable, "-c", BEGIN + call],
@@ -95,7 +85,6 @@ def outcome(call: str) -> str:
 
 
 def main() -> None:
-    """Run all calls and write the figures."""
     versions = {name: importlib.metadata.version(name) for name in LIBRARIES if name != "liehom"}
     rows = [{"input": text, **{name: outcome(call) for name, call in calls.items()}} for text, calls in CALLS.items()]
     data = {"seconds": SECONDS, "memory": MEMORY, "versions": versions, "rows": rows}

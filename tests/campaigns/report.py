@@ -6,8 +6,6 @@ rewrites the text between the markers ``<!-- begin NAME -->`` and ``<!-- end NAM
 figures has no table.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import re
@@ -26,7 +24,6 @@ Json = Any
 
 
 def figures(name: str) -> Json:
-    """Figures of a campaign, or None."""
     file = FIGURES / f"{name}.json"
     return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
 
@@ -39,9 +36,11 @@ def table(header: list[str], rows: list[list[str]], numbers: bool = True) -> str
 
 def limits_table() -> str:
     """Every limit with its default and what it bounds, from the docstring."""
-    text = re.sub(r"\n {8,}", " ", (lh.Limits.__doc__ or "").partition("----------\n")[2].partition("Examples")[0])
+    text = re.sub(
+        r"\n {8,}", " ", (lh.budget.Limits.__doc__ or "").partition("----------\n")[2].partition("Examples")[0]
+    )
     meanings = dict(re.findall(r"^ *(\w+) : [^\n]*?(?:int|optional) ([A-Z][^\n]*)$", text, re.MULTILINE))
-    defaults = dataclasses.asdict(lh.Limits())
+    defaults = dataclasses.asdict(lh.budget.Limits())
     rows = [
         [f"`{name}`", "none" if value is None else f"{value:,}", meanings[name].rstrip(".")]
         for name, value in defaults.items()
@@ -50,7 +49,6 @@ def limits_table() -> str:
 
 
 def doors_table() -> str:
-    """Outcomes by door."""
     data = figures("doors")
     if data is None:
         return ""
@@ -72,7 +70,6 @@ def doors_table() -> str:
 
 
 def damage_table() -> str:
-    """Outcomes by kind of file and damage."""
     data = figures("damage")
     if data is None:
         return ""
@@ -86,13 +83,11 @@ def damage_table() -> str:
 
 
 def certificates_table() -> str:
-    """Outcomes by strategy."""
     data = figures("certificates")
     return "" if data is None else certificates.table(certificates.Campaign.from_json(data))
 
 
 def peers_table() -> str:
-    """What other libraries do with the same input."""
     data = figures("peers")
     if data is None:
         return ""
@@ -111,7 +106,6 @@ TABLES: dict[str, Callable[[], str]] = {
 
 
 def rewritten(page: str) -> str:
-    """The page with new tables."""
     for name, made in TABLES.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         before, _, rest = page.partition(begin)
@@ -123,7 +117,6 @@ def rewritten(page: str) -> str:
 
 
 def main() -> None:
-    """Rewrite the page."""
     PAGE.write_text(rewritten(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
 
 

@@ -1,7 +1,5 @@
 """A sample of the campaign against the checker, and that the campaign can see what it looks for."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -9,9 +7,9 @@ from typing import Any
 import pytest
 
 import liehom as lh
-from liehom.catalog import CLAIMS
 from tests.campaigns import certificates
 from tests.campaigns.certificates import FIELDS, NAMES, OTHER, WRONG, Campaign, Case, proofs, table, total
+from tests.exact.catalog.claims import CLAIMS
 
 FEW = ("so(3)/so(2)", "sl(2)/so(1,1)", "affine(so(2,1))", "affine(S3(gl(2)))", "affine(field(1,1,1,1))")
 FEW += ("affine(form(1,-2))", "affine(gl(2))", "affine(upper(2))", "sl(2)/B", "so(2,1)/so(2)")
@@ -42,14 +40,12 @@ def test_the_whole_campaign_has_a_hundred_pairs_of_both_verdicts() -> None:
 
 def test_every_kind_of_certificate_is_a_source() -> None:
     for field in FIELDS:
-        kinds = {proof["kind"] for name in FEW for proof in proofs(Case(name, field))}
-        assert kinds == set(certificates.KINDS)
+        assert {proof["kind"] for name in FEW for proof in proofs(Case(name, field))} == set(certificates.KINDS)
 
 
 def test_a_campaign_goes_on_where_it_was(tmp_path: Path) -> None:
     output = tmp_path / "figures.json"
-    first = Campaign(seed=3, names=FEW)
-    first.run(60, output)
+    Campaign(seed=3, names=FEW).run(60, output)
     second = Campaign.from_json(json.loads(output.read_text(encoding="utf-8")))
     second.names = FEW
     second.run(100)
@@ -60,15 +56,12 @@ def test_a_campaign_goes_on_where_it_was(tmp_path: Path) -> None:
 
 
 def test_a_checker_that_accepts_everything_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A control."""
     monkeypatch.setattr(lh, "verify_certificate", lambda *_: True)
     campaign = sample(60)
     assert total(campaign.figures, WRONG) == len(campaign.offenders) > 3
 
 
 def test_an_exception_of_another_class_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A control."""
-
     def fails(*_: Any) -> bool:
         raise ZeroDivisionError
 

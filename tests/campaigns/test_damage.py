@@ -1,7 +1,5 @@
 """Damaged stores and files are noticed; what is damaged is named and made again."""
 
-from __future__ import annotations
-
 import json
 import warnings
 from pathlib import Path
@@ -10,8 +8,8 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.disk import checksum
-from liehom.errors import DamageWarning, FormatError
+from liehom.base.errors import DamageWarning, FormatError
+from liehom.base.store import Records, open_store
 from tests.campaigns.damage import BELIEVED, FIGURES, campaign
 
 PAIRS = ["so(4)/so(3)", "so(3,1)/so(2,1)", "sl(3)/P1"]
@@ -31,22 +29,6 @@ def test_committed_figures_are_those_of_a_whole_campaign() -> None:
 def parts(folder: Path) -> list[bytes]:
     """The lines of the only file of entries, in the order of `PAIRS`."""
     return (folder / "records-000000.jsonl").read_bytes().splitlines(keepends=True)
-
-
-def as_single_files(folder: Path, version: int) -> list[Path]:
-    """Rewrites a store with an entry in a file, as earlier versions did, in version 1 (0.1.0) without checksums."""
-    files, fingerprint = [], json.loads((folder / "store.json").read_text())["fingerprint"]
-    for line in map(json.loads, parts(folder)):
-        files.append(folder / f"{line['name']}.json")
-        mark = checksum({}, fingerprint, line["name"], json.dumps(line["facts"]))
-        shard = {"checksum": mark, "facts": line["facts"]}
-        files[-1].write_text(json.dumps(shard if version == 2 else line["facts"]))
-    (folder / "records-000000.jsonl").unlink()
-    if version == 1:
-        about = json.loads((folder / "store.json").read_text())
-        del about["checksum"]
-        (folder / "store.json").write_text(json.dumps({**about, "version": 1}))
-    return files
 
 
 def test_a_damaged_entry_is_named_and_decided_again(tmp_path: Path) -> None:
@@ -93,23 +75,6 @@ def test_half_a_line_at_the_end_of_a_file_is_no_damage(tmp_path: Path) -> None:
     assert again == whole and decided == [PAIRS[2]]
 
 
-@pytest.mark.parametrize("version", [1, 2])
-def test_stores_with_an_entry_in_a_file_are_read_and_continued(tmp_path: Path, version: int) -> None:
-    whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
-    files = as_single_files(tmp_path / "atlas", version)
-    files[0].unlink()
-    content = files[2].read_bytes()
-    files[2].write_bytes(content.replace(b'"full": true', b'"full": false'))
-    decided: list[str] = []
-    with pytest.warns(DamageWarning, match=files[2].stem):
-        again = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name))
-    assert again == whole and decided == [PAIRS[0], PAIRS[2]]
-    assert [json.loads(line)["name"] for line in parts(tmp_path / "atlas")] == [files[0].stem, files[2].stem]
-    assert all(("checksum" in json.loads(line)) == (version == 2) for line in parts(tmp_path / "atlas"))
-    assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", progress=lambda entry: decided.append(entry.name)) == whole
-    assert len(decided) == 2
-
-
 def test_stored_certificates_are_checked_again_where_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
     checked: list[str] = []
@@ -118,11 +83,11 @@ def test_stored_certificates_are_checked_again_where_asked(tmp_path: Path, monke
     assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", recheck=True) == whole and checked == PAIRS
 
 
-def test_entries_without_checksums_are_believed_only_with_their_certificates(tmp_path: Path) -> None:
+def test_entries_are_believed_only_with_their_certificates_where_asked(tmp_path: Path) -> None:
     whole = lh.atlas.sweep(PAIRS, store=tmp_path / "atlas")
-    file, another, _ = as_single_files(tmp_path / "atlas", 1)
-    assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas") == whole
-    entry, other = json.loads(file.read_text()), json.loads(another.read_text())
+    fingerprint = json.loads((tmp_path / "atlas" / "store.json").read_text())["fingerprint"]
+    line, other_line = map(json.loads, parts(tmp_path / "atlas")[:2])
+    entry, other = line["facts"], other_line["facts"]
     for changed in (
         {**entry, "verdict": {**entry["verdict"], "full": False}},
         {**entry, "verdict": {**entry["verdict"], "certificate": other["verdict"]["certificate"]}},
@@ -131,11 +96,10 @@ def test_entries_without_checksums_are_believed_only_with_their_certificates(tmp
         {"name": "so(4)/so(3)"},
         {**entry, "verified": 1},
     ):
-        for written in (tmp_path / "atlas").glob("records-*"):  # they replace the files of single entries
-            written.unlink()
-        file.write_text(json.dumps(changed))
+        with Records(open_store(tmp_path / "atlas", fingerprint)) as records:
+            records.append([(line["name"], changed)])
         with pytest.warns(DamageWarning):
-            assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas") == whole
+            assert lh.atlas.sweep(PAIRS, store=tmp_path / "atlas", recheck=True) == whole
 
 
 @pytest.mark.parametrize("name", ["runs", "runs.zarr"])
@@ -144,12 +108,11 @@ def test_a_damaged_chunk_of_an_ensemble_is_computed_again(tmp_path: Path, name: 
     starts = np.random.default_rng(0).standard_normal((4, 3))
 
     def run() -> np.ndarray:
-        made = lh.integrators.integrate_ensemble(field, (0, 1), starts, chunk=2, store=tmp_path / name, dt=0.25)
+        made = lh.propagation.integrate_ensemble(field, (0, 1), starts, chunk=2, store=tmp_path / name, dt=0.25)
         return np.asarray(made.y)
 
     whole = run()
-    inside = [f for f in (tmp_path / name).rglob("*") if f.is_file() and f.name not in ("store.json",)]
-    for file in sorted(inside):
+    for file in sorted(f for f in (tmp_path / name).rglob("*") if f.is_file() and f.name not in ("store.json",)):
         if file.parent == tmp_path / name and name == "runs.zarr":
             continue  # the description of the store
         data = file.read_bytes()
@@ -184,6 +147,5 @@ def test_a_file_with_a_checksum_notices_every_edit(tmp_path: Path) -> None:
     path.write_text(text.replace('"-1"', '"1"', 1))
     with pytest.raises(FormatError, match="delete the key 'checksum'"):
         lh.load(path)
-    keys = json.loads(text)
-    path.write_text(json.dumps(dict(reversed(keys.items()))))
+    path.write_text(json.dumps(dict(reversed(json.loads(text).items()))))
     assert lh.load(path) == lh.pair("so(4)/so(3)")

@@ -1,14 +1,12 @@
 """A sample of the campaign against the doors, and that the campaign can see what it looks for."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 
 import pytest
 
 import liehom as lh
-from liehom.errors import InputError, InternalError, LimitError
+from liehom.base.errors import InputError, InternalError, LimitError
 from tests.campaigns import doors
 from tests.campaigns.door_inputs import DOORS
 from tests.campaigns.doors import Campaign, drawn, outcome
@@ -26,8 +24,7 @@ def test_a_sample_has_no_offender(tmp_path: Path) -> None:
 
 
 def test_every_door_is_drawn_and_inputs_are_repeated() -> None:
-    seen = {drawn(3, number)[0] for number in range(len(DOORS))}
-    assert seen == DOORS.keys()
+    assert {drawn(3, number)[0] for number in range(len(DOORS))} == DOORS.keys()
     for number in range(3 * len(DOORS)):
         assert drawn(3, number)[2] == drawn(3, number)[2]
 
@@ -90,45 +87,14 @@ def test_a_campaign_goes_on_where_it_was() -> None:
     at_once = Campaign(seed=2)
     at_once.run(30)
     assert second.figures == at_once.figures
-    assert lh.current_limits() == lh.Limits()
+    assert lh.budget.current_limits() == lh.budget.Limits()
 
 
 MENDED = [
-    13302,
-    14839,
-    15174,
-    15496,
-    22134,
-    23088,
-    26102,
-    26884,
-    26966,
-    29524,
-    30678,
-    33204,
-    34936,
-    37622,
-    42615,
-    44916,
-    54134,
-    54324,
-    60468,
-    60712,
-    63112,
-    67144,
-    67768,
-    72056,
-    72516,
-    76838,
-    77188,
-    82664,
-    85638,
-    86148,
-    90836,
-    93126,
-    93670,
-    94726,
-]
+    13302, 14839, 15174, 15496, 22134, 23088, 26102, 26884, 26966, 29524, 30678, 33204, 34936, 37622, 42615, 44916,
+    54134, 54324, 60468, 60712, 63112, 67144, 67768, 72056, 72516, 76838, 77188, 82664, 85638, 86148, 90836, 93126,
+    93670, 94726,
+]  # fmt: skip
 """Inputs of seed 0 that raised an exception of Python or took too long when they were first tried."""
 
 

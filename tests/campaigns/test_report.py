@@ -1,7 +1,5 @@
 """The page on reliability is what the script makes of the figures."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.campaigns import doors, report

@@ -1,7 +1,5 @@
 """`liehom atlas`: the families, a build, and a search in its file."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,10 +7,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from liehom.atlas import FAMILIES
-from liehom.atlas.families.parabolic import parabolic_pairs
-from liehom.atlas.families.symmetric import group_pairs
 from liehom.cli.app import app
+from liehom.studies.atlas.all_families import FAMILIES
+from liehom.studies.atlas.subalgebras import parabolic_pairs
+from liehom.studies.atlas.symmetric import group_pairs
 
 RUN = CliRunner()
 
@@ -55,8 +53,7 @@ def test_a_second_build_takes_the_entries_from_the_store(built: Path) -> None:
     ]
     assert RUN.invoke(app, words).exit_code == 2, "the file exists"
     done = RUN.invoke(app, [*words, "--force"])
-    table = json.loads((built / "atlas.json").read_text(encoding="utf-8"))
-    assert json.loads(done.stdout) == table["counts"]
+    assert json.loads(done.stdout) == json.loads((built / "atlas.json").read_text(encoding="utf-8"))["counts"]
 
 
 def test_rows_are_filtered(built: Path) -> None:

@@ -1,12 +1,10 @@
 """`liehom classify` and `liehom full-pairs`: exit codes, one JSON object with --json, lines without it."""
 
-from __future__ import annotations
-
 import pytest
 
 import liehom as lh
-from liehom.fullness import Classification
-from liehom.fullness.classification import rows
+from liehom.exact.fullness.classification import Classification
+from liehom.exact.fullness.classification_rows import rows
 from tests.cli.test_cli import FLOAT, FULL, NOT_FULL, json_of, liehom
 
 
@@ -35,8 +33,7 @@ def test_classify_of_a_pair_without_a_row_gives_the_verdict(file: str, code: int
     result = liehom("classify", file)
     assert result.exit_code == code
     assert says in result.stdout
-    data = json_of(liehom("classify", file, "--json"))
-    assert data["classification"] is None
+    assert json_of(liehom("classify", file, "--json"))["classification"] is None
 
 
 @pytest.mark.parametrize("d", [0, 1, 2, 7])
@@ -44,8 +41,7 @@ def test_full_pairs_lists_all_rows(d: int) -> None:
     data = json_of(liehom("full-pairs", str(d), "--json"))
     assert (data["dimension"], data["count"]) == (d, len(rows(d)))
     assert [row["name"] for row in data["pairs"]] == [pair.name for pair in lh.full_pairs(d)]
-    lines = liehom("full-pairs", str(d)).stdout.splitlines()
-    assert len(lines) == 1 + len(rows(d))
+    assert len(liehom("full-pairs", str(d)).stdout.splitlines()) == 1 + len(rows(d))
 
 
 def test_full_pairs_of_a_negative_dimension_is_bad_input() -> None:

@@ -1,7 +1,5 @@
 """The command line: exit codes, what goes to which stream, one JSON object with --json, time from the shell."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -14,30 +12,18 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import liehom as lh
+from liehom.base.errors import CertificateError, FormatError, InternalError
 from liehom.cli import guard
 from liehom.cli.app import app
-from liehom.errors import CertificateError, FormatError, InternalError
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 FULL, NOT_FULL, FLOAT = (str(EXAMPLES / f"{name}.json") for name in ("so4_so3", "so31_so21", "so4_so3_float"))
 SYM3 = str(EXAMPLES / "sym3.json")
 COMMANDS = (
-    "fullness",
-    "verify",
-    "isotropy",
-    "range",
-    "classify",
-    "full-pairs",
-    "describe",
-    "integrate",
-    "order",
-    "reproduce",
-    "catalog",
-    "demo",
-    "completion",
-    "atlas",
-)
+    "fullness", "verify", "isotropy", "range", "classify", "full-pairs", "describe", "integrate", "order", "reproduce",
+    "catalog", "demo", "atlas",
+)  # fmt: skip
 
 
 def liehom(*words: str) -> Result:
@@ -189,8 +175,7 @@ def test_range(words: tuple[str, ...], holds: bool, rank: int, equilibrium: bool
 
 
 def test_range_in_h_is_an_equilibrium() -> None:
-    row = ",".join(str(x) for x in lh.load(NOT_FULL).subalgebra.rows()[0])
-    result = liehom("range", NOT_FULL, "--psi", row)
+    result = liehom("range", NOT_FULL, "--psi", ",".join(str(x) for x in lh.load(NOT_FULL).subalgebra.rows()[0]))
     assert result.exit_code == 0
     assert "equilibrium" in result.stdout
 
@@ -216,31 +201,17 @@ def test_catalog_prints_a_pair_as_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "words",
     [
-        ("fullness", "none.json"),
-        ("fullness", "no such pair"),
-        ("fullness", "so(4)/so(30)"),
-        ("fullness", str(EXAMPLES)),
-        ("fullness", str(EXAMPLES / "make_files.py")),
-        ("fullness", ""),
-        ("fullness", "\0"),
-        ("fullness",),
-        ("fullness", FULL, "--certificate", str(EXAMPLES)),
-        ("fullness", FULL, "extra"),
-        ("fullness", FULL, "--no-such-option"),
-        ("verify", FULL, "none.json"),
-        ("verify", FULL),
-        ("isotropy", FULL),
-        ("isotropy", SYM3, "--point", "1,2"),
-        ("isotropy", SYM3, "--point", "1,2,3,4,5,os"),
-        ("isotropy", SYM3, "--point", "[1,2"),
-        ("isotropy", SYM3, "--point", ""),
-        ("range", FULL, "--psi", "1"),
-        ("range", FULL, "--psi", "1,0,0,0,0,__import__('os')"),
-        ("range", FULL, "--psi", "[0.5,0,0,0,0,0]"),
-        ("catalog", "nothing(7)"),
-        ("no-such-command",),
+        ("fullness", "none.json"), ("fullness", "no such pair"), ("fullness", "so(4)/so(30)"),
+        ("fullness", str(EXAMPLES)), ("fullness", str(EXAMPLES / "make_files.py")), ("fullness", ""),
+        ("fullness", "\0"), ("fullness",), ("fullness", FULL, "--certificate", str(EXAMPLES)),
+        ("fullness", FULL, "extra"), ("fullness", FULL, "--no-such-option"), ("verify", FULL, "none.json"),
+        ("verify", FULL), ("isotropy", FULL), ("isotropy", SYM3, "--point", "1,2"),
+        ("isotropy", SYM3, "--point", "1,2,3,4,5,os"), ("isotropy", SYM3, "--point", "[1,2"),
+        ("isotropy", SYM3, "--point", ""), ("range", FULL, "--psi", "1"),
+        ("range", FULL, "--psi", "1,0,0,0,0,__import__('os')"), ("range", FULL, "--psi", "[0.5,0,0,0,0,0]"),
+        ("catalog", "nothing(7)"), ("no-such-command",),
     ],
-)
+)  # fmt: skip
 def test_bad_input_is_exit_2_with_an_empty_standard_output(words: tuple[str, ...]) -> None:
     result = liehom(*words)
     assert result.exit_code == 2, result.output
@@ -336,7 +307,7 @@ def test_demo_runs_on_the_example_files_and_ends_with_a_plot(elsewhere: Path) ->
 
 def test_demo_says_before_any_work_that_no_plot_can_be_drawn(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert liehom("demo", "--plot", "no/such/folder/errors.png").exit_code == 2
-    monkeypatch.setattr("liehom.cli.problem_options.can_plot", lambda: False)
+    monkeypatch.setattr("liehom.cli.inputs.can_plot", lambda: False)
     result = liehom("demo", "--plot", "errors.png")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "pip install 'liehom[plot]'" in result.stderr
@@ -361,8 +332,7 @@ def seconds(*words: str) -> float:
         before = os.times()
         shell(*words)
         after = os.times()
-        taken = after.children_user + after.children_system - before.children_user - before.children_system
-        best = min(best, taken)
+        best = min(best, after.children_user + after.children_system - before.children_user - before.children_system)
     return best
 
 

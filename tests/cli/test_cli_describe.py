@@ -1,7 +1,5 @@
 """`liehom describe`: files and names of every kind, cards and JSON, bad input."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -110,7 +108,7 @@ def test_files_of_an_algebra(suffix: str, tmp_path: Path) -> None:
     if suffix == ".json":
         lh.dump(algebra, path)
     else:
-        path.write_text(lh.to_sage(algebra) if suffix == ".sage" else lh.to_gap(algebra), encoding="utf-8")
+        path.write_text(lh.io.to_sage(algebra) if suffix == ".sage" else lh.io.to_gap(algebra), encoding="utf-8")
     assert facts(str(path))["real_form"] == "su(2,1)"
 
 

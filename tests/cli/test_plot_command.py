@@ -1,7 +1,5 @@
 """``liehom plot``: every picture of the table is drawn from its example; files, sizes, dark pictures, errors."""
 
-from __future__ import annotations
-
 import inspect
 import os
 import shlex
@@ -28,7 +26,6 @@ def liehom(*words: str) -> Result:
 
 
 def size_of(file: str) -> tuple[int, int]:
-    """Width and height of a PNG file in pixels."""
     width, height = struct.unpack(">II", Path(file).read_bytes()[16:24])
     return width, height
 
@@ -44,7 +41,7 @@ def test_the_example_of_each_kind_calls_its_function(kind: Kind, monkeypatch: py
         return new_figure(1, 1)
 
     monkeypatch.setattr(lh.plotting, kind.function, drawn)
-    monkeypatch.setattr("liehom.integrators.work_precision", lambda field, methods, span, y0, **more: methods)
+    monkeypatch.setattr("liehom.flow.convergence.costs.work_precision", lambda _, methods, *more, **named: methods)
     result = liehom("plot", kind.name, *shlex.split(kind.example), "--output", "picture.svg")
     assert (result.exit_code, result.stderr) == (0, "")
     assert result.stdout == "plot: picture.svg\n"
@@ -88,8 +85,7 @@ def test_dark_pictures_and_sizes() -> None:
 def test_a_solution_file_is_drawn_as_its_problem_is() -> None:
     file = "examples/rigid_body.json"
     assert liehom("integrate", file, "--out", "body.npz").exit_code == 0
-    solution = lh.Solution.load("body.npz")
-    assert solution.y.shape == (3, 101)
+    assert lh.Solution.load("body.npz").y.shape == (3, 101)
     for name in (file, "body.npz"):
         result = liehom("plot", "trajectory", name, "--output", "orbit.png", "--size", "2x2")
         assert (result.exit_code, result.stderr) == (0, "")
@@ -127,7 +123,7 @@ def test_wrong_input_is_said_and_nothing_is_written(words: tuple[str, ...], name
 
 
 def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("liehom.cli.problem_options.find_spec", lambda name: None)
+    monkeypatch.setattr("liehom.cli.inputs.find_spec", lambda name: None)
     result = liehom("plot", "dynkin", "G2", "-o", "x.png")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "liehom[plot]" in result.stderr

@@ -1,7 +1,5 @@
 """``liehom reproduce``: what it prints and writes, what it refuses, and what an interruption leaves."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -14,10 +12,11 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-import liehom.paper
 from liehom.cli.app import app
-from liehom.paper import NAMES, Check, Reproduction, stored
-from tests.paper.small import small
+from liehom.studies.paper import figures
+from liehom.studies.paper.figures import NAMES
+from liehom.studies.paper.reproduction import Check, Reproduction, stored
+from tests.studies.paper.small import small
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -65,7 +64,7 @@ def test_reproduce_refuses_before_the_work(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("file").write_text("mine")
-    monkeypatch.setattr(liehom.paper, "reproduce", lambda *args, **options: pytest.fail("it works already"))
+    monkeypatch.setattr(figures, "reproduce", lambda *args, **options: pytest.fail("it works already"))
     result = liehom_("reproduce", "fig4", "--quick", *words)
     assert (result.exit_code, result.stdout) == (2, "")
     assert named in result.stderr
@@ -73,7 +72,7 @@ def test_reproduce_refuses_before_the_work(
 
 
 def test_reproduce_without_matplotlib_writes_the_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("liehom.cli.problem_options.can_plot", lambda: False)
+    monkeypatch.setattr("liehom.cli.inputs.can_plot", lambda: False)
     result = liehom_("reproduce", "fig3", "--quick", "--out", str(tmp_path))
     assert (result.exit_code, result.stdout.splitlines()[-1]) == (0, f"5 files in {tmp_path}; no plots")
     asked = liehom_("reproduce", "fig3", "--quick", "--out", str(tmp_path), "--format", "svg")
@@ -87,7 +86,7 @@ def test_resume_computes_only_what_is_missing(tmp_path: Path, monkeypatch: pytes
         computed.append(name)
         return small(name, **settings)
 
-    monkeypatch.setattr(liehom.paper, "reproduce", counted)
+    monkeypatch.setattr(figures, "reproduce", counted)
     words = ("reproduce", "all", "--quick", "--format", "none", "--out", str(tmp_path))
     first = liehom_(*words)
     assert computed == list(NAMES)
@@ -97,8 +96,7 @@ def test_resume_computes_only_what_is_missing(tmp_path: Path, monkeypatch: pytes
     assert (again.exit_code, again.stdout) == (0, first.stdout)
     other = liehom_(*words, "--resume", "--seed", "5", "--json")
     assert computed == [*NAMES, "fig4", *NAMES]
-    resumed = liehom_(*words, "--resume", "--seed", "5", "--json")
-    assert json.loads(resumed.stdout) == json.loads(other.stdout)
+    assert json.loads(liehom_(*words, "--resume", "--seed", "5", "--json").stdout) == json.loads(other.stdout)
     assert computed == [*NAMES, "fig4", *NAMES]
 
 
@@ -130,7 +128,7 @@ def test_an_interruption_before_the_first_figure_leaves_no_folder(
     def interrupted(*args: object, **options: object) -> Reproduction:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(liehom.paper, "reproduce", interrupted)
+    monkeypatch.setattr(figures, "reproduce", interrupted)
     result = liehom_("reproduce", "all", "--out", str(tmp_path / "new"))
     assert (result.exit_code, result.stdout) == (130, "")
     assert result.stderr == "liehom: interrupted; no figure is finished\n"
@@ -140,7 +138,7 @@ def test_an_interruption_before_the_first_figure_leaves_no_folder(
 def test_each_figure_is_a_step_of_the_progress_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     begun: list[str] = []
     monkeypatch.setattr("liehom.cli.reproduce.step", begun.append)
-    monkeypatch.setattr(liehom.paper, "reproduce", small)
+    monkeypatch.setattr(figures, "reproduce", small)
     assert liehom_("reproduce", "all", "--quick").stderr == ""
     assert begun == [f"{name}, {k} of 8" for k, name in enumerate(NAMES, 1)]
 
@@ -163,7 +161,7 @@ def test_reproduce_lists_the_known_names(tmp_path: Path) -> None:
 
 def test_reproduce_exits_with_1_where_a_claim_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = Reproduction("fig2", "X", "none", {}, (Check("1 = 2", "1", False),))
-    monkeypatch.setattr(liehom.paper, "reproduce", lambda *args, **options: wrong)
+    monkeypatch.setattr(figures, "reproduce", lambda *args, **options: wrong)
     result = liehom_("reproduce", "fig2", "--out", str(tmp_path))
     assert result.exit_code == 1
     assert "FAILS" in result.stdout

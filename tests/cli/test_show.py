@@ -1,21 +1,18 @@
 """Results on terminals of several widths: words and numbers are never cut."""
 
-from __future__ import annotations
-
 import os
 import re
 import sys
 
 import pytest
 
-from liehom.cli import show
+from liehom.cli import guard as show
 
 NAMES = ["t", "m0", "drift of invariants"]
 ROWS = [["0", " 0.60000000", "< 1e-13"], ["1.00198", "-0.57953430", "2.1e-12"]]
 
 
 def plain(text: str) -> str:
-    """The text without colours and other attributes."""
     return re.sub(r"\x1b\[[0-9;]*m", "", text)
 
 

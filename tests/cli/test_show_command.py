@@ -1,7 +1,5 @@
 """`liehom show`: where the page goes, what is printed, files of pairs, verdicts and certificates, bad input."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -11,7 +9,7 @@ from typer.testing import CliRunner, Result
 
 import liehom as lh
 from liehom.cli.app import app
-from liehom.pages import pictures
+from liehom.io import page as pictures
 from tests.html_structure import Balance
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -92,7 +90,7 @@ def test_a_given_certificate_is_verified_and_shown(
         file.write_text(liehom("fullness", PAIR, "--json").stdout)
     else:
         liehom("fullness", PAIR, "--certificate", file)
-    monkeypatch.setattr("liehom.fullness.decide_fullness", lambda pair: pytest.fail("decided"))
+    monkeypatch.setattr("liehom.exact.fullness.decide.decide_fullness", lambda pair: pytest.fail("decided"))
     result = liehom("show", PAIR, "--certificate", file, "-o", page)
     assert (result.exit_code, result.stderr) == (0, "")
     assert f"not full: proved by the certificate in {file}" in Balance(page.read_text(encoding="utf-8")).text

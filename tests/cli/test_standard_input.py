@@ -1,7 +1,5 @@
 """``-`` is the file on standard input, for every command that reads one."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -9,10 +7,10 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import liehom as lh
+from liehom.base.errors import FormatError
 from liehom.cli import inputs
 from liehom.cli.app import app
 from liehom.cli.inputs import path_argument
-from liehom.errors import FormatError
 
 PAIR = path_argument("examples/so4_so3.json")
 RIGID = path_argument("examples/rigid_body.json")
@@ -43,8 +41,7 @@ def test_standard_input_gives_what_the_file_gives(words: tuple[str, ...], file: 
 
 
 def test_a_certificate_or_its_pair_may_be_piped_but_not_both() -> None:
-    pair = lh.pair("so(4)/so(3)")
-    certificate = json.dumps(lh.io.to_json(lh.decide_fullness(pair).certificate))
+    certificate = json.dumps(lh.io.to_json(lh.decide_fullness(lh.pair("so(4)/so(3)")).certificate))
     assert liehom("verify", "so(4)/so(3)", "-", text=certificate).exit_code == 0
     both = liehom("verify", "-", "-", text=certificate)
     assert (both.exit_code, both.stdout) == (2, "")
@@ -91,7 +88,7 @@ def test_the_library_reads_files_that_are_open() -> None:
     with open(PAIR, "rb") as file:
         assert lh.load(file) == lh.load(PAIR)
     with open(RIGID, "rb") as file:
-        assert lh.load_problem(file).options == lh.load_problem(RIGID).options
+        assert lh.io.load_problem(file).options == lh.io.load_problem(RIGID).options
     with open(PAIR, encoding="utf-8") as file, pytest.raises(FormatError, match="binary"):
         lh.load(file)  # type: ignore[arg-type]
     with pytest.raises(FormatError, match="expected the path of a file"):

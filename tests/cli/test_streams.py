@@ -1,7 +1,5 @@
 """The command line with closed and full streams, and its limits: conventional exit codes and messages."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -57,7 +55,7 @@ def test_limits_stand_before_and_after_a_command() -> None:
         result = CliRunner().invoke(app, words)
         assert (result.exit_code, result.stdout) == (2, "")
         assert "--limit dimension=3" in result.stderr
-    assert lh.current_limits() == lh.Limits()  # those of the process are as before
+    assert lh.budget.current_limits() == lh.budget.Limits()  # those of the process are as before
     assert CliRunner().invoke(app, ["fullness", "so(3)/so(2)", "--limit", "dimension=3"]).exit_code == 0
     for wrong in ("dim=2", "digits", "digits=x", "digits=-1"):
         result = CliRunner().invoke(app, ["fullness", "so(3)/so(2)", "--limit", wrong])

@@ -3,8 +3,6 @@
 `python -m tests.formal.agreement --count 20000` prints a table of the outcomes.
 """
 
-from __future__ import annotations
-
 import argparse
 import collections
 import contextlib
@@ -23,12 +21,12 @@ from typing import Any
 import pytest
 
 import liehom as lh
-from liehom.catalog import CLAIMS
-from liehom.errors import CertificateError, LiehomError
-from liehom.fullness import decide
-from liehom.scalars import QQ
-from tests.fullness import mutations
-from tests.fullness.support import fraction, in_basis, random_invertible, without_cheap_points
+from liehom.base.errors import CertificateError, LiehomError
+from liehom.exact.fullness import decide
+from liehom.exact.scalars.rational import QQ
+from tests.exact.catalog.claims import CLAIMS
+from tests.exact.fullness import mutations
+from tests.exact.fullness.support import fraction, in_basis, random_invertible, without_cheap_points
 
 Json = dict[str, Any]
 Case = tuple[str, Json, Json]

@@ -1,7 +1,5 @@
 """Representation files with complex matrices and with coordinates: what is read, round trips, refusals."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +8,7 @@ import pytest
 import sympy
 
 import liehom as lh
-from liehom.errors import FormatError, ParseError, ShapeError
+from liehom.base.errors import FormatError, ParseError, ShapeError
 
 PAULI = [[["0", "i"], ["i", "0"]], [["0", "1"], ["-1", "0"]], [["i", "0"], ["0", "-i"]]]
 
@@ -29,7 +27,7 @@ def test_complex_strings_are_read_as_a_complex_representation(tmp_path: Path) ->
     assert read(point=["1", "i*sqrt(2)"]).field.name == "QQ(sqrt(2))"
     file = tmp_path / "problem.json"
     lh.dump({"matrices": PAULI, "point": [0.5, "i/2"], "generator": ["1", "0", "m0"]}, file)
-    assert lh.load_problem(file).start == (0.5, 0.0, 0.0, 0.5)
+    assert lh.io.load_problem(file).start == (0.5, 0.0, 0.0, 0.5)
     assert read(matrices=[[["i/sqrt(2)", "0"], ["0", "-1/2*i"]]]).field.name == "QQ(sqrt(2))"
 
 
@@ -57,8 +55,7 @@ def test_points_are_written_by_their_real_coordinates() -> None:
     state = sympy.Matrix([[1, sympy.I], [-sympy.I, 1]])
     assert lh.to_json(action, point=state)["point"] == ["1", "0", "1", "1"]
     assert lh.from_json(lh.to_json(action, point=state)).subalgebra.dimension == 1
-    floats = rho.over(lh.RR)
-    assert lh.to_json(floats, point=np.array([1, 0.5j]))["point"] == [1.0, 0.0, 0.0, 0.5]
+    assert lh.to_json(rho.over(lh.RR), point=np.array([1, 0.5j]))["point"] == [1.0, 0.0, 0.0, 0.5]
 
 
 @pytest.mark.parametrize(

@@ -1,19 +1,18 @@
 """Rich display: what notebooks are handed is short, well-formed and escaped, for every class that they show."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 import liehom as lh
 from liehom import paper, pauli
-from liehom.display import Displayed, DisplayedTable, Typeset
-from liehom.io.html_format import html
+from liehom.base.objects import Displayed, DisplayedTable, Typeset
+from liehom.io.renderings import html
 from tests.html_structure import Balance
 
 FIELD = lh.GeneratorField(lh.defining(lh.so(2)), ["1 + m0/2"])
@@ -21,8 +20,8 @@ EVIL = "</div><script>alert(1)</script> & $x$ \\evil{"
 
 SAMPLES: dict[str, Callable[[], object]] = {
     "LieAlgebra": lambda: lh.so(4),
-    "LieAlgebraFamily": lambda: lh.LieAlgebraFamily({("x", "y"): {"z": "a"}}, ["a"]),
-    "Homomorphism": lambda: lh.Homomorphism(lh.gl(2), lh.abelian(1), [[1, 0, 0, 1]]),
+    "LieAlgebraFamily": lambda: lh.algebra.LieAlgebraFamily({("x", "y"): {"z": "a"}}, ["a"]),
+    "Homomorphism": lambda: lh.algebra.Homomorphism(lh.gl(2), lh.abelian(1), [[1, 0, 0, 1]]),
     "Subalgebra": lambda: lh.so(3).subalgebra([[1, "-1/2", 0]]),
     "Representation": lambda: lh.defining(lh.so(3)),
     "Pair": lambda: lh.pair("so(4)/so(3)"),
@@ -42,7 +41,7 @@ SAMPLES: dict[str, Callable[[], object]] = {
     "HighestWeightModule": lambda: lh.highest_weight_module("A2", [1, 0]),
     "RealModule": lambda: lh.real_module("su(2,1)", [1, 0]),
     "Stratum": lambda: lh.symmetric_strata(3)[1],
-    "Subspace": lambda: lh.Subspace(lh.QQ, [[1, 2]], 2),
+    "Subspace": lambda: lh.scalars.Subspace(lh.QQ, [[1, 2]], 2),
     "Solution": lambda: lh.integrate(FIELD, (0, 1), [1.0, 0.0], dt=0.25),
     "Tableau": lambda: lh.tableau("rk4"),
     "ConvergenceTable": lambda: lh.observed_order(FIELD, [1.0, 0.0], lh.Euler(), [0.1, 0.05]),
@@ -89,10 +88,8 @@ def is_balanced(text: str) -> bool:
 
 
 def public_classes() -> Iterator[type]:
-    """The classes that the folders of liehom hand on."""
-    for layer in lh._LAYERS:
-        module = getattr(lh, layer)
-        for value in vars(module).values():
+    for owner in (lh, *(value for name in dir(lh) if isinstance(value := getattr(lh, name), ModuleType))):
+        for value in (getattr(owner, name) for name in dir(owner)):
             if isinstance(value, type) and value.__module__.startswith("liehom."):
                 yield value
 
@@ -141,19 +138,18 @@ def evil_objects() -> Iterator[Typeset]:
     pair = lh.Pair(algebra, [[0, 0, 1]], name=EVIL)
     yield algebra
     yield algebra.subalgebra([[1, 0, 0]])
-    yield lh.Homomorphism.identity(algebra)
+    yield lh.algebra.Homomorphism.identity(algebra)
     yield lh.Representation(algebra, lh.adjoint(algebra).matrices, name=EVIL)
     yield pair
     yield lh.decide_fullness(pair)
     yield paper.Table(EVIL, (EVIL, "x"), [(EVIL, 1.0)])
-    yield lh.Tableau(EVIL, [[0]], [1], 1)
+    yield lh.methods.Tableau(EVIL, [[0]], [1], 1)
 
 
 def test_names_are_escaped() -> None:
     for obj in evil_objects():
         assert isinstance(obj, Displayed)
-        found = Balance(obj._repr_html_())
-        assert "script" not in found.seen, type(obj)
+        assert "script" not in Balance(obj._repr_html_()).seen, type(obj)
         outside = re.sub("<pre>.*?</pre>", "", obj._repr_html_(), flags=re.DOTALL)  # where MathJax reads no formulas
         assert not set("$\\") & set(re.sub(r"<span>[$\\]</span>", "", outside)), "a notebook would read a formula"
         latex = obj._repr_latex_()
@@ -162,8 +158,7 @@ def test_names_are_escaped() -> None:
 
 
 def test_an_escaped_name_is_still_read() -> None:
-    algebra = lh.LieAlgebra({}, dimension=1, name="a < b & c")
-    assert "a < b & c" in Balance(algebra._repr_html_()).text
+    assert "a < b & c" in Balance(lh.LieAlgebra({}, dimension=1, name="a < b & c")._repr_html_()).text
 
 
 def test_long_names_are_cut() -> None:
@@ -175,7 +170,7 @@ def test_long_names_are_cut() -> None:
 @pytest.mark.parametrize(("name", "sentence"), [("Full", "is full."), ("NotFull", "is not full.")])
 def test_a_verdict_shows_sentence_kind_and_a_collapsed_certificate(name: str, sentence: str) -> None:
     verdict = sample(name)
-    assert isinstance(verdict, lh.Full | lh.NotFull)
+    assert isinstance(verdict, lh.fullness.Full | lh.fullness.NotFull)
     page = Balance(verdict._repr_html_())
     assert f"The pair {verdict.pair.name} {sentence}" in page.text
     assert f"kind '{verdict.certificate.kind}'" in page.text
@@ -239,10 +234,7 @@ def test_formulas_of_elements() -> None:
         ),
         ("Decomposition", r"\mathbf{1} \oplus \mathbf{3} \oplus \mathbf{5}"),
         ("HighestWeightModule", r"V_{(1, 0)}(A_{2}), \quad \dim V = 3"),
-        (
-            "RealModule",
-            r"V_{(1, 0)}(\mathfrak{su}(2,1)), \quad \dim V = 6, \quad \operatorname{End} V = \mathbb{C}",
-        ),
+        ("RealModule", r"V_{(1, 0)}(\mathfrak{su}(2,1)), \quad \dim V = 6, \quad \operatorname{End} V = \mathbb{C}"),
         ("Stratum", r"\text{(2, 1)} \colon\; \dim G m = 2, \; \mathfrak{g}_{m} \cong \mathbb{R}"),
         ("Subspace", r"\left\langle (1, 2) \right\rangle"),
         ("Solution", r"y(1) = \left(0.218704, 0.975791\right)"),
@@ -270,7 +262,7 @@ def test_formulas_of_tableaux_leave_zeros_on_and_above_the_diagonal_out() -> Non
 
 def test_a_report_of_a_pair_without_directions_says_so() -> None:
     verdict = lh.decide_fullness(lh.pair("su(3)/su(2)"))
-    assert isinstance(verdict, lh.NotFull)
+    assert isinstance(verdict, lh.fullness.NotFull)
     assert lh.latex(verdict.where_it_fails()) == r"\text{(6.3) holds for no }\psi"
 
 
@@ -284,10 +276,8 @@ def test_most_cuts_and_none_does_not() -> None:
 
 
 def test_dimension_248_is_shown_in_50_ms_and_5_kB() -> None:
-    objects = [lh.simple("E8"), lh.adjoint(lh.simple("E8")), lh.root_system("E8"), lh.simple("E8").killing_form()]
-    for obj in objects:
-        shows = [obj._repr_latex_, *([obj._repr_html_] if isinstance(obj, Displayed) else [])]
-        for show in shows:
+    for obj in [lh.simple("E8"), lh.adjoint(lh.simple("E8")), lh.root_system("E8"), lh.simple("E8").killing_form()]:
+        for show in [obj._repr_latex_, *([obj._repr_html_] if isinstance(obj, Displayed) else [])]:
             seconds = []
             for _ in range(5):
                 start = time.process_time()

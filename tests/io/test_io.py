@@ -1,7 +1,5 @@
 """Files in and out: round trips, every kind of bad input with its own error, large numbers, cost."""
 
-from __future__ import annotations
-
 import copy
 import json
 import os
@@ -13,14 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import liehom as lh
-from liehom import errors, io
-from liehom.io import algebra_file, json_reader, number_lists
-from liehom.io.number_lists import RawList
-from liehom.scalars import QQ, RR
+from liehom import io
+from liehom.base import errors
+from liehom.exact.scalars.floating import RR
+from liehom.exact.scalars.rational import QQ
+from liehom.io import json_reader, json_reader as number_lists, object_files as algebra_file
+from liehom.io.json_reader import RawList
 
 SPHERE: dict[str, Any] = {
     "format": "liehom-pair",
@@ -156,8 +155,7 @@ def test_a_problem_keeps_start_generator_and_options() -> None:
 
 
 def test_a_problem_with_an_exact_point_gives_the_pair() -> None:
-    found = io.loads(json.dumps(changed(PLANE, point=["1/2", 0])), problem=True)
-    assert found.pair().subalgebra.dimension == 1
+    assert io.loads(json.dumps(changed(PLANE, point=["1/2", 0])), problem=True).pair().subalgebra.dimension == 1
     with refuses(errors.FormatError, "point"):
         io.loads(json.dumps(PLANE), problem=True).pair()
 

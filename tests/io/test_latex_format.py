@@ -1,13 +1,12 @@
 """LaTeX: what is written, and that a TeX engine for mathematics accepts it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
 
 import liehom as lh
-from liehom import errors, io
+from liehom import io
+from liehom.base import errors
 
 K = lh.number_field("sqrt(2)")
 CUBIC = lh.number_field([-2, 0, 0, 1], (1, 2), name="alpha")
@@ -57,8 +56,7 @@ def test_matrices_subalgebras_and_representations() -> None:
     assert io.latex(lh.heisenberg(1).center()) == r"\left\langle z \right\rangle"
     assert io.latex(lh.so(3).center()) == r"\{0\}"
     assert io.latex(lh.so(3).subalgebra([[1, "-1/2", 0]])) == r"\left\langle e_{0} - \frac{1}{2} e_{1} \right\rangle"
-    rotation = io.latex(lh.defining(lh.so(2)))
-    assert rotation.startswith("\\begin{aligned}\n\\rho(e_{0}) &= \\begin{pmatrix}")
+    assert io.latex(lh.defining(lh.so(2))).startswith("\\begin{aligned}\n\\rho(e_{0}) &= \\begin{pmatrix}")
 
 
 def test_wide_matrices_are_arrays() -> None:

@@ -1,14 +1,12 @@
 """Subalgebra files: round trips, and every kind of bad input named."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import liehom as lh
-from liehom.errors import DependentRowsError, FormatError, NotASubalgebraError
+from liehom.base.errors import DependentRowsError, FormatError, NotASubalgebraError
 
 
 def subalgebras() -> dict[str, lh.Subalgebra]:
@@ -34,7 +32,7 @@ def test_what_is_written_is_read_again(key: str, tmp_path: Path) -> None:
     assert found == given and hash(found) == hash(given)
     assert found.basis == given.basis
     assert (found.algebra.name, found.algebra.basis_names) == (given.algebra.name, given.algebra.basis_names)
-    assert lh.load_pair(tmp_path / "h.json") == lh.Pair(given.algebra, given)
+    assert lh.io.load_pair(tmp_path / "h.json") == lh.Pair(given.algebra, given)
     assert lh.to_json(found) == lh.to_json(given)
 
 
@@ -71,7 +69,7 @@ def test_missing_key_is_named(key: str) -> None:
 
 
 def test_the_command_line_describes_it_as_a_pair(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from liehom.cli.describe_command import run_describe
+    from liehom.cli.objects import run_describe
 
     lh.dump(subalgebras()["line"], tmp_path / "h.json")
     assert run_describe(str(tmp_path / "h.json"), False) == 0

@@ -1,7 +1,5 @@
 """The mutants themselves: each is a module with one change, and each has its tests."""
 
-from __future__ import annotations
-
 import ast
 import difflib
 import random
@@ -11,7 +9,7 @@ import pytest
 from tests.mutation import mutate
 from tests.mutation.mutate import ROOT, mutants
 
-MODULES = ["liehom/fullness/checker/verify_modular.py", "liehom/integrators/run/control.py"]
+MODULES = ["liehom/exact/fullness/checker/verify_modular.py", "liehom/flow/run/control.py"]
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -33,6 +31,6 @@ def test_all_sorts_of_changes_occur() -> None:
 
 
 def test_the_own_tests_of_a_module_come_first() -> None:
-    assert mutate.tests_of(MODULES[0])[0] == "tests/fullness/checker/test_verify_modular.py"
-    assert "tests/fullness/checker/test_verify.py" in mutate.tests_of(MODULES[0])
-    assert mutate.tests_of("liehom/scalars/lattices/conic.py")
+    assert mutate.tests_of(MODULES[0])[0] == "tests/exact/fullness/checker/test_verify_modular.py"
+    assert "tests/exact/fullness/checker/test_verify.py" in mutate.tests_of(MODULES[0])
+    assert mutate.tests_of("liehom/exact/scalars/lattices.py")

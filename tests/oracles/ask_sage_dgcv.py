@@ -3,8 +3,6 @@
 python ask_sage_dgcv.py sage MATRICES        python ask_sage_dgcv.py dgcv ALGEBRA ...
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from typing import Any
@@ -18,8 +16,7 @@ def sage(matrices: list[Any]) -> dict[str, Any]:
     from sage.misc.banner import version
     from sage.rings.rational_field import QQ
 
-    cross = {("x", "y"): {"z": 1}, ("y", "z"): {"x": 1}, ("z", "x"): {"y": 1}}
-    so3 = LieAlgebra(QQ, cross, names=("x", "y", "z"))
+    so3 = LieAlgebra(QQ, {("x", "y"): {"z": 1}, ("y", "z"): {"x": 1}, ("z", "x"): {"y": 1}}, names=("x", "y", "z"))
     e6 = LieAlgebra(QQ, cartan_type=["E", 6])
     wrong = {("x", "y"): {"z": 3}, ("y", "z"): {"z": 1}, ("x", "z"): {"y": -1}}
     accepted = LieAlgebra(QQ, wrong, names=("x", "y", "z"))
@@ -37,7 +34,6 @@ def sage(matrices: list[Any]) -> dict[str, Any]:
 
 
 def dgcv(algebras: dict[str, Any]) -> dict[str, Any]:
-    """Whether algebras over the reals are simple."""
     import dgcv as package
     import sympy
 

@@ -3,8 +3,6 @@
 Run `python tests/oracles/gap_characters.py` where `gap` is installed.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import re
@@ -60,7 +58,6 @@ def algebra(kind: str) -> str:
 
 
 def run_gap(lines: list[str]) -> list[str]:
-    """Whatever the lines print, one string a line of input."""
     text = "SizeScreen([4096, 24]);;\n" + "".join(f'Print("@", {line}, "\\n");\n' for line in lines) + "QUIT;\n"
     out = subprocess.run(["gap", "-q"], input=text, capture_output=True, text=True, check=True).stdout
     return [" ".join(part.split()) for part in out.split("@")[1:]]

@@ -36,14 +36,12 @@ class Gap:
         self.stop()
 
     def stop(self) -> None:
-        """End the process."""
         if self.process is not None:
             self.process.kill()
             self.process.communicate()
             self.process = None
 
     def begin(self, setup: str) -> None:
-        """Statements to run now, and again after a restart."""
         self.setup = SEED + setup
         if self.process is None:
             self._start()
@@ -72,7 +70,6 @@ class Gap:
         self._send(SETUP + self.setup, 120)
 
     def _send(self, statements: str, limit: float) -> str:
-        """Everything that is printed until the statements are done."""
         if self.process is None or self.process.stdin is None or self.process.stdout is None:
             raise RuntimeError("GAP is not running")
         self.process.stdin.write(f'{statements}\nPrint( "{END}\\n" );\n'.encode())

@@ -4,10 +4,8 @@
 
 What GAP and sympy say is asked anew, and what SageMath and dgcv say where an interpreter is named that has them.  Of
 tools that are not installed the recorded answer is kept, with "reproduced": false.
-tests/algebra/structure/test_peer_errors.py asks liehom the same.
+tests/exact/algebra/structure/test_peer_errors.py asks liehom the same.
 """
-
-from __future__ import annotations
 
 import datetime
 import json
@@ -42,7 +40,6 @@ def in_another_basis(name: str) -> Any:
 
 
 def asked(gap: Gap, question: str) -> str:
-    """The answer, the error, or that there was none."""
     try:
         return gap.ask(question, LIMIT)
     except Refused as error:
@@ -52,14 +49,13 @@ def asked(gap: Gap, question: str) -> str:
 
 
 def gap_errors(gap: Gap) -> list[dict[str, Any]]:
-    """The errors of GAP."""
     found = []
     for name in SCRAMBLED:
         algebra = in_another_basis(name)
-        gap.begin(lh.to_gap(algebra))
+        gap.begin(lh.io.to_gap(algebra))
         entry = {"id": f"GAP type of {name}", "call": "SemiSimpleType( L )", "said": asked(gap, "SemiSimpleType( L )")}
         found.append({**entry, "truth": {"type": TYPES[name], "real_form": name}, "algebra": lh.to_json(algebra)})
-    gap.begin(lh.to_gap(lh.so(3)))
+    gap.begin(lh.io.to_gap(lh.so(3)))
     said = asked(gap, "RootSystem( L )")
     entry = {"id": "GAP roots of so(3)", "call": "RootSystem( L )", "said": said, "truth": {"type": "A1", "roots": 2}}
     found.append({**entry, "algebra": lh.to_json(lh.so(3))})
@@ -83,7 +79,6 @@ def gap_errors(gap: Gap) -> list[dict[str, Any]]:
 
 
 def sympy_errors() -> list[dict[str, Any]]:
-    """The errors of sympy.liealgebras."""
     import sympy
     from sympy.liealgebras.root_system import RootSystem
     from sympy.liealgebras.weyl_group import WeylGroup
@@ -169,7 +164,6 @@ def asked_elsewhere(python: str, tool: str, data: Any) -> dict[str, Any]:
 
 
 def reproduced(entries: list[dict[str, Any]], python: str) -> list[dict[str, Any]]:
-    """The recorded entries with the answers of today."""
     algebras = {e["id"]: e["algebra"] for e in entries if e["tool"] == "dgcv"}
     said = {
         "SageMath": asked_elsewhere(python, "sage", NO_REPRESENTATION),
@@ -184,7 +178,6 @@ def reproduced(entries: list[dict[str, Any]], python: str) -> list[dict[str, Any
 
 
 def main(python: str | None = None) -> None:
-    """Write the file."""
     others = recorded() if python is None else reproduced(recorded(), python)
     with Gap() as gap:
         errors = [*gap_errors(gap), *sympy_errors(), *others]

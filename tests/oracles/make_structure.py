@@ -7,8 +7,6 @@ made ([e_1, e_2] of the first algebra, by hand).  GAP computes everything except
 they come from GAP's Killing matrix, by Lagrange's diagonalisation over Python's fractions, in this file.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import subprocess
@@ -19,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import liehom as lh
-from liehom.algebra import LieAlgebra
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 from tests.oracles.gap_process import Gap, Refused, Timeout
 from tests.oracles.random_algebras import FAMILIES, SEED, random_algebras
 
@@ -70,7 +68,6 @@ def signature(matrix: list[list[Fraction]]) -> tuple[int, int, int]:
 
 
 def answers(gap: Gap, algebra: LieAlgebra) -> tuple[dict[str, Any], dict[str, str]]:
-    """What GAP says, and what it refuses."""
     gap.begin(lh.io.to_gap(algebra))
     found: dict[str, Any] = {}
     refused: dict[str, str] = {}
@@ -98,7 +95,6 @@ def check_conventions(gap: Gap) -> None:
 
 
 def provenance(family: str, gap: Gap) -> dict[str, Any]:
-    """The head of a file."""
     package = subprocess.run(
         ["dpkg-query", "-W", "-f", "${Version}", "gap-core"], capture_output=True, text=True, check=False
     )
@@ -119,7 +115,6 @@ def provenance(family: str, gap: Gap) -> dict[str, Any]:
 
 
 def write(family: str) -> None:
-    """The file of a family."""
     lines = []
     with Gap() as gap:
         check_conventions(gap)

@@ -3,15 +3,13 @@
 A family yields (label, algebra) in a scrambled basis; `FAMILIES` says how many are taken from each.
 """
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
 import liehom as lh
-from liehom.algebra import LieAlgebra
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
 
 SEED = "structure 1"
 LEAST, LARGEST = 3, 30
@@ -161,7 +159,6 @@ SIMPLE = (
 
 
 def semisimple_sum(rng: random.Random) -> Named:
-    """One to four simple summands."""
     wanted, names, total = rng.randint(LEAST, LARGEST), [], 0
     while total < wanted:
         name = rng.choice(SIMPLE)
@@ -303,8 +300,7 @@ def generated(rng: random.Random) -> Named:
             for _ in range(rng.randint(1, n)):
                 x[rng.randrange(n)][rng.randrange(n)] = rng.choice((1, -1, 1, 2))
             matrices.append(x)
-        flat = lh.QQ.matrix([[v for row in x for v in row] for x in matrices])
-        if flat.rank() < count:
+        if lh.QQ.matrix([[v for row in x for v in row] for x in matrices]).rank() < count:
             continue
         algebra = LieAlgebra.from_matrices(matrices)
         if LEAST <= algebra.dimension <= LARGEST:
@@ -330,7 +326,6 @@ PARABOLIC = (
 
 
 def parabolic(rng: random.Random) -> Named:
-    """Parabolic subalgebras of simple algebras."""
     name = rng.choice(PARABOLIC)
     return f"the parabolic of {name}", lh.pair(name).subalgebra.as_algebra()
 

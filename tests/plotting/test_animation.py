@@ -1,7 +1,5 @@
 """Animations: the points of the frames, files as a whole, pages without the network, interruptions, what is refused."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -16,10 +14,9 @@ pytest.importorskip("PIL")
 
 from PIL import Image
 
-from liehom.errors import FormatError, InputError
-from liehom.plotting import animate_trajectory
-from liehom.plotting.animation import stage
+from liehom.base.errors import FormatError, InputError
 from liehom.plotting.canvas import new_figure
+from liehom.plotting.trajectory_plot import animate_trajectory, stage
 
 SPIN = lh.GeneratorField(lh.defining(lh.so(2)), [1])
 SOL = lh.integrate(SPIN, (0, 3), [1.0, 0.0], dt=0.5)
@@ -40,11 +37,9 @@ def test_the_point_is_the_solution_at_the_time_of_the_frame() -> None:
 
 
 def test_points_behind_the_sphere_are_faint() -> None:
-    field = lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1])
-    sol = lh.integrate(field, (0, 2 * np.pi), [1.0, 0.0, 0.0], dt=0.5)
+    sol = lh.integrate(lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1]), (0, 2 * np.pi), [1.0, 0.0, 0.0], dt=0.5)
     (actor,) = stage(sol, ax=new_figure(2, 2).add_subplot(projection="3d", elev=10, azim=0))
-    alphas = [actor.move(fraction)[2].get_alpha() for fraction in (0.0, 0.5, 1.0)]
-    assert alphas == [1.0, 0.3, 1.0]
+    assert [actor.move(fraction)[2].get_alpha() for fraction in (0.0, 0.5, 1.0)] == [1.0, 0.3, 1.0]
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".html"])
@@ -82,8 +77,7 @@ def test_an_interruption_leaves_the_file_that_was_there(suffix: str, tmp_path: P
 
 
 def test_coordinates_over_time_and_chosen_ones() -> None:
-    field = lh.GeneratorField(lh.defining(lh.so(4)), np.arange(1.0, 7))
-    sol = lh.integrate(field, (0, 1), np.eye(4)[0], dt=0.1)
+    sol = lh.integrate(lh.GeneratorField(lh.defining(lh.so(4)), np.arange(1.0, 7)), (0, 1), np.eye(4)[0], dt=0.1)
     actors = stage(sol, ax=small())
     assert len(actors) == 4
     for i, actor in enumerate(actors):

@@ -10,9 +10,8 @@ pytest.importorskip("matplotlib")
 from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
-from liehom.plotting import plot_bracket_table, plot_dynkin, plot_satake, plot_vogan
 from liehom.plotting.canvas import COLOURS, new_figure
-from liehom.plotting.diagram_plot import NODE, node_places
+from liehom.plotting.diagram_plot import NODE, node_places, plot_bracket_table, plot_dynkin, plot_satake, plot_vogan
 
 KINDS = ["A1", "A5", "B2", "B4", "C4", "D2", "D3", "D5", "E6", "E7", "E8", "F4", "G2", "A2 + G2", "D4 + E6", "0"]
 
@@ -54,8 +53,7 @@ def bonds(ax):
 @pytest.mark.parametrize("kind", KINDS)
 def test_bonds_are_those_of_the_cartan_matrix_and_point_to_shorter_roots(kind):
     system = lh.root_system(kind)
-    ax = plot_dynkin(kind)
-    lines, heads = bonds(ax)
+    lines, heads = bonds(plot_dynkin(kind))
     a = np.array(system.cartan).reshape(system.rank, system.rank)
     expected = {(i, j): a[i, j] * a[j, i] for i in range(system.rank) for j in range(i + 1, system.rank) if a[i, j]}
     assert lines == expected
@@ -66,8 +64,7 @@ def test_bonds_are_those_of_the_cartan_matrix_and_point_to_shorter_roots(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_nodes_are_apart(kind):
     places = node_places(kind)
-    distance = np.linalg.norm(places[:, None] - places, axis=2) + 10 * np.eye(len(places))
-    assert (distance > 0.8).all()
+    assert (np.linalg.norm(places[:, None] - places, axis=2) + 10 * np.eye(len(places)) > 0.8).all()
 
 
 def test_labels_replace_the_numbers_of_nodes():
@@ -105,8 +102,7 @@ def test_straight_arrows_cross_no_node(name):
     places = centers(ax)
     for text in (text for text in ax.texts if getattr(text, "arrow_patch", None)):
         if text.arrowprops["connectionstyle"] == "arc3,rad=0.0":
-            line = np.linspace(text.xyann, text.xy, 50)
-            near = np.linalg.norm(places[:, None] - line, axis=2).min(axis=1) < NODE
+            near = np.linalg.norm(places[:, None] - np.linspace(text.xyann, text.xy, 50), axis=2).min(axis=1) < NODE
             assert near.sum() == 2
 
 
@@ -157,8 +153,7 @@ def test_bracket_tables_are_read_off_the_picture(algebra):
 
 
 def test_terms_are_written_with_coefficients_and_without_signs():
-    texts = {text.get_text() for text in plot_bracket_table(lh.sl(2)).texts}
-    assert texts == {"e2", "2·e0", "2·e1"}
+    assert {text.get_text() for text in plot_bracket_table(lh.sl(2)).texts} == {"e2", "2·e0", "2·e1"}
     assert {text.get_text() for text in plot_bracket_table(lh.heisenberg(2)).texts} == {"z"}
 
 

@@ -1,15 +1,13 @@
 """Errors of first integrals over time: what is drawn is |F(y(t)) - F(y(t0))|, on whose axes, in which scale."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.errors import InputError, ShapeError
-from liehom.plotting import plot_energy_drift
+from liehom.base.errors import InputError, ShapeError
+from liehom.plotting.drift_plot import plot_energy_drift
 
 pytest.importorskip("matplotlib")
 

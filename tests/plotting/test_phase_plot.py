@@ -1,21 +1,18 @@
 """Phase portraits: equilibria and their types, level sets, separatrices, and what is refused."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.instances import RigidBody
+from liehom.studies.rigid_body import RigidBody
 
 pytest.importorskip("matplotlib")
 
-from liehom.errors import InputError
-from liehom.plotting import plot_phase_portrait
+from liehom.base.errors import InputError
 from liehom.plotting.canvas import COLOURS, DARK_COLOURS, new_figure, style
-from liehom.plotting.phase_plot import between, equilibria, flow_of
+from liehom.plotting.phase_plot import between, equilibria, flow_of, plot_phase_portrait
 
 ENERGY = "m0**2/2 + m1**2/4 + m2**2/6"
 BODY = RigidBody([1, 2, 3])
@@ -42,8 +39,7 @@ def test_equilibria_of_the_rigid_body_are_its_axes(radius: float) -> None:
     assert len(found) == 6
     for equilibrium in found:
         assert np.abs(equilibrium.point - wanted).max(axis=1).min() < 1e-8 * radius
-        middle = abs(equilibrium.point[1]) > 0.5 * radius
-        assert equilibrium.kind == ("saddle" if middle else "center")
+        assert equilibrium.kind == ("saddle" if (abs(equilibrium.point[1]) > 0.5 * radius) else "center")
 
 
 @pytest.mark.parametrize(
@@ -86,14 +82,12 @@ def test_level_sets_and_separatrices_are_drawn() -> None:
     assert np.abs(np.linalg.norm(np.concatenate([below, above]), axis=1) - 1).max() < 1e-9
     assert BODY.energy(below).max() < 1 / 4 < BODY.energy(above).min()
     assert len(np.unique((BODY.energy(above) - 1e-3).round(2))) == 5
-    labels = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert labels == ["separatrix", "center (4)", "saddle (2)"]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["separatrix", "center (4)", "saddle (2)"]
 
 
 def test_a_field_without_an_energy_is_drawn_by_its_trajectories() -> None:
     field = BODY.field("b")
-    ax = plot_phase_portrait(field)
-    separatrix = drawn(ax, COLOURS[1])
+    separatrix = drawn(plot_phase_portrait(field), COLOURS[1])
     separatrix = separatrix[np.abs(np.abs(separatrix[:, 1]) - 1) > 1e-6]
     assert len(separatrix) > 300 and np.abs(BODY.energy(separatrix) - 1 / 4).max() < 1e-3
     with_energy = plot_phase_portrait(field, energy=BODY.energy)

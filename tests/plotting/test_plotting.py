@@ -1,7 +1,5 @@
 """Pictures: what is drawn is what was measured and integrated; files; what is refused; nothing global is touched."""
 
-from __future__ import annotations
-
 import dataclasses
 import importlib
 import pickle
@@ -14,10 +12,11 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.errors import FormatError, InputError
-from liehom.integrators import ConvergenceTable
-from liehom.plotting import plot_convergence, plot_trajectory
+from liehom.base.errors import FormatError, InputError
+from liehom.flow.convergence.orders import ConvergenceTable
 from liehom.plotting.canvas import DARK_COLOURS, new_figure, style
+from liehom.plotting.error_plot import plot_convergence
+from liehom.plotting.trajectory_plot import plot_trajectory
 
 matplotlib = pytest.importorskip("matplotlib")
 Figure = pytest.importorskip("matplotlib.figure").Figure
@@ -48,7 +47,6 @@ def solution(size: int, lead: tuple[int, ...] = (), end: float = 2.0, **options:
 
 
 def lines(figure: Any) -> list[Any]:
-    """The data of all lines that are no legend entries."""
     found = [np.array(line.get_data_3d() if hasattr(line, "get_data_3d") else line.get_data()) for line in
              figure.axes[0].lines]  # fmt: skip
     return [line for line in found if np.isfinite(line.astype(float)).any()]
@@ -92,8 +90,7 @@ def test_a_triangle_has_the_slope_that_was_measured() -> None:
 
 
 def test_no_triangle_for_an_order_far_from_an_integer() -> None:
-    dts = table().dts
-    wild = table(orbit_errors=tuple(h**2.5 for h in dts), trajectory_errors=(NAN,) * 4)
+    wild = table(orbit_errors=tuple(h**2.5 for h in table().dts), trajectory_errors=(NAN,) * 4)
     assert not plot_convergence(wild).axes[0].patches
 
 
@@ -102,8 +99,7 @@ def test_errors_at_round_off_are_apart() -> None:
     figure = plot_convergence(made)
     kept = [i for i, e in enumerate(made.orbit_errors) if e > 1e-7]
     assert 0 < len(kept) < 4
-    curve = np.array([[made.dts[i] for i in kept[::-1]], [made.orbit_errors[i] for i in kept[::-1]]])
-    assert holds(figure, curve)
+    assert holds(figure, np.array([[made.dts[i] for i in kept[::-1]], [made.orbit_errors[i] for i in kept[::-1]]]))
     assert any("round-off" in text for text in texts(figure))
     assert not any("round-off" in text for text in texts(plot_convergence(table(floor=1e-30))))
 
@@ -157,8 +153,7 @@ def test_three_coordinates_on_a_sphere() -> None:
 
 
 def test_what_is_behind_the_sphere_is_pale() -> None:
-    spin = lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1])
-    made = lh.integrate(spin, (0, 12), [0.8, 0.0, 0.6], dt=0.2)
+    made = lh.integrate(lh.GeneratorField(lh.adjoint(lh.so(3)), [0, 0, 1]), (0, 12), [0.8, 0.0, 0.6], dt=0.2)
     axes = plot_trajectory(made).axes[0]
     up, around = np.radians(axes.elev), np.radians(axes.azim)
     eye = np.array([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)])
@@ -202,8 +197,7 @@ def test_more_coordinates_over_time(size: int) -> None:
 
 def test_many_coordinates_as_colours() -> None:
     made = lh.integrate(rotation(9), (0, 1), np.eye(9)[0], dt=0.1)
-    mesh = plot_trajectory(made).axes[0].collections[0]
-    assert np.allclose(np.asarray(mesh.get_array()).reshape(9, -1), made.y)
+    assert np.allclose(np.asarray(plot_trajectory(made).axes[0].collections[0].get_array()).reshape(9, -1), made.y)
 
 
 def test_dense_output_is_drawn_finely() -> None:
@@ -218,8 +212,7 @@ def test_dense_output_is_drawn_finely() -> None:
 def furthest_from_the_circle(sol: lh.Solution, show: str = "curve") -> float:
     """How far midpoints of the segments that are drawn are from the unit circle: 0.12 for a chord of 1 radian."""
     curve = max(lines(plot_trajectory(sol, show=show)), key=lambda line: line.shape[1]).astype(float)
-    middles = (curve[:, 1:] + curve[:, :-1]) / 2
-    return float(np.abs(np.linalg.norm(middles, axis=0) - 1).max())
+    return float(np.abs(np.linalg.norm((curve[:, 1:] + curve[:, :-1]) / 2, axis=0) - 1).max())
 
 
 def test_curves_follow_the_method_between_steps() -> None:
@@ -244,9 +237,8 @@ def test_curves_of_files_and_of_output_times_are_splines_on_the_sphere(tmp_path:
 
 
 def test_long_runs_have_a_limit_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(importlib.import_module("liehom.plotting.curves"), "MAX_POINTS", 1000)
-    sol = lh.integrate(rotation(2), (0, 25), [1.0, 0.0], dt=0.01, step=lh.Euler())
-    figure = plot_trajectory(sol)
+    monkeypatch.setattr(importlib.import_module("liehom.plotting.trajectory_plot"), "MAX_POINTS", 1000)
+    figure = plot_trajectory(lh.integrate(rotation(2), (0, 25), [1.0, 0.0], dt=0.01, step=lh.Euler()))
     assert max(line.shape[1] for line in lines(figure)) <= 1001
     assert "one of 3 steps" in figure.axes[0].get_title(loc="left")
 
@@ -282,8 +274,7 @@ def test_wrong_options_of_plot_trajectory_raise(options: Any, match: str) -> Non
 
 @pytest.mark.parametrize(("size", "dense"), [(2, False), (3, True), (4, False), (9, False)])
 def test_ensembles(size: int, dense: bool) -> None:
-    made = solution(size, (2, 30), end=0.3, dense_output=dense)
-    title = plot_trajectory(made).axes[0].get_title(loc="left")
+    title = plot_trajectory(solution(size, (2, 30), end=0.3, dense_output=dense)).axes[0].get_title(loc="left")
     assert "of 60 trajectories" in title
     assert ("first 1" if size == 9 else "first 50") in title
 
@@ -297,11 +288,9 @@ def test_trajectories_of_different_length(size: int, dense: bool) -> None:
         return y[..., 0] - 0.1
 
     event.terminal = True  # type: ignore[attr-defined]
-    start = np.eye(size)[:2] * [[1.0], [2.0]]
-    made = lh.integrate(rotation(size), (0, 4), start, events=event, dense_output=dense)
+    made = lh.integrate(rotation(size), (0, 4), np.eye(size)[:2] * [[1.0], [2.0]], events=event, dense_output=dense)
     assert np.isnan(made.t).any() and not np.isnan(made.t[..., :2]).any()
-    figure = plot_trajectory(made)
-    assert all(np.isfinite(line.astype(float)[:, 0]).all() for line in lines(figure))
+    assert all(np.isfinite(line.astype(float)[:, 0]).all() for line in lines(plot_trajectory(made)))
 
 
 def test_a_solution_without_a_step() -> None:
@@ -376,8 +365,7 @@ def test_a_notebook_shows_figures_and_axes_as_pictures(picture: str) -> None:
     }[picture]()
     data, _ = formatters.DisplayFormatter().format(shown)
     assert data["image/svg+xml"].count("<svg") == 1
-    copied = pickle.loads(pickle.dumps(shown))
-    assert copied._repr_svg_().count("<svg") == 1
+    assert pickle.loads(pickle.dumps(shown))._repr_svg_().count("<svg") == 1
 
 
 def test_axes_of_the_caller_are_shown_as_the_caller_shows_them() -> None:
@@ -402,8 +390,7 @@ def test_axes_of_another_kind_are_refused() -> None:
 
 def test_axes_in_a_subfigure_give_the_whole_figure(tmp_path: Path) -> None:
     whole = new_figure(8, 4)
-    part = whole.subfigures(1, 2)[0]
-    assert plot_trajectory(solution(2), tmp_path / "part.svg", ax=part.add_subplot()) is whole
+    assert plot_trajectory(solution(2), tmp_path / "part.svg", ax=whole.subfigures(1, 2)[0].add_subplot()) is whole
 
 
 @pytest.mark.parametrize("suffix", [".JPG", ".webp", ".tiff", ".eps"])

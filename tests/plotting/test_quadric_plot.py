@@ -1,7 +1,5 @@
 """Orbits on quadrics: the surface is the one of the trajectory, and other forms are refused."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,9 +9,9 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
-from liehom.errors import InputError
-from liehom.plotting import plot_quadric
+from liehom.base.errors import InputError
 from liehom.plotting.canvas import COLOURS, GREY, new_figure
+from liehom.plotting.trajectory_plot import plot_quadric
 
 RHO = lh.defining(lh.so(2, 1))
 FORM = np.diag([1.0, 1.0, -1.0])
@@ -41,8 +39,7 @@ def test_the_surface_and_the_curve_have_the_level_of_the_trajectory(start: Any, 
     assert ax.get_title(loc="left").startswith(kind)
     for colours in ((COLOURS[0],), (GREY, "#d9d9d9")):
         found = points(ax, *colours)
-        values = np.einsum("ik,ij,jk->k", found, FORM, found)
-        assert np.abs(values - level).max() < 1e-6 * (found**2).max()
+        assert np.abs(np.einsum("ik,ij,jk->k", found, FORM, found) - level).max() < 1e-6 * (found**2).max()
     curve = points(ax, COLOURS[0])
     for point in sol.y.T:
         assert np.linalg.norm(curve - point[:, None], axis=0).min() < 1e-9
@@ -51,8 +48,7 @@ def test_the_surface_and_the_curve_have_the_level_of_the_trajectory(start: Any, 
 
 
 def test_trajectories_of_an_ensemble_have_a_surface_for_each_level() -> None:
-    sol = lh.integrate(FIELD, (0, 2), [[0.5, 0.0, 1.25**0.5], [0.0, 0.0, 1.0], [0.0, 0.0, -2.0]])
-    ax = plot_quadric(RHO, sol)
+    ax = plot_quadric(RHO, lh.integrate(FIELD, (0, 2), [[0.5, 0.0, 1.25**0.5], [0.0, 0.0, 1.0], [0.0, 0.0, -2.0]]))
     assert ax.get_title(loc="left").count("two sheets") == 2
     assert points(ax, GREY)[2].min() < -2 and points(ax, GREY)[2].max() > 1
 
@@ -61,8 +57,7 @@ def test_points_and_a_matrix_in_axes_in_the_plane() -> None:
     flat = new_figure(3, 3).add_subplot()
     assert plot_quadric(np.diag([1.0, 2.0, 4.0]), [[1.0, 0.0, 0.0], [0.0, 0.0, 0.5]], flat) is flat
     assert "ellipsoid" in flat.get_title(loc="left")
-    markers = [line for line in flat.lines if line.get_marker() == "o"]
-    assert len(markers) == 2
+    assert len([line for line in flat.lines if line.get_marker() == "o"]) == 2
     assert plot_quadric(lh.adjoint(lh.so(3)), [0.0, 3.0, 4.0]).get_title(loc="left") == "sphere, $c$ = 25"
 
 

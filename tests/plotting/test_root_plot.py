@@ -7,9 +7,8 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
-from liehom.plotting import plot_root_system, plot_weights
 from liehom.plotting.canvas import COLOURS, DARK_COLOURS, new_figure, style
-from liehom.plotting.root_plot import simple_root_coordinates
+from liehom.plotting.diagram_plot import plot_root_system, plot_weights, simple_root_coordinates
 
 KINDS = ["A1", "A2", "B2", "C2", "G2", "A1 + A1", "A3", "B3", "C3", "A1 + G2", "A1 + A1 + A1"]
 
@@ -42,8 +41,7 @@ def test_every_root_is_drawn_once_and_closed_under_reflections(kind):
         images = roots - 2 * np.outer(roots @ a, a) / (a @ a)
         assert all(np.isclose(roots, b).all(axis=1).sum() == 1 for b in images)
     assert (ax.name == "3d") == (system.rank == 3)
-    named = [text for text in ax.texts if "alpha" in text.get_text()]
-    assert len(named) == system.rank
+    assert len([text for text in ax.texts if "alpha" in text.get_text()]) == system.rank
 
 
 def test_legend_counts_roots_by_length():
@@ -81,7 +79,7 @@ def test_weights_are_drawn_with_multiplicities_that_add_up_to_the_dimension(kind
     # one Weyl orbit, that of the highest weight, is furthest from 0
     system = lh.root_system(kind)
     norms = np.linalg.norm(np.concatenate(list(groups.values())), axis=1)
-    assert np.isclose(norms, norms.max()).sum() == len(lh.weyl_orbit(system, weight))
+    assert np.isclose(norms, norms.max()).sum() == len(lh.representations.weyl_orbit(system, weight))
 
 
 def test_adjoint_weights_are_the_roots_and_zero():
@@ -94,8 +92,7 @@ def test_adjoint_weights_are_the_roots_and_zero():
 def test_edges_join_weights_that_differ_by_a_short_root():
     ax = plot_weights("A2", (1, 0))
     edges = [points_of(line).reshape(-1, 3, 2) for line in ax.lines if line.get_marker() in ("None", None)]
-    lengths = np.concatenate([np.linalg.norm(e[:, 0] - e[:, 1], axis=1) for e in edges])
-    assert np.allclose(lengths, [np.sqrt(2)] * 3)
+    assert np.allclose(np.concatenate([np.linalg.norm(e[:, 0] - e[:, 1], axis=1) for e in edges]), [np.sqrt(2)] * 3)
 
 
 def test_large_modules_show_multiplicities_by_size():

@@ -1,7 +1,5 @@
 """Eigenvalues over time: constant on orbits, as numpy computes them, for other coordinates as well."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,9 +9,9 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
-from liehom.errors import InputError
-from liehom.plotting import plot_spectrum
+from liehom.base.errors import InputError
 from liehom.plotting.canvas import new_figure
+from liehom.plotting.drift_plot import plot_spectrum
 
 SPACE = lh.instances.SymmetricMatrices(3)
 FIELD = lh.instances.toda_flow(3)

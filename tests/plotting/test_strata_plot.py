@@ -7,9 +7,8 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
-from liehom.plotting import plot_eigenvalues, plot_failure_cone, plot_weyl_chamber
 from liehom.plotting.canvas import new_figure
-from liehom.plotting.strata_plot import failure_curves
+from liehom.plotting.strata_plot import failure_curves, plot_eigenvalues, plot_failure_cone, plot_weyl_chamber
 
 
 @pytest.mark.parametrize(
@@ -19,8 +18,7 @@ from liehom.plotting.strata_plot import failure_curves
 def test_directions_in_the_plane_on_which_the_condition_fails(name, lines):
     """Zeros of the invariant and invariant lines, which agree; every direction that is drawn fails, others do not."""
     pair = lh.pair(name)
-    ax = plot_failure_cone(pair)
-    drawn = [np.array(line.get_data()) for line in ax.lines[1:]]
+    drawn = [np.array(line.get_data()) for line in plot_failure_cone(pair).lines[1:]]
     assert len(drawn) == lines
     rows = np.array([[float(x) for x in m.entries()] for m in pair.isotropy_matrices()]).reshape(-1, 2, 2)
     for direction in [d[:, 1] for d in drawn]:
@@ -62,8 +60,7 @@ def test_other_pairs_are_refused(pair):
 
 def test_eigenvalues_are_marked_at_their_barycentric_coordinates():
     ax = plot_eigenvalues(points=[(2, 2, 2), (5, 0, 0)])
-    marked = np.array(ax.lines[-1].get_data()).T
-    assert np.allclose(marked, [[0, 0], [0, 1]])
+    assert np.allclose(np.array(ax.lines[-1].get_data()).T, [[0, 0], [0, 1]])
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
     assert any("isotropy so(3), orbits of dimension 0" in text for text in labels)
     with pytest.raises(lh.InputError, match="positive sum"):
@@ -72,8 +69,7 @@ def test_eigenvalues_are_marked_at_their_barycentric_coordinates():
 
 @pytest.mark.parametrize(("kind", "angle"), [("A2", 60), ("B2", 45), ("C2", 45), ("G2", 30), ("A1 + A1", 90)])
 def test_the_chamber_has_the_angle_of_the_root_system(kind, angle):
-    ax = plot_weyl_chamber(kind)
-    first, second = ax.patches[0].get_xy()[1:3]
+    first, second = plot_weyl_chamber(kind).patches[0].get_xy()[1:3]
     cosine = first @ second / np.linalg.norm(first) / np.linalg.norm(second)
     assert np.degrees(np.arccos(cosine)) == pytest.approx(angle)
     with pytest.raises(lh.InputError, match="rank 3"):

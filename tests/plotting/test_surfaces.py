@@ -1,7 +1,5 @@
 """Quadrics: their points are on them, hidden points are found as by a search along the ray, views are projections."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,7 @@ import liehom as lh
 
 pytest.importorskip("matplotlib")
 
-from liehom.plotting.surfaces import Quadric, Scene, sphere
+from liehom.plotting.phase_plot import Quadric, Scene, sphere
 
 TURN = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))[0]
 CASES = {
@@ -23,7 +21,6 @@ CASES = {
 
 
 def grid(surface: Quadric) -> np.ndarray:
-    """Points (3, k) of the part that is drawn."""
     u, v = np.meshgrid(*(x[::7] for x in surface.parameters))
     return np.concatenate([surface.at(u.ravel(), v.ravel(), sheet) for sheet in (1, -1)], axis=1)
 
@@ -47,8 +44,7 @@ def test_hidden_points_have_another_point_of_the_surface_before_them(kind: str) 
     u, v = np.meshgrid(*(x[5:-5:9] for x in surface.parameters))
     points = surface.at(u.ravel(), v.ravel())
     edge = surface.bounds()[1][2]  # where the drawn part ends
-    distances = np.linspace(0.02, 12, 3000)
-    rays = points[:, :, None] + eye[:, None, None] * distances
+    rays = points[:, :, None] + eye[:, None, None] * np.linspace(0.02, 12, 3000)
     value = np.einsum("ikd,ij,jkd->kd", rays, form, rays) - level
     passes = value[:, 1:] * value[:, :-1] < 0
     height = (rays[2, :, 1:] + rays[2, :, :-1]) / 2
@@ -56,16 +52,14 @@ def test_hidden_points_have_another_point_of_the_surface_before_them(kind: str) 
     top = np.inf if surface.closed else edge
     met = (passes & (height > max(low, -top)) & (height < top)).any(axis=1)
     sure = np.abs(eye @ form @ points) > 0.1 * np.abs(form @ points).max()  # not near the outline
-    near_edge = (passes & (np.abs(np.abs(height) - edge) < 0.02)).any(axis=1)
-    sure &= ~near_edge | surface.closed
+    sure &= ~(passes & (np.abs(np.abs(height) - edge) < 0.02)).any(axis=1) | surface.closed
     hidden = surface.hidden(points, eye)
     assert sure.sum() > 60 and 5 < hidden[sure].sum() < sure.sum()
     assert np.array_equal(hidden[sure], met[sure])
 
 
 def test_contours_have_their_values() -> None:
-    ellipsoid = Quadric(np.diag([1.0, 2.0, 5.0]), 3.0)
-    found = list(ellipsoid.contours(lambda m: m[..., 0] * m[..., 1], [-0.3, 0.4, 99.0]))
+    found = list(Quadric(np.diag([1.0, 2.0, 5.0]), 3.0).contours(lambda m: m[..., 0] * m[..., 1], [-0.3, 0.4, 99.0]))
     assert {level for level, _ in found} == {-0.3, 0.4}
     for level, points in found:
         assert np.abs(points[0] * points[1] - level).max() < 2e-3

@@ -1,7 +1,5 @@
 """Plots of work and precision: what is drawn is what was measured, with failed and unresolved runs told."""
 
-from __future__ import annotations
-
 import dataclasses
 from itertools import pairwise
 from typing import Any
@@ -10,9 +8,9 @@ import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.errors import InputError
-from liehom.integrators import WorkPrecisionRow, WorkPrecisionTable
-from liehom.plotting import plot_work_precision
+from liehom.base.errors import InputError
+from liehom.flow.convergence.costs import WorkPrecisionRow, WorkPrecisionTable
+from liehom.plotting.error_plot import plot_work_precision
 
 pytest.importorskip("matplotlib")
 
@@ -43,8 +41,7 @@ def data(ax: Any) -> list[Any]:
 
 
 def labels(ax: Any) -> list[str]:
-    legend = ax.get_legend() or ax.figure.legends[0]
-    return [text.get_text() for text in legend.get_texts()]
+    return [text.get_text() for text in (ax.get_legend() or ax.figure.legends[0]).get_texts()]
 
 
 @pytest.mark.parametrize(
@@ -78,8 +75,7 @@ def test_methods_differ_in_color_dashes_and_markers() -> None:
 
 def test_failed_runs_are_counted_in_the_legend() -> None:
     failed = row("a", 4, error=NAN, orbit_error=NAN, calls=None, steps=None, cpu_time=NAN, wall_time=NAN, message="no")
-    ax = plot_work_precision(table(*TWO.rows, failed), against="calls")
-    assert labels(ax) == ["a (1 failed)", "b"]
+    assert labels(plot_work_precision(table(*TWO.rows, failed), against="calls")) == ["a (1 failed)", "b"]
 
 
 def test_unresolved_errors_are_open_and_gray_and_their_region_is_shaded() -> None:
@@ -92,12 +88,10 @@ def test_unresolved_errors_are_open_and_gray_and_their_region_is_shaded() -> Non
 
 
 def test_adaptive_runs_have_a_curve_of_their_own() -> None:
-    both = table(*(row("a", k, tolerance=adaptive) for adaptive in (False, True) for k in (1, 2)))
-    ax = plot_work_precision(both)
+    ax = plot_work_precision(table(*(row("a", k, tolerance=adaptive) for adaptive in (False, True) for k in (1, 2))))
     assert labels(ax) == ["a", "a, adaptive"]
     assert [line.get_markerfacecolor() for line in ax.lines] == [ax.lines[0].get_color(), "white"]
-    alone = table(row("a", 1, tolerance=True), row("a", 2, tolerance=True))
-    assert labels(plot_work_precision(alone)) == ["a"]
+    assert labels(plot_work_precision(table(row("a", 1, tolerance=True), row("a", 2, tolerance=True)))) == ["a"]
 
 
 def test_the_axes_and_the_style_of_the_caller_are_used() -> None:
@@ -119,8 +113,7 @@ def test_a_measured_table_is_drawn() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "options"),
-    [(3, {}), (TWO, {"against": "cost"}), (TWO, {"error": "energy"}), (TWO, {"ax": "axes"})],
+    ("given", "options"), [(3, {}), (TWO, {"against": "cost"}), (TWO, {"error": "energy"}), (TWO, {"ax": "axes"})]
 )
 def test_wrong_arguments_are_refused(given: Any, options: dict[str, Any]) -> None:
     with pytest.raises(InputError, match=r"expected|axes of matplotlib"):

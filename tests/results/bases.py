@@ -1,7 +1,5 @@
 """Random bases, which depend on a seed alone."""
 
-from __future__ import annotations
-
 import random
 from fractions import Fraction
 from typing import Any
@@ -30,11 +28,9 @@ def scrambled(pair: lh.Pair, seed: str) -> lh.Pair:
     """The pair in a random basis of g, and h in a random basis of its own."""
     rng = random.Random(seed)
     moved = pair.change_of_basis(change(pair.field, pair.algebra.dimension, rng))
-    mixed = change(pair.field, pair.subalgebra.dimension, rng)
-    return lh.Pair(moved.algebra, mixed @ moved.subalgebra.basis)
+    return lh.Pair(moved.algebra, change(pair.field, pair.subalgebra.dimension, rng) @ moved.subalgebra.basis)
 
 
 def over(pair: lh.Pair, field: Any) -> lh.Pair:
-    """The pair over a larger field."""
     h = pair.subalgebra
     return lh.Pair(pair.algebra.over(field), field.matrix(h.basis.to_rows(), (h.dimension, pair.algebra.dimension)))

@@ -3,8 +3,6 @@
 python -m tests.results.compare BEFORE.json AFTER.json
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Iterator

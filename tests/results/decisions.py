@@ -1,7 +1,5 @@
 """Decisions of fullness: verdicts, certificates and failure reports of 100 pairs."""
 
-from __future__ import annotations
-
 import dataclasses
 import random
 from collections.abc import Callable
@@ -52,9 +50,9 @@ FLOATS = ("so(4)/so(3)", "so(3,1)/so(2,1)")
 
 def number_field(name: str) -> Any:
     if name == "cbrt(2)":
-        return lh.NumberField("a", [-2, 0, 0, 1], (1, 2))
+        return lh.scalars.NumberField("a", [-2, 0, 0, 1], (1, 2))
     if name == "heptagon":
-        return lh.NumberField("a", [-1, -2, 1, 1], (1, 2))
+        return lh.scalars.NumberField("a", [-1, -2, 1, 1], (1, 2))
     return lh.number_field(name)
 
 
@@ -67,7 +65,7 @@ def affine(matrices: Any) -> lh.Pair:
 
 def embedded(size: int, sign: int) -> lh.Pair:
     """so of the form diag(1, ..., 1, a) over the field of a, on its vectors."""
-    field = lh.NumberField("a", [-2, 0, 1], (1, 2) if sign > 0 else (-2, -1))
+    field = lh.scalars.NumberField("a", [-2, 0, 1], (1, 2) if sign > 0 else (-2, -1))
     diagonal = [field.one] * (size - 1) + [field.generator]
     maps = []
     for i in range(size):
@@ -94,7 +92,6 @@ def commuting(seed: int) -> lh.Pair:
 
 
 def decided(make: Callable[[], lh.Pair]) -> dict[str, Any]:
-    """All that the decision says of a pair."""
     pair = make()
     verdict = lh.decide_fullness(pair)
     data = verdict.to_json()

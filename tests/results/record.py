@@ -12,8 +12,6 @@ an element, a form or an involution that is then proved. Integrations depend on 
 the processor: numpy, the BLAS library and LLVM choose instructions by it.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import platform
@@ -39,7 +37,6 @@ REWORDED: dict[str, str] = {
 
 
 def header() -> dict[str, Any]:
-    """Versions of everything that results may depend on."""
     simd = np.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[call-overload]
     return {
         "liehom": lh.__version__,
@@ -56,14 +53,12 @@ def recorded(section: str, name: str) -> Any:
 
 
 def shortened(value: Any) -> Any:
-    """Long values replaced by their digests."""
     if isinstance(value, dict):
         return {key: shortened(item) for key, item in value.items()}
     return value.short() if hasattr(value, "short") else value
 
 
 def in_words_of_0_1_0(value: Any) -> Any:
-    """The value with every string in it reworded."""
     if isinstance(value, dict):
         return {key: in_words_of_0_1_0(item) for key, item in value.items()}
     if isinstance(value, list):

@@ -1,7 +1,5 @@
 """Results are what they were in 0.1.0: a sample here, all of them with --slow; and the comparison can fail."""
 
-from __future__ import annotations
-
 import copy
 import json
 from pathlib import Path
@@ -31,7 +29,6 @@ def before() -> dict[str, Any]:
 
 
 def difference(section: str, name: str) -> list[str]:
-    """How a case differs from 0.1.0."""
     after = json.loads(json.dumps(record.recorded(section, name)))
     return compare.differences({section: {name: before()[section][name]}}, {section: {name: after}})
 
@@ -85,8 +82,7 @@ def test_a_last_bit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_another_certificate_is_noticed() -> None:
-    name = "so(4)/so(3)"
-    long = record.decisions.CASES[name]()["certificate"]
+    long = record.decisions.CASES["so(4)/so(3)"]()["certificate"]
     short = long.short()
     long.value["eta"][0] += " + 0"
     assert long.short() != short
@@ -115,8 +111,6 @@ def test_each_difference_is_printed_and_the_exit_status_is_1(
 def test_words_are_compared_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
     one = record.recorded("cards", "aff(1)")
     monkeypatch.setattr(record, "REWORDED", {"solvable": "soluble"})
-    other = record.recorded("cards", "aff(1)")
-    assert other["card"] == one["card"].replace("solvable", "soluble") != one["card"]
+    assert record.recorded("cards", "aff(1)")["card"] == one["card"].replace("solvable", "soluble") != one["card"]
     monkeypatch.setattr(record, "REWORDED", {})
-    same = copy.deepcopy(one)
-    assert not compare.differences({"cards": {"aff(1)": one}}, {"cards": {"aff(1)": same}})
+    assert not compare.differences({"cards": {"aff(1)": one}}, {"cards": {"aff(1)": copy.deepcopy(one)}})

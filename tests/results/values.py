@@ -1,7 +1,5 @@
 """Values of results: kept as they are where they are short, and by their digests where they are long."""
 
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import json
@@ -59,7 +57,6 @@ def digest(content: bytes) -> str:
 
 
 def rows(matrix: Any, field: Any) -> Long:
-    """The entries of an exact matrix."""
     return Long([field.format(x) for x in matrix.entries()], f"{matrix.nrows} x {matrix.ncols}")
 
 

@@ -1,7 +1,5 @@
 """The conformance suite: it passes what is right, and each check catches what it is there for."""
 
-from __future__ import annotations
-
 import json
 import random
 from collections.abc import Callable
@@ -9,15 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import liehom as lh
 from liehom import testing
-from liehom.algebra.core.structure_constants import StructureConstants
-from liehom.errors import ConformanceError
-from liehom.fullness.certificates.certificate import Certificate
-from liehom.scalars import QQ, RR
+from liehom.base.errors import ConformanceError
+from liehom.exact.algebra.core.structure_constants import StructureConstants
+from liehom.exact.fullness.certificate import Certificate
+from liehom.exact.scalars.floating import RR
+from liehom.exact.scalars.rational import QQ
 from tests.floats import constants_of, pair_of
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -42,7 +40,13 @@ def test_algebras_conform(name: str) -> None:
 @pytest.mark.parametrize("name", ["so(4)", "sl(2)"])
 def test_representations_conform(name: str) -> None:
     rho = lh.defining(lh.so(4) if name == "so(4)" else lh.sl(2))
-    for found in (rho, rho.dual(), rho.symmetric_power(2), lh.adjoint(rho.algebra), lh.trivial(rho.algebra, 2)):
+    for found in (
+        rho,
+        rho.dual(),
+        rho.symmetric_power(2),
+        lh.adjoint(rho.algebra),
+        lh.representations.trivial(rho.algebra, 2),
+    ):
         testing.check_representation(found)
 
 

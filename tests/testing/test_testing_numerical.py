@@ -1,14 +1,12 @@
 """The checks of actions and steps: they pass what is right and catch what is wrong."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
 import liehom as lh
-from liehom.errors import ConformanceError
+from liehom.base.errors import ConformanceError
 from liehom.testing import check_order, check_space
 
 ACTIONS = {
@@ -30,8 +28,8 @@ STEPS = [
     lh.RKMK("rk4"),
     lh.RKMK("gauss2"),
     lh.RKMK("rk45"),
-    lh.CrouchGrossman3(),
-    lh.CommutatorFree4(),
+    lh.methods.CrouchGrossman3(),
+    lh.methods.CommutatorFree4(),
 ]
 
 
@@ -74,7 +72,7 @@ def test_modesty_is_caught_too() -> None:
 
 
 def test_a_step_of_the_user() -> None:
-    class Midpoint(lh.OneExponential):
+    class Midpoint(lh.steps.OneExponential):
         order = 2
 
         def generator(self, action: Any, psi: Any, m: Any, t: Any, h: Any) -> Any:

@@ -1,0 +1,272 @@
+"""Files that are written whole or not at all, archives of arrays and JSON objects with checksums of their contents."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import hashlib
+import json
+import os
+import secrets
+import signal
+import stat
+import struct
+import threading
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.base.errors import FormatError
+
+LONGEST_STEM = 200  # characters of a file name that its temporary name repeats; file systems allow 255 bytes
+MARK = "checksum"  # Name of the checksum in archives and JSON objects
+# The exceptions that reading a damaged file may raise
+DAMAGED = (
+    *(OSError, ValueError, TypeError, LookupError, EOFError, RuntimeError, AttributeError, ArithmeticError),
+    *(MemoryError, zipfile.BadZipFile, zlib.error, struct.error),
+)
+
+
+def write_atomically(path: str | os.PathLike[str], content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
+    """Write a file so that any reader, and any interruption, finds the old file or the new one, never a part.
+
+    Parameters
+    ----------
+    path : path_like
+        A symbolic link is followed. A device or a pipe is written to directly.
+    content : bytes or callable
+        The content, or a function that writes it to a binary file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; an existing file is then unchanged.
+
+    Notes
+    -----
+    The content goes to a temporary file in the same folder, with a name that no other thread or process uses. It is
+    flushed to the disk and then renamed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "file"
+    >>> write_atomically(path, b"abc")
+    >>> path.read_bytes()
+    b'abc'
+    """
+    target = Path(os.path.realpath(path))
+    try:
+        mode = target.stat().st_mode
+    except OSError:
+        mode = None
+    if mode is not None and not stat.S_ISREG(mode):
+        with open(target, "wb") as file:
+            _fill(file, content)
+        return
+    temporary = target.with_name(f".{target.name[:LONGEST_STEM]}.{secrets.token_hex(8)}.part")
+    handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            _fill(file, content)
+            file.flush()
+            os.fsync(file.fileno())
+        if mode is not None:
+            os.chmod(temporary, stat.S_IMODE(mode))
+        os.replace(temporary, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise
+    _flush_folder(target.parent)
+
+
+def write_together(folder: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
+    """Paths of several files in a folder, written one after another; Ctrl-C waits until the last one is written.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written; the files before it are written, and those after it are not.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> [path.name for path in write_together(tempfile.mkdtemp(), {"a.csv": b"1", "a.json": b"2"})]
+    ['a.csv', 'a.json']
+    """
+    paths = [Path(folder) / name for name in contents]
+    with _interrupt_afterwards():
+        for path, content in zip(paths, contents.values(), strict=True):
+            write_atomically(path, content)
+    return paths
+
+
+@contextlib.contextmanager
+def _interrupt_afterwards() -> Iterator[None]:
+    """Delay Ctrl-C, which only the main thread receives, to the end of the block."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    caught: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: caught.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if caught:
+            signal.raise_signal(signal.SIGINT)
+
+
+def _fill(file: BinaryIO, content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
+    if callable(content):
+        content(file)
+    else:
+        file.write(content)
+
+
+def _flush_folder(folder: Path) -> None:
+    """Flush the new name to the disk, on systems on which a folder can be opened."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def write_file(path: str | os.PathLike[str], content: bytes | memoryview | Callable[[BinaryIO], object]) -> None:
+    """`write_atomically` for the files that a caller names."""
+    try:
+        write_atomically(path, content)
+    except OSError as error:
+        raise FormatError(f"{os.fspath(path)!r} cannot be written: {error.strerror or error}") from None
+
+
+def check_target(path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Raise `FormatError` if a file cannot be written; called before the work.
+
+    Raises
+    ------
+    FormatError
+        If the folder does not exist or is not writable, or the file exists and `force` is False.
+
+    Examples
+    --------
+    >>> check_target("no/folder/out.npz")
+    Traceback (most recent call last):
+    ...
+    liehom.base.errors.FormatError: 'no/folder/out.npz' cannot be written: the folder 'no/folder' does not exist
+    """
+    text = os.fspath(path)
+    if not text or "\0" in text:
+        raise FormatError(f"{text!r} is not the name of a file")
+    target = Path(text)
+    folder = target.parent
+    try:
+        target.lstat()
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise FormatError(f"{text!r} cannot be written: {error.strerror}") from None
+    if not folder.is_dir():
+        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} does not exist")
+    if target.is_dir():
+        raise FormatError(f"{text!r} cannot be written: it is a folder")
+    if not os.access(folder, os.W_OK) and not (target.exists() and os.access(target, os.W_OK)):
+        raise FormatError(f"{text!r} cannot be written: the folder {str(folder)!r} is not writable")
+    if target.exists() and not force:
+        raise FormatError(f"{text!r} is there already and is not overwritten: give another name, or force it")
+
+
+def digest(*parts: npt.ArrayLike) -> str:
+    """SHA-256 fingerprint of arrays and strings, 64 hexadecimal digits.
+
+    Examples
+    --------
+    >>> digest("a", np.zeros(2)) == digest("a", np.zeros(2)), len(digest())
+    (True, 64)
+    """
+    state = hashlib.sha256()
+    for part in parts:
+        array = np.asarray(part)
+        state.update(f"{array.dtype}{array.shape}".encode())
+        if array.dtype == np.longdouble:  # its padding bytes are arbitrary
+            array = np.stack([array.astype(np.float64), (array - array.astype(np.float64)).astype(np.float64)])
+        state.update(np.ascontiguousarray(array).tobytes() if array.dtype.kind != "O" else repr(part).encode())
+    return state.hexdigest()
+
+
+def checksum(arrays: Mapping[str, npt.ArrayLike], *texts: str) -> str:
+    """Digest of named arrays and of strings: names, types, shapes and contents, whatever the order of the names.
+
+    Examples
+    --------
+    >>> checksum({"a": [1], "b": [2]}) == checksum({"b": [2], "a": [1]}) != checksum({"a": [2], "b": [1]})
+    True
+    """
+    parts: list[npt.ArrayLike] = [*texts]
+    for name in sorted(arrays):
+        parts += [name, arrays[name]]
+    return digest(*parts)
+
+
+def write_arrays(file: BinaryIO, arrays: Mapping[str, npt.ArrayLike], texts: Mapping[str, str], *context: str) -> None:
+    """Write named arrays and strings to an .npz archive, with a checksum of them and of the context of the file.
+
+    Examples
+    --------
+    >>> from io import BytesIO
+    >>> write_arrays(file := BytesIO(), {"y": [1, 2]}, {"facts": "{}"}, "run")
+    >>> arrays, texts, is_whole = read_arrays(BytesIO(file.getvalue()), ["facts"], "run")
+    >>> arrays["y"].tolist(), texts, is_whole
+    ([1, 2], ['{}'], True)
+    """
+    marks = {**texts, MARK: checksum(arrays, *context, *texts.values())}
+    entries: dict[str, Any] = {**{name: np.array(text) for name, text in marks.items()}, **arrays}
+    np.savez(file, **entries)
+
+
+def read_arrays(
+    file: BinaryIO, texts: Iterable[str], *context: str
+) -> tuple[dict[str, npt.NDArray[Any]], list[str], bool]:
+    """Arrays of an .npz archive, its strings ('' if missing), whether the checksum agrees; may raise `DAMAGED`."""
+    with np.load(file, allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    mark, *values = (str(arrays.pop(name, "")) for name in (MARK, *texts))
+    return arrays, values, mark == checksum(arrays, *context, *values)
+
+
+def load_arrays(path: str | os.PathLike[str], what: str, version: str, text: str) -> tuple[dict[str, Any], str]:
+    """The arrays and a string of an .npz file by `write_arrays` with this format and version, or `FormatError`."""
+    name = os.fspath(path)
+    try:
+        with open(path, "rb") as file:
+            arrays, (stated, value), is_whole = read_arrays(file, ["format", text])
+    except DAMAGED as error:
+        raise FormatError(f"{name!r} is not a {what} of liehom, or is damaged: {error}") from None
+    check_version(name, what, stated, version)
+    if not is_whole:
+        raise FormatError(f"the {what} {name!r} is damaged, its checksum does not agree with its contents: delete it")
+    return arrays, value
+
+
+def check_version(name: str, what: str, stated: str, expected: str) -> None:
+    """Raise `FormatError`, with both versions, unless a file states the expected format and version."""
+    if stated != expected:
+        raise FormatError(
+            f"{name!r} is not a {what} of liehom of this version, or is damaged: its format is {stated!r}, "
+            f"expected {expected!r}"
+        )
+
+
+def json_object(text: str | bytes) -> dict[str, Any]:
+    """The JSON object in a file that the library wrote; raises `ValueError` if it is something else."""
+    value = json.loads(text)
+    if not isinstance(value, dict):
+        raise ValueError(f"it holds a {type(value).__name__}, expected a JSON object")
+    return value

@@ -1,0 +1,5 @@
+"""`LieAlgebra`, `Subalgebra`, `Homomorphism`, the table of their brackets, and the proofs of their axioms.
+
+`LieAlgebra` and `Subalgebra` are tables of contents: their methods lead to the folders beside this one, and only they
+import upwards. The conventions are in docs/notation.md.
+"""

@@ -1,0 +1,4 @@
+"""Cartan involutions and decompositions, split tori and parabolic subalgebras of semisimple real algebras.
+
+Floating point proposes an involution and exact arithmetic proves it; see docs/theory/structure.md.
+"""

@@ -1,0 +1,261 @@
+"""The grammar of catalogue names: from strings to trees and back.
+
+    pair    =  sum '/' sum  |  term                 so(4)/so(3), sp(3)/sp(2)+sp(1), affine(g2), sym(4;3,1)
+    sum     =  term { '+' term }
+    term    =  head [ '(' items [ ';' values ] ')' ]  |  'A' digit ',' digits [ '(' values ')' ]
+    items   =  item { ',' item },   item = value | sum
+    values  =  value { ',' value }
+    value   =  integer  |  integer '/' integer         (a fraction only in spiral, sqrt, bianchi and A4,2)
+    head    =  letters and digits, perhaps a final '*'  |  'R^' digits  |  '0' (not as an item: there it is a number)
+            |  'P{' digits { ',' digits } '}'
+
+Blanks are ignored. Printing a tree and parsing the string gives the same tree. `parse` drops parameters that are the
+default, so 'sl(3,R)' prints as 'sl(3)' and 'so(3,0)' as 'so(3)', and replaces other spellings: 'schrodinger(3)' prints
+as 'schroedinger(3)', 'poincare(3)' as 'iso(3,1)'.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+from typing import TypeAlias, TypeVar, final
+
+from liehom.base.budget import small_integer, within
+from liehom.base.errors import CatalogError, displayed, shown
+from liehom.exact.algebra.linear.named_matrices import CLASSICAL_KINDS
+
+T = TypeVar("T")
+
+SPELLINGS = {"schrodinger": "schroedinger", "poincare": "iso", "euclidean": "e"}
+"""Other spellings of heads."""
+MAX_LIKENESS = 100
+"""Characters of the longest name to which similar names are looked for."""
+_TOKEN = re.compile(r"\s*(?:(R\^\d+|P\{[\d\s,]*\})|([A-Za-z]\w*\*?)|(-?\d+)|([/+(),;]))")
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Term:
+    """A head and its parameters, ``so(3,1)``, ``g2``, ``sym(4;3,1)``; in `after` those after ";" or as in A4,2(1/2)."""
+
+    head: str
+    items: tuple[Item, ...] = ()
+    after: tuple[Value, ...] = ()
+
+    def __str__(self) -> str:
+        parts = [",".join(map(str, part)) for part in (self.items, self.after) if part]
+        return f"{self.head}({';'.join(parts)})" if parts else self.head
+
+    def integers(self) -> tuple[int, ...]:
+        """The parameters as integers; raises `CatalogError` if one is not an integer."""
+        values = tuple(x for x in self.items if isinstance(x, int))
+        if len(values) != len(self.items):
+            raise CatalogError(f"the parameters of {self} must be integers")
+        return values
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """Two or more terms: ``sp(2)+sp(1)``."""
+
+    terms: tuple[Term, ...]
+
+    def __str__(self) -> str:
+        return "+".join(map(str, self.terms))
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """An algebra and a subalgebra: ``so(4)/so(3)``."""
+
+    top: Expression
+    bottom: Expression
+
+    def __str__(self) -> str:
+        return f"{self.top}/{self.bottom}"
+
+
+Value: TypeAlias = int | Fraction
+Expression: TypeAlias = Term | Sum
+Item: TypeAlias = int | Fraction | Term | Sum
+Name: TypeAlias = Term | Sum | Quotient
+
+
+def parse(name: str) -> Name:
+    """The tree of a catalogue name: a `Term`, `Sum` or `Quotient`.
+
+    Raises
+    ------
+    CatalogError
+        If the string does not follow the grammar; the message gives the position.
+
+    Examples
+    --------
+    >>> str(parse("so(4, 0) / so(3)"))
+    'so(4)/so(3)'
+    >>> parse("g2/su(3")
+    Traceback (most recent call last):
+    ...
+    liehom.base.errors.CatalogError: 'g2/su(3' is not a name of the catalogue: expected ')' at position 7
+    """
+    if not isinstance(name, str):
+        raise CatalogError(f"a name is a string such as 'so(4)/so(3)', got {displayed(name)}")
+    within("characters", len(name), "the name has {} characters")
+    return _Parser(name).name()
+
+
+def parse_expression(name: str) -> Expression:
+    """The tree of a catalogue name without '/': a `Term` or `Sum`."""
+    tree = parse(name)
+    if isinstance(tree, Quotient):
+        raise CatalogError(f"{shown(name)!r} is the name of a pair, not of an algebra")
+    return tree
+
+
+def terms(tree: Expression) -> tuple[Term, ...]:
+    """The summands of an expression; for a term, the term alone."""
+    return tree.terms if isinstance(tree, Sum) else (tree,)
+
+
+def unknown(name: str, known: Iterable[str], kind: str) -> CatalogError:
+    """The error for a name that follows the grammar but denotes nothing, with the nearest known names."""
+    by_folded = {other.casefold(): other for other in known}
+    close = get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.5) if len(name) <= MAX_LIKENESS else ()
+    near = [by_folded[other] for other in close]
+    hint = f"; the nearest are {', '.join(near)}" if near else ""
+    article = "an" if kind[0] in "aeiou" else "a"
+    return CatalogError(f"{shown(name)!r} is not the name of {article} {kind} in the catalogue{hint}")
+
+
+def canonical(term: Term) -> Term:
+    """The term in its usual spelling, without a second parameter that is the default."""
+    if term.head in SPELLINGS:
+        added = (1,) if term.head == "poincare" and len(term.items) == 1 else ()
+        return Term(SPELLINGS[term.head], term.items + added, term.after)
+    if len(term.items) == 2 and not term.after:
+        silent: Item = Term("R") if term.head in ("gl", "sl") else 0
+        if term.items[1] == silent and term.head in CLASSICAL_KINDS:
+            return Term(term.head, term.items[:1])
+    return term
+
+
+class _Parser:
+    """Recursive descent over the tokens of one string."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.tokens: list[tuple[str, int]] = []
+        self.at = self.depth = 0
+        position = 0
+        while text[position:].strip():
+            match = _TOKEN.match(text, position)
+            if match is None:
+                skipped = len(text[position:]) - len(text[position:].lstrip())
+                raise self.error(f"unexpected {text[position + skipped]!r}", position + skipped)
+            self.tokens.append((match[0].strip(), match.end() - len(match[0].strip())))
+            position = match.end()
+
+    def error(self, what: str, position: int) -> CatalogError:
+        return CatalogError(f"{shown(self.text)!r} is not a name of the catalogue: {what} at position {position}")
+
+    def peek(self) -> str:
+        return self.tokens[self.at][0] if self.at < len(self.tokens) else ""
+
+    def position(self) -> int:
+        return self.tokens[self.at][1] if self.at < len(self.tokens) else len(self.text)
+
+    def accept(self, token: str) -> bool:
+        accepted = self.peek() == token
+        self.at += accepted
+        return accepted
+
+    def expect(self, token: str) -> None:
+        if not self.accept(token):
+            raise self.error(f"expected {token!r}", self.position())
+
+    def separated(self, read: Callable[[], T], by: str = ",") -> tuple[T, ...]:
+        values = [read()]
+        while self.accept(by):
+            values.append(read())
+        return tuple(values)
+
+    def name(self) -> Name:
+        top = self.sum()
+        tree: Name = Quotient(top, self.sum()) if self.accept("/") else top
+        if self.peek():
+            raise self.error(f"unexpected {self.peek()!r}", self.position())
+        return tree
+
+    def sum(self) -> Expression:
+        summands = self.separated(self.term, "+")
+        return Sum(summands) if len(summands) > 1 else summands[0]
+
+    def term(self) -> Term:
+        head = self.peek()
+        if head == "0":
+            self.at += 1
+            return Term("0")
+        if not head[:1].isalpha():
+            raise self.error("expected a name such as so(3)", self.position())
+        self.at += 1
+        if head.startswith("R^"):
+            n = small_integer(head[2:])
+            return Term("0" if n == 0 else "R" if n == 1 else f"R^{n}")
+        if re.fullmatch(r"A\d", head) and self.accept(","):
+            return self.numbered(head)
+        if head.startswith("P{"):
+            return self.parabolic(head)
+        if not self.accept("("):
+            return Term(head)
+        self.depth += 1
+        within("nesting", self.depth, "the parentheses of the name are nested {} deep")
+        fractions = head in ("spiral", "sqrt")
+        items = self.separated(lambda: self.item(fractions))
+        after = self.values(fractions=head == "bianchi") if self.accept(";") else ()
+        self.expect(")")
+        self.depth -= 1
+        return canonical(Term(head, items, after))
+
+    def parabolic(self, head: str) -> Term:
+        """A name such as P{1,6}, with the numbers in order."""
+        numbers = [number.strip() for number in head[2:-1].split(",")]
+        if not all(map(str.isdigit, numbers)):
+            raise self.error("expected numbers of nodes as in P{1,6}", self.tokens[self.at - 1][1])
+        return Term(f"P{{{','.join(map(str, sorted(set(map(small_integer, numbers)))))}}}")
+
+    def numbered(self, head: str) -> Term:
+        """A name such as A4,2(1/2) after its first comma."""
+        name = f"{head},{self.integer()}"
+        if not self.accept("("):
+            return Term(name)
+        values = self.values(fractions=True)
+        self.expect(")")
+        return Term(name, (), values)
+
+    def values(self, *, fractions: bool) -> tuple[Value, ...]:
+        return self.separated(lambda: self.value(fractions))
+
+    def value(self, fractions: bool) -> Value:
+        top = self.integer()
+        if not (fractions and self.accept("/")):
+            return top
+        position, bottom = self.position(), self.integer()
+        if bottom <= 0:
+            raise self.error("expected a positive denominator", position)
+        value = Fraction(top, bottom)
+        return value if value.denominator > 1 else int(value)
+
+    def item(self, fractions: bool) -> Item:
+        return self.value(fractions) if self.peek().lstrip("-").isdigit() else self.sum()
+
+    def integer(self) -> int:
+        token = self.peek()
+        if not token.lstrip("-").isdigit():
+            raise self.error("expected an integer", self.position())
+        self.at += 1
+        return small_integer(token)

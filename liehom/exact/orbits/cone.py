@@ -1,0 +1,455 @@
+"""The cone on which the range condition fails: its equation, certified subsets, and the open orbits around it."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+from math import prod
+from typing import Any, Protocol, cast, final
+
+import numpy as np
+
+from liehom.base.errors import FieldError, InputError, ShapeError, UndecidedError
+from liehom.base.typing import Array, VectorLike
+from liehom.exact.orbits.range import pencil, range_condition
+from liehom.exact.representations.core.pair import Pair
+from liehom.exact.representations.invariants.intertwiners import commutant, invariant_forms
+from liehom.exact.representations.invariants.irreducibility import combination, traceless
+from liehom.exact.scalars.exact_field import ExactMatrix
+from liehom.exact.scalars.field import Matrix, MatrixLike, Scalar
+from liehom.exact.scalars.polynomial_matrix import LinearForms, rank_losses_on_line
+from liehom.exact.scalars.rational import QQ
+
+# Let M(x) = [A_1 x, ..., A_m x], A_i a basis of L = rho(h) + R, and let rank M(x) = d for generic x.  An irreducible p
+# divides all d x d minors if and only if it divides one of them and is a relative invariant of L.  The connected group
+# of L permutes the zeros of a common divisor, so a common divisor is a relative invariant.  Conversely grad p
+# annihilates L x on p = 0, so the rank is less than d there.  Hence one minor determines the product below exactly.
+
+MAX_DIMENSION = 8
+
+
+@final
+@dataclass(frozen=True, slots=True, repr=False)
+class RelativeInvariant:
+    """The product f of the distinct irreducible polynomials over QQ that divide all d x d minors of M(x).
+
+    Attributes
+    ----------
+    pair : Pair
+    factors : tuple of flint.fmpq_mpoly
+        In the variables x0, ..., x(d-1), the coordinates of psi mod h by ``pair.coordinates``.
+
+    Notes
+    -----
+    The range condition fails where f vanishes. The other points where it fails have codimension at least 2 (over the
+    complex numbers too). f is the radical of the greatest common divisor of the minors. For a full pair f may be a
+    definite form, whose only real zero is 0.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> print(relative_invariant(lh.Pair(lh.so(3), [[0, 0, 1]])))
+    x0^2 + x1^2
+    """
+
+    pair: Pair
+    factors: tuple[Any, ...]
+
+    @property
+    def degree(self) -> int:
+        """Degree of f, an int; 0 if all failures have codimension at least 2."""
+        return sum(int(p.total_degree()) for p in self.factors)
+
+    def __call__(self, psi: VectorLike) -> Scalar:
+        """The value of f at an element psi of g."""
+        x, field = self.pair.coordinates(psi).row(0), self.pair.field
+        terms = ([(c, zip(x, powers, strict=True)) for powers, c in p.to_dict().items()] for p in self.factors)
+        values = (sum((prod((v**e for v, e in powers), start=c) for c, powers in term), field.zero) for term in terms)
+        return prod(values, start=field.one)
+
+    def __str__(self) -> str:
+        texts = [str(p) for p in self.factors]
+        return texts[0] if len(texts) == 1 else "*".join(f"({t})" for t in texts) or "1"
+
+    def __repr__(self) -> str:
+        return f"<relative invariant {self}>"
+
+
+def relative_invariant(pair: Pair, max_dimension: int = MAX_DIMENSION) -> RelativeInvariant | None:
+    """The reduced equation of the hypersurface where the range condition fails; None if it holds nowhere, or d = 0.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over QQ.
+    max_dimension : int
+        Largest admissible dimension d of g/h: the minors have degree d in d variables.
+
+    Examples
+    --------
+    The failures of so(3,1)/so(2,1) are the null cone:
+
+    >>> import liehom as lh
+    >>> print(relative_invariant(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0])))
+    x0^2 + x1^2 - x2^2
+    """
+    require_rational(pair)
+    d = pair.dimension
+    if d > max_dimension:
+        raise InputError(f"g/h has dimension {d}; the relative invariant is computed up to {max_dimension}")
+    if d == 0 or not range_condition(pair).holds:
+        return None
+    forms = pencil(pair)
+    rng = random.Random(d)
+    first, second = (_generic_minor(forms, rng) for _ in range(2))
+    factors = forms.invariant_factors(first, second, cast(list[ExactMatrix], pair.isotropy_matrices()))
+    return RelativeInvariant(pair, tuple(sorted((p if p.leading_coefficient() > 0 else -p for p in factors), key=str)))
+
+
+def _generic_minor(forms: LinearForms, rng: random.Random) -> Any:
+    """The determinant, a non-zero polynomial, of M(x) T for a random constant T."""
+    d, m = forms.shape
+    while True:
+        mix = QQ.matrix([[rng.randint(-2, 2) for _ in range(d)] for _ in range(m)])
+        if not (minor := forms.times(mix).minor(range(d), range(d))).is_zero():
+            return minor
+
+
+def require_rational(pair: Pair) -> None:
+    """Raise `FieldError` if a pair is not over QQ."""
+    if pair.field != QQ:
+        raise FieldError(f"relative invariants are computed over QQ only, not over {pair.field.name}")
+
+
+# Let f be the reduced equation of the hypersurface where the range condition fails, and y a point at which it holds, so
+# f(y) != 0 and f(x + t y) has the degree of f in t.  Its roots are among the t at which [h, psi] + R psi has a rank
+# less than d at psi = x + t y.  If the rank is d - 1 there, the complex orbit of psi is open in a component of f = 0.
+# All of the component near psi is this orbit, which is smooth, and f has a simple zero.  If moreover y is not tangent
+# to the orbit, t is a simple root of f(x + t y).  If this is so at all t found, the degree of f is their number.  See
+# Proposition 6b in docs/theory/fullness.md.
+
+LINES = 3
+
+
+def invariant_degree(pair: Pair) -> int | None:
+    """The degree of `relative_invariant` in any dimension of g/h; None if the condition holds for no psi, or h = g.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over QQ.
+
+    Raises
+    ------
+    UndecidedError
+        If it is not decided whether the range condition holds, or if g/h has dimension above 8 and the hypersurface has
+        a component without an open orbit.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [invariant_degree(lh.pair(name)) for name in ("so(12)/so(11)", "sl(12)/P1", "affine(S2(gl(4)))")]
+    [2, 0, 4]
+    """
+    require_rational(pair)
+    generic = range_condition(pair)
+    if pair.dimension == 0 or not generic:
+        return None
+    forms, d = pencil(pair), pair.dimension
+    direction = pair.coordinates(generic.psi).row(0)
+    rng = random.Random(d)
+    for size in range(LINES):
+        losses = rank_losses_on_line(forms, [rng.randint(-2 - size, 2 + size) for _ in range(d)], direction)
+        if all(loss.rank == d - 1 and loss.transversal for loss in losses):
+            return sum(loss.degree for loss in losses)
+    if d <= MAX_DIMENSION:
+        invariant = relative_invariant(pair)
+        return None if invariant is None else invariant.degree
+    raise UndecidedError(
+        f"on {LINES} lines the range condition fails at points whose orbits have codimension 2 or more, and the minors "
+        f"themselves are computed up to dimension {MAX_DIMENSION} of g/h"
+    )
+
+
+# The cone is Z = {psi in g : [h, psi] + R psi + h is not g}, described in V = g/h.  Each part below is a subset of Z
+# for a reason that is checked here; a numerical basis of an eigenspace is only an illustration.
+
+
+class CertificateLike(Protocol):
+    """The part of `liehom.Certificate` that `failure_cone` reads; `Certificate` itself is in a layer above this one."""
+
+    @property
+    def kind(self) -> str: ...
+    def number(self, name: str, /) -> Scalar: ...
+    def vector(self, name: str, length: int, /) -> Sequence[Scalar]: ...
+    def matrix(self, name: str, nrows: int, ncols: int, /) -> Matrix: ...
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class FailureSet:
+    """A subset of the cone on which the range condition fails.
+
+    Attributes
+    ----------
+    kind : {'hypersurface', 'null cone', 'subspace', 'eigenspace'}
+    description : str
+        The set as a noun phrase, in the coordinates x of ``pair.coordinates``.
+    data : RelativeInvariant, Matrix or array
+        For a hypersurface f, for a null cone the matrix P of the form, otherwise rows of coordinates x that span the
+        subspace (floats for 'eigenspace').
+    covers : bool
+        Whether Z without this set has codimension at least 2: all components of codimension 1 are in it.
+    """
+
+    kind: str
+    description: str
+    data: RelativeInvariant | Matrix | Array
+    covers: bool = False
+
+
+def failure_cone(
+    pair: Pair,
+    *,
+    forms: Sequence[MatrixLike] = (),
+    subspaces: Sequence[MatrixLike] = (),
+    certificate: CertificateLike | None = None,
+) -> list[FailureSet]:
+    """Certified subsets of the cone of psi at which the range condition fails.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over an exact field, with g/h not zero.
+    forms : sequence of matrices (d, d)
+        Symmetric forms on g/h that h preserves up to scalars, in the coordinates of ``pair.coordinates``.
+    subspaces : sequence of matrices or rows (m, d)
+        Invariant subspaces of g/h, except 0 and g/h.
+    certificate : optional
+        A verified certificate of kind 'dominance' or 'commutant'; its eigenspace W is listed with a numerical basis.
+
+    Raises
+    ------
+    InputError
+        If a form is zero or not invariant, or a subspace is zero, not proper or not invariant.
+
+    Notes
+    -----
+    For a full pair with an invariant form the list has the zeros of the form, which is 0 only.
+
+    If A^T P + P A = 2 c P for the A in rho(h) and x^T P x = 0, then P x annihilates rho(h) x and x: the condition
+    fails at x if P x is not 0, and if it is 0, x lies in ker P, a proper invariant subspace. On a proper invariant
+    subspace rho(h) x and x stay inside.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> [part.description for part in failure_cone(lh.defining(lh.so(3, 1)).pair([1, 0, 0, 0]))]
+    ['the zeros of x0^2 + x1^2 - x2^2']
+    """
+    if not pair.field.exact:
+        raise UndecidedError(
+            "the cone on which the range condition fails is computed over exact fields only: go to exact numbers by "
+            "lh.rationalize(pair, max_denominator=...)"
+        )
+    invariant = relative_invariant(pair) if has_hypersurfaces_computed(pair) else None
+    sets = [_null_cone(pair, form) for form in forms]
+    if invariant is not None and invariant.degree:
+        sets.insert(0, FailureSet("hypersurface", f"the zeros of {invariant}", invariant, covers=True))
+    sets += [_subspace(pair, rows) for rows in subspaces]
+    if certificate is not None and certificate.kind in ("dominance", "commutant"):
+        sets += _eigenspace(pair, certificate)
+    return sets
+
+
+def has_hypersurfaces_computed(pair: Pair) -> bool:
+    """Whether `failure_cone` lists all components of codimension 1, if the condition holds for some psi."""
+    return 0 < pair.dimension <= MAX_DIMENSION and pair.field == QQ
+
+
+def _matrix(pair: Pair, rows: MatrixLike) -> Matrix:
+    d = pair.dimension
+    matrix: Matrix = pair.field.read(rows, None if isinstance(rows, Matrix) else (len(rows), d))
+    if matrix.ncols != d:
+        raise ShapeError(f"expected rows of length {d} (coordinates on g/h), got {matrix.ncols}")
+    return matrix
+
+
+def _null_cone(pair: Pair, form: MatrixLike) -> FailureSet:
+    p = _matrix(pair, form)
+    if p.nrows != p.ncols or p != p.T or p.is_zero():
+        raise InputError("an invariant form is a symmetric matrix that is not zero")
+    i, j = divmod(next(x for x, v in enumerate(p.entries()) if v != 0), p.ncols)
+    for a in pair.isotropy_matrices():
+        moved = a.T @ p + p @ a
+        if moved != p.scale(moved[i, j] / p[i, j]):
+            raise InputError("the form is not invariant under h up to scalars")
+    return FailureSet("null cone", f"the zeros of the invariant form of signature {p.signature()}", p)
+
+
+def _subspace(pair: Pair, rows: MatrixLike) -> FailureSet:
+    basis = _matrix(pair, rows).row_space()
+    m, d = basis.nrows, pair.dimension
+    if not 0 < m < d:
+        raise InputError(f"a proper subspace of g/h has dimension between 1 and {d - 1}, got {m}")
+    if any(pair.field.stack_rows([basis, basis @ a.T], d).rank() != m for a in pair.isotropy_matrices()):
+        raise InputError("the subspace is not invariant under h")
+    return FailureSet("subspace", f"an invariant subspace of dimension {m} of g/h", basis)
+
+
+def _eigenspace(pair: Pair, certificate: CertificateLike) -> list[FailureSet]:
+    """The sum of the generalized eigenspaces with real part above the cut; none if the numbers overflow floats."""
+    from scipy.linalg import schur
+
+    d, data = pair.dimension, pair.subalgebra.quotient()
+    cut = pair.field.to_float(certificate.number("cut"))
+    if certificate.kind == "dominance":
+        row = pair.algebra.row(certificate.vector("element", pair.algebra.dimension))
+        operator = pair.algebra.table.contract(row, data.lift, data.projection)[0].T.to_numpy()  # rho(X)
+        operator = operator - np.eye(d) * np.trace(operator) / d
+        frame, what = np.eye(d), "rho(X) without its trace, X the element of the dominance certificate"
+    else:
+        operator = certificate.matrix("matrix", d, d).to_numpy()
+        frame = (certificate.matrix("complement", d, pair.algebra.dimension) @ data.projection).to_numpy().T
+        what = "the commuting matrix of the certificate"
+    if not (np.isfinite(operator).all() and np.isfinite(frame).all()):
+        return []
+    *_, vectors, size = schur(operator, sort=lambda re, im: re > cut)
+    basis = (frame @ vectors[:, :size]).T
+    text = f"the sum of the eigenspaces of {what} with real part above {cut:g}, of dimension {size} (basis numerical)"
+    return [FailureSet("eigenspace", text, basis)]
+
+
+# The number of open orbits on g/h of the connected group of rho(h) + R.
+#
+# Where the range condition holds the orbits are open, and each connected component of the set U of these points is one
+# orbit (docs/theory/fullness.md, Proposition 6).  Let f be the relative invariant.  The complement of U consists of the
+# real zeros of f and a set of codimension at least 2, which separates nothing.  So the number is that of the components
+# of f != 0, which is counted if f is a product of linear and quadratic forms in independent variables.
+#
+# If rho(h) + R is a complex vector space, for a complex structure J of g/h that commutes with h, the complement of U is
+# a complex algebraic set, of real codimension at least 2. If rho(h) is one, and its own generic rank is d, such a set
+# contains the complement of U. In both cases U is connected.
+
+
+class Polynomial(Protocol):
+    """The part of ``flint.fmpq_mpoly`` that is used here."""
+
+    def total_degree(self) -> int: ...
+    def to_dict(self) -> dict[tuple[int, ...], Scalar]: ...
+
+
+def open_orbit_count(pair: Pair) -> int:
+    """The number of open orbits on g/h of the connected group with the Lie algebra rho(h) + R.
+
+    Parameters
+    ----------
+    pair : Pair
+        Over QQ.
+
+    Raises
+    ------
+    UndecidedError
+        If the components of the complement of the relative invariant are not counted: it has a factor of degree 3 or
+        more, or the factors have variables in common.
+
+    Examples
+    --------
+    Timelike vectors of two directions, and spacelike vectors; the positive and negative vectors of a form of
+    signature (2, 2); no orbit is open:
+
+    >>> import liehom as lh
+    >>> [open_orbit_count(lh.pair(name)) for name in ("so(3,1)/so(2,1)", "affine(so(2,2))", "sl(3)/so(3)")]
+    [3, 2, 0]
+    """
+    require_rational(pair)
+    d = pair.dimension
+    if d == 0:
+        return 1
+    if not range_condition(pair):
+        return 0
+    matrices = cast(list[ExactMatrix], pair.isotropy_matrices())
+    reduced = traceless(matrices, d, QQ)
+    if _is_complex(matrices, reduced, d):
+        return 1
+    degree = invariant_degree(pair) or 0
+    if degree < 2:
+        return 1 + degree
+    for form in invariant_forms(reduced, d, QQ).symmetric if degree == 2 else ():
+        if form.rank() > 1:  # it divides the relative invariant, and has its degree
+            return _components(form)
+    return _of_factors(pair, degree)
+
+
+def _is_complex(matrices: Sequence[ExactMatrix], reduced: Sequence[ExactMatrix], d: int) -> bool:
+    """Whether rho(h) + R, or rho(h) if its generic rank is d, is closed under the multiplication by a J as above."""
+    rng = random.Random(d)
+    point = QQ.matrix([[rng.randint(-9, 9) for _ in range(d)]]).T
+    spans = [span for span in ([QQ.identity(d), *reduced], matrices) if _rank([m @ point for m in span]) == d]
+    return any(
+        _rank([*span, *(j @ m for m in span)]) == _rank(span) for j in _complex_structures(reduced, d) for span in spans
+    )
+
+
+def _complex_structures(reduced: Sequence[ExactMatrix], d: int) -> Iterator[ExactMatrix]:
+    """Matrices J that commute with L0, J^2 a negative scalar: in the center of L0, or in a commutant of dimension 2."""
+    rng = random.Random(d)
+    probes = [combination(reduced, [rng.randint(-9, 9) for _ in reduced]) for _ in range(2)] if reduced else []
+    rows = [QQ.stack_columns([(a @ b - b @ a).reshape(1, d * d) for b in probes], 1) for a in reduced]
+    # what commutes with two random elements
+    candidates = [combination(reduced, c) for c in QQ.stack_rows(rows, 2 * d * d).T.null_space().to_rows()]
+    commuting = commutant(reduced, d, QQ)
+    if len(commuting) == 2:
+        candidates += [c - QQ.identity(d).scale(c.trace() / d) for c in commuting]
+    for j in candidates:
+        square = j @ j
+        is_structure = square == QQ.identity(d).scale(square[0, 0]) and square[0, 0] < 0
+        if is_structure and all(j @ m == m @ j for m in reduced):
+            yield j
+
+
+def _rank(matrices: Sequence[ExactMatrix]) -> int:
+    """The dimension of the span."""
+    size = matrices[0].nrows * matrices[0].ncols if matrices else 0
+    return QQ.stack_rows([m.reshape(1, size) for m in matrices], size).rank()
+
+
+def _of_factors(pair: Pair, degree: int) -> int:
+    if pair.dimension > MAX_DIMENSION:
+        raise UndecidedError(
+            f"the components of the complement of the relative invariant, of degree {degree}, are not counted: it is "
+            f"computed up to dimension {MAX_DIMENSION} of g/h"
+        )
+    invariant = relative_invariant(pair)
+    factors = () if invariant is None else invariant.factors
+    if any(int(p.total_degree()) > 2 for p in factors):
+        raise UndecidedError(
+            f"the components of the complement of the relative invariant are not counted: its irreducible factors have "
+            f"the degrees {', '.join(sorted(str(p.total_degree()) for p in factors))}"
+        )
+    matrices = [_form(p, pair.dimension) for p in factors]
+    if QQ.stack_rows(matrices, pair.dimension).rank() != sum(m.rank() for m in matrices):
+        raise UndecidedError(
+            "the components of the complement of the relative invariant are not counted: its factors, of degree 1 and "
+            "2, have variables in common"
+        )
+    return prod(2 if int(p.total_degree()) == 1 else _components(m) for p, m in zip(factors, matrices, strict=True))
+
+
+def _form(polynomial: Polynomial, d: int) -> ExactMatrix:
+    """The coefficients of a linear form as a row, the matrix (d, d) of a quadratic form."""
+    linear = int(polynomial.total_degree()) == 1
+    entries: list[Scalar] = [QQ.zero] * (d if linear else d * d)
+    for exponents, c in polynomial.to_dict().items():
+        places = [i for i, e in enumerate(exponents) for _ in range(e)]
+        for i, j in permutations(places) if not linear else [(0, places[0])]:
+            entries[i * d + j] += c if linear else c / 2
+    return QQ.from_entries(entries, 1 if linear else d, d)
+
+
+def _components(form: ExactMatrix) -> int:
+    """The number of components of q != 0 for a quadratic form q: 1 for a sign that occurs p >= 2 times, 2 for p = 1."""
+    positive, negative, _ = form.signature()
+    return sum({0: 0, 1: 2}.get(count, 1) for count in (positive, negative))

@@ -1,0 +1,4 @@
+"""Decomposition over the reals, equivalence, submodules, Hermitian forms, weights, isotropy at symbolic points.
+
+Answers are exact and in any basis; see docs/theory/representations.md.
+"""

@@ -1,0 +1,4 @@
+"""`Representation` and `Pair`, complex coordinates of points, elements by their matrices.
+
+The two classes are tables of contents whose methods lead upwards; see docs/theory/representations.md.
+"""

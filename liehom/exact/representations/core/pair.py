@@ -1,0 +1,145 @@
+"""Pair: a Lie algebra with a subalgebra, the infinitesimal description of a homogeneous space G/H."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, final
+
+from liehom.base.errors import InputError, ShapeError, displayed
+from liehom.base.objects import Displayed, Immutable
+from liehom.base.typing import VectorLike
+from liehom.exact.algebra.core.lie_algebra import LieAlgebra
+from liehom.exact.algebra.core.subalgebra import Subalgebra
+from liehom.exact.scalars.field import Field, Matrix, MatrixLike
+
+if TYPE_CHECKING:
+    from liehom.exact.representations.core.representation import Representation
+
+
+@final
+class Pair(Displayed, Immutable):
+    """A pair (g, h) of a Lie algebra and a subalgebra.
+
+    Parameters
+    ----------
+    algebra : LieAlgebra
+    subalgebra : Subalgebra, or rows of coefficients (k, n)
+    name : str, optional
+        A name to print, such as 'so(4)/so(3)'.
+
+    Notes
+    -----
+    The tangent space of G/H at the base point is V = g/h, on which h acts by the isotropy representation
+    rho(z) (x + h) = [z, x] + h.
+
+    Two pairs are equal (``==``), and hash equal, if their algebras and subalgebras are; names are not compared.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> pair = lh.Pair(lh.so(3), [[0, 0, 1]])
+    >>> pair.dimension, [str(m) for m in pair.isotropy_matrices()]
+    (2, ['[0, -1]\\n[1, 0]'])
+    """
+
+    __slots__ = ("_isotropy", "algebra", "name", "subalgebra")
+
+    def __init__(self, algebra: LieAlgebra, subalgebra: Subalgebra | MatrixLike, *, name: str | None = None) -> None:
+        if not isinstance(algebra, LieAlgebra):
+            raise InputError(
+                f"expected a LieAlgebra and a subalgebra of it, got {displayed(algebra)}; names go to liehom.pair"
+            )
+        if isinstance(subalgebra, LieAlgebra):
+            raise InputError(
+                f"expected a subalgebra of the Lie algebra, got {displayed(subalgebra)}: how it lies in g is "
+                "not given; write Pair(g, rows) with rows that span it, or Pair(g, g.subalgebra(rows))"
+            )
+        self.algebra: LieAlgebra = algebra
+        self.subalgebra: Subalgebra = (
+            subalgebra if isinstance(subalgebra, Subalgebra) else algebra.subalgebra(subalgebra)
+        )
+        if self.subalgebra.algebra is not algebra and self.subalgebra.algebra != algebra:
+            raise InputError("the subalgebra belongs to another Lie algebra")
+        self.name: str | None = name
+        self._isotropy: list[Matrix] | None = None
+
+    @property
+    def field(self) -> Field:
+        """The field of the structure constants."""
+        return self.algebra.field
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of G/H, dim g - dim h."""
+        return self.subalgebra.codimension
+
+    def isotropy_matrices(self) -> list[Matrix]:
+        """The matrices (d, d) of rho on g/h, acting on columns, one per row of ``subalgebra.quotient().subspace``."""
+        if self._isotropy is None:
+            data = self.subalgebra.quotient()
+            self._isotropy = [b.T for b in self.algebra.table.contract(data.subspace, data.lift, data.projection)]
+        return self._isotropy
+
+    def isotropy_representation(self) -> Representation:
+        """The representation of h on g/h, h as a Lie algebra in the basis of ``subalgebra``.
+
+        Coordinates on g/h are those of ``subalgebra.quotient()``.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> lh.Pair(lh.so(3), [[0, 0, 1]]).isotropy_representation()
+        <representation of <Lie algebra of dimension 1 over QQ> on QQ^2>
+        """
+        from liehom.exact.representations.core.representation import Representation
+
+        data = self.subalgebra.quotient()
+        # [z, [w, x]] - [w, [z, x]] = [[z, w], x] in g, and all three maps descend to g/h.
+        matrices = [b.T for b in self.algebra.table.contract(self.subalgebra.basis, data.lift, data.projection)]
+        return Representation(self.subalgebra.as_algebra(), matrices, size=self.dimension, check=False)
+
+    def is_primitive(self) -> bool:
+        """Whether h is a maximal subalgebra of g: h != g, and no subalgebra is strictly between h and g.
+
+        Raises
+        ------
+        UndecidedError
+            Over float64, or if g/h contains equivalent irreducible subspaces and no subalgebra between was found.
+
+        Notes
+        -----
+        Then no foliation of G/H is invariant under G. The answer is over the reals, for any field of the pair.
+
+        Examples
+        --------
+        >>> import liehom as lh
+        >>> [lh.pair(name).is_primitive() for name in ("so(4)/so(3)", "sl(3)/P1", "sl(3)/B", "sl(3)/0")]
+        [True, True, False, False]
+        """
+        from liehom.exact.representations.analysis.decomposition import is_primitive
+
+        return is_primitive(self)
+
+    def coordinates(self, x: VectorLike) -> Matrix:
+        """The coordinates of x mod h, a row matrix (1, d), in the complement of ``subalgebra.quotient()``."""
+        return self.algebra.row(x) @ self.subalgebra.quotient().projection
+
+    def change_of_basis(self, rows: MatrixLike) -> Pair:
+        """The same pair in the basis of g given by rows (n, n)."""
+        n = self.algebra.dimension
+        matrix = self.field.read(rows, (n, n))
+        if matrix.shape != (n, n):
+            raise ShapeError(f"a change of basis has shape {(n, n)}, got {matrix.shape}")
+        algebra = self.algebra.change_of_basis(matrix)
+        # The same subspace in other coordinates: still closed.
+        return Pair(algebra, Subalgebra(algebra, self.subalgebra.basis @ matrix.inverse(), check=False))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Pair) and self.algebra == other.algebra and self.subalgebra == other.subalgebra
+
+    def __hash__(self) -> int:
+        return hash(self.subalgebra)
+
+    def __repr__(self) -> str:
+        if self.name:
+            return f"pair({self.name!r})"
+        return f"<pair of dimensions {self.algebra.dimension}/{self.subalgebra.dimension} over {self.field.name}>"

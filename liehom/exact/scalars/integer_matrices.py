@@ -1,0 +1,188 @@
+"""Integer matrices of flint (``flint.fmpz_mat``): common factors, kernels of echelon forms, inverses."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import random
+from collections.abc import Sequence
+
+import flint
+
+from liehom.base.budget import in_time, within
+
+LARGE_SIZE = 60  # from which characteristic polynomials are computed prime by prime
+LONG_BITS, SAMPLED_ENTRIES = 2000, 400
+LONG_ENTRIES = 4000  # bits of an entry from which the size of minors is estimated
+MAX_DIRECT_ENTRIES = 64  # whose gcd is taken one by one
+
+
+def zero_matrix(nrows: int, ncols: int) -> flint.fmpz_mat:
+    """The zero matrix; `LimitError` if it is too large, since flint ends the process where memory ends."""
+    in_time()
+    within("memory", 8 * nrows * ncols, "a matrix needs {} bytes")
+    return flint.fmpz_mat(nrows, ncols)
+
+
+def integer_identity(n: int) -> flint.fmpz_mat:
+    """The identity matrix (n, n)."""
+    one = zero_matrix(n, n)
+    for i in range(n):
+        one[i, i] = 1
+    return one
+
+
+def stacked_rows(blocks: Sequence[flint.fmpz_mat], ncols: int) -> flint.fmpz_mat:
+    """The matrix whose rows are those of the blocks, one block below the other; all have `ncols` columns."""
+    entries: list[flint.fmpz] = []
+    for b in blocks:
+        in_time()
+        entries += b.entries()
+    return flint.fmpz_mat(sum(b.nrows() for b in blocks), ncols, entries)
+
+
+def cancelled(parts: tuple[flint.fmpz_mat, ...], den: int) -> tuple[tuple[flint.fmpz_mat, ...], int]:
+    """Numerators and denominator of a matrix after cancelling their common factor."""
+    in_time()  # after every product of matrices
+    common = flint.fmpz(den)
+    for a in parts:
+        common = common if common == 1 else _common_factor(common, a)
+    if common == 1:
+        return parts, den
+    return tuple((flint.fmpq_mat(a) / common).numer_denom()[0] for a in parts), den // int(common)
+
+
+def sign_changes(signs: Sequence[int]) -> int:
+    """Number of sign changes in a sequence, zeros left out (Descartes)."""
+    return sum(1 for a, b in itertools.pairwise([s for s in signs if s]) if a != b)
+
+
+def echelon_pivots(parts: Sequence[flint.fmpz_mat | flint.nmod_mat], rank: int) -> list[int]:
+    """Pivot columns of a reduced echelon form, whose entries have their coordinates in one matrix or several."""
+    in_time()
+    pivots, column = [], 0
+    for i in range(rank):
+        while all(a[i, column] == 0 for a in parts):
+            column += 1
+        pivots.append(column)
+        column += 1
+    return pivots
+
+
+def kernel_rows(reduced: flint.fmpz_mat, pivots: Sequence[int], unit: int) -> flint.fmpz_mat:
+    """Rows that span the kernel of a reduced echelon form, with the integer `unit` in the free columns."""
+    n, chosen, entries = reduced.ncols(), set(pivots), reduced.entries()
+    free = [j for j in range(n) if j not in chosen]
+    out: list[int | flint.fmpz] = [0] * (len(free) * n)
+    for f, j in enumerate(free):
+        out[f * n + j] = unit
+        for i, pivot in enumerate(pivots):
+            out[f * n + pivot] = -entries[i * n + j]
+    return flint.fmpz_mat(len(free), n, out)
+
+
+def lifted_inverse(matrix: flint.fmpz_mat, p: int) -> flint.fmpz_mat | None:
+    """The inverse modulo a prime with entries between -p/2 and p/2, or None where the matrix is singular modulo p."""
+    try:
+        entries = flint.nmod_mat(matrix, p).inv().entries()
+    except ZeroDivisionError:
+        return None
+    half = p // 2
+    return flint.fmpz_mat(matrix.nrows(), matrix.ncols(), [x - p if x > half else x for x in map(int, entries)])
+
+
+def interleaved(multiples: Sequence[Sequence[flint.fmpz_mat]]) -> flint.fmpz_mat:
+    """The restriction of scalars of a matrix over QQ(b), from the coordinates of its multiples by 1, b, b^2, ...
+
+    Each entry becomes the (m, m) matrix whose row i holds the coordinates of b^i times the entry.
+    """
+    m, (nrows, ncols) = len(multiples), (multiples[0][0].nrows(), multiples[0][0].ncols())
+    require_small_answer(multiples[0][0], m)
+    if m == 1:
+        return multiples[0][0]
+    out: list[int | flint.fmpz] = [0] * (nrows * m * ncols * m)
+    for i, parts in enumerate(multiples):
+        for s, a in enumerate(parts):
+            for index, x in enumerate(a.entries()):
+                row, column = divmod(index, ncols)
+                out[(row * m + i) * ncols * m + column * m + s] = x
+    return flint.fmpz_mat(nrows * m, ncols * m, out)
+
+
+def characteristic_coefficients(matrix: flint.fmpz_mat) -> list[flint.fmpz]:
+    """Ascending coefficients of det(t - A); of a large matrix prime by prime, so that it can be interrupted.
+
+    All eigenvalues are at most R in absolute value, the largest sum of the absolute values in a row, so all
+    coefficients are at most (1 + R)^n. They are determined by their residues modulo primes with a larger product.
+    """
+    n = matrix.nrows()
+    if n < LARGE_SIZE:
+        return matrix.charpoly().coeffs()
+    bound = 2 * (1 + max(sum(abs(int(x)) for x in row) for row in matrix.tolist())) ** n
+    values, product, p = [0] * (n + 1), 1, (1 << 62) - 1
+    while product <= bound:
+        in_time()
+        p -= 2
+        if not flint.fmpz(p).is_prime():
+            continue
+        residues = flint.nmod_mat(matrix, p).charpoly().coeffs()
+        inverse = pow(product, -1, p)
+        values = [v + product * ((int(r) - v) * inverse % p) for v, r in zip(values, residues, strict=True)]
+        product *= p
+    return [flint.fmpz(v if 2 * v < product else v - product) for v in values]
+
+
+def require_small_answer(matrix: flint.fmpz_mat, degree: int) -> None:
+    """Raise `LimitError` if an echelon form of numbers of over `LONG_BITS` bits may need too much memory (Hadamard)."""
+    nrows, ncols = matrix.nrows(), matrix.ncols()
+    places = range(0, nrows * ncols, 1 + nrows * ncols // SAMPLED_ENTRIES)
+    bits = max((int(matrix[divmod(x, ncols)].bit_length()) for x in places), default=0)
+    if bits > LONG_BITS:
+        rank = degree * min(nrows, ncols)
+        what = f"the echelon form of a matrix ({nrows}, {ncols}) of numbers of {bits} bits may need {{}} bytes"
+        within("memory", rank * degree * ncols * rank * bits // 8, what)
+
+
+def separated(restricted: flint.fmpz_mat, degree: int, nrows: int) -> list[flint.fmpz_mat]:
+    """Coordinate matrices of a matrix over QQ(b), from the first row of each block of its restriction of scalars."""
+    table, width = restricted.entries(), restricted.ncols()
+    rows = [table[i * degree * width : (i * degree + 1) * width] for i in range(nrows)]
+    return [flint.fmpz_mat(nrows, width // degree, [x for row in rows for x in row[s::degree]]) for s in range(degree)]
+
+
+def _common_factor(number: flint.fmpz, matrix: flint.fmpz_mat) -> flint.fmpz:
+    """gcd(number, all entries): it divides the gcd of one combination of rows and nearly always equals it."""
+    nrows, ncols = matrix.nrows(), matrix.ncols()
+    if nrows * ncols <= MAX_DIRECT_ENTRIES:
+        return _gcd_of(number, matrix.entries())
+    one_row = matrix * _weights(ncols).transpose() if nrows < ncols else _weights(nrows) * matrix
+    bound = _gcd_of(number, one_row.entries())
+    if bound == 1 or (flint.fmpq_mat(matrix) / bound).numer_denom()[1] == 1:
+        return bound
+    return _gcd_of(bound, matrix.entries())
+
+
+def _gcd_of(number: flint.fmpz, entries: Sequence[flint.fmpz]) -> flint.fmpz:
+    for x in entries:
+        number = number.gcd(x)
+        if number == 1:
+            break
+    return number
+
+
+@functools.cache
+def _weights(n: int) -> flint.fmpz_mat:
+    """Row of n fixed pseudo-random integers."""
+    rng = random.Random(n)
+    return flint.fmpz_mat(1, n, [rng.randint(1, 1 << 20) for _ in range(n)])
+
+
+def bounded_echelon(matrix: flint.fmpz_mat) -> tuple[flint.fmpz_mat, flint.fmpz, int]:
+    """Reduced echelon form over a denominator, and the rank; `LimitError` if its minors may need too much memory."""
+    rank, columns = matrix.nrows(), matrix.ncols()
+    bits = max((int(abs(x)).bit_length() for x in matrix.entries()), default=0)
+    if bits > LONG_ENTRIES:
+        what = f"the minors of a {rank} x {columns} matrix may need {{}} bytes"
+        within("memory", 2 * rank * columns * rank * bits // 8, what)
+    reduced, den, rank = matrix.rref()  # one call of flint, which cannot be interrupted
+    return reduced, den, int(rank)

@@ -1,0 +1,254 @@
+"""Orbits in closed form: products of quadrics, orbits with equal singular values."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, NamedTuple, cast, final
+
+import numpy as np
+
+from liehom.base.typing import Array, IntegerArray, Values
+from liehom.flow.action.space import Action
+from liehom.flow.door import Representation
+from liehom.flow.series.arrays import namespace
+from liehom.flow.series.jet import Jet
+from liehom.flow.tracing.array import Traced
+
+# Orbits that are open in a product of quadrics and affine spaces, and the projection onto them.
+#
+# Spheres, hyperboloids, light cones and products of them are orbits of this kind. The coordinates of V fall into blocks
+# such that rho(x) maps V to a sum over the blocks. If a block V_b of dimension n_b has an invariant symmetric form Q_b,
+# all orbits lie on its level sets m^T Q_b m = c_b, of dimension n_b - 1. An orbit whose dimension is that of the
+# product of these level sets is open in it, so that a point of the product near the orbit is a point of the orbit.
+
+MAX_BLOCK = 24
+"""Largest block of which forms other than the scalar product are sought: their equations are n^2 by n (n + 1) / 2."""
+ELEMENTS = 3
+"""Number of random elements of the algebra by which forms are sought."""
+FORM_RTOL = 1e-11
+"""Largest defect of an invariant form, relative to its size and that of the matrices."""
+GRADIENT_RTOL = 1e-6
+"""Smallest |Q m|, relative to |Q| |m|, at a point where the level set of a form is smooth."""
+
+
+class Block(NamedTuple):
+    """Coordinates on which the group preserves a symmetric form."""
+
+    indices: tuple[int, ...]
+    form: Array | None  # Q, (n, n); None for the scalar product
+
+
+@final
+class Quadrics:
+    """Level sets of invariant forms of a representation, and the projection onto them."""
+
+    blocks: tuple[Block, ...]
+
+    __slots__ = ("blocks", "size")
+
+    def __init__(self, size: int, blocks: tuple[Block, ...]) -> None:
+        self.size: int = size
+        self.blocks = blocks
+
+    def levels(self, m: Values) -> Values:
+        """The values m^T Q_b m of the forms, shape (..., number of blocks)."""
+        return namespace(m).stack([self._value(block, self._part(block, m)) for block in self.blocks], axis=-1)
+
+    def project(self, m: Values, levels: Values) -> Values:
+        """The point m + lambda Q m of the level sets with the smallest |lambda|, for m (..., N) near them.
+
+        On a sphere it is the multiple of m that has the right norm.
+        """
+        parts = [self._projected(block, self._part(block, m), levels[..., b]) for b, block in enumerate(self.blocks)]
+        if len(parts) == 1 and len(self.blocks[0].indices) == self.size:
+            return parts[0]
+        columns: list[Any] = [m[..., i] for i in range(self.size)]
+        for block, part in zip(self.blocks, parts, strict=True):
+            for j, i in enumerate(block.indices):
+                columns[i] = part[..., j]
+        return namespace(m).stack(columns, axis=-1)
+
+    def _part(self, block: Block, m: Values) -> Values:
+        if len(block.indices) == self.size:
+            return m
+        return namespace(m).stack([m[..., i] for i in block.indices], axis=-1)
+
+    @staticmethod
+    def _value(block: Block, m: Values) -> Values:
+        return (m * (m if block.form is None else _times(m, block.form))).sum(axis=-1)
+
+    def _projected(self, block: Block, m: Values, level: Values) -> Values:
+        if block.form is None:
+            return cast(Values, m * namespace(m).sqrt(level / (m * m).sum(axis=-1))[..., None])
+        gradient = _times(m, block.form)
+        square, missing = (gradient * gradient).sum(axis=-1), level - (m * gradient).sum(axis=-1)
+        # (m + x g)^T Q (m + x g) = level is a quadratic equation in x
+        curvature = self._value(block, gradient)
+        share = missing / (square + namespace(m).sqrt(square * square + missing * curvature))
+        return m + share[..., None] * gradient
+
+
+def quadric_orbits(representation: Representation, dimension: int | IntegerArray, points: Array) -> Quadrics | None:
+    """The `Quadrics` in whose level sets the orbits of points are open, or None if there are none."""
+    matrices = np.array([a.to_numpy() for a in representation.matrices])
+    moving = np.abs(matrices).max(axis=(0, 2), initial=0.0) > 0  # the other coordinates are constant
+    parts = _components(matrices, moving)
+    dimensions = np.unique(np.asarray(dimension))
+    if len(dimensions) != 1:
+        return None
+    missing = int(moving.sum()) - int(dimensions[0])
+    if not 0 <= missing <= len(parts):
+        return None
+    blocks = tuple(block for part in parts if (block := _with_form(matrices, part)) is not None) if missing else ()
+    smooth = len(blocks) == missing and _are_smooth(blocks, np.asarray(points, dtype=float))
+    return Quadrics(representation.size, blocks) if smooth else None
+
+
+def _components(matrices: Array, moving: Array) -> list[list[int]]:
+    """The blocks of the moving coordinates: the connected components of the graph of non-zero entries."""
+    linked = (np.abs(matrices).max(axis=0, initial=0.0) > 0) | np.eye(len(moving), dtype=bool)
+    linked = (linked | linked.T) & moving & moving[:, None]
+    rest, blocks = set(np.flatnonzero(moving).tolist()), []
+    while rest:
+        block, new = set(), {min(rest)}
+        while new:
+            block |= new
+            new = set(np.flatnonzero(linked[sorted(new)].any(axis=0)).tolist()) - block
+        rest -= block
+        blocks.append(sorted(block))
+    return blocks
+
+
+def _with_form(matrices: Array, indices: list[int]) -> Block | None:
+    """The block with an invariant form, or None if it has none or depends on constant coordinates."""
+    if np.abs(np.delete(matrices[:, indices], indices, axis=2)).max(initial=0.0) > 0:
+        return None
+    inside = matrices[:, indices][:, :, indices]
+    size = float(np.abs(inside).max(initial=0.0))
+    if np.abs(inside + np.swapaxes(inside, 1, 2)).max(initial=0.0) <= FORM_RTOL * size:
+        return Block(tuple(indices), None)
+    form = invariant_form(inside / size) if len(indices) <= MAX_BLOCK else None
+    return None if form is None else Block(tuple(indices), form)
+
+
+def invariant_form(matrices: Array) -> Array | None:
+    """An invariant symmetric form Q, of largest entry 1, by the kernel of Q -> A^T Q + Q A; None if there is none.
+
+    Of several forms it is the one nearest to the scalar product.
+    """
+    n = matrices.shape[-1]
+    rows, columns = np.triu_indices(n)
+    basis = np.zeros((len(rows), n, n))
+    basis[np.arange(len(rows)), rows, columns] = basis[np.arange(len(rows)), columns, rows] = 1.0
+    # random elements generate the algebra; the result is checked on all matrices
+    some = matrices if len(matrices) <= ELEMENTS else np.tensordot(_mixing(len(matrices)), matrices, 1)
+    moved = np.moveaxis(np.swapaxes(some, 1, 2)[:, None] @ basis + basis @ some[:, None], 1, 0).reshape(len(basis), -1)
+    values, vectors = np.linalg.eigh(moved @ moved.T)
+    kernel = vectors[:, values <= FORM_RTOL * max(float(values[-1]), 1.0)]
+    if not kernel.shape[1]:
+        return None
+    nearest = kernel @ (kernel.T @ (rows == columns).astype(float))
+    if np.abs(nearest).max() <= GRADIENT_RTOL:
+        nearest = kernel[:, 0]
+    form = np.einsum("p,pij->ij", nearest / np.abs(nearest).max(), basis)
+    near = np.array([float(Fraction(float(x)).limit_denominator(64)) for x in form.ravel()]).reshape(n, n)
+    form = near if np.abs(form - near).max() <= FORM_RTOL else form
+    defect = np.abs(np.swapaxes(matrices, 1, 2) @ form + form @ matrices).max()
+    return form if defect <= FORM_RTOL else None
+
+
+def _mixing(count: int) -> Array:
+    """Coefficients of a few random elements of the algebra, of norm 1."""
+    rows = np.random.default_rng(0).normal(size=(ELEMENTS, count))
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+
+
+def _are_smooth(blocks: tuple[Block, ...], points: Array) -> bool:
+    """Whether the gradients Q m of the forms are not near 0 at points (..., N)."""
+    for block in blocks:
+        part = points[..., list(block.indices)]
+        form: Array = np.eye(part.shape[-1]) if block.form is None else block.form
+        size = np.linalg.norm(form, 2) * np.linalg.norm(part, axis=-1)
+        if not bool((np.linalg.norm(part @ form, axis=-1) > GRADIENT_RTOL * size).all()):
+            return False
+    return True
+
+
+def _times(m: Values, form: Array) -> Values:
+    """Q m for m (..., n), by the non-zero entries of Q if it is diagonal."""
+    if not np.any(form - np.diag(np.diagonal(form))):
+        return m * np.diagonal(form).copy()
+    if isinstance(m, Jet | Traced) or m.dtype == object:
+        rows = [sum(float(q) * m[..., j] for j, q in enumerate(row) if q) for row in form]
+        return cast(Values, np.stack(rows, axis=-1))
+    return m @ form
+
+
+# The inverse of x -> rho(x) m in closed form, on orbits on which all its singular values agree.
+#
+# Let K be an invariant symmetric form on V and G the inner product on g, with A = [rho(e_1) m, ..., rho(e_r) m]. If
+#
+#     A G^-1 A^T K A = lambda A,      lambda = tr(A G^-1 A^T K) / d,      d the dimension of the orbit,
+#
+# then B = G^-1 A^T K / lambda is a right inverse of A on the tangent space, and B A is the projector along the isotropy
+# algebra. This is so if the isotropy acts irreducibly on the tangent space, as on spheres, projective spaces and other
+# irreducible symmetric orbits.
+
+TIGHT_RTOL = 1e-11
+"""Largest defect of the condition, relative to lambda and the largest entry of A."""
+SAMPLES = 16
+"""Number of points that are moved along their orbits, if the inner product on g is not invariant."""
+
+
+class TightInverse(NamedTuple):
+    """Data of B = G^-1 A^T K / lambda."""
+
+    form: Array  # K, (N, N)
+    gram_inverse: Array  # G^-1, (dim g, dim g)
+    trace: Array  # (N, N): the form m -> tr(A G^-1 A^T K) / d, which is lambda
+    constant: bool  # whether lambda is constant along orbits
+
+    def over(self, m: Values) -> Values:
+        """1 / lambda at points m (..., N), shape (...,); for a tracer a constant of the trajectory if it is one."""
+        trace = self.trace
+
+        def inverse(points: Values) -> Values:
+            return 1.0 / ((points @ trace) * points).sum(axis=-1)
+
+        if self.constant and isinstance(m, Traced):
+            return Traced(m.tape, m.tape.trajectory_constant(inverse))
+        return inverse(m)
+
+    def lifted(self, action: Action, m: Values, v: Values, over: Values) -> Values:
+        """B v at the point m, shape (..., dim g), for v of shape (..., N) and 1 / lambda of shape (...,)."""
+        return (action.infinitesimal.right_transposed(m, v @ self.form) @ self.gram_inverse) * over[..., None]
+
+
+def tight_inverse(action: Action, points: Array, rank: int) -> TightInverse | None:
+    """The inverse on the orbits of points, all of one dimension, or None if it has no closed form."""
+    size = action.representation.size
+    flat = points.reshape(-1, size)
+    if rank < 1 or not len(flat) or size > MAX_BLOCK:
+        return None
+    matrices = np.array([a.to_numpy() for a in action.representation.matrices])
+    form = invariant_form(matrices / max(float(np.abs(matrices).max(initial=0.0)), 1e-300))
+    if form is None:
+        return None
+    gram_inverse = np.linalg.inv(action.inner_product.matrix).astype(np.float64)
+    corners = np.asarray(action.infinitesimal.right(np.eye(size)))
+    trace = (corners @ gram_inverse).reshape(size, -1) @ (form.T @ corners).reshape(size, -1).T / rank
+    inverse = TightInverse(form, gram_inverse, (trace + trace.T) / 2, action.inner_product.invariant)
+    if not inverse.constant:
+        rows = np.arange(max(len(flat), SAMPLES)) % len(flat)
+        x = np.random.default_rng(0).normal(size=(len(rows), action.dimension)) / max(1.0, action.max_norm)
+        flat = np.concatenate([flat, np.asarray(action.act(x, flat[rows]))])
+    return inverse if _holds(action, inverse, flat) else None
+
+
+def _holds(action: Action, inverse: TightInverse, points: Array) -> bool:
+    """Whether A G^-1 A^T K A = lambda A at points (L, N), to round-off."""
+    columns = action.infinitesimal.right(points)
+    scale = ((points @ inverse.trace) * points).sum(axis=-1)[:, None, None]
+    twice = columns @ inverse.gram_inverse @ np.swapaxes(columns, 1, 2) @ inverse.form @ columns
+    defect = np.abs(twice - scale * columns).max(axis=(1, 2), initial=0.0)
+    return bool((defect <= TIGHT_RTOL * np.abs(scale[:, 0, 0]) * np.abs(columns).max(axis=(1, 2), initial=0.0)).all())

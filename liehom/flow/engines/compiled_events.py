@@ -1,0 +1,338 @@
+"""Events of compiled runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, NamedTuple, final
+
+import numpy as np
+
+from liehom.base.errors import InputError, LiehomError
+from liehom.base.typing import Array, BooleanArray, IntegerArray
+from liehom.flow.action.field import GeneratorField
+from liehom.flow.engines.lanes import LaneSteps, times_until
+from liehom.flow.engines.traced_step import args_of_lanes
+from liehom.flow.run.control import length
+from liehom.flow.run.events import Events, Look
+from liehom.flow.run.run import Run, StepProposal
+from liehom.flow.steps.step import Generator
+
+# Event functions on any number of points of a run, also those that take only what an eager run gives them. An event
+# function is called with all points at once if that gives, at some points, what it gives for them in the form of the
+# run: a point (N,), or the whole ensemble (..., N). Others are called in that form, as often as needed.
+
+FAILURES = (LiehomError, TypeError, ValueError, IndexError, KeyError, ArithmeticError)
+"""What functions raise that were not written for this number of points."""
+RTOL = 1e-9
+NEAR = 1e-3
+
+
+@final
+class EventValues:
+    """The event functions of a run at pairs (t, y); trials on other trajectories say which take all pairs `at_once`."""
+
+    def __init__(self, run: Run) -> None:
+        events: Any = run.stops.events
+        self.events: Events = events
+        self.run = run
+        self.start = run.start.reshape(-1, run.start.shape[-1])
+        lanes, size = self.start.shape
+        some = np.arange(max(lanes, size) + 1)[::-1] if lanes else np.zeros(0, dtype=int)
+        self.trial_lanes: IntegerArray = some % max(lanes, 1)
+        points = self.start[self.trial_lanes]
+        if not run.shape:  # points that differ, as those of an ensemble do
+            points = points * (1 + NEAR * np.random.default_rng(0).normal(size=points.shape))
+        self.trial_points: Array = points
+        begin = np.full(len(self.trial_lanes), float(run.span[0]))
+        self.at_once = [True] * events.count
+        at_once = self.of(self.trial_lanes)
+        for i in range(events.count):
+            self.checked(i, at_once, begin, points, self.trial_lanes, len(begin))
+
+    def of(self, lanes: IntegerArray) -> Events:
+        """The event functions of pairs t (p,), y (p, N) of these trajectories."""
+        functions: Any = self.run.options.events
+        events = Events(functions, args_of_lanes(self.run.field.args, self.run.shape, lanes))
+        events.functions = [
+            function if self.at_once[i] else partial(self._in_turn, i, lanes)
+            for i, function in enumerate(events.functions)
+        ]
+        return events
+
+    def checked(self, i: int, events: Events, t: Array, y: Array, lanes: IntegerArray, some: int = 1) -> Array:
+        """g_i at pairs; at the last ones it is compared with the function in the form of the run."""
+        if self.at_once[i]:
+            try:
+                values = events.value(i, t, y)
+                there = slice(len(t) - some, None)
+                wanted = self._in_turn(i, lanes[there], t[there], y[there])
+                if np.allclose(
+                    values[there], wanted, rtol=RTOL, atol=RTOL * float(np.abs(wanted).max()), equal_nan=True
+                ):
+                    return values
+            except FAILURES:
+                pass
+            self.at_once[i] = False
+        return self._in_turn(i, lanes, t, y)
+
+    def _in_turn(self, i: int, lanes: IntegerArray, t: Array, y: Array) -> Array:
+        """g_i by calls in the form of the run; trajectories without a pair are at their initial points."""
+        shape = self.run.shape
+        if not shape:
+            return np.array([float(self.events.value(i, time, point)) for time, point in zip(t, y, strict=True)])
+        values: Array = np.empty(len(t))
+        for here in _rounds(lanes):
+            times, points = np.full(len(self.start), float(self.run.span[0])), self.start.copy()
+            times[lanes[here]], points[lanes[here]] = t[here], y[here]
+            value = self.events.value(i, times.reshape(shape), points.reshape(*shape, -1))
+            values[here] = value.reshape(-1)[lanes[here]]
+        return values
+
+
+def _rounds(lanes: IntegerArray) -> list[IntegerArray]:
+    """Indices of pairs in groups, in each of which a trajectory has at most one pair."""
+    if not len(lanes):
+        return []
+    order = np.argsort(lanes, kind="stable")
+    ordered = lanes[order]
+    begins = np.append(True, ordered[1:] != ordered[:-1])
+    rank = np.arange(len(lanes)) - np.maximum.accumulate(np.where(begins, np.arange(len(lanes)), 0))
+    by_rank = np.argsort(rank, kind="stable")
+    return [order[group] for group in np.split(by_rank, np.flatnonzero(np.diff(rank[by_rank])) + 1)]
+
+
+# Events of compiled runs: machine code makes the steps of a call, then events are sought in all of them at once. Event
+# functions are evaluated at the ends of all steps of all lanes. The steps in which a zero is possible, by the rules of
+# `liehom.flow.run.events`, are made again in numpy from their stored starts, and the zeros are located on their dense
+# output. A terminal event truncates what the machine code has made of its lane.
+
+STEPS_AT_ONCE = 16_384  # steps that are made again at once, at most
+ROOT_EPS = float(np.sqrt(np.finfo(np.float64).eps))
+
+
+class Steps(NamedTuple):
+    """The steps of some lanes, of each lane in order of time, one lane after the other."""
+
+    row: IntegerArray  # (p,): where the step is stored
+    column: IntegerArray
+    lane: IntegerArray  # its trajectory in the flattened ensemble
+    t: Array  # time and point before the step
+    m: Array  # (p, N)
+    h: Array  # signed size
+    after: Array  # time and point after the step
+    reached: Array  # (p, N)
+    first: BooleanArray  # whether it is the first one of its lane
+
+
+class Occurrence(NamedTuple):
+    """A zero of event function `event` at the size |s| within step number `step`, at (t, y)."""
+
+    step: int
+    distance: float
+    event: int
+    s: float
+    t: Any
+    y: Any
+    counted: bool
+
+
+@final
+class EventSearch:
+    """Looks for the events of a run in steps that a kernel has made."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.values = EventValues(run)
+        self.start = run.start.reshape(-1, run.start.shape[-1])
+        self.dimensions = np.broadcast_to(np.asarray(run.psi.orbit_dimension), run.shape).reshape(-1)
+        self.psi_at_once = not len(self.start) or self._psi_works_at_once()
+        if not self.psi_at_once and run.shape:
+            raise InputError(
+                "engine='llvm' looks for events by calls of psi for some trajectories of the ensemble, and this psi "
+                "cannot be called so: write it for points of shape (..., N), or take engine='numpy'"
+            )
+
+    @property
+    def ends_runs(self) -> bool:
+        """Whether an event is terminal."""
+        return bool(np.isfinite(self.values.events.terminal).any())
+
+    def _psi_works_at_once(self) -> bool:
+        """Whether psi takes more points than there are trajectories, as arrays (..., N)."""
+        lanes, points, field = self.values.trial_lanes, self.values.trial_points, self.run.field
+        begin, shape = float(self.run.span[0]), self.run.shape
+        try:
+            values = np.asarray(self._field(lanes).psi(points, np.full(len(lanes), begin)))
+            if shape:
+                eager = np.asarray(field.psi(self.run.start, np.full(shape, begin)))
+                wanted = np.broadcast_to(eager, (*shape, eager.shape[-1])).reshape(len(self.start), -1)[lanes]
+            else:
+                wanted = np.array([field.psi(m, np.float64(begin)) for m in points])
+            return bool(np.allclose(np.broadcast_to(values, wanted.shape), wanted, equal_nan=True))
+        except FAILURES:
+            return False
+
+    def _field(self, lanes: IntegerArray) -> GeneratorField:
+        """The field, with args of these lanes."""
+        args = self.run.field.args
+        return self.run.field if args is None else self.run.field.with_args(args_of_lanes(args, self.run.shape, lanes))
+
+    # -- the search --------------------------------------------------------------------------------------
+    def __call__(self, lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> LaneSteps:
+        """Record the events in the steps of some lanes; returns the steps up to the terminal ones."""
+        steps = _listed(lanes, before, done)
+        if not len(steps.row):
+            return done
+        events, count = self.values.of(steps.lane), self.values.events.count
+        starts, ends = [], []
+        now = self.run.state
+        for i in range(count):
+            end = self.values.checked(i, events, steps.after, steps.reached, steps.lane)
+            start = np.concatenate([end[:1], end[:-1]])
+            start[steps.first] = now.event_values[i].reshape(-1)[steps.lane[steps.first]]
+            starts.append(start)
+            ends.append(end)
+        fresh = steps.first & (before[2][steps.column] == 0)
+        occurrences: list[Occurrence] = []
+        events = self.values.of(steps.lane)
+        for i in range(count):
+            possible = events.crossed(i, starts[i], ends[i]) | self._turns(i, steps, starts[i], ends[i])
+            for p in np.flatnonzero(fresh & events.left(i, starts[i], ends[i])):
+                occurrences.append(Occurrence(int(p), 0.0, i, 0.0, steps.t[p], steps.m[p], counted=False))
+            chosen = np.flatnonzero(possible)
+            for k in range(0, len(chosen), STEPS_AT_ONCE):
+                occurrences += self._located(i, steps, chosen[k : k + STEPS_AT_ONCE], starts[i], ends[i])
+        last = np.append(steps.first[1:], True)
+        for i in range(count):
+            new = np.array(now.event_values[i]).reshape(-1)
+            new[steps.lane[last]] = ends[i][last]
+            now.event_values = [new.reshape(self.run.shape) if k == i else g for k, g in enumerate(now.event_values)]
+        halts = self._recorded(steps, sorted(occurrences, key=lambda x: x[:3]))
+        return _truncated(self.run, steps, before[2], halts, done) if halts else done
+
+    def _turns(self, i: int, steps: Steps, start: Array, end: Array) -> BooleanArray:
+        """Steps at whose ends g_i has one sign, and from which slopes lead towards 0."""
+        sign = np.sign(start)
+        turns: BooleanArray = np.zeros(len(sign), dtype=bool)
+        some = np.flatnonzero(sign * end > 0)
+        leaves = sign[some] * self._slopes(
+            i, some, steps.lane[some], steps.after[some], steps.reached[some], end[some], -1
+        )
+        some = some[leaves > 0]
+        leaves = sign[some] * self._slopes(i, some, steps.lane[some], steps.t[some], steps.m[some], start[some], 1)
+        turns[some[leaves < 0]] = True
+        return turns
+
+    def _slopes(
+        self, i: int, some: IntegerArray, lanes: IntegerArray, t: Array, y: Array, value: Array, inwards: int
+    ) -> Array:
+        """Derivatives of g_i at places (t, y) of lanes, in the direction of integration (see `Look.slope`)."""
+        if not len(some):
+            return np.zeros(0)
+        field, events = self._field(lanes), self.values.of(lanes)
+        if self.psi_at_once:
+            vector = np.asarray(field.vector(y, t))
+        else:
+            vector = np.array([field.vector(m, time) for m, time in zip(y, t, strict=True)])
+        return self._slope(events, vector, i, (t, y), value, inwards)
+
+    def _slope(
+        self, events: Events, vector: Array, i: int, place: tuple[Array, Array], value: Array, inwards: int
+    ) -> Array:
+        """The derivative of g_i along a vector, by a difference."""
+        (t, y), span = place, self.run.span
+        size = ROOT_EPS * np.minimum(length(y) / length(vector), abs(float(span[1] - span[0])))
+        e = inwards * float(self.run.direction) * size
+        return (events.value(i, t + e, y + e[..., None] * vector) - value) / (inwards * size)
+
+    def _located(self, i: int, steps: Steps, chosen: IntegerArray, start: Array, end: Array) -> list[Occurrence]:
+        """The zeros of g_i in some steps, which are made again."""
+        if self.psi_at_once:
+            return self._zeros(i, steps, chosen, chosen, start, end)
+        return [x for p in chosen for x in self._zeros(i, steps, p, np.array([p]), start, end)]
+
+    def _zeros(
+        self, i: int, steps: Steps, where: IntegerArray | np.integer[Any], chosen: IntegerArray, start: Array,
+        end: Array,
+    ) -> list[Occurrence]:  # fmt: skip
+        """The zeros of g_i in the steps of numbers `chosen`; `where` is the same, or one number without an axis."""
+        run, lanes = self.run, steps.lane[chosen]
+        events = self.values.events if np.ndim(where) == 0 else self.values.of(lanes)
+        field = self._field(lanes)
+        own = self.start[steps.lane[where]]
+        psi = Generator(field, self.dimensions[steps.lane[where]], own)
+        t, m, h, after, reached = (
+            np.asarray(x[where]) for x in (steps.t, steps.m, steps.h, steps.after, steps.reached)
+        )
+        local = run.step.at(run.action, psi, m, t[..., None])
+        yes = np.ones(h.shape, dtype=bool)
+        step = StepProposal(local, t, m, h, after, reached, yes, ~yes, run.options.nominal, {})
+
+        def slope(i: int, place: tuple[Array, Array], value: Array, inwards: int, here: BooleanArray) -> Array:
+            return self._slope(events, np.asarray(field.vector(place[1], place[0])), i, place, value, inwards)
+
+        look = Look(step.position, slope, h, (t, m), (after, reached), yes)
+        occurrences: list[Occurrence] = []
+        for here, s in events.zeros(i, look, start[where], end[where]):
+            times, points = step.position(np.where(here, s, 0))
+            flat = [np.reshape(x, len(chosen)) for x in (here, s, times)]
+            rows = np.reshape(points, (len(chosen), -1))
+            for k in np.flatnonzero(flat[0]):
+                size = float(flat[1][k])
+                occurrences.append(Occurrence(int(chosen[k]), abs(size), i, size, flat[2][k], rows[k], counted=True))
+        return occurrences
+
+    def _recorded(self, steps: Steps, occurrences: list[Occurrence]) -> Mapping[int, Occurrence]:
+        """Record occurrences, in order of time in each lane, up to the terminal ones, which are returned by lane."""
+        log, halts = self.run.state.event_log, dict[int, Occurrence]()
+        counts = np.array(log.occurrences)
+        flat, terminal = counts.reshape(len(counts), -1), self.values.events.terminal
+        for x in occurrences:
+            lane = int(steps.lane[x.step])
+            halt = halts.get(lane)
+            if halt is not None and (x.step, x.distance) > (halt.step, halt.distance):
+                continue
+            log.rows.append((x.event, lane, x.t, x.y))
+            flat[x.event, lane] += x.counted
+            if x.counted and flat[x.event, lane] >= terminal[x.event]:
+                halts.setdefault(lane, x)
+        log.occurrences = counts
+        return halts
+
+
+def _listed(lanes: IntegerArray, before: tuple[Array, Array, IntegerArray], done: LaneSteps) -> Steps:
+    """The steps of a path, lane by lane."""
+    path: Any = done.path
+    times, points, sizes = path
+    column, row = np.nonzero(sizes.T)
+    after, ends = times[row, column], np.ascontiguousarray(points[row, :, column])
+    first = np.append(True, column[1:] != column[:-1])[: len(row)]
+    t, m = np.concatenate([after[:1], after[:-1]]), np.concatenate([ends[:1], ends[:-1]])
+    t[first], m[first] = before[0][column[first]], before[1][column[first]]
+    return Steps(row, column, lanes[column], t, m, sizes[row, column], after, ends, first)
+
+
+def _truncated(
+    run: Run, steps: Steps, before: IntegerArray, halts: Mapping[int, Occurrence], all_of: LaneSteps
+) -> LaneSteps:
+    """The steps up to the terminal events."""
+    path: Any = all_of.path
+    times, points, sizes = (np.array(x) for x in path)
+    m, t, taken, until = all_of.m.copy(), all_of.t.copy(), all_of.taken.copy(), all_of.until.copy()
+    rows = np.full(len(t), -1)
+    begins = np.flatnonzero(steps.first)
+    begin_of = dict(zip(steps.column[begins].tolist(), begins.tolist(), strict=True))
+    for x in halts.values():
+        k, r = int(steps.column[x.step]), int(steps.row[x.step])
+        m[:, k], t[k], rows[k] = x.y, x.t, r
+        taken[k] = before[k] + x.step - begin_of[k] + 1
+        times[r, k], points[r, :, k], sizes[r, k] = x.t, x.y, x.s
+        sizes[r + 1 :, k] = 0
+    halted = rows >= 0
+    going, done = all_of.going & ~halted, all_of.done & ~halted
+    if run.state.samples is not None:
+        until[halted] = times_until(run, t[halted])
+    return all_of._replace(
+        m=m, t=t, taken=taken, going=going, done=done, until=until, path=(times, points, sizes), halted=rows
+    )

@@ -1,0 +1,489 @@
+"""Loops over steps under JAX, and the compiled functions that are kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple, Protocol, TypeAlias, final
+
+import numpy as np
+
+from liehom.base.errors import LiehomError, TraceError
+from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.space import Action
+from liehom.flow.engines.jax_kernel import options_of
+from liehom.flow.engines.traced_step import SizeLimits, arg_values, first_size, judgement, tried_size
+from liehom.flow.run.control import MAX_RATE, MAX_SHRINK, MIN_RATE, RATE_SAMPLES, SLACK, whole_lattice
+from liehom.flow.run.options import CLOCK, END, IMPLICIT, NOT_FINITE, TOO_MANY, TOO_SMALL
+from liehom.flow.steps.step import Generator, LocalStep, Step
+from liehom.flow.tracing.loop import StepGraph
+from liehom.flow.tracing.sweeps import JaxArray, evaluate_with_jax
+
+# A step at one point on JAX arrays, in two forms that give the same numbers to round-off.
+# * "arrays": the step's own code runs on JAX arrays of shape (..., N). Its operations are as many as those of the numpy
+#   code, whatever N and dim g are.  XLA compiles it fast.  psi sees the whole array, and may couple its points.
+# * "graph": the scalar graph of the step (`liehom.flow.tracing`), with the trajectories on the last axis. XLA compiles
+#   n operations in a time that grows like n^2, but short graphs run several times faster than arrays.
+
+NEWTON_ITERATIONS = 8  # iterations for the step size after which the time reparametrization gives a time
+NEWTON_ROUNDOFFS = 1e4  # largest error of that time, in units of round-off
+
+
+class Moved(NamedTuple):
+    """A step of one size."""
+
+    point: JaxArray  # (..., N)
+    code: JaxArray  # `END` if the point is finite and the equations of the step are solved, else how it failed
+    failed: JaxArray  # 1 if a linear system of the correction had no solution
+    near: JaxArray  # 1 if the step came near the cone on which some have none
+
+
+class LocalOnJax(NamedTuple):
+    """A step at one point, as a function of its size s (...,)."""
+
+    moved: Callable[[JaxArray], Moved]
+    clock: tuple[tuple[int, JaxArray], ...]  # (k, c_k) of tau(s) = s + sum_k c_k s^k; empty if time is s
+    local: LocalStep | None = None  # the step of the library; None for a graph
+
+    def time(self, s: JaxArray) -> JaxArray:
+        """Time that passes in a step of size s."""
+        return sum((c * s**k for k, c in self.clock), s)
+
+    def runs(self, s: JaxArray) -> JaxArray:
+        """Whether tau increases at an admissible rate over a step of size s, as in `liehom.flow.run.control`."""
+        import jax.numpy as jnp
+
+        if not self.clock:
+            return jnp.ones(jnp.shape(s), dtype=bool)
+        parts = jnp.stack([s * (i / RATE_SAMPLES) for i in range(RATE_SAMPLES + 1)])
+        times = self.time(parts)
+        advance, part = (times[1:] - times[:-1]) * jnp.sign(s), jnp.abs(s) / RATE_SAMPLES
+        return jnp.all((advance > MIN_RATE * part) & (advance < MAX_RATE * part), axis=0) | (s == 0)
+
+    def size_for(self, time: JaxArray) -> tuple[JaxArray, JaxArray]:
+        """The size s with tau(s) = time, by Newton's method, and whether it converged."""
+        import jax.numpy as jnp
+
+        if not self.clock:
+            return time, jnp.ones(jnp.shape(time), dtype=bool)
+        s: Any = time
+        for _ in range(NEWTON_ITERATIONS):
+            slope = 1 + sum(k * c * s ** (k - 1) for k, c in self.clock)
+            s = s + (time - self.time(s)) / jnp.clip(slope, MIN_RATE, MAX_RATE)
+        bound = NEWTON_ROUNDOFFS * float(np.finfo(s.dtype).eps) * jnp.abs(time)
+        return s, jnp.abs(self.time(s) - time) <= bound
+
+
+class StepOnJax(Protocol):
+    """A step as a function of point, time and leaves of args, for the loops of `liehom.flow.engines`."""
+
+    def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
+        """The step at the points m (..., N) and times t (...,) of trajectories that begin at `start`."""
+        ...
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class ArrayStep:
+    """The step's own code on JAX arrays."""
+
+    action: Action
+    step: Step
+    orbit_dimension: int
+    nominal: bool
+    error_terms: int = 0  # see `Step.at`
+
+    def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
+        """The step at the points m (..., N) and times t (...,)."""
+        psi = Generator(field, self.orbit_dimension, start)
+        local = self.step.at(self.action, psi, m, t[..., None], error_terms=self.error_terms)
+        clock: Any = () if self.nominal else local.clock
+        return LocalOnJax(partial(_moved, local, m, t), clock, local)
+
+
+def _moved(local: LocalStep, m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
+    import jax.numpy as jnp
+
+    moved: Any = local.point(s[..., None])
+    point = jnp.broadcast_to(moved, m.shape).astype(m.dtype)
+    zero = jnp.zeros(t.shape, t.dtype)
+    diagnostics: Any = local.diagnostics(s[..., None])
+    names = ("failed", "near")
+    failed, near = (jnp.where(diagnostics[x][0], 1.0, zero) if "failed" in diagnostics else zero for x in names)
+    valid: Any = local.valid(s[..., None])
+    code = _code(point)
+    return Moved(point, code if valid is True else jnp.where(valid, code, np.int32(IMPLICIT)), failed, near)
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class GraphStep:
+    """The scalar graph of a step, with the trajectories on the last axis."""
+
+    graph: StepGraph
+
+    def at(self, field: GeneratorField, m: JaxArray, t: JaxArray, start: JaxArray) -> LocalOnJax:
+        """The step at the points m (..., N) and times t (...,); the field is that of the graph, with other args."""
+        import jax.numpy as jnp
+
+        graph = self.graph
+        inputs = {**dict(enumerate(jnp.moveaxis(m, -1, 0))), graph.size: t}
+        known = arg_values(field.args, m.ndim - 1)
+        for i, function in enumerate(graph.constant_functions):
+            name = getattr(function, "name", None)
+            value = known[name] if name in known else function(start)
+            inputs[-1 - i] = jnp.asarray(value, m.dtype).reshape(t.shape if np.ndim(value) else ())
+        coefficients = evaluate_with_jax([c for _, c in graph.clock], inputs, differentiable=True)
+        clock = tuple((k, jnp.broadcast_to(c, t.shape)) for (k, _), c in zip(graph.clock, coefficients, strict=True))
+        return LocalOnJax(partial(self._moved, inputs, m, t), clock)
+
+    def _moved(self, inputs: dict[int, JaxArray], m: JaxArray, t: JaxArray, s: JaxArray) -> Moved:
+        import jax.numpy as jnp
+
+        graph = self.graph
+        numbers = [graph.summed[name] for name in ("failed", "near") if name in graph.summed]
+        solved = [] if graph.solved is None else [graph.solved]
+        outputs = [*graph.point, *numbers, *solved]
+        results = evaluate_with_jax(outputs, {**inputs, graph.size + 1: s}, differentiable=True)
+        results = [jnp.broadcast_to(x, t.shape) for x in results]
+        point = jnp.stack(results[: graph.size], axis=-1).astype(m.dtype)
+        code = jnp.where(results[-1], _code(point), np.int32(IMPLICIT)) if solved else _code(point)
+        zero = jnp.zeros(t.shape, t.dtype)
+        failed, near = results[graph.size : graph.size + 2] if numbers else (zero, zero)
+        return Moved(point, code, failed.astype(t.dtype), near.astype(t.dtype))
+
+
+def _code(point: JaxArray) -> JaxArray:
+    import jax.numpy as jnp
+
+    return jnp.where(jnp.all(jnp.isfinite(point), axis=-1), np.int32(END), np.int32(NOT_FINITE))
+
+
+# Functions compiled by JAX that are kept: by an engine for its calls, and between engines for equal functions. A
+# function is traced once. Its arrays that are not arguments (numbers that psi closes over, tables) become inputs of the
+# compiled code, so that functions which differ in such numbers alone share it.
+
+Jaxpr: TypeAlias = Any  # a jaxpr, one of its operations or of their parameters; JAX has no public types for them
+
+Leaves: TypeAlias = list[JaxArray]  # a flat list of JAX arrays
+
+Compiled: TypeAlias = Callable[..., Any]  # a function that jax.jit compiles
+
+MAX_SHARED = 64  # number of compiled functions that engines share
+LONG_EQUATIONS = 150
+"""Number of operations from which on XLA compiles gradients without its optimizations by LLVM, which take longest."""
+_SHARED: dict[tuple[str, Hashable], Any] = {}
+
+
+@final
+class Program(NamedTuple):
+    """A traced function."""
+
+    jaxpr: Any  # its inputs are the constants and then the arguments
+    constants: Leaves
+    digest: str | None  # equal for equal operations; None if that cannot be told
+
+    @classmethod
+    def of(cls, function: Callable[..., Sequence[JaxArray]], arguments: Leaves) -> Program:
+        """The trace of a function of arrays that returns a sequence of arrays."""
+        import jax
+
+        try:
+            closed = jax.make_jaxpr(function)(*arguments)
+        except LiehomError:
+            raise
+        except (TypeError, AttributeError, ValueError, IndexError, NotImplementedError) as error:
+            raise TraceError(
+                f"the step cannot be traced by JAX ({type(error).__name__}: {str(error).splitlines()[0]}): write psi "
+                "with numpy functions, or take engine='numpy'"
+            ) from error
+        return cls(closed.jaxpr, list(closed.consts), _digest(closed.jaxpr))
+
+    def __call__(self, constants: Leaves, arguments: Leaves) -> Leaves:
+        """The results; JAX traces through this call."""
+        import jax
+
+        return jax.core.eval_jaxpr(self.jaxpr, constants, *arguments)
+
+    def compiled(self, how: str = "nested") -> Callable[[Leaves, Leaves], Leaves]:
+        """The function of (constants, arguments) compiled."""
+        return _shared(self.digest, how, self.__call__, options_of(how))
+
+    def pullback(
+        self, differentiable: Sequence[bool], *, nested: bool
+    ) -> Callable[[Leaves, Leaves, JaxArray], tuple[Leaves, Leaves]]:
+        """The compiled function (constants, arguments, cotangent of the first result) -> cotangents of both."""
+        import jax
+
+        def pulled(constants: Leaves, arguments: Leaves, cotangent: JaxArray) -> tuple[Leaves, Leaves]:
+            moving = [is_float(c) for c in constants]
+
+            def first(some: Leaves, others: Leaves) -> JaxArray:
+                return self(merged(moving, some, constants), merged(differentiable, others, arguments))[0]
+
+            parts = chosen(moving, constants), chosen(differentiable, arguments)
+            return jax.vjp(first, *parts)[1](cotangent)
+
+        how = "nested" if nested else "long" if _number_of_equations(self.jaxpr) > LONG_EQUATIONS else "forward"
+        return _shared(self.digest, ("pullback", how, *differentiable), pulled, options_of(how))
+
+
+def is_float(x: JaxArray) -> bool:
+    """Whether an array has real entries that can be differentiated."""
+    return bool(np.issubdtype(x.dtype, np.floating))
+
+
+def chosen(which: Sequence[bool], values: Leaves) -> Leaves:
+    """The values for which a boolean is true."""
+    return [v for take, v in zip(which, values, strict=True) if take]
+
+
+def merged(which: Sequence[bool], some: Leaves, values: Leaves) -> Leaves:
+    """The values, those for which a boolean is true replaced by `some`."""
+    left = iter(some)
+    return [next(left) if take else v for take, v in zip(which, values, strict=True)]
+
+
+def _shared(digest: str | None, kind: Hashable, function: Compiled, options: dict[str, Any]) -> Compiled:
+    """The jitted function of a digest, made if there is none."""
+    import jax
+
+    if digest is None:
+        alone: Compiled = jax.jit(function, **options)
+        return alone
+    key = digest, kind
+    if key not in _SHARED:
+        if len(_SHARED) >= MAX_SHARED:
+            _SHARED.pop(next(iter(_SHARED)))
+        _SHARED[key] = jax.jit(function, **options)
+    return _SHARED[key]
+
+
+# -- digests ---------------------------------------------------------------------------------------------
+class _UnknownError(Exception):
+    """An operation has a parameter, such as a Python function, of which equality cannot be told."""
+
+
+def _digest(jaxpr: Jaxpr) -> str | None:
+    """Digest of all operations, numbers and shapes; None if a parameter cannot be compared."""
+    try:
+        return hashlib.sha256(repr(_rows(jaxpr)).encode()).hexdigest()
+    except _UnknownError:
+        return None
+
+
+def _rows(jaxpr: Jaxpr) -> list[Any]:
+    names: dict[Any, int] = {}
+
+    def atom(x: Jaxpr) -> Jaxpr:
+        if hasattr(x, "val"):
+            value = np.asarray(x.val)
+            return str(value.dtype), value.shape, value.tobytes(), bool(getattr(x.aval, "weak_type", False))
+        return names.setdefault(x, len(names))
+
+    rows: list[Any] = [[(atom(x), str(x.aval)) for x in (*jaxpr.constvars, *jaxpr.invars)]]
+    for equation in jaxpr.eqns:
+        parameters = [(k, _parameter(v)) for k, v in sorted(equation.params.items())]
+        inputs, outputs = [atom(x) for x in equation.invars], [(atom(x), str(x.aval)) for x in equation.outvars]
+        rows.append((equation.primitive.name, parameters, inputs, outputs))
+    return [*rows, [atom(x) for x in jaxpr.outvars]]
+
+
+def _parameter(value: Jaxpr) -> Jaxpr:
+    if hasattr(value, "jaxpr") and hasattr(value, "consts"):
+        if value.consts:
+            raise _UnknownError
+        return _rows(value.jaxpr)
+    if hasattr(value, "eqns"):
+        return _rows(value)
+    if isinstance(value, tuple | list):
+        return [_parameter(x) for x in value]
+    if isinstance(value, np.ndarray):
+        return str(value.dtype), value.shape, value.tobytes()
+    if " at 0x" in (text := repr(value)):
+        raise _UnknownError
+    return text
+
+
+def _number_of_equations(jaxpr: Jaxpr) -> int:
+    """Number of all operations, those of loops and branches included."""
+    values = (value for equation in jaxpr.eqns for value in equation.params.values())
+    parts = (part for value in values for part in (value if isinstance(value, tuple | list) else (value,)))
+    inner = (getattr(part, "jaxpr", part) for part in parts)
+    return len(jaxpr.eqns) + sum(_number_of_equations(x) for x in inner if hasattr(x, "eqns"))
+
+
+# Loops over steps under JAX: with given sizes, which can be differentiated, and with adaptive sizes. Both go from one
+# output time to the next. A trajectory takes ordinary steps until a step would pass that time; the point at that time
+# is computed by a step of the size that ends there (it *lands*), and the next ordinary step begins where the last one
+# ended. So output times do not change the steps, as in `liehom.flow.run`.
+
+At: TypeAlias = Callable[[JaxArray, JaxArray], LocalOnJax]  # the step at points (..., N) and times (...,)
+
+
+@final
+class State(NamedTuple):
+    """Trajectories within a loop; all arrays but `m` and `output` are of shape (...,)."""
+
+    m: JaxArray  # (..., N): points after the ordinary steps so far
+    t: JaxArray  # times of these points
+    count: JaxArray  # numbers of ordinary steps
+    code: JaxArray  # `END` while all is well, or why a trajectory failed
+    failed: JaxArray  # sums of the entries of `Moved`
+    near: JaxArray
+    lost: JaxArray  # time of the first step that did not keep its order; inf times the direction for none
+    landed: JaxArray  # whether the next output time is reached
+    output: JaxArray  # (..., N): points at that time
+
+    @classmethod
+    def initial(cls, m: JaxArray, t0: JaxArray, direction: JaxArray) -> State:
+        """The state at the initial points m (..., N)."""
+        import jax.numpy as jnp
+
+        lead = m.shape[:-1]
+        zero, none = jnp.zeros(lead, m.dtype), jnp.zeros(lead, np.int32)
+        t = jnp.broadcast_to(t0, lead).astype(m.dtype)
+        return cls(m, t, none, none + END, zero, zero, zero + direction * jnp.inf, none > 0, m)
+
+    @property
+    def moving(self) -> JaxArray:
+        """Whether a trajectory is on its way to the next output time."""
+        return ~self.landed & (self.code == END)
+
+    def after(self, moved: Moved, t: JaxArray, commits: JaxArray, lands: JaxArray, direction: JaxArray) -> State:
+        """The state after a step: `commits` says where it was an ordinary step, `lands` where it was the last one."""
+        import jax.numpy as jnp
+
+        took = commits | lands
+        lossy = took & ((moved.failed > 0) | (moved.near > 0))
+        return self._replace(
+            m=jnp.where(commits[..., None], moved.point, self.m),
+            t=jnp.where(commits, t, self.t).astype(self.t.dtype),
+            count=self.count + commits,
+            failed=self.failed + jnp.where(took, moved.failed, 0.0).astype(self.t.dtype),
+            near=self.near + jnp.where(took, moved.near, 0.0).astype(self.t.dtype),
+            lost=jnp.where(lossy, direction * jnp.minimum(direction * self.lost, direction * self.t), self.lost),
+            landed=self.landed | lands,
+            output=jnp.where(lands[..., None], moved.point, self.output),
+        )
+
+    def failing(self, where: JaxArray, code: int | JaxArray) -> State:
+        """The state in which some trajectories have failed, in a way that is a code of `run.options`."""
+        import jax.numpy as jnp
+
+        return self._replace(code=jnp.where(where & self.moving, jnp.asarray(code, np.int32), self.code))
+
+    def at_output(self) -> tuple[State, JaxArray]:
+        """The state on the way to the next output time, and the points (..., N) at this one, NaN if not reached."""
+        import jax.numpy as jnp
+
+        done = self.failing(~self.landed, TOO_MANY)
+        points = jnp.where(self.landed[..., None], self.output, jnp.nan)
+        return done._replace(landed=jnp.zeros_like(self.landed)), points
+
+
+def with_given_sizes(
+    at: At, m: JaxArray, t0: JaxArray, times: JaxArray, size: Callable[[JaxArray], JaxArray], iterations: int,
+    *, end: JaxArray, direction: JaxArray, by_counting: bool,
+) -> tuple[JaxArray, State]:  # fmt: skip
+    """Points (k, ..., N) at the times, and the last state, in a loop of fixed length that JAX can differentiate.
+
+    Of each step only the point before it is stored for the derivative (`jax.checkpoint`); the rest is computed again.
+    """
+    import jax
+    from jax import lax, numpy as jnp
+
+    def one(state: State, time: JaxArray) -> State:
+        local = at(state.m, state.t)
+        h = size(state.count)
+        runs = local.runs(h)
+        after = state.t + local.time(h)
+        if by_counting and not local.clock:
+            after = t0 + (state.count + 1) * h
+        over = direction * (time - after) <= SLACK * jnp.abs(h)
+        over = jnp.where(runs, over, (time == end) & (jnp.abs(time - state.t) <= MAX_RATE * jnp.abs(h)))
+        s, solved = local.size_for(jnp.where(over, time - state.t, h)) if local.clock else (time - state.t, True)
+        s = jnp.where(over, s, h)
+        moved = local.moved(s)
+        code = jnp.where(jnp.where(over, local.runs(s) & solved, runs), moved.code, np.int32(CLOCK))
+        good = state.moving & (code == END)
+        return state.after(moved, after, good & ~over, good & over, direction).failing(code != END, code)
+
+    def body(state: State, time: JaxArray) -> State:
+        # where all trajectories have landed, nothing is computed
+        return lax.cond(jnp.any(state.moving), one, lambda state, time: state, state, time)
+
+    checkpointed = jax.checkpoint(body, prevent_cse=False)
+
+    def towards(state: State, time: JaxArray) -> tuple[State, JaxArray]:
+        state, _ = lax.scan(lambda s, _: (checkpointed(s, time), None), state, None, length=iterations)
+        return state.at_output()
+
+    state, points = lax.scan(towards, State.initial(m, t0, direction), times)
+    return points, state
+
+
+def with_adaptive_sizes(
+    step: ArrayStep, field: GeneratorField, at: At, m: JaxArray, t0: JaxArray, times: JaxArray, limits: SizeLimits,
+    first: JaxArray, most: JaxArray, recorded: int,
+) -> tuple[JaxArray, State, JaxArray]:  # fmt: skip
+    """Points (k, ..., N) at the times, the last state, and the signed sizes (recorded, ...) of the ordinary steps."""
+    from jax import lax, numpy as jnp
+
+    lead = m.shape[:-1]
+    direction: Any = limits.direction
+    stop: Any = limits.end
+    psi = Generator(field, step.orbit_dimension)
+    lanes, axes = int(np.prod(lead)), len(field.sites)
+    places = jnp.arange(lanes)
+
+    def one(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[State, Any, Any, Any]:
+        state, proposal, sizes, tries = carried
+        local = at(state.m, state.t)
+        inner: Any = local.local
+        guess: Any = first_size(limits, inner, psi, state.m, state.t)
+        if guess is not None:
+            proposal = jnp.where(jnp.isinf(proposal), guess, proposal)
+        h: Any
+        certain: Any
+        h, certain = tried_size(limits, step.action, psi, inner, step.step, state.m, state.t, proposal)
+        to_end, solved = local.size_for(stop - state.t)
+        runs = local.runs(h)
+        last = jnp.where(runs, direction * (stop - state.t - local.time(h)) <= SLACK * jnp.abs(h), False)
+        h = jnp.where(last & solved, to_end, h)
+        accepted: Any
+        proposal_after: Any
+        accepted, proposal_after = judgement(limits, inner, state.m, h[..., None], axes)
+        after = jnp.where(last, stop, state.t + local.time(h))
+        over = direction * (time - after) <= SLACK * jnp.abs(h)
+        s, solved = local.size_for(jnp.where(over, time - state.t, h))
+        moved = local.moved(jnp.where(over, s, h))
+        good = ~whole_lattice(~((moved.code == END) & runs & (solved | ~over)), axes)
+        moving = state.moving
+        took = moving & good & accepted
+        index = jnp.minimum(state.count.reshape(-1), recorded - 1)
+        before = sizes[index, places]
+        kept = jnp.where(took.reshape(-1) & (state.count.reshape(-1) < recorded), h.reshape(-1), before)
+        sizes = sizes.at[index, places].set(kept.astype(m.dtype))
+        shrunk = jnp.where(good, proposal_after, MAX_SHRINK * jnp.abs(h))
+        proposal = jnp.where(moving & ~(took & over), shrunk, proposal).astype(m.dtype)
+        after_step = state.after(moved, after, took & ~over, took & over, direction)
+        after_step = after_step.failing(moving & ~certain, TOO_SMALL)
+        return after_step.failing(moving & (after_step.count >= most) & ~over, TOO_MANY), proposal, sizes, tries + 1
+
+    def towards(carried: tuple[State, Any, Any, Any], time: JaxArray) -> tuple[Any, JaxArray]:
+        carried = lax.while_loop(lambda c: jnp.any(c[0].moving), lambda c: one(c, time), carried)
+        state, points = carried[0].at_output()
+        return (state, *carried[1:]), points
+
+    proposal = jnp.broadcast_to(first, lead).astype(m.dtype)
+    start = State.initial(m, t0, direction), proposal, jnp.zeros((recorded, lanes), m.dtype), jnp.zeros((), np.int32)
+    (state, _, sizes, _), points = lax.scan(towards, start, times)
+    return points, state, sizes.reshape(recorded, *lead)
+
+
+def bound_step(step: StepOnJax, field: GeneratorField, start: JaxArray) -> At:
+    """The step for a field and the trajectories that begin at `start`."""
+    return lambda m, t: step.at(field, m, t, start)

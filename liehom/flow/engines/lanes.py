@@ -1,0 +1,280 @@
+"""The lanes of a kernel, and the check of initial points."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, NamedTuple, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Values
+from liehom.flow.action.field import check_point
+from liehom.flow.action.space import Action
+from liehom.flow.engines.traced_step import totals_of
+from liehom.flow.run.options import END, EVENT
+from liehom.flow.run.run import Run
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import needed
+from liehom.flow.tracing.loop import StepGraph
+from liehom.flow.tracing.machine import Kernel, lanes_per_register
+
+# How many operations a step has, and how many lanes a block of its code should have.
+
+SHORT_OPERATIONS, LONG_OPERATIONS = 200, 1000
+"""Operations between two loops up to which code is short, and from which on it is long."""
+ASSUMED_ITERATIONS = 5  # iterations that a loop in a step is assumed to make, for the number of its operations
+
+
+def operations(graph: StepGraph) -> int:
+    """Approximate number of scalar operations of a step."""
+    rows = needed(graph.outputs)
+    return len(rows) + ASSUMED_ITERATIONS * sum(
+        len(x.value.inside) for x in rows if x.op == "loop" and not x.value.guarded
+    )
+
+
+def block_width(graph: StepGraph, lanes: int) -> int:
+    """Number of lanes in a block: as many registers for a number as hide latencies and do not run out in long code."""
+    one = lanes_per_register()
+    if lanes <= one:
+        return 1 if lanes == 1 else one
+    ops = needed(graph.outputs)
+    breaks = sum(x.op == "expv" or (x.op == "loop" and not x.value.guarded) for x in ops)
+    registers = 4 if len(ops) < SHORT_OPERATIONS and not breaks else 2
+    widest = one if len(ops) >= LONG_OPERATIONS * (1 + breaks) else registers * one
+    return min(widest, 1 << (lanes - 1).bit_length())
+
+
+# A check of initial points in machine code: finite, and on an orbit of the largest dimension.
+
+GUARD_RTOL = 1e-10  # a pivot above this fraction of the trace is certainly not 0
+GUARD_PROJECTIONS = 2  # number of random projections, one of which shows the rank
+
+
+def with_guard(graph: StepGraph, action: Action, dimension: int) -> StepGraph:
+    """The graph with a `guard`: whether a point is finite and its orbit certainly of the largest dimension d, as a
+    random projection of g onto d coordinates, followed by the action on the point, is injective. The number "checks" of
+    the run switches it on; graphs that record numbers, and other orbits, have none.
+    """
+    rng = np.random.default_rng((0, dimension))
+    generic = check_point(action.representation, rng.normal(size=(4, graph.size)))
+    if graph.largest or graph.summed or graph.calls is None or dimension != int(generic.max()):
+        return graph
+    tape: Any = graph.point[0].tape
+    m: Any = Traced.inputs(tape, 0, graph.size)
+    frame: Any = action.infinitesimal.right(m)
+    certain: Any = False
+    for _ in range(GUARD_PROJECTIONS):
+        certain = certain | _is_injective(frame @ rng.normal(size=(action.dimension, dimension)), (m * m).sum())
+    unchecked = Traced(tape, tape.run_constant("checks", 0.0)) == 0
+    guard = Traced(tape, unchecked | certain).entry
+    return replace(graph, guard=guard, constant_functions=tuple(tape.constant_functions))
+
+
+def _is_injective(matrix: Values, scale: Values) -> Values:
+    """Whether a traced matrix (N, d) is certainly of rank d, by elimination in its Gram matrix; of entries ~ scale."""
+    gram: Any = np.swapaxes(matrix, -1, -2) @ matrix
+    total = np.trace(gram)
+    certain: Any = total > GUARD_RTOL * scale
+    for i in range(len(gram)):
+        certain = certain & (gram[i, i] > GUARD_RTOL * total)
+        gram = gram - gram[i][:, None] * gram[i][None] / gram[i, i]
+    return certain
+
+
+# The lanes of a kernel: their state as rows, and what becomes of them in the state of a run.
+
+PATH_BYTES_PER_CALL = 64_000_000  # bytes of points, times and sizes that a kernel call records at most
+OPERATIONS_PER_CALL = 4_000_000_000
+"""Scalar operations per kernel call, summed over lanes. Progress, checkpoints and Ctrl-C are handled between calls."""
+MIN_STEPS_PER_CALL = 8  # steps per kernel call at least: the time between two calls is that of some steps
+LANE_STEPS_FOR_THREADS = 50_000  # steps of a call, summed over lanes, from which on threads share the blocks
+_POOL: dict[int, ThreadPoolExecutor] = {}
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_POOL.clear)
+
+
+class LaneSteps(NamedTuple):
+    """The steps that a kernel has made of some lanes."""
+
+    m: Array  # (N, L)
+    t: Array  # (L,), as all that have no other shape here
+    taken: IntegerArray  # numbers of steps
+    going: BooleanArray  # which lanes have steps left to be made by the kernel
+    done: BooleanArray  # which lanes are at the end
+    calls: Array  # of psi
+    records: Mapping[str, tuple[Array, str]]  # totals of the diagnostics of the steps, with their kinds
+    outputs: IntegerArray  # (k,): indices of output times, which are contiguous
+    points: Array  # (k, N, L): at these times, only those are valid that `until` of a lane counts
+    until: IntegerArray  # numbers of output times that are reached
+    path: tuple[Array, Array, Array] | None  # times (j, L), points (j, N, L), sizes (j, L): 0 if the lane is masked
+    h: Array | None = None  # proposed sizes
+    halted: IntegerArray | None = None  # the row of `path` in which a terminal event ends the lane, -1 for none
+
+
+def run_blocks(kernel: Kernel, state: Array, fields: Mapping[str, Any], steps: int) -> None:
+    """Run a kernel on all blocks of a state, in threads if there is enough to do."""
+    blocks = state.shape[1] // kernel.width
+    workers = min(cores(), blocks) if state.shape[1] * steps >= LANE_STEPS_FOR_THREADS else 1
+    if workers == 1:
+        kernel(state, **fields)
+        return
+    cuts = np.linspace(0, blocks, 4 * workers + 1 if blocks >= 8 * workers else workers + 1).astype(int)
+    jobs = [
+        _pool(workers).submit(kernel, state, **{**fields, "first": int(a), "last": int(b)})
+        for a, b in pairwise(cuts)
+        if b > a
+    ]
+    for job in jobs:
+        job.result()
+
+
+def _pool(workers: int) -> ThreadPoolExecutor:
+    """The threads that kernels share."""
+    if workers not in _POOL:
+        _POOL[workers] = ThreadPoolExecutor(workers, thread_name_prefix="liehom")
+    return _POOL[workers]
+
+
+def cores() -> int:
+    """Number of threads that may run at once."""
+    number = os.environ.get("LIEHOM_NUM_THREADS")
+    if number and number.isdigit() and int(number) > 0:
+        return int(number)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@final
+class HandBack:
+    """Writes what kernels have made of lanes to the state of a run."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.size: int = run.start.shape[-1]
+        self.m = run.state.m.reshape(-1, self.size).astype(np.float64, copy=True)
+        self.t = np.array(run.state.t, dtype=np.float64).reshape(-1)
+        self.h = np.array(run.state.h, dtype=np.float64).reshape(-1)
+        self.taken = np.array(run.state.taken).reshape(-1)
+        self.active = run.state.active.reshape(-1)
+        self.done, self.going, self.halted = np.zeros((3, *self.t.shape), dtype=bool)
+        self.calls = np.zeros(self.t.shape)
+        self.paths: list[tuple[IntegerArray, tuple[Array, Array, Array]]] = []
+
+    def take(self, lanes: IntegerArray, steps: LaneSteps) -> None:
+        """Take over some lanes."""
+        run = self.run
+        self.m[lanes], self.t[lanes], self.taken[lanes] = steps.m.T, steps.t, steps.taken
+        self.going[lanes], self.done[lanes], self.calls[lanes] = steps.going, steps.done, steps.calls
+        if steps.h is not None:
+            self.h[lanes] = steps.h
+        if steps.records:
+            run.state.statistics.add_compiled(lanes, steps.records, (float(run.span[0]), float(run.span[1])))
+        if steps.halted is not None:
+            self.halted[lanes] = steps.halted >= 0
+        if steps.path is not None and run.keeps:
+            self.paths.append((lanes, steps.path))
+        samples = run.state.samples
+        if samples is None:
+            return
+        done = samples.done.reshape(-1).copy()
+        if len(steps.outputs):
+            points = samples.points.reshape(-1, self.size, len(samples.times))
+            here = slice(int(steps.outputs[0]), int(steps.outputs[-1]) + 1)
+            new = steps.points.transpose(2, 1, 0)
+            valid = (steps.outputs < steps.until[:, None]) & (steps.outputs >= done[lanes, None])
+            if len(lanes) == len(points) and bool(valid.all()):
+                points[:, :, here] = new
+            else:
+                points[lanes, :, here] = np.where(valid[:, None], new, points[lanes, :, here])
+        done[lanes] = steps.until
+        samples.done = done.reshape(run.shape)
+
+    def finish(self) -> bool:
+        """Write the state; whether kernels have more steps to make."""
+        run, now, shape = self.run, self.run.state, self.run.shape
+        if self.paths:
+            self._record()
+        now.m = self.m.reshape(run.start.shape)
+        now.t, now.h, now.taken = self.t.reshape(shape), self.h.reshape(shape), self.taken.reshape(shape)
+        done = self.done.reshape(shape)
+        if bool(done.any()):
+            run.stop(now, done, END)
+        if bool(self.halted.any()):
+            run.stop(now, self.halted.reshape(shape), EVENT)
+        return bool(self.going.any()) or not bool(now.active.any())
+
+    def _record(self) -> None:
+        """Append the steps of all lanes to the path of the run."""
+        run, shape = self.run, self.run.shape
+        most = max(len(path[0]) for _, path in self.paths)
+        if len(self.paths) == 1 and len(self.paths[0][0]) == len(self.t):
+            times, points, sizes = self.paths[0][1]
+            points = np.swapaxes(points, 1, 2)
+        else:
+            times, sizes = np.zeros((most, len(self.t))), np.zeros((most, len(self.t)))
+            points = np.zeros((most, len(self.t), self.size))
+            for lanes, path in self.paths:
+                count = len(path[0])
+                times[:count, lanes], sizes[:count, lanes] = path[0], path[2]
+                points[:count, lanes] = np.swapaxes(path[1], 1, 2)
+        if most:
+            run.state.path.extend(
+                times.reshape(most, *shape), points.reshape(most, *run.start.shape), sizes.reshape(most, *shape),
+                (sizes != 0).reshape(most, *shape),
+            )  # fmt: skip
+
+
+def records_of(kernel: Kernel, row: dict[str, Array]) -> dict[str, tuple[Array, str]]:
+    """The totals of the steps, by name."""
+    return totals_of(kernel.graph, [row[name] for name in _recorded(kernel.graph)])
+
+
+def _recorded(graph: StepGraph) -> list[str]:
+    """Names of the rows of the largest and the summed numbers."""
+    return [f"e{i}" for i in range(len(graph.largest) + len(graph.summed))]
+
+
+def lowest_numbers(graph: StepGraph) -> dict[str, float]:
+    """Initial values of the rows of the largest numbers."""
+    return dict.fromkeys(_recorded(graph)[: len(graph.largest)], -np.inf)
+
+
+def calls_of(kernel: Kernel, row: dict[str, Array], steps: npt.NDArray[Any]) -> Array:
+    """Calls of psi in a given number of steps of each lane."""
+    graph = kernel.graph
+    if graph.calls is not None:
+        return np.asarray(np.multiply(steps, graph.calls, dtype=np.float64))
+    return row[f"e{len(graph.largest) + list(graph.summed).index('calls')}"]
+
+
+def moved_rows(path: Array, n: int) -> tuple[Array, Array, Array]:
+    """Times, points and sizes up to the last row in which a lane moves."""
+    some = np.flatnonzero((path[:, n + 1] != 0).any(axis=-1))
+    path = path[: int(some[-1]) + 1 if len(some) else 0]
+    return path[:, n], path[:, :n], path[:, n + 1]
+
+
+def times_until(run: Run, t: Array) -> IntegerArray:
+    """Number of output times up to t."""
+    if run.state.samples is None:
+        return np.zeros(t.shape, dtype=int)
+    return np.searchsorted(run.direction * run.state.samples.times, run.direction * t, side="right")
+
+
+def steps_per_call(run: Run, work: int, copies: int = 1) -> int:
+    """Steps that a kernel call makes at most, for a number of operations in a step and of copies of the path."""
+    lanes = int(np.prod(run.shape, dtype=int))
+    steps = max(MIN_STEPS_PER_CALL, OPERATIONS_PER_CALL // (work * lanes))
+    if stores_path(run):
+        steps = min(steps, max(1, PATH_BYTES_PER_CALL // (8 * copies * lanes * (run.start.shape[-1] + 2))))
+    return int(min(run.options.max_steps - 1 - int(np.max(run.state.taken)), steps))
+
+
+def stores_path(run: Run) -> bool:
+    """Whether kernels store every step: for the path, or to look for events."""
+    return run.keeps or run.stops.events is not None

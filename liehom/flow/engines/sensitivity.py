@@ -1,0 +1,405 @@
+"""Sensitivity: derivatives of the points of a solution by the initial points and by the arguments of psi.
+
+A step is a map m_(k+1) = S(m_k, t_k, h_k, args). Its graph, recorded once, is differentiated by backward sweeps, which
+run on all steps of all trajectories at once, because their points are known. The derivatives of the steps are then
+multiplied: forward for the derivatives of all points by few numbers (tangents), backward for the derivatives of one
+number by many (adjoints).
+
+The accepted step sizes h_k are constants. A step with its own clock has t_(k+1) = t_k + tau(m_k, t_k, h_k), so that
+the times of its steps have derivatives too. Where a step ends at a given time, at the end of the run or at a time of
+t_eval, its size follows from that time: dh = -(dt_k + dtau) / (dtau/dh).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any, NamedTuple, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.base.errors import InputError, ShapeError
+from liehom.base.pytrees import Leaf, PerTrajectory, mapped
+from liehom.base.typing import Array, BooleanArray, IntegerArray, Pytree
+from liehom.flow.engines.engine import Problem
+from liehom.flow.engines.traced_step import arg_values, args_of_lanes, traced_step
+from liehom.flow.run.solution import Solution
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import LaneConstant, RunConstant, Tape, needed
+from liehom.flow.tracing.loop import StepGraph
+from liehom.flow.tracing.sweeps import Sweeps
+
+NUMBERS_AT_ONCE = 20_000_000  # numbers of a sweep, operations times lanes, that are in memory at once
+NEWTON_ITERATIONS = 50
+
+
+class Gradient(NamedTuple):
+    """The derivatives of a number by what a solution depends on.
+
+    Attributes
+    ----------
+    y0 : array of shape (..., N)
+    args : pytree
+        Of the structure of args, with arrays of the shapes of its leaves; None without args.
+    """
+
+    y0: Array
+    args: Pytree
+
+
+@final
+class Sensitivity:
+    """Derivatives of the points of a solution, the accepted step sizes held fixed: `Propagator.sensitivity`.
+
+    They are the exact derivatives of the numbers that the method computes for these step sizes, to round-off, and
+    not an approximation with a tolerance of its own. They approach the derivatives of the flow with the order of the
+    method.
+
+    Raises
+    ------
+    InputError
+        If the `solution` has no dense output.
+    TraceError
+        On evaluation, if the step cannot be recorded, or contains an iteration, as implicit steps do.
+
+    Notes
+    -----
+    `y0` and `args` cost as many sweeps over the recorded step as a point has coordinates, `vjp` costs one more.
+    Terminal events are not differentiated: their times count as given.
+
+    Examples
+    --------
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), lambda m, t, args: args["rate"] + 0 * m[..., :1])
+    >>> found = lh.Propagator(field).sensitivity((0, 1), [1.0, 0.0], args={"rate": 0.5}, t_eval=[1.0])
+    >>> exact = [-np.sin(0.5), np.cos(0.5)]  # y = (cos 0.5 t, sin 0.5 t)
+    >>> bool(np.allclose(found.args["rate"][:, 0], exact)), found.y0.shape
+    (True, (2, 2, 1))
+    >>> bool(np.allclose(found.vjp([[1.0], [0.0]]).args["rate"], exact[0]))
+    True
+    """
+
+    solution: Solution
+
+    def __init__(self, problem: Problem, solution: Solution) -> None:
+        if solution.sol is None:
+            raise InputError("derivatives need the steps of the run: integrate with dense_output=True")
+        self.solution = solution
+        self._problem = problem
+        self._shape: tuple[int, ...] = problem.start.shape[:-1]
+        self._size: int = int(problem.start.shape[-1])
+        dimensions = np.broadcast_to(np.asarray(problem.orbit_dimension), self._shape).reshape(-1)
+        self._groups = [_Group(problem, solution, np.flatnonzero(dimensions == d)) for d in np.unique(dimensions)]
+
+    @property
+    def y0(self) -> Array:
+        """Derivatives of the points by the initial point: [..., i, j, k] is dy_i(t_k) / dy0_j."""
+        return self._tangents[..., : self._size, :]
+
+    @property
+    def args(self) -> Pytree:
+        """Derivatives of the points by args, a pytree with arrays (..., N, *shape of the leaf, number of times)."""
+        tangents = self._tangents[..., self._size :, :]
+        return self._leaves(lambda columns: tangents[..., columns, :])
+
+    def vjp(self, weights: npt.ArrayLike) -> Gradient:
+        """The derivatives of sum(weights * solution.y), by one backward pass: a `Gradient`.
+
+        Parameters
+        ----------
+        weights : array_like of shape (..., N, number of times)
+        """
+        w = np.asarray(weights, dtype=np.float64)
+        if w.shape != np.shape(self.solution.y):
+            raise ShapeError(f"weights of shape {w.shape}, expected that of solution.y, {np.shape(self.solution.y)}")
+        flat = np.moveaxis(w, -1, 0).reshape(w.shape[-1], -1, self._size)
+        parts = [group.adjoint(flat[:, group.lanes]) for group in self._groups]
+        y0, by_parameter = (
+            np.zeros((flat.shape[1], self._size)),
+            np.zeros((len(parts[0][1]) if parts else 0, flat.shape[1])),
+        )
+        for group, part in zip(self._groups, parts, strict=True):
+            y0[group.lanes], by_parameter[:, group.lanes] = part
+        return Gradient(y0.reshape(*self._shape, self._size), self._gradient(by_parameter))
+
+    # -- private -----------------------------------------------------------------------------------------
+    @cached_property
+    def _tangents(self) -> Array:
+        """Derivatives of the points by y0 and all numbers in args, shape (..., N, N + P, number of times)."""
+        parts = [(group.lanes, group.tangents()) for group in self._groups]
+        times, _, size, columns = parts[0][1].shape
+        tangents = np.zeros((times, int(np.prod(self._shape, dtype=int)), size, columns))
+        for lanes, part in parts:
+            tangents[:, lanes] = part
+        tangents = np.moveaxis(tangents, 0, -1).reshape(*self._shape, size, columns, times)
+        return np.where(np.isfinite(np.asarray(self.solution.y))[..., None, :], tangents, np.nan)
+
+    def _leaves(self, taken: Callable[[slice], Array]) -> Pytree:
+        """args with arrays (..., N, *shape, k) in place of its leaves, of the columns of their numbers."""
+        first = 0
+
+        def of_leaf(leaf: Leaf) -> object:
+            nonlocal first
+            shape = self._slice(leaf)
+            count = int(np.prod(shape, dtype=int))
+            columns = taken(slice(first, first + count))
+            first += count
+            return columns.reshape(*columns.shape[:-2], *shape, columns.shape[-1])
+
+        return mapped(self._problem.args, of_leaf)
+
+    def _gradient(self, by_parameter: Array) -> Pytree:
+        """args with the derivatives of a number, from those by each number of each trajectory, (P, L)."""
+        first = 0
+
+        def of_leaf(leaf: Leaf) -> object:
+            nonlocal first
+            shape = self._slice(leaf)
+            rows = by_parameter[first : first + int(np.prod(shape, dtype=int))]
+            first += len(rows)
+            if isinstance(leaf.value, PerTrajectory):
+                return np.moveaxis(rows, 0, -1).reshape(*self._shape, *shape)
+            return rows.sum(axis=1).reshape(shape)
+
+        return mapped(self._problem.args, of_leaf)
+
+    def _slice(self, leaf: Leaf) -> tuple[int, ...]:
+        """The shape of a leaf, or of its slice for one trajectory."""
+        value = leaf.value
+        return value.value.shape[len(self._shape) :] if isinstance(value, PerTrajectory) else tuple(np.shape(value))
+
+
+class _Derivatives(NamedTuple):
+    """Derivatives of the point, and of the time if the step has a clock, with axes (output, input, ...)."""
+
+    by_point: Array
+    by_time: Array
+    by_size: Array
+    by_constant: Array
+    by_parameter: Array
+
+
+@final
+class _Group:
+    """Trajectories with orbits of one dimension: the graph of their step, their steps, and where the samples lie."""
+
+    def __init__(self, problem: Problem, solution: Solution, lanes: IntegerArray) -> None:
+        self.lanes = lanes
+        dense: Any = solution.sol
+        times, points, sizes = dense.steps
+        n = points.shape[-1]
+        self._n, self._start = n, np.asarray(problem.start, dtype=np.float64).reshape(-1, n)[lanes]
+        self._times = times.reshape(len(times), -1)[:, lanes].astype(np.float64)
+        self._points = points.reshape(len(points), -1, n)[:, lanes].astype(np.float64)
+        self._sizes = sizes.reshape(len(sizes), -1)[:, lanes].astype(np.float64)
+        self._end = float(problem.span[1])
+        dimension = int(np.broadcast_to(np.asarray(problem.orbit_dimension), problem.start.shape[:-1]).flat[lanes[0]])
+        args = None if problem.args is None else args_of_lanes(problem.args, problem.start.shape[:-1], lanes)
+        self.graph: StepGraph = traced_step(
+            problem.action, problem.field, problem.step, self._start, dimension, nominal=problem.options.nominal,
+            args=args,
+        )  # fmt: skip
+        self._outputs = [*self.graph.point, *([] if self.graph.elapsed is None else [self.graph.elapsed])]
+        self._given = self.graph.constants(self._start)
+        functions = self.graph.constant_functions
+        named = {f.name: -1 - i for i, f in enumerate(functions) if isinstance(f, RunConstant | LaneConstant)}
+        # inputs of the graph: functions of the initial point, and the numbers in args
+        self._constants = [-1 - i for i, f in enumerate(functions) if not isinstance(f, RunConstant | LaneConstant)]
+        self._parameters = [] if args is None else [named[name] for name in arg_values(args, 1)]
+        self._moved: BooleanArray = np.nan_to_num(self._sizes) != 0
+        samples = problem.options.t_eval
+        self._samples: tuple[IntegerArray, Array] | None = None if samples is None else self._located(samples)
+
+    # -- where the samples lie -----------------------------------------------------------------------------
+    def _located(self, samples: Array) -> tuple[IntegerArray, Array]:
+        """The steps that contain the times of t_eval, and the sizes at which they reach them, both (k, L)."""
+        direction = 1.0 if self._end >= self._times[0, 0] else -1.0
+        last = np.maximum(np.isfinite(self._times).sum(axis=0) - 2, 0)
+        index = np.zeros((len(samples), len(self.lanes)), dtype=int)
+        for lane in range(len(self.lanes)):
+            row = direction * self._times[np.isfinite(self._times[:, lane]), lane]
+            step = np.searchsorted(row, direction * samples, side="right") - 1
+            index[:, lane] = np.clip(step, 0, last[lane])
+        begin = np.take_along_axis(self._times, index, axis=0)
+        after = np.take_along_axis(self._times, np.minimum(index + 1, len(self._times) - 1), axis=0)
+        size = np.take_along_axis(np.nan_to_num(self._sizes), index, axis=0)
+        left = samples[:, None] - begin
+        sizes = left if self.graph.elapsed is None else self._solved(index, begin, left, size)
+        return index, np.where(after == samples[:, None], size, sizes)
+
+    def _solved(self, index: IntegerArray, begin: Array, left: Array, size: Array) -> Array:
+        """The sizes s with tau(s) = left, by Newton's method."""
+        points = np.take_along_axis(self._points, index[..., None], axis=0)
+        sweeps = self._swept([c for _, c in self.graph.clock], points, begin, size)
+        coefficients = {k: c for (k, _), c in zip(self.graph.clock, next(sweeps)[1].values, strict=True)}
+        coefficients = {k: c.reshape(left.shape) for k, c in coefficients.items()}
+        s = left
+        for _ in range(NEWTON_ITERATIONS):
+            time = s + sum(c * s**k for k, c in coefficients.items())
+            s = s + (left - time) / (1 + sum(k * c * s ** (k - 1) for k, c in coefficients.items()))
+        return s
+
+    # -- derivatives of steps ------------------------------------------------------------------------------
+    def _swept(
+        self, outputs: list[Any], points: Array, times: Array, sizes: Array, *, at_once: bool = True
+    ) -> Iterator[tuple[slice, Sweeps]]:
+        """Sweeps over the graph at steps (k, L), in parts of the flattened steps; one part if `at_once`."""
+        n, count = self._n, sizes.size
+        lanes = np.broadcast_to(np.arange(len(self.lanes)), sizes.shape).reshape(-1)
+        flat, t, h = points.reshape(-1, n), times.reshape(-1), sizes.reshape(-1)
+        most = count if at_once else max(1, NUMBERS_AT_ONCE // max(1, len(needed(outputs))))
+        for first in range(0, count, max(most, 1)):
+            part = slice(first, min(first + most, count))
+            rows = lanes[part]
+            inputs: dict[int, Any] = {i: flat[part, i] for i in range(n)} | {n: t[part], n + 1: h[part]}
+            inputs |= {-1 - i: c[rows] for i, c in enumerate(self._given)}
+            yield part, Sweeps(outputs, inputs, len(rows))
+
+    def _derivatives(self, points: Array, times: Array, sizes: Array, *, parameters: bool) -> _Derivatives:
+        """Derivatives of steps (k, L), each of shape (outputs, inputs, k, L) or (outputs, k, L)."""
+        n, rows, shape = self._n, len(self._outputs), sizes.shape
+        columns = [*range(n + 2), *self._constants, *(self._parameters if parameters else [])]
+        slopes = np.zeros((rows, len(columns), sizes.size))
+        for part, sweeps in self._swept(self._outputs, points, times, sizes, at_once=False):
+            for i in range(rows):
+                by_input = sweeps.pulled([1.0 if j == i else 0.0 for j in range(rows)])
+                for place, column in enumerate(columns):
+                    slopes[i, place, part] = by_input.get(column, 0.0)
+        slopes = slopes.reshape(rows, len(columns), *shape)
+        last = n + 2 + len(self._constants)
+        return _Derivatives(slopes[:, :n], slopes[:, n], slopes[:, n + 1], slopes[:, n + 2 : last], slopes[:, last:])
+
+    def _steps(self) -> tuple[Array, Array, Array]:
+        """Points, times and sizes of the steps; those of size 0 at the start for trajectories that do not move."""
+        points = np.where(self._moved[..., None], self._points[:-1], self._start)
+        times = np.where(self._moved, self._times[:-1], self._times[0])
+        return points, times, np.where(self._moved, self._sizes, 0.0)
+
+    def _of_samples(self, *, parameters: bool) -> tuple[IntegerArray, Array, Array, Array, _Derivatives] | None:
+        if self._samples is None:
+            return None
+        index, sizes = self._samples
+        points = np.take_along_axis(self._points, index[..., None], axis=0)
+        times = np.take_along_axis(self._times, index, axis=0)
+        return index, points, times, sizes, self._derivatives(points, times, sizes, parameters=parameters)
+
+    def _constant_slopes(self) -> Array:
+        """Derivatives of the constants of the trajectories by their initial points, shape (constants, N, L)."""
+        n, functions = self._n, [self.graph.constant_functions[-1 - c] for c in self._constants]
+        slopes = np.zeros((len(functions), n, len(self.lanes)))
+        for i, function in enumerate(functions):
+            tape = Tape()
+            output = Traced(tape, function(Traced.inputs(tape, 0, n))).entry
+            if not output.constant:
+                by_input = Sweeps([output], dict(enumerate(self._start.T)), len(self.lanes)).pulled([1.0])
+                for j in range(n):
+                    slopes[i, j] = by_input.get(j, 0.0)
+        return slopes
+
+    # -- forward -------------------------------------------------------------------------------------------
+    def tangents(self) -> Array:
+        """Derivatives of the points at all times by y0 and the numbers in args, shape (k, L, N, N + P)."""
+        n, lanes = self._n, len(self.lanes)
+        columns = n + len(self._parameters)
+        z, t = np.broadcast_to(np.eye(n, columns), (lanes, n, columns)), np.zeros((lanes, columns))
+        constants = np.zeros((lanes, len(self._constants), columns))
+        constants[:, :, :n] = np.moveaxis(self._constant_slopes(), -1, 0)
+        steps = self._derivatives(*self._steps(), parameters=True)
+        states, clocks = [z], [t]
+        for k in range(len(self._sizes)):
+            moves, lands = self._moved[k], self._times[k + 1] == self._end
+            new_z, new_t = self._pushed(_at(steps, k), z, t, constants, lands)
+            z, t = np.where(moves[:, None, None], new_z, z), np.where(moves[:, None], new_t, t)
+            states.append(z)
+            clocks.append(t)
+        sampled = self._of_samples(parameters=True)
+        if sampled is None:
+            return np.stack(states)
+        index, *_, derivatives = sampled
+        rows, everywhere = np.arange(lanes), np.ones(lanes, dtype=bool)
+        before = zip(np.stack(states)[index, rows], np.stack(clocks)[index, rows], strict=True)
+        return np.stack(
+            [self._pushed(_at(derivatives, q), *zt, constants, everywhere)[0] for q, zt in enumerate(before)]
+        )
+
+    def _pushed(
+        self, d: _Derivatives, z: Array, t: Array, constants: Array, lands: BooleanArray
+    ) -> tuple[Array, Array]:
+        """Derivatives of point and time after a step, from those before it."""
+        n = self._n
+        pushed = np.einsum("ijl,ljc->lic", d.by_point, z) + np.einsum("il,lc->lic", d.by_time, t)
+        pushed += np.einsum("ijl,ljc->lic", d.by_constant, constants)
+        pushed[:, :, n:] += np.moveaxis(d.by_parameter, -1, 0)
+        if self.graph.elapsed is None:
+            return pushed, t
+        after = t + pushed[:, n]
+        change = np.where(lands[:, None], -after / d.by_size[n][:, None], 0.0)
+        point = pushed[:, :n] + np.einsum("il,lc->lic", d.by_size[:n], change)
+        return point, np.where(lands[:, None], 0.0, after)
+
+    # -- backward ------------------------------------------------------------------------------------------
+    def adjoint(self, weights: Array) -> tuple[Array, Array]:
+        """Derivatives of sum(weights (k, L, N) * all points) by y0, (L, N), and by the numbers in args, (P, L)."""
+        n, lanes, count = self._n, len(self.lanes), len(self._sizes)
+        by_state = np.zeros((count + 1, lanes, n))
+        by_clock = np.zeros((count + 1, lanes))
+        by_constant = np.zeros((lanes, len(self._constants)))
+        by_parameter = np.zeros((len(self._parameters), lanes))
+        weights = np.nan_to_num(weights)
+        sampled = self._of_samples(parameters=False)
+        if sampled is None:
+            by_state += weights[: count + 1]
+        else:
+            index, points, times, sizes, derivatives = sampled
+            seeds = np.zeros((len(index), lanes, len(self._outputs)))
+            for q in range(len(index)):
+                seeds[q], state, clock, constant = self._pulled(_at(derivatives, q), weights[q], None)
+                np.add.at(by_state, (index[q], np.arange(lanes)), state)
+                np.add.at(by_clock, (index[q], np.arange(lanes)), clock)
+                by_constant += constant
+            self._add_parameters(by_parameter, points, times, sizes, seeds)
+        steps = self._derivatives(*self._steps(), parameters=False)
+        seeds = np.zeros((count, lanes, len(self._outputs)))
+        for k in range(count - 1, -1, -1):
+            moves, lands = self._moved[k], self._times[k + 1] == self._end
+            clock_weight = np.where(lands, np.nan, by_clock[k + 1])
+            seed, state, clock, constant = self._pulled(_at(steps, k), by_state[k + 1], clock_weight)
+            seeds[k] = np.where(moves[:, None], seed, 0.0)
+            by_state[k] += np.where(moves[:, None], state, by_state[k + 1])
+            by_clock[k] += np.where(moves, clock, by_clock[k + 1])
+            by_constant += np.where(moves[:, None], constant, 0.0)
+        self._add_parameters(by_parameter, *self._steps(), seeds)
+        return by_state[0] + np.einsum("lc,cjl->lj", by_constant, self._constant_slopes()), by_parameter
+
+    def _pulled(
+        self, d: _Derivatives, weights: Array, clock_weights: Array | None
+    ) -> tuple[Array, Array, Array, Array]:
+        """Weights of the outputs of a step, and of the point, the time and the constants before it, from those of the
+        point (L, N) and the time after it; NaN, or None for all, means that the step ends at a given time.
+        """
+        n, seeds, before = self._n, weights, np.zeros(len(weights))
+        if self.graph.elapsed is not None:
+            ends = -np.einsum("li,il->l", weights, d.by_size[:n]) / d.by_size[n]
+            before = ends if clock_weights is None else np.where(np.isnan(clock_weights), ends, clock_weights)
+            seeds = np.concatenate([weights, before[:, None]], axis=1)
+        state = np.einsum("li,ijl->lj", seeds, d.by_point)
+        clock = np.einsum("li,il->l", seeds, d.by_time) + before
+        return seeds, state, clock, np.einsum("li,ijl->lj", seeds, d.by_constant)
+
+    def _add_parameters(self, total: Array, points: Array, times: Array, sizes: Array, seeds: Array) -> None:
+        """Add the derivatives by the numbers in args, from the weights (k, L, outputs) of the outputs of steps."""
+        if not self._parameters:
+            return
+        lanes = np.broadcast_to(np.arange(len(self.lanes)), sizes.shape).reshape(-1)
+        flat = seeds.reshape(-1, seeds.shape[-1])
+        for part, sweeps in self._swept(self._outputs, points, times, sizes, at_once=False):
+            by_input = sweeps.pulled(list(flat[part].T))
+            for i, column in enumerate(self._parameters):
+                if column in by_input:
+                    np.add.at(total[i], lanes[part], by_input[column])
+
+
+def _at(d: _Derivatives, k: int) -> _Derivatives:
+    """The derivatives of step k, with the trajectories on the last axis."""
+    return _Derivatives(*[x[..., k, :] for x in d])

@@ -1,0 +1,345 @@
+"""A step and its adaptive sizes as a graph, with its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from functools import reduce
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from liehom.base.errors import LiehomError, TraceError
+from liehom.base.pytrees import Leaf, PerTrajectory, leaves, mapped
+from liehom.base.typing import Array, IntegerArray, Pytree, Real, Values
+from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.frames import tight_frame
+from liehom.flow.action.space import Action
+from liehom.flow.run.control import (
+    ERROR_TERMS,
+    MAX_GROWTH,
+    MAX_RATE,
+    MIN_RATE,
+    NEWTON_ITERATIONS,
+    SLACK,
+    Tolerance,
+    clock_at,
+    is_large_enough,
+    judged,
+    known_size,
+    largest_size,
+    length,
+    time_scale,
+)
+from liehom.flow.run.records import LOST, bounds_of, earliness
+from liehom.flow.run.run import FIRST_STEP_FRACTION, Run
+from liehom.flow.series.arrays import namespace
+from liehom.flow.steps.step import Generator, LocalStep, Step, StepLimits, over_sites
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Expr, Tape
+from liehom.flow.tracing.loop import Sizes, StepGraph, while_loop
+
+# Parameters of a traced step: the numbers in args, as constants of the run or of a trajectory. A number is known by its
+# name, such as ``args['inertia'][0]``. So a graph that was traced for some args can be run for others of the same form,
+# with the values of `arg_values`.
+
+
+def traced_args(tape: Tape, args: Pytree, lead: int = 1) -> Pytree:
+    """args with tracers for its numbers: `RunConstant` and, for slices of a trajectory, `LaneConstant`."""
+
+    def traced(leaf: Leaf) -> Traced:
+        value, shape, varies = _of(leaf, lead)
+        entries = np.empty(shape, dtype=object)
+        for entry in np.ndindex(shape):
+            name = _name(leaf.path, entry)
+            if varies:
+                entries[entry] = tape.lane_constant(name, value[(..., *entry)])
+            else:
+                entries[entry] = tape.run_constant(name, value[entry] if entry else value)
+        return Traced(tape, entries) != 0 if _is_boolean(value) else Traced(tape, entries)
+
+    return mapped(args, traced)
+
+
+def arg_values(args: Pytree, lead: int) -> dict[str, Any]:
+    """The numbers in args by their names: numbers, or arrays (L,) for slices of the trajectories."""
+    numbers: dict[str, Any] = {}
+    for leaf in leaves(args):
+        value, shape, varies = _of(leaf, lead)
+        for entry in np.ndindex(shape):
+            number = value[(..., *entry)].reshape(-1) if varies else value[entry] if entry else value
+            numbers[_name(leaf.path, entry)] = number
+    return numbers
+
+
+def args_form(args: Pytree, lead: int) -> Hashable:
+    """The form that args must share for one graph to serve them: paths and shapes."""
+    return tuple(
+        (path, shape, varies, _is_boolean(value))
+        for path, value, shape, varies in ((leaf.path, *_of(leaf, lead)) for leaf in leaves(args))
+    )
+
+
+def args_of_lanes(args: Pytree, lead: tuple[int, ...], lanes: IntegerArray) -> Pytree:
+    """args of some trajectories of an ensemble, whose slices per trajectory are then of shape (L, ...)."""
+
+    def taken(leaf: Leaf) -> object:
+        if not isinstance(leaf.value, PerTrajectory):
+            return leaf.value
+        value = leaf.value.value
+        return PerTrajectory(value.reshape(-1, *value.shape[len(lead) :])[lanes])
+
+    return mapped(args, taken)
+
+
+def _of(leaf: Leaf, lead: int) -> tuple[Any, tuple[int, ...], bool]:
+    """Value of a leaf, its shape for one trajectory, and whether it has one slice per trajectory."""
+    varies = isinstance(leaf.value, PerTrajectory)
+    value = leaf.value.value if varies else leaf.value
+    return value, tuple(np.shape(value))[lead if varies else 0 :], varies
+
+
+def _is_boolean(value: object) -> bool:
+    """Whether a number or an array is of boolean type."""
+    kind: str = getattr(value, "dtype", np.dtype(type(value))).kind
+    return kind == "b"
+
+
+def _name(path: str, entry: tuple[int, ...]) -> str:
+    return path + "".join(f"[{i}]" for i in entry)
+
+
+# Adaptive step sizes of a traced step: the rules of `liehom.flow.run.control` on tracers and JAX arrays.
+
+EPS = float(np.finfo(np.float64).eps)
+
+
+class SizeLimits(NamedTuple):
+    """Tolerances and bounds of adaptive step sizes: numbers of a run, or tracers for them."""
+
+    rtol: Real
+    atol: Real
+    max_step: Real
+    end: Real  # the time at the end
+    direction: Real  # 1, or -1 if time decreases
+    tiny: Real  # below this size time does not advance
+    moves: float = float("inf")  # bound for the way of a point in a step, in units of |m|
+
+
+def limits_of(run: Run) -> SizeLimits:
+    """The limits of a run."""
+    o = run.options
+    return SizeLimits(o.rtol, o.atol, o.max_step, float(run.stops.end), float(run.direction), float(run.tiny))
+
+
+def tried_size(
+    limits: SizeLimits, action: Action, psi: Generator, local: LocalStep, step: Step, m: Values, t: Values,
+    proposal: Values,
+) -> tuple[Values, Values]:  # fmt: skip
+    """The signed size of the next step, and whether time advances by it; if not, the run ends the trajectory."""
+    xp = namespace(m, t)
+    left = xp.abs(limits.end - t)
+    bound: Any = largest_size(limits.max_step, left)
+    if limits.moves < np.inf:
+        bound = xp.minimum(bound, limits.moves * time_scale(psi.field, m, t))
+    h: Any = xp.minimum(proposal, bound)
+    if local.estimate_order is None:
+        axes = len(psi.field.sites)
+        speed = over_sites(length(m), axes) / time_scale(psi.field, m, t)
+        own = StepLimits(Tolerance(limits.rtol, limits.atol, axes).norm(m), speed, h, axes)
+        h = known_size(action, psi, local, m, t, step.order, own)
+    return limits.direction * h, is_large_enough(h, limits.tiny, left)
+
+
+def judgement(
+    limits: SizeLimits, local: LocalStep, m: Values, size: Values, axes: int = 0
+) -> tuple[Values | bool, Values]:
+    """Whether a step of signed size (..., 1) is accepted, and the next size; one for all of the last `axes` axes."""
+    h: Values = size[..., 0]
+    if local.estimate_order is None:
+        return True, MAX_GROWTH * abs(h)
+    allowed = Tolerance(limits.rtol, limits.atol, axes).norm(m)
+    return judged(local.estimate(size), allowed, h, local.estimate_order, axes)
+
+
+def first_size(limits: SizeLimits, local: LocalStep, psi: Generator, m: Values, t: Values) -> Values | None:
+    """Size of the first step of an embedded pair, without sign; None where the Taylor coefficients give it."""
+    if local.estimate_order is None:
+        return None
+    xp = namespace(m, t)
+    longest = largest_size(limits.max_step, xp.abs(limits.end - t))
+    return xp.minimum(longest, FIRST_STEP_FRACTION * time_scale(psi.field, m, t))
+
+
+def size_to_stop(
+    local: LocalStep | None, h: Values, left: Values, bounds: tuple[Real, Real]
+) -> tuple[Values, Values, Values | bool]:
+    """A step size that ends at a stop in the time `left` if the step reaches it: on tracers."""
+    direction, tiny = bounds
+    if local is None:
+        reached = direction * (left - h) <= SLACK * np.abs(h) + tiny
+        return np.where(reached, left, h), reached, True
+    size: Any = h
+    tape = size.tape
+    passed = local.time(h)
+    reached = direction * (left - passed) <= SLACK * np.abs(h)
+
+    def newton(wanted: Values, s: Values) -> tuple[list[Values], Values]:
+        slope = 1 + sum(k * c * s ** (k - 1) for k, c in local.clock)
+        new = s + (left - local.time(s)) / np.clip(slope, MIN_RATE, MAX_RATE)
+        again = wanted & (np.abs(new - s) > 2 * EPS * np.abs(s))
+        return [again, np.where(wanted, new, s)], again
+
+    unsolved, size = while_loop(newton, [reached, h], tape, NEWTON_ITERATIONS, guarded=True)
+    return size, reached, ~unsolved
+
+
+# A step of the library as a graph of scalar operations: the code of the step, run on tracers.
+
+MAX_CLOCK_DEVIATION = 0.8  # τ certainly increases at an admissible rate if |τ' - 1| is below this over the whole step
+
+
+def traced_step(
+    action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, *, nominal: bool,
+    ends: tuple[float, float] = (0.0, 0.0), limits: SizeLimits | None = None,
+    stops: bool = False, args: Pytree = None, lead: int = 1,
+) -> StepGraph:  # fmt: skip
+    """The graph of a step on orbits of one dimension."""
+    try:
+        tape = Tape()
+        field = field if args is None else field.with_args(traced_args(tape, args, lead))
+        return _traced(tape, action, field, step, points, orbit_dimension, nominal, ends, limits, stops)
+    except TraceError as error:
+        raise TraceError(f"{step!r} cannot be compiled for this field: {error}") from error
+    except (LiehomError, TypeError, AttributeError, ValueError, IndexError) as error:
+        raise TraceError(
+            f"{step!r} cannot be compiled for this field, because its code does not run on traced numbers "
+            f"({type(error).__name__}: {error}): write psi with numpy functions, or take engine='numpy'"
+        ) from error
+
+
+def _traced(
+    tape: Tape, action: Action, field: GeneratorField, step: Step, points: Array, orbit_dimension: int, nominal: bool,
+    ends: tuple[float, float], limits: SizeLimits | None, stops: bool,
+) -> StepGraph:  # fmt: skip
+    n = field.representation.size
+    tight = action.tight_frame
+    if tight is None and step.uses_isotropy:
+        tight = tight_frame(action, points, orbit_dimension)
+    if tight is not None and action.inner_product.invariant:
+        form = tight.trace
+        over = tape.trajectory_constant(lambda points: orbit_dimension / ((points @ form) * points).sum(axis=-1))
+        tight = tight._replace(over=Traced(tape, over))
+    action = action.with_tight_frame(tight)
+    m, t = Traced.inputs(tape, 0, n), Traced(tape, tape.input(n))
+    h: Any = Traced(tape, tape.input(n + 1))
+    psi, error_terms = Generator(_counted(tape, field), orbit_dimension), 0 if limits is None else ERROR_TERMS
+    local = step.at(action, psi, m, t[..., None], error_terms=error_terms)
+    certain: Any = True
+    if limits is not None:
+        limits = _traced_limits(tape, limits)
+        h, certain = tried_size(limits, action, psi, local, step, m, t, h)
+    own_clock, first, reached = bool(local.clock) and not nominal, None, None
+    passed = _number(tape, local.time(h) if own_clock else h) if own_clock or limits is not None else None
+    if stops:
+        before = tape.calls
+        first = None if limits is None else first_size(limits, local, psi, m, t)
+        tape.calls = before
+        stop, directed = Traced(tape, tape.input(n + 2)), Traced(tape, tape.run_constant("direction", 1.0))
+        bounds = directed, Traced(tape, tape.run_constant("rest", 8 * EPS * max(abs(ends[0]), abs(ends[1]))))
+        h, reached, solvable = size_to_stop(local if own_clock else None, h, stop - t, bounds)
+        tape.required.append(_number(tape, solvable))
+    size = h[..., None]
+    moved: Any = local.point(size)
+    runs = None
+    clock: tuple[tuple[int, Expr], ...] = ()
+    if own_clock:
+        clock = tuple((k, _number(tape, c)) for k, c in local.clock)  # coefficients of h^k in τ(h), k > 1
+        runs = _clock_is_admissible(tape, local.clock, h)
+        if limits is not None:  # adaptive steps are larger than fixed ones: the rate is sampled, as in a run
+            runs = _number(tape, clock_at(local, h)[0])
+    sizes = None
+    if limits is not None:
+        sizes = Sizes(_number(tape, h), *[_number(tape, x) for x in judgement(limits, local, m, size)])
+    worst, summed = _statistics(tape, local, t, size, ends)
+    tape.required.append(_number(tape, local.valid(size)))
+    solved = _all_of(tape, tape.required)
+    runs = _all_of(tape, [x for x in (runs, solved, _number(tape, certain)) if x is not None])
+    point = [_number(tape, moved[i]) for i in range(n)]
+    calls = int(tape.calls.value) if tape.calls.constant else None
+    if calls is None:
+        summed["calls"] = tape.calls
+    return StepGraph(
+        point, passed, runs, worst, summed, tuple(tape.constant_functions), clock, solved, sizes, calls,
+        reached=None if reached is None else _number(tape, reached),
+        tried=None if reached is None else _number(tape, h),
+        first=None if first is None else _number(tape, first),
+    )  # fmt: skip
+
+
+def _all_of(tape: Tape, conditions: Sequence[Expr]) -> Expr | None:
+    """Whether all conditions hold; None if they are constants that do."""
+    unsure = [x for x in conditions if x is not tape.true]
+    return reduce(tape.both, unsure) if unsure else None
+
+
+def _traced_limits(tape: Tape, limits: SizeLimits) -> SizeLimits:
+    """The numbers of the limits by name, as constants of the run; `moves` as it is."""
+    numbers = (Traced(tape, tape.run_constant(*x)) for x in limits._asdict().items() if x[0] != "moves")
+    return SizeLimits._make((*numbers, limits.moves))
+
+
+def _counted(tape: Tape, field: GeneratorField) -> GeneratorField:
+    """The field, with its calls counted on the tape."""
+
+    def psi(m: Values, t: Real = 0.0) -> Values:
+        tape.calls = tape.calls + tape.one
+        return field.psi(m, t)
+
+    return GeneratorField(field.representation, psi, time_dependent=field.time_dependent)
+
+
+def _number(tape: Tape, x: object) -> Expr:
+    """A number, or a tracer of shape (), as an expression on the tape."""
+    return Traced(tape, x).entry
+
+
+def _clock_is_admissible(tape: Tape, clock: Sequence[tuple[int, Any]], h: Values) -> Expr:
+    """Whether |τ' - 1| is small over the step, by the sizes of the coefficients."""
+    size: Any = abs(h)
+    total: Any = 0.0
+    for k, c in sorted(clock, key=lambda term: term[0]):
+        power = size
+        for _ in range(k - 2):
+            power = power * size
+        total = total + k * abs(c) * power
+    return _number(tape, total < MAX_CLOCK_DEVIATION)
+
+
+def _statistics(
+    tape: Tape, local: LocalStep, t: Values, size: Values, ends: tuple[float, float]
+) -> tuple[dict[str, Expr], dict[str, Expr]]:
+    """`StepGraph.largest` and `StepGraph.summed`, from the diagnostics of the step."""
+    largest, summed = dict[str, Any](), dict[str, Any]()
+    for name, (value, kind) in local.diagnostics(size).items():
+        if name == LOST:
+            names = zip(("direction", "latest"), bounds_of(ends), strict=True)
+            direction, limit = [Traced(tape, tape.run_constant(*x)) for x in names]
+            largest["unkept"] = np.where(value, earliness(t, (direction, limit)), 0.0)
+        elif kind == "sum":
+            summed[name] = value
+        else:
+            largest[name if kind == "max" else f"-{name}"] = value if kind == "max" else -value
+    return ({k: _amount(tape, x) for k, x in largest.items()}, {k: _amount(tape, x) for k, x in summed.items()})
+
+
+def totals_of(graph: StepGraph, rows: Sequence[Array]) -> dict[str, tuple[Array, str]]:
+    """Totals of compiled steps but the calls of psi, with their kind, from `graph.largest` and `graph.summed`."""
+    kinds = ["max"] * len(graph.largest) + ["sum"] * len(graph.summed)
+    rows_of = zip((*graph.largest, *graph.summed), rows[: len(kinds)], kinds, strict=True)
+    kept = [(name, x, kind) for name, x, kind in rows_of if name != "calls"]
+    return {name.removeprefix("-"): (-x, "min") if name[0] == "-" else (x, kind) for name, x, kind in kept}
+
+
+def _amount(tape: Tape, x: object) -> Expr:
+    """A number, or 0 or 1 for a boolean."""
+    return tape.number(_number(tape, x))

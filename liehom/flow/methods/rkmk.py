@@ -1,0 +1,284 @@
+"""RKMK: Runge-Kutta-Munthe-Kaas steps, any Runge-Kutta method carried to homogeneous spaces, with one exponential.
+
+u(t) in g with Exp(u(t)) m = F_t(m) solves u' = dExp^-1_u psi(Exp(u) m, t), u(0) = 0.  A Runge-Kutta method for it is
+
+    k_i = h dExp^-1_{u_i} psi(Exp(u_i) m, t + c_i h),   u_i = sum_j a_ij k_j,   xi = sum_i b_i k_i
+
+(H. Munthe-Kaas, High order Runge-Kutta methods on manifolds, Appl. Numer. Math. 29, 1999).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple, final
+
+import numpy as np
+
+from liehom.base.errors import InputError
+from liehom.base.typing import Values
+from liehom.flow.action.space import Action
+from liehom.flow.door import QQ
+from liehom.flow.methods.runge_kutta import Tableau
+from liehom.flow.methods.tableaux import tableau as tableau_of
+from liehom.flow.series.arrays import is_exact, is_jax, zeros
+from liehom.flow.steps.implicit import SparseRow, combined, reach_of, solve_implicitly
+from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
+
+
+class Coefficients(NamedTuple):
+    """Coefficients of a tableau in the numbers of a computation; `difference` is b - embedded_b."""
+
+    a: tuple[SparseRow, ...]
+    b: SparseRow
+    c: tuple[Any, ...]
+    difference: SparseRow
+
+
+@final
+@dataclasses.dataclass(frozen=True, init=False, repr=False)
+class RKMK(OneExponential):
+    """The Runge-Kutta-Munthe-Kaas step of a tableau, explicit or implicit, of the order of the tableau.
+
+    Parameters
+    ----------
+    tableau : Tableau or str
+        A name such as "rk4", "gauss2", "dop853": see `tableau_names`.
+
+    Raises
+    ------
+    InputError
+        If no tableau has this name. In a step: if the order is above 2 and the inverse differential of the
+        exponential is not known, or the point is exact and the coefficients are floats.
+    ConvergenceError
+        In an implicit step, if the iteration does not converge because the step size is too large.
+
+    Notes
+    -----
+    A method of order p uses the terms ad_u^0, ..., ad_u^(p-2) of dexp^-1_u (`terms`). That is enough: along the
+    solution ad_u psi = O(h^2), as u = h psi + O(h^2), so the neglected terms change the equation by
+    ad_u^(p-1) psi = O(h^p). For order at most 2 the differential is not needed, and Exp is arbitrary.
+
+    If the tableau has an embedded method, ``at(...)`` returns an `EmbeddedStep`. Its ``estimate(h)`` is the difference
+    of the two methods as a vector in V, of the order ``estimate_order`` in h. Both methods share their stages; stages
+    with zero weight are computed only for the estimate.
+
+    Coefficients are rounded once to the type of m. Over exact scalars they are exact, and so are expansions in h.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> RKMK("rk4"), RKMK("gauss2").order
+    (RKMK('rk4'), 4)
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["2*t"])
+    >>> action, psi = lh.Action(field.representation), lh.steps.Generator(field, 1)
+    >>> local = RKMK("rk45").at(action, psi, np.array([1.0, 0.0]), np.array([0.0]))
+    >>> local.factors(np.array([0.5]))[0].round(12), local.estimate(np.array([0.5])).round(12) + 0.0
+    (array([0.25]), array([0., 0.]))
+    """
+
+    tableau: Tableau
+    _floating: dict[str, Coefficients] = dataclasses.field(compare=False)
+
+    def __init__(self, tableau: Tableau | str) -> None:
+        object.__setattr__(self, "tableau", tableau_of(tableau))
+        object.__setattr__(self, "_floating", {})
+
+    @property
+    def order(self) -> int:
+        return self.tableau.order
+
+    @property
+    def terms(self) -> int:
+        """Number of terms of the series of dexp^-1 in use: the order minus 1, at least 1.
+
+        Examples
+        --------
+        >>> RKMK("heun").terms, RKMK("rk4").terms
+        (1, 3)
+        """
+        return max(self.order - 1, 1)
+
+    def coefficients(self, like: Values) -> Coefficients:
+        """The nonzero coefficients in the numbers of the array `like`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> RKMK("kutta3").coefficients(np.zeros(1)).a
+        ((), ((0, 0.5),), ((0, -1.0), (1, 2.0)))
+        """
+        if is_exact(like):
+            return self._exact(like)
+        kind = "g" if like.dtype == np.longdouble and not is_jax(like) else "d"
+        if kind not in self._floating:
+            a, b, c, embedded = self.tableau.to_numpy(np.dtype(kind))
+            number = np.longdouble if kind == "g" else float
+            self._floating[kind] = _coefficients(
+                [[number(x) for x in row] for row in (*a, b, c, b if embedded is None else embedded)]
+            )
+        return self._floating[kind]
+
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
+        stages = Stages(self, action, psi, m, t)
+        return stages.combined(stages.numbers.b, h)
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        if self.tableau.embedded_b is None:
+            return super().at(action, psi, m, t, error_terms=error_terms)
+        return EmbeddedStep(Stages(self, action, psi, m, t))
+
+    def __repr__(self) -> str:
+        return f"RKMK({self.tableau.name!r})"
+
+    def _exact(self, like: Values) -> Coefficients:
+        tableau = self.tableau
+        if not tableau.exact:
+            raise InputError(
+                f"the coefficients of {tableau.name!r} are floats and the point is exact: take an exact tableau, or "
+                "the point in floats"
+            )
+        embedded = tableau.b if tableau.embedded_b is None else tableau.embedded_b
+        rows = (*tableau.a, tableau.b, tableau.c, embedded)
+        if tableau.field == QQ:
+            return _coefficients(
+                [[exact_like(Fraction(int(x.p), int(x.q)), like) for x in map(QQ.convert, row)] for row in rows]
+            )
+        return _coefficients([list(row) for row in rows])
+
+
+@final
+class EmbeddedStep(LocalStep):
+    """A step of a pair of Runge-Kutta methods at one point, with an estimate of its error.
+
+    `RKMK.at` returns it. The stages for the last h are cached and shared by `factors` and `estimate`.
+
+    Attributes
+    ----------
+    estimate_order : int
+        The estimate is O(h^estimate_order): the lower of the orders of the pair, plus 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["t"])
+    >>> psi = lh.steps.Generator(field, 1)
+    >>> local = RKMK("heun").at(lh.Action(field.representation), psi, np.array([1.0, 0.0]), np.array([0.0]))
+    >>> local.estimate(np.array([0.2])).round(12), local.estimate_order
+    (array([0.  , 0.02]), 2)
+    """
+
+    def __init__(self, stages: Stages) -> None:
+        super().__init__(stages.action, stages.m)
+        tableau = stages.method.tableau
+        self.estimate_order: int = min(tableau.order, tableau.embedded_order or tableau.order) + 1
+        self._stages = stages
+
+    def factors(self, h: Values) -> Factors:
+        return (self._stages.combined(self._stages.numbers.b, h),)
+
+    def estimate(self, h: Values) -> Values:
+        """rho(xi - xi_embedded) m for h (..., 1) or a Jet: the error of the step to leading order, shape (..., N)."""
+        stages = self._stages
+        return stages.action.infinitesimal(stages.combined(stages.numbers.difference, h), stages.m)
+
+
+@final
+class Stages:
+    """Stages k_i of a method at one point, on demand for the last h; if `hasty`, equations are given up early."""
+
+    def __init__(
+        self, method: RKMK, action: Action, psi: Generator, m: Values, t: Values, *, hasty: bool = False
+    ) -> None:
+        self.method, self.action, self.psi, self.m, self.t, self.hasty = method, action, psi, m, t, hasty
+        self.numbers: Coefficients = method.coefficients(m)
+        # a row without entries beyond its diagonal needs no later stage
+        self._sequential = all(j <= i for i, row in enumerate(self.numbers.a) for j, _ in row)
+        self._shape = (*np.shape(m)[:-1], action.dimension)
+        self._start: Values | None = None
+        self._h: Values | None = None
+        self._copy: Values | None = None
+        self._known: list[Values] = []
+
+    @property
+    def known(self) -> Sequence[Values]:
+        """The stages that have been computed for the last h."""
+        return self._known
+
+    def combined(self, weights: SparseRow, h: Values) -> Values:
+        """sum_i weights[i] k_i."""
+        return combined(weights, self._through(h, weights[-1][0] + 1))
+
+    def _through(self, h: Values, count: int) -> list[Values]:
+        """The first `count` stages; later ones are computed only if the method is implicit in all of them."""
+        if not self._is_last(h):
+            self._h, self._copy, self._known = h, h.copy() if isinstance(h, np.ndarray) else None, []
+        if not self._sequential:
+            self._known = self._known or self._solved(h)
+        while len(self._known) < count:
+            self._known.append(self._next(h))
+        return self._known
+
+    def _is_last(self, h: Values) -> bool:
+        """Whether h is the last step size; arrays are compared by value, because their owner may have changed them."""
+        if isinstance(h, np.ndarray) and isinstance(self._copy, np.ndarray):
+            return h.dtype == self._copy.dtype and np.array_equal(h, self._copy)
+        return h is self._h and self._copy is None
+
+    def _next(self, h: Values) -> Values:
+        """The stage after the known ones, by an equation for it alone if a_ii is not zero."""
+        i = len(self._known)
+        row = self.numbers.a[i]
+        if not row or row[-1][0] < i:
+            return self._stage(i, combined(row, self._known), h)
+        before, (_, diagonal) = combined(row[:-1], self._known), row[-1]
+
+        def stage(k: Values) -> Values:
+            return self._stage(i, k * diagonal if before is None else before + k * diagonal, h)
+
+        return solve_implicitly(stage, zeros(self.m, self._shape), h, reach=reach_of(self.action), hasty=self.hasty)
+
+    def _solved(self, h: Values) -> list[Values]:
+        """All stages of an implicit method, from one equation for an array with a first axis for the stages."""
+        rows, start = self.numbers.a, zeros(self.m, (len(self.numbers.a), *self._shape))
+
+        def stages(u: list[Any]) -> list[Values]:
+            return [self._stage(i, x, h) for i, x in enumerate(u)]
+
+        k = solve_implicitly(stages, start, h, rows=rows, reach=reach_of(self.action), hasty=self.hasty)
+        return [k[i] for i in range(len(rows))]
+
+    def _stage(self, i: int, u: Values | None, h: Values) -> Values:
+        """k_i for the generator u of its point, None for u = 0."""
+        c = self.numbers.c[i]
+        if u is None and c == 0:
+            if self._start is None:
+                self._start = self.psi(self.m, self.t)
+            return h * self._start
+        time = self.t + h * c
+        if u is None:
+            return h * self.psi(self.m, time)
+        velocity = self.psi(self.action.act(u, self.m), time)
+        if self.method.terms > 1:
+            velocity = self.action.exponential.differential_inverse(u, velocity, self.method.terms)
+        return h * velocity
+
+
+def exact_like(value: Fraction, like: Values) -> Any:
+    """A fraction as an exact number of the kind in the array `like`."""
+    return (zeros(like, ())[()] + 1) * value.numerator / value.denominator
+
+
+def _coefficients(rows: Sequence[Sequence[Any]]) -> Coefficients:
+    """Coefficients from the rows of a, and b, c and the embedded weights as last rows."""
+    *a, b, c, embedded = rows
+    difference = [x - y for x, y in zip(b, embedded, strict=True)]
+    return Coefficients(tuple(sparse_row(row) for row in a), sparse_row(b), tuple(c), sparse_row(difference))
+
+
+def sparse_row(row: Sequence[Any]) -> SparseRow:
+    """The nonzero entries of a row."""
+    return tuple((j, x) for j, x in enumerate(row) if x != 0)

@@ -1,0 +1,456 @@
+"""Steps for stiff fields: implicit RKMK, Rosenbrock and exponential Rosenbrock steps."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import factorial, sqrt
+from typing import Any, Generic, NamedTuple, TypeVar, final
+
+import numpy as np
+
+from liehom.base.errors import InputError, TraceError, displayed
+from liehom.base.typing import Real, Values
+from liehom.flow.action.maps import solve
+from liehom.flow.action.space import Action
+from liehom.flow.methods.rkmk import RKMK, Stages, sparse_row
+from liehom.flow.methods.runge_kutta import Tableau
+from liehom.flow.methods.tableaux import tableau as tableau_of
+from liehom.flow.series.arrays import is_lazy, zeros
+from liehom.flow.series.jet import Jet
+from liehom.flow.steps.implicit import DIFFERENCE, NOT_ON_JETS, Equation, SparseRow, Stage, combined
+from liehom.flow.steps.step import Factors, Generator, LocalStep, OneExponential
+
+# Linearization: u' = f(u, s) in the algebra at a point, with f(u, s) = dexp^-1_u psi(Exp(u) m, t + s).
+
+Result = TypeVar("Result")
+
+
+@final
+class LastSize(Generic[Result]):
+    """A function of the step size that keeps its last result."""
+
+    def __init__(self, compute: Callable[[Values], Result]) -> None:
+        self._compute = compute
+        self._h: Any = None
+        self._last: list[Result] = []
+
+    def __call__(self, h: Values) -> Result:
+        """The result for the size h; arrays are compared by value, because their owner may have changed them."""
+        arrays = isinstance(h, np.ndarray) and isinstance(self._h, np.ndarray)
+        same = h is self._h if not arrays else h.dtype == self._h.dtype and np.array_equal(h, self._h)
+        if not (same and self._last):
+            self._last = [self._compute(h)]
+            self._h = h.copy() if isinstance(h, np.ndarray) else h
+        return self._last[0]
+
+
+@final
+class Linearization:
+    """f and its derivatives at u = 0, s = 0."""
+
+    def __init__(self, action: Action, psi: Generator, m: Values, t: Values, terms: int) -> None:
+        self.action, self.psi, self.m, self.t, self.terms = action, psi, m, t, terms
+        self.shape = (*np.shape(m)[:-1], action.dimension)
+        self.start: Values = psi(m, t)  # f(0, 0)
+        self._jacobian: Values | None = None
+        self._rate: Values | None = None
+
+    def value(self, u: Values, s: Real) -> Values:
+        """f(u, s), of the shape of u."""
+        velocity = self.psi(self.action.act(u, self.m), self.t + s)
+        if self.terms > 1:
+            velocity = self.action.exponential.differential_inverse(u, velocity, self.terms)
+        return velocity
+
+    @property
+    def jacobian(self) -> Values:
+        """df/du, shape (..., n, n)."""
+        if self._jacobian is None:
+            equation = Equation(lambda y: [self.value(y[0], 0.0)], [((0, 1.0),)])
+            self._jacobian = equation.blocks(zeros(self.m, (1, *self.shape)))[0]
+        return self._jacobian
+
+    @property
+    def rate(self) -> Values | None:
+        """df/ds, shape (..., n); None if psi does not depend on t."""
+        if not self.psi.field.time_dependent:
+            return None
+        if self._rate is None:
+            try:
+                moved: Any = self.psi(Jet.constant(self.m, 1), Jet.variable(self.t, 1))
+                self._rate = moved.coefficient(1) if isinstance(moved, Jet) else 0 * moved
+            except NOT_ON_JETS:
+                self._rate = (self.psi(self.m, self.t + DIFFERENCE) - self.start) / DIFFERENCE
+        return self._rate
+
+    def solve(self, scale: Values, right: Values) -> Values:
+        """x with (1 - scale J) x = right, for scale (..., 1)."""
+        return solve(np.eye(self.shape[-1]) - scale[..., None] * self.jacobian, right[..., None])[..., 0]
+
+
+# StiffRKMK: implicit Runge-Kutta-Munthe-Kaas steps with an estimate of the error that stays small for stiff fields. For
+# a collocation method with s stages the comparison is the quadrature with the nodes 0, c_1, ..., c_s and weight gamma
+# at 0, of order s (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8). The difference is
+# multiplied by (1 - h gamma J)^-1, J the derivative of the equation in the algebra, which keeps it bounded for stiff J.
+
+
+@final
+@dataclasses.dataclass(frozen=True, init=False, repr=False)
+class StiffRKMK(OneExponential):
+    """The Runge-Kutta-Munthe-Kaas step of an implicit tableau, with a step size for stiff fields.
+
+    With a fixed step size it is `RKMK` of the same tableau. An adaptive size follows from an embedded estimate, whereas
+    that of `RKMK` follows from Taylor coefficients of the error, which are large for stiff fields.
+
+    Parameters
+    ----------
+    tableau : Tableau or str
+        "radau3", "radau5", "radau9" (Radau IIA, L-stable), "sdirk4" (L-stable), "gauss2", "gauss3", ... (A-stable).
+
+    Examples
+    --------
+    A field with the rate 10^4, in a few steps:
+
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: 1e4 * np.cross(m, [0, 0, 1.0]))
+    >>> sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=StiffRKMK("radau5"), rtol=1e-6)
+    >>> sol.success, sol.n_steps < 60, bool(abs(sol.y[2, -1] - 1) < 1e-9)
+    (True, True, True)
+    """
+
+    tableau: Tableau
+    _base: RKMK = dataclasses.field(compare=False)
+
+    def __init__(self, tableau: Tableau | str) -> None:
+        object.__setattr__(self, "tableau", tableau_of(tableau))
+        object.__setattr__(self, "_base", RKMK(self.tableau))
+        if self.tableau.explicit:
+            raise InputError(f"tableau {self.tableau.name!r} is explicit: take RKMK({self.tableau.name!r})")
+        object.__setattr__(self, "_estimate", _estimate_of(self.tableau))
+
+    @property
+    def order(self) -> int:
+        return self.tableau.order
+
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
+        return self._base.generator(action, psi, m, t, h)
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        stages = Stages(self._base, action, psi, m, t, hasty=error_terms > 0)  # sizes are adaptive
+        return StiffStep(stages, *self._estimate)  # type: ignore[attr-defined]
+
+    def __repr__(self) -> str:
+        return f"StiffRKMK({self.tableau.name!r})"
+
+
+@final
+class StiffStep(LocalStep):
+    """An implicit step at one point, with the estimate of its error; `StiffRKMK.at` returns it."""
+
+    def __init__(self, stages: Stages, weights: SparseRow, gamma: float, at_start: bool, order: int) -> None:
+        super().__init__(stages.action, stages.m)
+        self.estimate_order = order
+        self._stages, self._weights, self._gamma, self._at_start = stages, weights, gamma, at_start
+        self._linear: Linearization | None = None
+
+    def factors(self, h: Values) -> Factors:
+        return (self._stages.combined(self._stages.numbers.b, h),)
+
+    def estimate(self, h: Values) -> Values:
+        """rho(x) m with x the filtered difference of two methods, for h (..., 1); shape (..., N)."""
+        stages = self._stages
+        if self._linear is None:
+            self._linear = Linearization(stages.action, stages.psi, stages.m, stages.t, min(stages.method.terms, 2))
+        stages.combined(stages.numbers.b, h)
+        difference: Any = combined(self._weights, stages.known)
+        if self._at_start:
+            difference = difference + self._gamma * h * self._linear.start
+        return stages.action.infinitesimal(self._linear.solve(self._gamma * h, difference), stages.m)
+
+
+def _estimate_of(tableau: Tableau) -> tuple[SparseRow, float, bool, int]:
+    """Weights of the estimate, gamma, whether f(0) takes part, and the order of the estimate."""
+    a, b, c, embedded = tableau.to_numpy()
+    eigenvalues = np.linalg.eigvals(a)
+    real = np.abs(eigenvalues[np.abs(eigenvalues.imag) < 1e-6])
+    gamma = float(real.max() if real.size and real.max() > 0 else np.abs(eigenvalues).max())
+    if embedded is not None:
+        order = min(tableau.order, tableau.embedded_order or tableau.order) + 1
+        return sparse_row((embedded - b).tolist()), gamma, False, order
+    s = len(c)
+    if len(np.unique(np.round(c, 12))) < s or bool((np.abs(c) < 1e-12).any()):
+        raise InputError(
+            f"tableau {tableau.name!r} has no embedded method, and its nodes {c.round(6).tolist()} give none: take "
+            "distinct nodes other than 0, or RKMK with a fixed step size"
+        )
+    # sum_i w_i c_i^(q-1) = 1/q for q = 1, ..., s, where the node 0 contributes gamma to q = 1
+    powers = np.vander(c, s, increasing=True).T
+    wanted = 1 / np.arange(1, s + 1)
+    wanted[0] -= gamma
+    return sparse_row((np.linalg.solve(powers, wanted) - b).tolist()), gamma, True, s + 1
+
+
+# Rosenbrock: linearly implicit steps, which solve linear systems with 1 - h gamma J and iterate nothing. For u' = f(u,
+# s), u(0) = 0 in the algebra, with J = f_u(0, 0) and f_s at the start,
+#     (1/gamma - h J) U_i = h f(sum_j a_ij U_j, alpha_i h) + sum_j c_ij U_j + gamma_i h^2 f_s,    u = sum_i m_i U_i
+# (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.7).
+
+_G = 1 - 1 / sqrt(2)
+
+
+class RosenbrockData(NamedTuple):
+    """Coefficients of a method; `e` are the weights of the estimate of the error, of order `estimate_order`."""
+
+    order: int
+    gamma: float
+    a: tuple[tuple[float, ...], ...]
+    c: tuple[tuple[float, ...], ...]
+    m: tuple[float, ...]
+    e: tuple[float, ...]
+    alpha: tuple[float, ...]
+    gammas: tuple[float, ...]
+    estimate_order: int
+
+
+_RODAS5 = (1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950)
+METHODS = {
+    "ros2": RosenbrockData(
+        2, _G, ((), (1 / _G,)), ((), (-2 / _G,)), (1.5 / _G, 0.5 / _G), (0.5 / _G, 0.5 / _G), (0.0, 1.0), (_G, -_G), 2
+    ),
+    "rodas3": RosenbrockData(
+        3, 0.5, ((), (0.0,), (2.0, 0.0), (2.0, 0.0, 1.0)), ((), (4.0,), (1.0, -1.0), (1.0, -1.0, -8 / 3)),
+        (2.0, 0.0, 1.0, 1.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0), (0.5, 1.5, 0.0, 0.0), 3,
+    ),
+    "rodas4": RosenbrockData(
+        4, 0.25,
+        (
+            (), (1.544,), (0.9466785280815826, 0.2557011698983284),
+            (3.314825187068521, 2.896124015972201, 0.9986419139977817), _RODAS5, (*_RODAS5, 1.0),
+        ),
+        (
+            (), (-5.6688,), (-2.430093356833875, -0.2063599157091915),
+            (-0.1073529058151375, -9.594562251023355, -20.47028614809616),
+            (7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160),
+            (8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054),
+        ),
+        (*_RODAS5, 1.0, 1.0), (0.0, 0.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.386, 0.21, 0.63, 1.0, 1.0),
+        (0.25, -0.1043, 0.1035, -0.03620000000000023, 0.0, 0.0), 4,
+    ),
+}  # fmt: skip
+"""ros2: J. G. Verwer et al. 1999; rodas3: A. Sandu et al. 1997; rodas4: E. Hairer, G. Wanner 1996. All are L-stable."""
+
+
+@final
+@dataclass(frozen=True)
+class Rosenbrock(OneExponential):
+    """A linearly implicit step of order 2, 3 or 4 for stiff fields, with an estimate of its error.
+
+    Parameters
+    ----------
+    name : str
+        "ros2", "rodas3" or "rodas4".
+
+    Notes
+    -----
+    psi is differentiated by Jets; psi that does not run on Jets is differentiated by differences.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: 1e4 * np.cross(m, [0, 0, 1.0]))
+    >>> sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=Rosenbrock("rodas4"))
+    >>> sol.success, sol.n_steps < 80, bool(abs(sol.y[2, -1] - 1) < 1e-9)
+    (True, True, True)
+    """
+
+    name: str = "rodas4"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or self.name not in METHODS:
+            known = ", ".join(map(repr, METHODS))
+            raise InputError(f"no Rosenbrock method is called {displayed(self.name)}; known: {known}")
+
+    @property
+    def order(self) -> int:
+        return METHODS[self.name].order
+
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
+        return self.at(action, psi, m, t).factors(h)[0]
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        return RosenbrockStep(METHODS[self.name], Linearization(action, psi, m, t, max(self.order - 1, 1)))
+
+
+@final
+class RosenbrockStep(LocalStep):
+    """A Rosenbrock step at one point, with an estimate of its error; `Rosenbrock.at` returns it."""
+
+    def __init__(self, method: RosenbrockData, linear: Linearization) -> None:
+        super().__init__(linear.action, linear.m)
+        self.estimate_order = method.estimate_order
+        self._method, self._linear = method, linear
+        self._stages = LastSize(self._computed)
+
+    def factors(self, h: Values) -> Factors:
+        return (_weighted(self._method.m, self._stages(h)),)
+
+    def estimate(self, h: Values) -> Values:
+        """rho(x) m with x the difference of the embedded methods, for h (..., 1); shape (..., N)."""
+        return self.action.infinitesimal(_weighted(self._method.e, self._stages(h)), self.m)
+
+    def _computed(self, h: Values) -> list[Any]:
+        """U_1, ..., U_s."""
+        method, linear = self._method, self._linear
+        stages: list[Any] = []
+        for i, gamma_i in enumerate(method.gammas):
+            u = _weighted(method.a[i], stages)
+            if u is None:
+                right = h * (
+                    linear.start if method.alpha[i] == 0 else linear.psi(self.m, linear.t + method.alpha[i] * h)
+                )
+            else:
+                right = h * linear.value(u, method.alpha[i] * h)
+            before = _weighted(method.c[i], stages)
+            right = right if before is None else right + before
+            if gamma_i and linear.rate is not None:
+                right = right + gamma_i * h * h * linear.rate
+            stages.append(linear.solve(method.gamma * h, method.gamma * right))
+        return stages
+
+
+def _weighted(weights: tuple[float, ...], terms: list[Any]) -> Stage:
+    """sum_j weights[j] terms[j]; None if there is nothing to add."""
+    total = None
+    for weight, term in zip(weights, terms, strict=False):
+        if weight:
+            total = weight * term if total is None else total + weight * term
+    return total
+
+
+# ExponentialRosenbrock: steps that integrate the linearization of the field exactly. For u' = f(u), u(0) = 0 in the
+# algebra, J = f'(0), D(u) = f(u) - f(0) - J u and phi_k(z) = sum_j z^j / (j + k)!,
+#     order 2:  u = h phi_1 f(0)
+#     order 3:  u = v + 2 h phi_3 D(v),   v = h phi_1 f(0)
+#     order 4:  u = v + h (16 phi_3 - 48 phi_4) D(p) + h (12 phi_4 - 2 phi_3) D(q),
+#               p = h/2 phi_1(h J/2) f(0),   q = v + h phi_1 D(p)
+# with phi_k = phi_k(h J) (M. Hochbruck, A. Ostermann, J. Schweitzer, SIAM J. Numer. Anal. 47, 2009). Time is an
+# additional coordinate s of the linear equation, s' = 1.
+
+PHIS = 4  # phi_1, ..., phi_4 are computed together
+
+
+@final
+@dataclass(frozen=True)
+class ExponentialRosenbrock(OneExponential):
+    """An exponential step of order 2, 3 or 4 for stiff and for rapidly oscillating fields.
+
+    Parameters
+    ----------
+    order : int
+
+    Notes
+    -----
+    Orders 3 and 4 have an estimate of the error. The functions phi_k are those of matrices, computed by
+    ``scipy.linalg.expm``, so the step is not compiled.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: 1e4 * np.cross(m, [0, 0, 1.0]))
+    >>> sol = lh.integrate(field, (0, 1), [0.6, 0.0, 0.8], step=ExponentialRosenbrock(4))
+    >>> sol.success, sol.n_steps < 80, bool(abs(sol.y[2, -1] - 1) < 1e-9)
+    (True, True, True)
+    """
+
+    order: int = 4
+
+    def __post_init__(self) -> None:
+        if isinstance(self.order, bool) or self.order not in (2, 3, 4):
+            raise InputError(f"exponential Rosenbrock steps have order 2, 3 or 4, got {displayed(self.order)}")
+
+    def generator(self, action: Action, psi: Generator, m: Values, t: Values, h: Values) -> Values:
+        return self.at(action, psi, m, t).factors(h)[0]
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        if is_lazy(m):
+            raise TraceError("exponential Rosenbrock steps need exponentials of matrices: take Rosenbrock('rodas4')")
+        return _ExponentialStep(self.order, Linearization(action, psi, m, t, max(self.order - 1, 1)))
+
+
+@final
+class _ExponentialStep(LocalStep):
+    """An exponential Rosenbrock step at one point; from order 3 on with an estimate of its error."""
+
+    def __init__(self, order: int, linear: Linearization) -> None:
+        super().__init__(linear.action, linear.m)
+        self.order, self._linear = order, linear
+        self.estimate_order = None if order == 2 else order
+        self._solved = LastSize(self._computed)
+
+    def factors(self, h: Values) -> Factors:
+        return (self._solved(h)[0],)
+
+    def _computed(self, h: Values) -> tuple[Any, Any]:
+        """The generator of the step of size h, and the difference from the one of lower order."""
+        at, rate = self._linear, self._linear.rate
+        jacobian: Any = at.jacobian
+        phi = _phis(h, jacobian)
+        v = h * _times(phi[0], at.start)
+        if rate is not None:
+            v = v + h * h * _times(phi[1], rate)
+        if self.order == 2:
+            return v, None
+
+        def rest(u: Values, s: Values) -> Stage:
+            difference = at.value(u, s) - at.start - _times(jacobian, u)
+            return difference if rate is None else difference - s * rate
+
+        if self.order == 3:
+            extra = 2 * h * _times(phi[2], rest(v, h))
+            return v + extra, extra
+        half = _phis(h / 2, jacobian)
+        p = h / 2 * _times(half[0], at.start)
+        if rate is not None:
+            p = p + h * h / 4 * _times(half[1], rate)
+        d = rest(p, h / 2)
+        e = rest(v + h * _times(phi[0], d), h)
+        extra = h * _times(phi[3], 12 * e - 48 * d)
+        return v + h * _times(phi[2], 16 * d - 2 * e) + extra, extra
+
+    def estimate(self, h: Values) -> Values:
+        """rho(x) m with x the difference of the methods of two orders, for h (..., 1); shape (..., N)."""
+        return self.action.infinitesimal(self._solved(h)[1], self.m)
+
+
+def _times(matrix: Stage, v: Stage) -> Stage:
+    return (matrix @ v[..., None])[..., 0]
+
+
+def _phis(h: Values, jacobian: Values) -> list[Any]:
+    """phi_1(h J), ..., phi_4(h J), each of shape (..., n, n), for h (..., 1)."""
+    a: Any = h[..., None] * jacobian
+    n = jacobian.shape[-1]
+    if isinstance(a, Jet):
+        return [_series(a, k, n) for k in range(1, PHIS + 1)]
+    from scipy.linalg import expm
+
+    wide = np.zeros((*a.shape[:-2], n * (PHIS + 1), n * (PHIS + 1)))
+    wide[..., :n, :n] = np.where(np.isfinite(a).all(axis=(-1, -2), keepdims=True), a, 0.0)
+    for k in range(PHIS):
+        wide[..., n * k : n * (k + 1), n * (k + 1) : n * (k + 2)] = np.eye(n)
+    exponential = expm(wide)
+    return [exponential[..., :n, n * k : n * (k + 1)] for k in range(1, PHIS + 1)]
+
+
+def _series(a: Jet, k: int, n: int) -> Stage:
+    """phi_k of a series without constant term."""
+    total, power = np.eye(n) / factorial(k), a
+    for j in range(1, a.order + 1):
+        total = total + power / factorial(j + k)
+        power = power @ a
+    return total

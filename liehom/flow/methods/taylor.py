@@ -1,0 +1,266 @@
+"""Taylor: the Taylor series of the trajectory, landed on the orbit.
+
+    m~(h) = m_0 + m_1 h + ... + m_n h^n,   (k + 1) m_(k+1) = sum_(i <= k) rho(psi_i) m_(k-i)
+
+is next to the orbit, at a distance of order n + 1. The landing moves it there without a loss of order: see
+docs/theory/taylor.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+from math import ceil, log
+from typing import Any, ClassVar, NamedTuple, final
+
+import numpy as np
+
+from liehom.base.errors import InputError
+from liehom.base.typing import Array, IntegerArray, Values
+from liehom.flow.action.exponential import TrueExponential
+from liehom.flow.action.quadrics import Quadrics, TightInverse, quadric_orbits, tight_inverse
+from liehom.flow.action.space import Action
+from liehom.flow.run.control import length
+from liehom.flow.series.arrays import is_traced, namespace
+from liehom.flow.series.jet import Jet
+from liehom.flow.steps.corrected import least_generator
+from liehom.flow.steps.expansion import Flow, flow_series
+from liehom.flow.steps.step import SERIES_FRACTION, Generator, LocalStep, Step, StepLimits, over_sites, polynomial
+from liehom.flow.tracing.array import Traced
+
+MAGNUS_ORDER = 4  # order of Exp(xi) m for xi = M_0 - [M_0, M_1] and the true exponential
+SECOND_ORDER = 2  # the same for any other Exp, which agrees with the true one through order 2
+EVEN = 2.0  # a term of a Taylor series is at most this, in units of what it is if the series converges evenly
+MIN_DEFAULT_ORDER, MAX_DEFAULT_ORDER = 4, 24  # bounds for the order that follows from a tolerance
+
+
+class Landing(NamedTuple):
+    """Data for the landing on the orbits of a run."""
+
+    quadrics: Quadrics | None  # onto whose level sets points are projected; if None, by exponentials
+    inverse: TightInverse | None  # of x -> rho(x) m in closed form; if None, by an orthogonal decomposition
+
+
+@final
+@dataclass(frozen=True)
+class Taylor(Step):
+    """The Taylor series of the trajectory, of any order n, landed on the orbit.
+
+    Parameters
+    ----------
+    n : int
+        The order, at least 1.
+
+    Notes
+    -----
+    The series of the trajectory costs n (n + 1) / 2 actions rho(psi_i) m_k, and no bracket. How it is landed on the
+    orbit follows from the orbit (theory/taylor).
+
+    * By projection onto level sets of invariant quadratic forms, if the orbit is open in them. Spheres, hyperboloids,
+      light cones and their products are such orbits. The levels are those at the start of the run.
+    * By nothing, if the orbit is open in V, or in V up to constant coordinates.
+    * Otherwise by two exponentials, Exp(eta) Exp(xi) m. Here xi is the Magnus series of order 4 of the psi_i, and eta
+      is the generator of minimal norm that moves Exp(xi) m to the series, in ceil((n + 1) / 5) - 1 iterations.
+
+    An adaptive step size follows from the last two coefficients, without rejection: the terms m_(n-1) h^(n-1) and
+    m_n h^n are at most the tolerance, which is then far above what is left out. These coefficients are those at the
+    initial point of the step. If psi has a jump or a kink within the step, they do not show it. The points stay on the
+    orbit, but order and tolerance are not kept in that step. End the run at such a time and start it again, give
+    `max_step`, or take `RKMK` with an embedded pair.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), lambda m: -m * [1.0, 0.5, 0.25])
+    >>> sol = lh.integrate(field, (0, 10), [0.6, 0.0, 0.8], step=lh.Taylor(12), dt=0.5)
+    >>> bool(abs(np.linalg.norm(sol.y[:, -1]) - 1) < 1e-15)
+    True
+    """
+
+    n: int
+    _landing: ClassVar[Landing | None] = None  # of `prepare`
+
+    def __post_init__(self) -> None:
+        if isinstance(self.n, bool) or not isinstance(self.n, int | np.integer) or self.n < 1:
+            raise InputError(f"the order of a Taylor step is an integer at least 1, got {self.n!r}")
+
+    @classmethod
+    def for_tolerance(cls, tolerance: float) -> Taylor:
+        """The step of the order 1 - ln(tolerance) / 2, rounded up: the cheapest one at this relative tolerance.
+
+        The size of a step is about the radius of convergence rho of the series times tolerance^(1/n), and its cost is
+        about n^2. The order minimizes n^2 / tolerance^(1/n), up to the rounding.
+
+        Parameters
+        ----------
+        tolerance : float
+            The order is between 4 and 24.
+
+        Examples
+        --------
+        >>> Taylor.for_tolerance(1e-6), Taylor.for_tolerance(1e-12)
+        (Taylor(n=8), Taylor(n=15))
+        """
+        n = ceil(1 - log(tolerance) / 2) if tolerance > 0 else MAX_DEFAULT_ORDER
+        return cls(min(max(n, MIN_DEFAULT_ORDER), MAX_DEFAULT_ORDER))
+
+    @property
+    def order(self) -> int:
+        return int(self.n)
+
+    def at(self, action: Action, psi: Generator, m: Values, t: Values, *, error_terms: int = 0) -> LocalStep:
+        if self._landing is None:
+            return self.prepare(action, psi, m, t).at(action, psi, m, t, error_terms=error_terms)
+        flow = flow_series(psi.field, m, self.order, t[..., 0] if np.ndim(t) else t)
+        quadrics, inverse = self._landing
+        if quadrics is None:
+            return LandedSeries(action, m, flow, self.order, psi.orbit_dimension, inverse)
+        return ProjectedSeries(action, m, flow, self.order, quadrics, psi.start)
+
+    @property
+    def trace_key(self) -> Hashable:
+        """How points are landed."""
+        return None if self._landing is None else tuple(part is None for part in self._landing)
+
+    def prepare(self, action: Action, psi: Generator, m: Values, t: Values) -> Taylor:
+        """The step with the quadratic forms of the orbits of a run, or with the inverse of x -> rho(x) m on them."""
+        start: Any = psi.start if psi.start is not None else m
+        points = np.zeros((0, m.shape[-1])) if is_traced(start) else np.asarray(start)
+        inverse, quadrics = None, quadric_orbits(action.representation, psi.orbit_dimension, points)
+        dimensions = np.unique(psi.orbit_dimension)
+        if quadrics is None and len(dimensions) == 1 and points.dtype == np.float64:
+            inverse = tight_inverse(action, points, int(dimensions[0]))
+        return self.with_prepared(_landing=Landing(quadrics, inverse))
+
+
+class TaylorSeries(LocalStep):
+    """The Taylor polynomial of the trajectory at one point, next to the orbit."""
+
+    def __init__(self, action: Action, m: Values, flow: Flow, order: int) -> None:
+        super().__init__(action, m)
+        self.coefficients: list[Values] = [flow.point(k) for k in range(1, order + 1)]
+
+    def size(self, limits: StepLimits) -> Array:
+        """Largest size (...,) at which the last two terms, and those of the upper half of the orders as the last may
+        vanish, are within the error that is allowed, and at most a tenth of the length |X| h of the step.
+        """
+        n, xp = len(self.coefficients), namespace(limits.largest, limits.speed)
+        first = max(n // 2, 1)
+        terms = [over_sites(length(x), limits.axes) for x in self.coefficients[first - 1 :]]
+        before, last = terms[-2] if n > 1 else terms[-1], terms[-1]
+        way: Any = xp.where(limits.speed > 0, SERIES_FRACTION * limits.speed, np.inf)
+        a: Any = limits.allowed / last  # h^n is at most this
+        least, root = a, 1 / n
+        if n > 3:
+            # h^(n-1) and h^(n-2) are at most b and c; powers of quotients, which are sizes, do not overflow
+            b: Any = xp.minimum(limits.allowed / before, way / last)
+            c: Any = way / before
+            first_of_two = (a / b) ** (n - 1) < b
+            least, root = xp.where(first_of_two, a, b), xp.where(first_of_two, 1 / n, 1 / (n - 1))
+            third = ((a / c) ** (n - 2) > c * c) & ((b / c) ** (n - 2) > c)
+            least, root = xp.where(third, c, least), xp.where(third, 1 / (n - 2), root)
+        h: Any = xp.minimum(limits.largest, least**root)
+        return self._shortened(h, terms[:-2], first, limits)
+
+    def _shortened(self, h: Array, terms: Sequence[Array], first: int, limits: StepLimits) -> Array:
+        """The size, smaller if a term of an order k from `first` on is not small: with an error of |m| theta^n it may
+        be `EVEN` times |m| theta^k, that of a series that converges evenly, with k/n rounded down to eighths.
+        """
+        if not terms:
+            return h
+        n, xp = len(self.coefficients), namespace(h, limits.speed)
+        size: Any = over_sites(length(self.m), limits.axes)
+        eighth, worst = xp.sqrt(xp.sqrt(xp.sqrt(size / limits.allowed))), 1.0
+        unit, power = 1 / (EVEN * size), h**first
+        for k, term in enumerate(terms, first):
+            part = xp.where(term > 0, term * power * unit * eighth ** (8 * k // n), 0.0)
+            worst, power = xp.maximum(worst, part), power * h
+        while first > 1:  # a root of an order that is a power of 2 and at most `first`
+            worst, first = xp.sqrt(worst), first // 2
+        return h / worst
+
+    def series(self, h: Values) -> Values:
+        """m_0 + m_1 h + ... + m_n h^n for h of shape (..., 1), shape (..., N)."""
+        return self.m + polynomial([None, *self.coefficients], h)
+
+
+@final
+class ProjectedSeries(TaylorSeries):
+    """The Taylor polynomial, projected onto level sets of quadratic forms."""
+
+    def __init__(
+        self, action: Action, m: Values, flow: Flow, order: int, quadrics: Quadrics, start: Values | None
+    ) -> None:
+        super().__init__(action, m, flow, order)
+        self._quadrics = quadrics
+        self._levels: Values | None = None
+        if quadrics.blocks and isinstance(m, Traced):  # computed once for each trajectory
+            levels = [m.tape.trajectory_constant(_level(quadrics, b)) for b in range(len(quadrics.blocks))]
+            self._levels = Traced(m.tape, levels)
+        elif quadrics.blocks:
+            self._levels = quadrics.levels(m if start is None else start)
+
+    def point(self, h: Values) -> Values:
+        """Point after the step of size h (..., 1), shape (..., N)."""
+        landed = self.series(h)
+        return landed if self._levels is None else self._quadrics.project(landed, self._levels)
+
+
+@final
+class LandedSeries(TaylorSeries):
+    """The Taylor polynomial m~(h), landed on the orbit by exponentials: Exp(eta(h)) Exp(xi(h)) m."""
+
+    def __init__(
+        self,
+        action: Action,
+        m: Values,
+        flow: Flow,
+        order: int,
+        orbit_dimension: int | IntegerArray,
+        inverse: TightInverse | None = None,
+    ) -> None:
+        super().__init__(action, m, flow, order)
+        self._dimension, self._inverse = orbit_dimension, inverse
+        self._velocity = [flow.psi(k) for k in range(order)]
+        magnus = MAGNUS_ORDER if isinstance(action.exponential, TrueExponential) else SECOND_ORDER
+        # corrections of eta: with q - 1 the order of Exp(xi(h)) m, the error is O(h^(q (j + 1))) after j of them
+        self.iterations: int = ceil((order + 1) / (magnus + 1)) - 1
+
+    def generator(self, h: Values) -> Values:
+        """xi(h) = M_0 - [M_0, M_1] for h of shape (..., 1), shape (..., dim g)."""
+        psi = self._velocity
+        mean = polynomial([None, *(x / (k + 1) for k, x in enumerate(psi))], h)
+        if len(psi) == 1:
+            return mean
+        weights = [1 / (k + 2) - 1 / (2 * (k + 1)) for k in range(1, len(psi))]
+        moment = polynomial([None, *(w * x for w, x in zip(weights, psi[1:], strict=True))], h) * h
+        return mean - self.action.bracket(mean, moment)
+
+    def point(self, h: Values) -> Values:
+        """Point after the step of size h (..., 1), shape (..., N)."""
+        if isinstance(h, Jet):
+            raise InputError("the landing of a Taylor step on these orbits is not expanded in h: correct LieTaylor")
+        near = self.action.act(self.generator(h), self.m)
+        if not self.iterations:
+            return near
+        wanted, lifted = self.series(h), self._lift(near)
+        eta, landed = None, near
+        for _ in range(self.iterations):
+            change = lifted(wanted - landed)
+            eta = change if eta is None else eta + change
+            landed = self.action.act(eta, near)
+        return landed
+
+    def _lift(self, point: Values) -> Callable[[Values], Values]:
+        """The map v -> x of smallest norm with rho(x) m the tangential part of v, at a point m."""
+        if self._inverse is not None:
+            inverse, over = self._inverse, self._inverse.over(self.m if isinstance(self.m, Traced) else point)
+            return lambda v: inverse.lifted(self.action, point, v, over)
+        frame = self.action.isotropy_frame(point, self._dimension)
+        return lambda v: least_generator(frame, v)
+
+
+def _level(quadrics: Quadrics, index: int) -> Callable[[Array], Array]:
+    """Function of points (..., N) with the values of a form, of shape (...,)."""
+    return lambda points: quadrics.levels(points)[..., index]

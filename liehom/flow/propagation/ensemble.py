@@ -1,0 +1,534 @@
+"""integrate_ensemble: an ensemble in chunks on any executor."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple, TypeAlias, Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.base.disk import digest
+from liehom.base.errors import InputError, LiehomError, ShapeError
+from liehom.base.pytrees import Leaf, PerTrajectory, check_numbers, mapped, numbers_of
+from liehom.base.store import open_store
+from liehom.base.tasks import BUFFERSIZE, ExecutorLike, completed
+from liehom.base.typing import Array, IntegerArray, Pytree
+from liehom.flow.action.field import GeneratorField, check_point
+from liehom.flow.engines.arguments import EnsembleOptions, least_atol
+from liehom.flow.propagation.integration import integrate
+from liehom.flow.propagation.propagator import ATOL, RTOL, default_step, without_order_warning
+from liehom.flow.run.options import LOST, TRAJECTORY_MARK, Progress, Span, also_lost, among, overall_status, points_of
+from liehom.flow.run.records import ConservationReport, Report
+from liehom.flow.run.solution import Solution, as_arrays, from_arrays, stable_repr, warn_of_order
+from liehom.flow.steps.step import as_step
+
+# Solutions of the parts of an ensemble merged into one.
+
+
+def merged(parts: Sequence[Solution], *, sampled: bool) -> Solution:
+    """The solution of an ensemble from the solutions of its parts, consecutive rows of it."""
+    statuses = np.concatenate([part.statuses for part in parts])
+    status = overall_status(statuses)
+    report = merged_report([part.report for part in parts], _direction(parts))
+    count = max(part.t.shape[-1] for part in parts)
+    events = parts[0].t_events is not None
+    return Solution(
+        t=parts[0].t if sampled else np.concatenate([_filled(part.t, count) for part in parts]),
+        y=np.concatenate([_filled(part.y, count) for part in parts]),
+        sol=None,
+        t_events=_joined([part.t_events for part in parts]) if events else None,
+        y_events=_joined([part.y_events for part in parts]) if events else None,
+        nfev=sum(part.nfev for part in parts),
+        status=status,
+        message=_message(parts, statuses, status, report),
+        n_steps=np.concatenate([part.n_steps for part in parts]),
+        report=report,
+        statuses=statuses,
+    )
+
+
+def merged_report(reports: Sequence[Report], direction: float = 1.0) -> Report:
+    """The report of several runs by one method: extremes and sums of their reports."""
+    least = min(reports, key=lambda report: report.singular_value)
+    conserved = [report.conservation for report in reports if report.conservation is not None]
+    return dataclasses.replace(
+        reports[0],
+        order=min(report.order for report in reports),
+        worst_residual=max(report.worst_residual for report in reports),
+        singular_value=least.singular_value,
+        singular_at=least.singular_at,
+        rank=_least_rank([report.rank for report in reports]),
+        orbit_dimension=max(report.orbit_dimension for report in reports),
+        failed_steps=sum(report.failed_steps for report in reports),
+        equilibria=sum(report.equilibria for report in reports),
+        near_steps=sum(report.near_steps for report in reports),
+        unkept_from=_earliest([report.unkept_from for report in reports], direction),
+        stopped_at=_earliest([report.stopped_at for report in reports], direction),
+        conservation=_conserved(conserved) if conserved else None,
+        diagnostics=_totals([report.diagnostics for report in reports]),
+    )
+
+
+# -- private helpers -------------------------------------------------------------------------------------
+def _filled(array: Array, count: int) -> Array:
+    """The array with its last axis filled up with NaN to length `count`."""
+    missing = count - array.shape[-1]
+    if missing == 0:
+        return array
+    return np.concatenate([array, np.full((*array.shape[:-1], missing), np.nan, dtype=array.dtype)], axis=-1)
+
+
+def _joined(parts: Sequence[list[npt.NDArray[Any]] | None]) -> list[npt.NDArray[Any]]:
+    """For each event, the arrays of the parts joined."""
+    return [np.concatenate(arrays) for arrays in zip(*[part or [] for part in parts], strict=True)]
+
+
+def _message(parts: Sequence[Solution], statuses: IntegerArray, status: int, report: Report) -> str:
+    """The message of the first part with the status; after a failure, with the index in the whole ensemble."""
+    message = next(part.message for part in parts if part.status == status)
+    if status >= 0:
+        return message
+    more = "" if status != -1 or report.unkept_from is None else also_lost(report.wanted_order, report.loss)
+    return message.split(TRAJECTORY_MARK)[0] + among(statuses == status, " failed" if status == -1 else LOST) + more
+
+
+def _direction(parts: Sequence[Solution]) -> float:
+    """1, or -1 if time decreases in the trajectories."""
+    return -1.0 if any(np.any(np.diff(part.t) < 0) for part in parts) else 1.0
+
+
+def _earliest(times: Sequence[float | None], direction: float) -> float | None:
+    """The earliest of some times; None stands for no time, in `times` and as the result."""
+    return min((time for time in times if time is not None), key=lambda time: direction * time, default=None)
+
+
+def _least_rank(ranks: Sequence[int]) -> int:
+    """The smallest rank that was met; 0 stands for no rank, in `ranks` and as the result."""
+    return min((rank for rank in ranks if rank), default=0)
+
+
+def _totals(parts: Sequence[tuple[tuple[str, str, float], ...]]) -> tuple[tuple[str, str, float], ...]:
+    """Totals of the diagnostics of several runs."""
+    values: dict[tuple[str, str], list[float]] = {}
+    for name, kind, value in (entry for part in parts for entry in part):
+        values.setdefault((name, kind), []).append(value)
+    return tuple(
+        (name, kind, max(x) if kind == "max" else min(x) if kind == "min" else sum(x))
+        for (name, kind), x in values.items()
+    )
+
+
+def _conserved(reports: Sequence[ConservationReport]) -> ConservationReport:
+    short = [report.short_at for report in reports if report.short_at is not None]
+    return dataclasses.replace(
+        reports[0],
+        rank=_least_rank([report.rank for report in reports]),
+        wanted=max(report.wanted for report in reports),
+        iterations=max(report.iterations for report in reports),
+        defect=max(report.defect for report in reports),
+        missed_steps=sum(report.missed_steps for report in reports),
+        left_steps=sum(report.left_steps for report in reports),
+        short_steps=sum(report.short_steps for report in reports),
+        short_at=min(short, key=lambda at: at[0], default=None),
+    )
+
+
+# EnsembleProblem: one call of `integrate` as a value, which can be cut into rows, sent to a worker and compared.
+
+ARRAYS = ("dt", "t_eval")  # the options of `integrate` that are arrays
+
+Fields: TypeAlias = GeneratorField | Callable[..., GeneratorField]
+"""A field, or a function of parameters that returns one."""
+
+
+class EnsembleProblem(NamedTuple):
+    """The arguments of a call of `integrate`, for a whole ensemble or for the rows that one worker gets."""
+
+    field: Fields
+    t_span: Iterable[float] | Span
+    start: Array
+    parameters: dict[str, npt.NDArray[Any]]
+    options: dict[str, Any]
+
+    def task(self, rows: tuple[int, int]) -> EnsembleProblem:
+        """The problem of the rows first to last - 1, given as (first, last)."""
+        here = slice(*rows)
+        options = self.options
+        dt: Any = options.get("dt")
+        if np.ndim(dt):
+            try:
+                options = {**options, "dt": np.broadcast_to(np.asarray(dt), self.start.shape[:-1])[here]}
+            except ValueError:
+                raise ShapeError(f"dt has shape {np.shape(dt)}, the ensemble {self.start.shape[:-1]}") from None
+        if "args" in options:
+            options = {**options, "args": _rows(options["args"], here)}
+        parameters = {name: array[here] for name, array in self.parameters.items()}
+        return self._replace(start=self.start[here], parameters=parameters, options=options)
+
+    def ends(self) -> tuple[float, float]:
+        """Initial and final time as floats; (0, 0) if they are not numbers, which `integrate` rejects."""
+        try:
+            first, last = (float(t) for t in self.t_span)
+        except (TypeError, ValueError):
+            first = last = 0.0
+        return first, last
+
+    def made(self) -> GeneratorField:
+        """The field of these trajectories, with its args if they are given."""
+        field = self.field if isinstance(self.field, GeneratorField) else self.field(**self.parameters)
+        if not isinstance(field, GeneratorField):
+            raise InputError(f"field(**parameters) returned {field!r}, expected a GeneratorField")
+        args = self.options.get("args")
+        return field if args is None else field.with_args(args)
+
+    def check(self, bounds: list[tuple[int, int]]) -> GeneratorField:
+        """The field of the whole ensemble, after a test that psi of a chunk equals psi of the whole on its rows."""
+        check_numbers(self.options.get("args"), self.start.shape[:-1])
+        field, times = self.made(), np.full(self.start.shape[:-1], self.ends()[0])
+        # here rather than by the workers, who would count trajectories from the first of their chunk
+        check_point(field.representation, self.start)
+        field.check(self.start, times)
+        with np.errstate(all="ignore"):
+            values = np.asarray(field.psi(self.start, times))
+            for rows in {bounds[0], bounds[-1]} if len(bounds) > 1 else ():
+                part = self.task(rows)
+                try:
+                    mine = np.asarray(part.made().psi(part.start, times[slice(*rows)]))
+                    same = np.allclose(mine, values[slice(*rows)], rtol=1e-6, equal_nan=True)
+                except (ValueError, LiehomError) as error:
+                    raise _whole_only(rows) from error
+                if not same:
+                    raise _whole_only(rows)
+        return field
+
+    def fingerprint(self, field: GeneratorField, bounds: list[tuple[int, int]]) -> str:
+        """Digest that distinguishes this problem from others: numbers, strings, psi at the initial points and near."""
+        named = sorted(self.options.keys() - {*ARRAYS, "args"})
+        texts = [f"{name}={_option_text(self.options[name])}" for name in named]
+        numbers = [np.asarray(self.options[name]) for name in ARRAYS if self.options.get(name) is not None]
+        parameters = [self.parameters[name] for name in sorted(self.parameters)]
+        parameters += numbers_of(self.options.get("args"))
+        matrices = [a.to_numpy() for a in field.representation.matrices]
+        first, last = self.ends()
+        lead, ahead = self.start.shape[:-1], 1e-3 * (last - first)
+        here = np.asarray(field.psi(self.start, np.full(lead, first)))
+        near = self.start + ahead * np.asarray(field.vector(self.start, np.full(lead, first)))
+        there = np.asarray(field.psi(near, np.full(lead, first + ahead)))
+        arrays = (np.array([first, last]), self.start, *numbers, *parameters, *matrices, here, there)
+        return digest(repr(texts), repr(bounds), *arrays)
+
+
+def solved(task: EnsembleProblem) -> Solution:
+    """The solution of a problem, by `integrate` without its warning; the function that workers call."""
+    with without_order_warning():  # chunks are merged, and the whole ensemble issues one
+        return integrate(task.made(), task.t_span, task.start, **task.options)
+
+
+def all_solved(
+    problems: Sequence[EnsembleProblem], executor: ExecutorLike, store: str | os.PathLike[str] | None, retries: int = 2
+) -> list[Solution]:
+    """The solutions of some problems, in their order, computed on an executor and kept in a store if one is given."""
+    names = [f"run-{number:04d}" for number in range(len(problems))]
+    kept, solutions = None, dict[int, Solution]()
+    if store is not None:
+        kept = open_store(store, digest(repr([problem.fingerprint(problem.made(), []) for problem in problems])))
+        read = {i: kept.restored(name, from_arrays) for i, name in enumerate(names) if name in kept.names()}
+        solutions = {i: solution for i, solution in read.items() if solution is not None}
+    todo = [i for i in range(len(problems)) if i not in solutions]
+    for number, solution in completed(solved, (problems[i] for i in todo), executor, retries=retries):
+        if kept is not None:
+            kept.save(names[todo[number]], *as_arrays(solution))
+        solutions[todo[number]] = solution
+    return [solutions[i] for i in range(len(problems))]
+
+
+# -- private helpers ---------------------------------------------------------------------------------------
+def _whole_only(rows: tuple[int, int]) -> ShapeError:
+    return ShapeError(
+        f"psi of the trajectories {rows[0]} to {rows[1] - 1} is not what it is within the whole ensemble: does it "
+        "carry one parameter for each trajectory? Pass a function that makes the field, and parameters={'name': array}"
+    )
+
+
+def _rows(args: Pytree, rows: slice) -> Pytree:
+    """args of some rows of an ensemble."""
+
+    def taken(leaf: Leaf) -> object:
+        return leaf.value.rows(rows) if isinstance(leaf.value, PerTrajectory) else leaf.value
+
+    return mapped(args, taken)
+
+
+def _option_text(value: object) -> str:
+    """String of an option for fingerprints, equal in every process."""
+    if isinstance(value, list | tuple):
+        return repr([_option_text(x) for x in value])
+    if callable(value) and hasattr(value, "__qualname__"):
+        marks = [repr(getattr(value, name, None)) for name in ("terminal", "direction")]
+        return f"{value.__module__}.{value.__qualname__} {marks}"
+    return stable_repr(value)
+
+
+# integrate_ensemble: an ensemble in chunks, each by `integrate`, on any executor and optionally stored on disk. The
+# boundaries of the chunks depend on the size of the ensemble and of a chunk alone. So they, and the results, do not
+# depend on the executor.
+
+CHUNK = 1024  # default number of trajectories in a chunk, large enough for the fixed cost of a step to be small
+UNSUPPORTED_OPTIONS = {
+    "dense_output": "take t_eval: the interpolant of an ensemble is not put together from chunks",
+    "checkpoint": "give store=...: finished chunks are stored there",
+    "checkpoint_every": "give store=...: finished chunks are stored there",
+}
+
+
+class EnsemblePart(NamedTuple):
+    """The solution of the trajectories `first` to `last` - 1 of an ensemble."""
+
+    first: int
+    last: int
+    solution: Solution
+
+
+def integrate_ensemble(
+    field: Fields,
+    t_span: Iterable[float],
+    y0: npt.ArrayLike,
+    *,
+    parameters: Mapping[str, npt.ArrayLike] | None = None,
+    executor: ExecutorLike = None,
+    chunk: int = CHUNK,
+    store: str | os.PathLike[str] | None = None,
+    retries: int = 2,
+    progress: bool | Callable[[float], object] = False,
+    **options: Unpack[EnsembleOptions],
+) -> Solution:
+    """Solution of an ensemble that is integrated in chunks, on any executor, like that of one run of `integrate`.
+
+    Parameters
+    ----------
+    field : GeneratorField or callable
+        The field; or, if trajectories have their own parameters, a function ``field(**parameters)`` that returns the
+        field of a chunk, called with the rows of the parameters that belong to it.
+    t_span, y0
+        As for `integrate`; y0 has shape (n, ..., N) and is cut along its first axis.
+    parameters : mapping of str to array of shape (n, ...), optional
+        Only with a function as `field`.
+    executor : Executor or callable, optional
+        Any `concurrent.futures.Executor`: of processes, of threads, of a dask client (``client.get_executor()``), of
+        mpi4py, ...; or a function without parameters that returns one, which is called again when workers die.
+        Without it chunks are solved one after the other.
+    chunk : int
+        The largest number of rows of y0 in a task; the sizes of tasks differ by at most one row.
+    store : path, optional
+        A folder, or a name that ends in .zarr for a zarr group, to which each finished chunk is written. After an
+        interruption of any kind, the same call continues with the missing chunks.
+    retries : int
+        How many times a chunk whose worker was lost is tried again, and how many times in succession executors may
+        break without a chunk finished in between.
+    progress : bool or callable
+        As for `integrate`, by finished chunks.
+    **options
+        Options of `integrate` (step, dt, rtol, t_eval, events, ...); dt may have a step size for each trajectory.
+
+    Returns
+    -------
+    Solution
+        As `integrate` returns it. `nfev` is the sum over the chunks.
+
+    Raises
+    ------
+    ShapeError, InputError
+        As for `integrate`; also if psi needs the whole ensemble, or an argument cannot be sent to another process.
+    WorkerLostError
+        If workers are lost more often than `retries` allows.
+    FormatError
+        If `store` is not a store. A damaged shard is computed again, with a `DamageWarning`.
+
+    Notes
+    -----
+    For a given `chunk` the results do not depend on the executor, bit for bit on machines of one kind. They hardly
+    depend on `chunk`: trajectories are stepped together, each with its own time and step size, but some decisions (the
+    number of terms of a series) are made for all of them, which may show in the last bit.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.adjoint(lh.so(3)), ["-m0", "-m1/2", "-m2/3"])
+    >>> starts = np.random.default_rng(0).normal(size=(20, 3))
+    >>> with ThreadPoolExecutor(2) as pool:
+    ...     sol = integrate_ensemble(field, (0, 1), starts, executor=pool, chunk=5, t_eval=[0.5, 1])
+    ...
+    >>> sol.y.shape, np.array_equal(sol.y, integrate_ensemble(field, (0, 1), starts, chunk=5, t_eval=[0.5, 1]).y)
+    ((20, 3, 2), True)
+    """
+    starts: Any = y0
+    parts: list[EnsemblePart] = []
+    with Progress(progress) as shown:
+        for part in ensemble_parts(
+            field,
+            t_span,
+            y0,
+            parameters=parameters,
+            executor=executor,
+            chunk=chunk,
+            store=store,
+            retries=retries,
+            **options,
+        ):
+            parts.append(part)
+            shown.update(lambda: sum(part.last - part.first for part in parts) / len(starts))
+        shown.update(lambda: 1.0, last=True)
+    sampled = options.get("t_eval") is not None
+    solution = merged([part.solution for part in sorted(parts, key=lambda part: part.first)], sampled=sampled)
+    warn_of_order(solution.report, stacklevel=2)
+    return solution
+
+
+def ensemble_parts(
+    field: Fields,
+    t_span: Iterable[float],
+    y0: npt.ArrayLike,
+    *,
+    parameters: Mapping[str, npt.ArrayLike] | None = None,
+    executor: ExecutorLike = None,
+    chunk: int = CHUNK,
+    store: str | os.PathLike[str] | None = None,
+    retries: int = 2,
+    **options: Unpack[EnsembleOptions],
+) -> Iterator[EnsemblePart]:
+    """Iterator over the chunks of an ensemble in order of completion, for ensembles that do not fit in memory.
+
+    Parameters
+    ----------
+    field, t_span, y0, parameters, executor, chunk, store, retries, **options
+        As for `integrate_ensemble`.
+
+    Returns
+    -------
+    iterator of EnsemblePart
+        (first, last, solution): rows first to last - 1 of y0. Chunks in the store come first, and each chunk is in the
+        store when it is returned.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> starts = np.array([[1.0, 0.0], [0.6, 0.8], [0.0, 1.0]])
+    >>> for part in ensemble_parts(field, (0, 1), starts, chunk=2, dt=0.25):
+    ...     print(part.first, part.last, part.solution.y.shape)
+    ...
+    0 1 (1, 2, 5)
+    1 3 (2, 2, 5)
+    """
+    for name in UNSUPPORTED_OPTIONS.keys() & options.keys():
+        raise InputError(f"{name} is not an option of an ensemble in chunks; {UNSUPPORTED_OPTIONS[name]}")
+    start = points_of(y0)
+    if start.ndim < 2 or not len(start):
+        raise ShapeError(f"y0 has shape {start.shape}, expected an ensemble, (n, ..., N); one run is `integrate`'s")
+    if isinstance(chunk, bool) or not isinstance(chunk, int | np.integer) or chunk < 1:
+        raise InputError(f"chunk is {chunk!r}, expected the number of trajectories of a task")
+    arrays = _checked(parameters, field, len(start))
+    problem = EnsembleProblem(field, t_span, start, arrays, dict(_with_step(options)))
+    bounds = _bounds(len(start), int(chunk))
+    one_field = problem.check(bounds)
+    kept = None if store is None else open_store(store, problem.fingerprint(one_field, bounds))
+    done = frozenset() if kept is None else kept.names()
+    todo = [rows for rows in bounds if _name(rows) not in done]
+
+    def parts() -> Iterator[EnsemblePart]:
+        for rows in bounds:
+            if kept is not None and _name(rows) in done:
+                stored = kept.restored(_name(rows), from_arrays)
+                if stored is None:
+                    todo.append(rows)
+                else:
+                    yield EnsemblePart(*rows, stored)
+        tasks, buffersize = (problem.task(rows) for rows in todo), _buffersize(start, chunk)
+        for number, solution in completed(solved, tasks, executor, retries=retries, buffersize=buffersize):
+            rows = todo[number]
+            if kept is not None:
+                kept.save(_name(rows), *as_arrays(solution))
+            yield EnsemblePart(*rows, solution)
+
+    return parts()
+
+
+def stored_parts(store: str | os.PathLike[str]) -> Iterator[EnsemblePart]:
+    """Iterator over the chunks in a store, in the order of the trajectories; missing chunks are skipped.
+
+    Parameters
+    ----------
+    store : path
+
+    Raises
+    ------
+    FormatError
+        If the path is not a store of an ensemble, or a shard is damaged.
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> import numpy as np
+    >>> import liehom as lh
+    >>> field = lh.GeneratorField(lh.defining(lh.so(2)), ["m0"])
+    >>> folder = os.path.join(tempfile.mkdtemp(), "runs")
+    >>> sol = integrate_ensemble(field, (0, 1), np.eye(2), chunk=1, store=folder, dt=0.25)
+    >>> [(part.first, part.last, bool(part.solution.success)) for part in stored_parts(folder)]
+    [(0, 1, True), (1, 2, True)]
+    """
+    kept = open_store(store)
+    rows = [(int(m[1]), int(m[2])) for m in (re.fullmatch(r"part-(\d+)-(\d+)", name) for name in kept.names()) if m]
+    return (EnsemblePart(*r, from_arrays(*kept.load(_name(r)))) for r in sorted(rows))
+
+
+def _with_step(options: EnsembleOptions) -> EnsembleOptions:
+    """The options with a step in place of its name or of the default for tolerances."""
+    with_step: EnsembleOptions = options.copy()
+    step = options.get("step")
+    if isinstance(step, str):
+        with_step["step"] = as_step(step)
+    elif step is None and options.get("dt") is None:
+        # by its name in the fingerprint, so that a store that was begun with another default is not continued
+        atol = options.get("atol", ATOL)
+        with_step["step"] = default_step(None, options.get("rtol", RTOL), least_atol(atol, np.size(atol)))
+    return with_step
+
+
+def _checked(parameters: Mapping[str, npt.ArrayLike] | None, field: Fields, n: int) -> dict[str, npt.NDArray[Any]]:
+    """The parameters as arrays of n rows each."""
+    if parameters is None:
+        if not isinstance(field, GeneratorField) and not callable(field):
+            raise InputError(f"expected a GeneratorField, got {field!r}: make one by liehom.GeneratorField(rho, psi)")
+        return {}
+    if isinstance(field, GeneratorField):
+        raise InputError("parameters go to a function field(**parameters) that makes the field; this one is made")
+    arrays = {str(name): np.asarray(value) for name, value in parameters.items()}
+    for name, array in arrays.items():
+        if array.ndim == 0 or len(array) != n:
+            raise ShapeError(
+                f"the parameter {name!r} has shape {array.shape}, expected one row per trajectory, ({n}, ...)"
+            )
+    return arrays
+
+
+def _bounds(n: int, chunk: int) -> list[tuple[int, int]]:
+    """Rows (first, last) of the chunks: as few as possible, of sizes that differ by at most 1."""
+    count = -(-n // chunk)
+    return list(pairwise(i * n // count for i in range(count + 1)))
+
+
+def _buffersize(start: Array, chunk: int) -> int:
+    """Number of chunks in flight, whose initial points take some 100 MB."""
+    return max(64, min(BUFFERSIZE, 10**8 // (8 * chunk * int(start[0].size))))
+
+
+def _name(rows: tuple[int, int]) -> str:
+    return f"part-{rows[0]:09d}-{rows[1]:09d}"

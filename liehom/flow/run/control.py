@@ -1,0 +1,230 @@
+"""Step sizes by the tolerance, and the time reparametrization."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from liehom.base.errors import ConvergenceError
+from liehom.base.typing import Array, BooleanArray, Real, Values
+from liehom.flow.action.field import GeneratorField
+from liehom.flow.action.space import Action
+from liehom.flow.series.arrays import namespace
+from liehom.flow.steps.expansion import flow_series, step_series
+from liehom.flow.steps.step import (
+    SAFETY,
+    Defects,
+    Generator,
+    LocalStep,
+    StepLimits,
+    floats,
+    over_sites,
+    size_from_defects,
+)
+
+# The time reparametrization τ of a step, its "clock": τ(h) is the time that passes in a step of size h. The clock is
+# admissible over a step if τ increases everywhere at between 1/5 and 5 times the nominal rate 1. The step size s with
+# τ(s) = a given time is found by Newton's method.
+
+NEWTON_ITERATIONS = 60
+MIN_RATE = 0.2  # smallest admissible rate dτ/dh
+MAX_RATE = 5.0  # largest admissible rate dτ/dh
+RATE_SAMPLES = 4  # equal parts of a step over which the rate is measured
+MAX_HALVINGS = 40
+SLACK = 1e-9  # a step that ends this close to the end of the integration, in units of the step, ends there
+
+
+def clock_at(local: LocalStep, h: Values) -> tuple[BooleanArray, Array]:
+    """Whether the clock is admissible over [0, h], bool (...,), and the time τ(h), both for h of shape (...,)."""
+    size: Any = h
+    if not local.clock:
+        return np.ones(np.shape(size), dtype=bool), size
+    parts = np.arange(RATE_SAMPLES + 1).reshape(-1, *[1] * np.ndim(size)) / RATE_SAMPLES * size
+    times: Any = local.time(parts)
+    advance = (times[1:] - times[:-1]) * np.sign(size)
+    part = np.abs(size) / RATE_SAMPLES
+    return ((advance > MIN_RATE * part) & (advance < MAX_RATE * part)).all(axis=0) | (size == 0), times[-1]
+
+
+def size_for(local: LocalStep, time: Array, guess: Array) -> Array:
+    """Step sizes s (...,) with τ(s) = time, of the sign of time; 0 where time is 0, NaN if no s is found."""
+    if not local.clock:
+        return time + 0 * guess
+    reached: Any = local.time(guess)
+    fraction = np.divide(time, reached, out=np.ones_like(time), where=reached != 0)
+    within = (fraction >= 0) & (fraction <= 1)
+    s = np.where(within, fraction * guess, time)
+    low, high = 0 * s, np.where(within, guess, np.sign(time) * np.inf)
+    eps = np.finfo(s.dtype).eps
+    settled = np.zeros(np.shape(s), dtype=bool)  # a trajectory does not depend on those it is solved with
+    for _ in range(NEWTON_ITERATIONS):
+        times: Any = local.time(np.stack([s - 1e-4 * s, s, s + 1e-4 * s]))
+        before, now, beyond = times
+        missing = time - now
+        short = missing * np.sign(time) > 0
+        low, high = np.where(short, s, low), np.where(short, high, s)
+        slope = (beyond - before) / np.where(s == 0, 1.0, 2e-4 * s)
+        new = s + missing / np.clip(slope, MIN_RATE, MAX_RATE)
+        outside = (new - low) * (new - high) > 0
+        new = np.where(outside, np.where(np.isfinite(high), (low + high) / 2, 2 * s), new)
+        done = (np.abs(new - s) <= 2 * eps * np.abs(s)) | (missing == 0)
+        s = np.where(settled | (missing == 0), s, new)
+        settled = settled | done
+        if bool(settled.all()):
+            break
+    solved = np.abs(local.time(s) - time) <= 64 * eps * np.abs(time)
+    return np.where(solved, s, np.nan)
+
+
+def fitted(local: LocalStep, h: Array, left: Array, *, halve: bool) -> tuple[Array, Array, BooleanArray, BooleanArray]:
+    """Step sizes that end within the time `left`: h, or the size that takes exactly that time if it is shorter."""
+    runs, passed = clock_at(local, h)
+    for _ in range(MAX_HALVINGS if halve else 0):
+        if bool(runs.all()):
+            break
+        h = np.where(runs, h, h / 2)
+        runs, passed = clock_at(local, h)
+    over = (h != 0) & (np.sign(h) * (left - passed) <= SLACK * np.abs(h))
+    # a clock that is not admissible over the whole step may still be so up to the end
+    last = over if bool(runs.all()) else np.where(runs, over, np.abs(left) <= MAX_RATE * np.abs(h))
+    if not bool(last.any()):
+        return h, passed, last, runs
+    s = size_for(local, np.where(last, left, 0), np.where(runs, h, left))
+    last = last & clock_at(local, s)[0] & (np.abs(s) <= np.abs(h) * (1 + SLACK * 2 * MAX_RATE))
+    return np.where(last, s, h), np.where(last, left, passed), last, last | (runs & ~over)
+
+
+# Step sizes by the tolerance: from what a step knows of its error, or from an embedded pair. For an embedded pair the
+# step is taken, judged, and repeated if it was too large; see `liehom.flow.steps.step` for the sizes that are known in
+# advance. The rules run on arrays, and on the tracers of compiled steps (`Values`); results are of the same kind.
+
+MAX_PAIR_GROWTH = 5.0  # with an embedded pair, the largest ratio of the next step size to the last one
+MAX_SHRINK = 0.2  # the smallest ratio of the next step size to the last one
+ERROR_TERMS = 2  # number of Taylor coefficients of the error that are computed
+MAX_GROWTH = 8.0  # without an embedded pair, the largest ratio of the next step size to the last one
+NONFINITE_RATIO = 1e10  # error, in units of the tolerance, that stands for one that is not finite
+MAX_TRIALS = 200  # number of attempts to find out which trajectories a step cannot be solved for
+MIN_ROUNDOFFS = 10.0  # the smallest relative tolerance, in units of round-off
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """Error allowed in a step: at most atol + rtol |m|, as root mean squares over the coordinates and the last `axes`
+    leading axes (the sites of a lattice), and at least 10 units of round-off of m. Compiled steps give tracers.
+    """
+
+    rtol: Real
+    atol: Real
+    axes: int = 0
+
+    def norm(self, m: Values) -> Array:
+        """2-norm of the error that is allowed at the points m (..., N), shape (...,)."""
+        point: Any = m
+        relative = namespace(self.rtol).maximum(self.rtol, MIN_ROUNDOFFS * float(np.finfo(point.dtype).eps))
+        return over_sites(self.atol * point.shape[-1] ** 0.5 + relative * length(point), self.axes)
+
+
+def length(x: Values) -> Array:
+    """2-norm over the last axis, in float64."""
+    values = floats(x)
+    return namespace(values).sqrt((values * values).sum(axis=-1))
+
+
+def whole_lattice(where: BooleanArray, axes: int) -> BooleanArray:
+    """All sites of the lattices, on the last axes, that have one of these sites; the same sites without a lattice."""
+    if not axes:
+        return where
+    xp = namespace(where)
+    return xp.broadcast_to(xp.any(where, axis=tuple(range(-axes, 0)), keepdims=True), where.shape)
+
+
+def largest_size(max_step: Real, left: Values) -> Array:
+    """Bound for the step sizes with the time `left` to the end, twice that time because the clock may be slow."""
+    return namespace(max_step, left).minimum(max_step, 2 * left)
+
+
+def is_large_enough(h: Values, tiny: Real, left: Real) -> BooleanArray:
+    """Whether steps of these sizes advance time, bool (...,); False for NaN."""
+    size: Any = h
+    return size >= namespace(tiny, left).minimum(tiny, left)
+
+
+def time_scale(field: GeneratorField, m: Values, t: Values) -> Array:
+    """|m| / |X(m, t)|, the time in which a point moves by its own size, shape (...,)."""
+    axes = len(field.sites)
+    size, speed = over_sites(length(m), axes), over_sites(length(field.vector(m, t)), axes)
+    if isinstance(size, np.ndarray | np.floating) and not size.all():  # the point 0 does not move
+        return np.where(size == 0, np.inf, size / speed)
+    return size / speed
+
+
+def known_size(
+    action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int, limits: StepLimits
+) -> Values:
+    """The size that the step knows in advance (`LocalStep.size`), else from the Taylor coefficients of its error."""
+    size = local.size(limits)
+    return size_from_defects(defects_of(action, psi, local, m, t, order), *limits) if size is None else size
+
+
+def defects_of(action: Action, psi: Generator, local: LocalStep, m: Values, t: Values, order: int) -> Defects:
+    """(k, |[t^k] (F - step)|) for `ERROR_TERMS` orders k above the order of a step, F the flow."""
+    if local.defects is not None:
+        return local.defects
+    total = order + ERROR_TERMS
+    flow, step = flow_series(psi.field, m, total, t), step_series(action, local, m, total)
+    return tuple((k, length(flow.point(k) - step.coefficient(k))) for k in range(order + 1, total + 1))
+
+
+def judged(error: Values, allowed: Values, h: Values, order: int, axes: int = 0) -> tuple[BooleanArray, Array]:
+    """Whether the estimate (..., N) of an embedded pair accepts a step of size h, and the next step size.
+
+    The last `axes` leading axes are the sites of a lattice.
+    """
+    xp = namespace(error, h)
+    ratio: Any = over_sites(length(error), axes) / allowed
+    ratio = xp.where(xp.isfinite(ratio), ratio, NONFINITE_RATIO)
+    return ratio <= 1, next_size(xp.abs(h), ratio, order)
+
+
+def next_size(h: Array, ratio: Array, order: int) -> Array:
+    """The next step size after one of size h > 0, from error / tolerance of an embedded pair of the given order."""
+    xp = namespace(h, ratio)
+    safe = xp.where(ratio > 0, ratio, 1.0)
+    factor = xp.where(ratio > 0, SAFETY * safe ** (-1 / order), MAX_PAIR_GROWTH)
+    return h * xp.clip(factor, MAX_SHRINK, MAX_PAIR_GROWTH)
+
+
+def unsolvable(local: LocalStep, h: Array, where: BooleanArray, error: Exception | None = None) -> BooleanArray:
+    """For which trajectories the equations of a step of size h have no solution, bool (...,): the `ConvergenceError`
+    says it, or groups are tried one after the other, with h = 0 for the others.
+    """
+    known = getattr(error, "unsolved", None)
+    if known is not None and known.shape == np.shape(h) and bool((known & where).any()):
+        return np.asarray(known & where)
+    failing = np.zeros(np.size(h), dtype=bool)
+    groups, trials = [np.flatnonzero(where)], 0
+    while groups:
+        group = groups.pop()
+        chosen = np.zeros(np.size(h), dtype=bool)
+        chosen[group] = True
+        # the first group, all of them, is known to fail
+        if trials and _is_solvable(local, np.where(chosen.reshape(np.shape(h)), h, 0)):
+            trials += 1
+        elif len(group) <= 1 or trials > MAX_TRIALS:
+            failing[group] = True
+        else:
+            trials += 1
+            groups += [group[: len(group) // 2], group[len(group) // 2 :]]
+    # a group may fail although its halves do not: the equations are iterated together
+    return failing.reshape(np.shape(h)) if bool(failing.any()) else where
+
+
+def _is_solvable(local: LocalStep, h: Array) -> bool:
+    try:
+        local.point(h[..., None])
+    except (ConvergenceError, np.linalg.LinAlgError):
+        return False
+    return True

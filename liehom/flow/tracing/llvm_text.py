@@ -1,0 +1,448 @@
+"""LLVM assembly of a graph: operations, exponentials and rotations."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Sequence
+from itertools import count
+from typing import final
+
+from liehom.base.errors import TraceError
+from liehom.flow.tracing.graph import Expr
+
+FLAGS = "contract"
+LIBM = {
+    "sin": "sin", "cos": "cos", "tan": "tan", "exp": "exp", "log": "log", "sinh": "sinh", "cosh": "cosh",
+    "tanh": "tanh", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arcsinh": "asinh", "arccosh": "acosh",
+    "arctanh": "atanh", "expm1": "expm1", "log1p": "log1p", "log2": "log2", "log10": "log10", "exp2": "exp2",
+    "cbrt": "cbrt", "arctan2": "atan2", "pow": "pow",
+}  # fmt: skip
+
+
+def number(x: float) -> str:
+    """A float in LLVM's hexadecimal notation, exactly."""
+    return f"0x{struct.unpack('>Q', struct.pack('>d', x))[0]:016X}"
+
+
+@final
+class Writer:
+    """Lines of a function in LLVM assembly, for vectors of `width` lanes, and the functions that it calls; `label` is
+    the basic block."""
+
+    def __init__(self, width: int) -> None:
+        self.width, self.label = width, "step"
+        self.vector = "double" if width == 1 else f"<{width} x double>"
+        self.mask = "i1" if width == 1 else f"<{width} x i1>"
+        self.suffix = "f64" if width == 1 else f"v{width}f64"
+        self.lines: list[str] = []
+        self.declared: dict[str, str] = {}
+        self.functions: dict[str, str] = {}
+        self._count = 0
+
+    def emit(self, text: str) -> str:
+        """Name of the value of a line that is appended."""
+        self._count += 1
+        self.lines.append(f"  %v{self._count} = {text}")
+        return f"%v{self._count}"
+
+    def splat(self, x: float | bool) -> str:
+        """Vector constant with x in all lanes."""
+        kind, one = ("i1", "true" if x else "false") if isinstance(x, bool) else ("double", number(float(x)))
+        return one if self.width == 1 else "<" + ", ".join([f"{kind} {one}"] * self.width) + ">"
+
+    def binary(self, op: str, a: str, b: str) -> str:
+        """Name of a op b, for op = "fadd", "fsub", "fmul", "fdiv"."""
+        return self.emit(f"{op} {FLAGS} {self.vector} {a}, {b}")
+
+    def polynomial(self, coefficients: Sequence[float], x: str) -> str:
+        """Name of the polynomial with these coefficients, constant term first; even and odd terms run in parallel."""
+        if len(coefficients) > 3:
+            square = self.binary("fmul", x, x)
+            odd = self.binary("fmul", self.polynomial_in(coefficients[1::2], square), x)
+            return self.binary("fadd", self.polynomial_in(coefficients[::2], square), odd)
+        return self.polynomial_in(coefficients, x)
+
+    def polynomial_in(self, coefficients: Sequence[float], x: str) -> str:
+        """Name of the polynomial with these coefficients, by Horner's rule."""
+        total = self.splat(coefficients[-1])
+        for c in reversed(coefficients[:-1]):
+            total = self.binary("fadd", self.binary("fmul", total, x), self.splat(c))
+        return total
+
+    def intrinsic(self, name: str, *args: str) -> str:
+        """Name of an intrinsic function such as llvm.sqrt on all lanes."""
+        full = f"llvm.{name}.{self.suffix}"
+        self.declared[full] = f"declare {self.vector} @{full}({', '.join([self.vector] * len(args))})"
+        return self.emit(f"call {self.vector} @{full}({', '.join(f'{self.vector} {a}' for a in args)})")
+
+    def library(self, name: str, *args: str) -> str:
+        """Name of a function of libm, called lane by lane."""
+        self.declared[name] = f"declare double @{name}({', '.join(['double'] * len(args))}) memory(none)"
+        if self.width == 1:
+            return self.emit(f"call double @{name}({', '.join(f'double {a}' for a in args)})")
+        vector = "poison"
+        for lane in range(self.width):
+            one = [self.emit(f"extractelement {self.vector} {a}, i32 {lane}") for a in args]
+            value = self.emit(f"call double @{name}({', '.join(f'double {x}' for x in one)})")
+            vector = self.emit(f"insertelement {self.vector} {vector}, double {value}, i32 {lane}")
+        return vector
+
+    def any(self, mask: str) -> str:
+        """Name of the i1 that is true if a mask holds in some lane."""
+        return self._reduced("any", "or", mask)
+
+    def all(self, mask: str) -> str:
+        """Name of the i1 that is true if a mask holds in all lanes."""
+        return self._reduced("all", "and", mask)
+
+    def _reduced(self, name: str, op: str, mask: str) -> str:
+        if self.width == 1:
+            return mask
+        function = f"i1 @llvm.vector.reduce.{op}.v{self.width}i1"
+        self.declared[f"{name}{self.width}"] = f"declare {function}({self.mask})"
+        return self.emit(f"call {function}({self.mask} {mask})")
+
+    def spread(self, x: str) -> str:
+        """Name of the vector with the double x in all lanes."""
+        if self.width == 1:
+            return x
+        first = self.emit(f"insertelement {self.vector} poison, double {x}, i32 0")
+        zeros = f"<{self.width} x i32> zeroinitializer"
+        return self.emit(f"shufflevector {self.vector} {first}, {self.vector} poison, {zeros}")
+
+
+# sin(r)/r and cos(r) of r^2 in LLVM assembly: polynomials near 0, libm far from 0.
+
+SHORT_SERIES_REACH, LONG_SERIES_REACH = 0.25, 4.0
+"""Largest |q| for which sin(r)/r and cos(r), r^2 = q, are a short and a long polynomial in q; above, libm is used."""
+
+
+def rotation_series(reach: float, first: int) -> list[float]:
+    """Taylor coefficients of sin(r)/r (first = 1) or cos(r) (first = 0) in r^2, for double precision to `reach`."""
+    terms = next(k for k in count(1) if reach**k / math.factorial(2 * k + first) < 2e-17)
+    return [(-1) ** k / math.factorial(2 * k + first) for k in range(terms)]
+
+
+def define_rotation(w: Writer) -> None:
+    """Write the function q -> (sin(r)/r, cos(r)), r^2 = q, if it is not there."""
+    if "rotation" in w.functions:
+        return
+    f = Writer(w.width)
+    v, pair = f.vector, f"{{{f.vector}, {f.vector}}}"
+    size = f.intrinsic("fabs", "%q")
+    f.lines += ["  br label %look", "look:"]
+    far = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(SHORT_SERIES_REACH)}"))
+    f.lines.append(f"  br i1 {far}, label %farther, label %short, !prof !0")
+    results = []
+    for label, reach in (("short", SHORT_SERIES_REACH), ("long", LONG_SERIES_REACH)):
+        f.lines.append(f"{label}:")
+        results.append((label, [f.polynomial(rotation_series(reach, 1 - k), "%q") for k in (0, 1)]))
+        f.lines.append("  br label %done")
+    f.lines.append("farther:")
+    out = f.any(f.emit(f"fcmp ugt {v} {size}, {f.splat(LONG_SERIES_REACH)}"))
+    f.lines += [f"  br i1 {out}, label %far, label %long, !prof !0", "far:"]
+    results.append(("far", _by_library(f, size)))
+    f.lines += ["  br label %done", "done:"]
+    chosen = [f.emit(f"phi {v} " + ", ".join(f"[{x[k]}, %{label}]" for label, x in results)) for k in (0, 1)]
+    first = f.emit(f"insertvalue {pair} poison, {v} {chosen[0]}, 0")
+    both = f.emit(f"insertvalue {pair} {first}, {v} {chosen[1]}, 1")
+    head = f"define internal {pair} @rotation({v} %q) alwaysinline {{\nentry:"
+    w.functions["rotation"] = "\n".join([head, *f.lines, f"  ret {pair} {both}", "}"])
+    w.declared |= f.declared
+
+
+def _by_library(f: Writer, size: str) -> list[str]:
+    """Names of sin(r)/r and cos(r) by libm; lanes with small r use the series."""
+    v = f.vector
+    r = f.intrinsic("sqrt", size)
+    turns = f.emit(f"fcmp ogt {v} %q, {f.splat(0.0)}")
+    near = f.emit(f"fcmp olt {v} {size}, {f.splat(SHORT_SERIES_REACH)}")
+    # sinh of the large r of a rotation would overflow
+    grown = f.emit(f"select {f.mask} {turns}, {v} {f.splat(0.0)}, {v} {r}")
+    results = []
+    for first, names in ((1, ("sin", "sinh")), (0, ("cos", "cosh"))):
+        a, b = f.library(names[0], r), f.library(names[1], grown)
+        value = f.emit(f"select {f.mask} {turns}, {v} {a}, {v} {b}")
+        value = f.binary("fdiv", value, r) if first else value
+        short = f.polynomial(rotation_series(SHORT_SERIES_REACH, first), "%q")
+        results.append(f.emit(f"select {f.mask} {near}, {v} {short}, {v} {value}"))
+    return results
+
+
+# exp(A) m in LLVM assembly: the Taylor polynomial by Horner's rule, of a degree that follows from the norm of A.
+#
+# The degrees go up in levels. A block of lanes enters at the level of its largest norm; where the level of a lane
+# begins, the lane begins too. So the result of a lane does not depend on the other lanes of the block.
+
+LEVELS = ((0.054, 8), (0.28, 12), (0.72, 16), (1.35, 20), (2.1, 24))
+"""Norms up to which a polynomial of a degree leaves out less than 1e-17 of the result."""
+MAX_NORM = 32.0
+"""For |A| above, the result is NaN."""
+STRAIGHT_OPERATIONS = 40
+"""Numbers of A and m, together, up to which the polynomial is written without loops."""
+
+
+def struct_of(w: Writer, count: int) -> str:
+    """The type of a structure of `count` vectors."""
+    return "{" + ", ".join([w.vector] * count) + "}"
+
+
+def call_exponential(w: Writer, x: Expr, args: list[str]) -> str:
+    """Name of exp(A) m for an operation "expv", a structure of vectors."""
+    count, skew = len(args) - len(x.value), _is_skew(x)
+    name = "exponential_" + "_".join(f"{i}.{j}" for i, j in x.value) + ("_skew" if skew else "")
+    if name not in w.functions:
+        w.functions[name] = _Exponential(w, name, x.value, count, skew=skew).text()
+    return w.emit(f'call {struct_of(w, count)} @"{name}"({", ".join(f"{w.vector} {a}" for a in args)})')
+
+
+def _is_skew(x: Expr) -> bool:
+    """Whether the entries of A are visibly those of a skew-symmetric matrix."""
+    entries = dict(zip(x.value, x.args, strict=False))
+
+    def opposite(a: Expr, b: Expr | None) -> bool:
+        return b is not None and ((a.op == "neg" and a.args[0] is b) or (b.op == "neg" and b.args[0] is a) or
+                                  (a.op == b.op == "sub" and a.args == b.args[::-1]))  # fmt: skip
+
+    return all(opposite(a, entries.get((j, i))) for (i, j), a in entries.items())
+
+
+@final
+class _Exponential:
+    """Writer of the function (A, m) -> exp(A) m."""
+
+    def __init__(self, w: Writer, name: str, places: tuple[tuple[int, int], ...], n: int, *, skew: bool) -> None:
+        self.f, self.caller = Writer(w.width), w
+        self.name, self.places, self.n, self.skew = name, places, n, skew
+        self.v = self.f.vector
+        self.straight = len(places) + n <= STRAIGHT_OPERATIONS
+
+    def text(self) -> str:
+        """The function."""
+        f, v, n = self.f, self.v, self.n
+        self._begin()
+        moved = self._levels()
+        f.lines.append(f"  %part.next = fadd {v} %part, {f.splat(1.0)}")
+        here = f.emit(f"fcmp olt {v} %part, %parts")
+        f.lines += [f"  %m{i}.next = select {f.mask} {here}, {v} {x}, {v} %m{i}" for i, x in enumerate(moved)]
+        again = f.any(f.emit(f"fcmp olt {v} %part.next, %parts"))
+        f.lines += ["  br label %end", "end:", f"  br i1 {again}, label %substep, label %done, !prof !0", "done:"]
+        kind, result = struct_of(f, n), "poison"
+        for i in range(n):
+            result = f.emit(f"insertvalue {kind} {result}, {v} %m{i}.next, {i}")
+        names = [f"%a{p}" for p in range(len(self.places))] + [f"%vin{i}" for i in range(n)]
+        self.caller.declared |= f.declared
+        head = f'define internal {kind} @"{self.name}"({", ".join(f"{v} {x}" for x in names)}) {{\nentry:'
+        return "\n".join([head, *f.lines, f"  ret {kind} {result}", "}"])
+
+    def _begin(self) -> None:
+        """Begin the loop over substeps, of which there is one unless a norm is above the highest level."""
+        f, v, top = self.f, self.v, LEVELS[-1][0]
+        square = self._square()
+        usual = f.all(f.emit(f"fcmp ole {v} {square}, {f.splat(top * top)}"))
+        f.lines += [f"  br i1 {usual}, label %substep.first, label %large, !prof !1", "large:"]
+        norm = f.intrinsic("sqrt", square)
+        parts = f.intrinsic("ceil", f.binary("fmul", norm, f.splat(1 / top)))
+        parts = f.intrinsic("minnum", f.intrinsic("maxnum", parts, f.splat(1.0)), f.splat(MAX_NORM))
+        share = f.binary("fdiv", f.splat(1.0), parts)
+        fine = f.emit(f"fcmp ole {v} {norm}, {f.splat(MAX_NORM)}")  # beyond, and for NaN, the result is NaN
+        good = f.emit(f"select {f.mask} {fine}, {v} {share}, {v} {f.splat(math.nan)}")
+        scaled = [f.binary("fmul", f"%a{p}", good) for p in range(len(self.places))]
+        smaller = f.binary("fmul", square, f.binary("fmul", share, share))
+        ways = [("parts", f.splat(1.0), parts), ("square", square, smaller)]
+        ways += [(f"b{p}", f"%a{p}", x) for p, x in enumerate(scaled)]
+        f.lines += [
+            "  br label %substep.first",
+            "substep.first:",
+            *[f"  %{name} = phi {v} [{plain}, %entry], [{other}, %large]" for name, plain, other in ways],
+            "  br label %substep",
+            "substep:",
+            f"  %part = phi {v} [{f.splat(0.0)}, %substep.first], [%part.next, %end]",
+            *[f"  %m{i} = phi {v} [%vin{i}, %substep.first], [%m{i}.next, %end]" for i in range(self.n)],
+        ]
+
+    def _square(self) -> str:
+        """The square of a bound of the spectral norm: that of the Frobenius norm, half of it if A is skew-symmetric."""
+        f, square = self.f, self.f.splat(0.0)
+        for p, (i, j) in enumerate(self.places):
+            if not self.skew or i < j:
+                square = f.binary("fadd", f.binary("fmul", f"%a{p}", f"%a{p}"), square)
+        return square
+
+    def _levels(self) -> list[str]:
+        """Names of exp(A) m for norms within the highest level."""
+        f, v, n = self.f, self.v, self.n
+        above = [f.any(f.emit(f"fcmp ogt {v} %square, {f.splat(reach * reach)}")) for reach, _ in LEVELS[:-1]]
+        self._enter(above, len(LEVELS) - 1)
+        s = [""] * n
+        for level in range(len(LEVELS) - 1, -1, -1):
+            f.label = f"level{level}"
+            f.lines.append(f"{f.label}:")
+            if level == len(LEVELS) - 1:
+                s = [f"%m{i}" for i in range(n)]
+            else:  # lanes of this level begin here
+                small = f.emit(f"fcmp ole {v} %square, {f.splat(LEVELS[level][0] ** 2)}")
+                started = [f.emit(f"select {f.mask} {small}, {v} %m{i}, {v} {s[i]}") for i in range(n)]
+                f.lines += [f"  br label %begin{level}", f"begin{level}:"]
+                s = [f.emit(f"phi {v} [{started[i]}, %level{level}], [%m{i}, %enter{level}]") for i in range(n)]
+                f.label = f"begin{level}"
+            s = self._terms(s, level)
+            if level:
+                f.lines.append(f"  br label %level{level - 1}")
+        return s
+
+    def _enter(self, above: list[str], top: int) -> None:
+        """Branch to the level of the largest norm; small norms are the usual ones."""
+        f = self.f
+        f.lines.append("  br label %enter0.test")
+        for level in range(top):
+            following = f"enter{level + 1}.test" if level + 1 < top else f"level{top}"
+            f.lines += [
+                f"enter{level}.test:",
+                f"  br i1 {above[level]}, label %{following}, label %enter{level}",
+                f"enter{level}:",
+                f"  br label %begin{level}",
+            ]
+
+    def _terms(self, s: list[str], level: int) -> list[str]:
+        """s -> m + A s / k for the k of a level, from the largest to the smallest."""
+        f = self.f
+        first, last = LEVELS[level][1], LEVELS[level - 1][1] if level else 0
+        if self.straight:
+            for k in range(first, last, -1):
+                s = self._term(s, f.splat(1.0 / k))
+            return s
+        index, before, here = f"%k{level}", f.label, f"%terms{level}"
+        sums = [f"%s{level}.{i}" for i in range(self.n)]
+        f.lines += [
+            f"  br label {here}",
+            f"terms{level}:",
+            f"  {index} = phi double [{number(float(first))}, %{before}], [{index}.next, {here}]",
+            *[f"  {x} = phi {self.v} [{a}, %{before}], [{x}.next, {here}]" for x, a in zip(sums, s, strict=True)],
+        ]
+        new = self._term(sums, f.spread(f.emit(f"fdiv double {number(1.0)}, {index}")))
+        f.lines += [f"  {x}.next = fadd {self.v} {a}, {f.splat(-0.0)}" for x, a in zip(sums, new, strict=True)]
+        f.lines.append(f"  {index}.next = fsub double {index}, {number(1.0)}")
+        more = f.emit(f"fcmp ogt double {index}.next, {number(float(last))}")
+        f.lines += [f"  br i1 {more}, label {here}, label {here}.end", f"terms{level}.end:"]
+        f.label = f"terms{level}.end"
+        return [f"{x}.next" for x in sums]
+
+    def _term(self, s: list[str], factor: str) -> list[str]:
+        """m + factor A s."""
+        f, sums = self.f, []
+        for i in range(self.n):
+            total = None
+            for p, (a, b) in enumerate(self.places):
+                if a == i:
+                    term = f.binary("fmul", f"%b{p}", s[b])
+                    total = term if total is None else f.binary("fadd", term, total)
+            sums.append(f"%m{i}" if total is None else f.binary("fadd", f.binary("fmul", total, factor), f"%m{i}"))
+        return sums
+
+
+# Body: the operations of a graph as LLVM assembly, one instruction each; those that need branches (sin(r)/r, exp(A) m)
+# become functions, which branch for all lanes of a block together.
+
+COMPARED = {"lt": "olt", "le": "ole", "eq": "oeq", "ne": "une"}
+
+
+@final
+class Body:
+    """Writer of the operations of graphs, each of them once."""
+
+    def __init__(self, writer: Writer, inputs: dict[int, str]) -> None:
+        self.writer, self._inputs = writer, inputs
+        self._names: dict[int, str] = {}
+        self._pairs: dict[int, tuple[str, str]] = {}
+        self._loops: dict[int, list[str]] = {}
+
+    def write(self, exprs: Sequence[Expr]) -> None:
+        """Write operations; each must come after its arguments."""
+        for x in exprs:
+            if x.index not in self._names:
+                self._names[x.index] = self._written(x)
+
+    def name(self, x: Expr) -> str:
+        """Name of the value of an operation that was written."""
+        return self.writer.splat(x.value) if x.constant else self._names[x.index]
+
+    def _written(self, x: Expr) -> str:
+        if x.constant:
+            return ""
+        if x.op == "loop":
+            return self._iterated(x)
+        if x.op == "get" and x.args[0].op == "loop":
+            return self._loops[x.args[0].index][int(x.value)]
+        w, args = self.writer, [self.name(a) for a in x.args]
+        match x.op:
+            case "input":
+                return self._inputs[x.value]
+            case "add" | "sub" | "mul" | "div":
+                return w.binary("f" + x.op, *args)
+            case "sinq" | "cosq":
+                return self._rotation(x.args[0], args[0])[x.op == "cosq"]
+            case "sqrt" | "abs":
+                return w.intrinsic("fabs" if x.op == "abs" else "sqrt", *args)
+            case "expv":
+                return call_exponential(w, x, args)
+            case "neg":
+                text = f"fneg {w.vector} {args[0]}"
+            case "and":
+                text = f"and {w.mask} {args[0]}, {args[1]}"
+            case "not":
+                text = f"xor {w.mask} {args[0]}, {w.splat(True)}"
+            case "select":
+                kind = w.mask if x.args[1].boolean else w.vector
+                text = f"select {w.mask} {args[0]}, {kind} {args[1]}, {kind} {args[2]}"
+            case "get":
+                text = f"extractvalue {struct_of(w, len(x.args[0].args) - len(x.args[0].value))} {args[0]}, {x.value}"
+            case op if op in COMPARED:
+                text = f"fcmp {COMPARED[op]} {w.vector} {args[0]}, {args[1]}"
+            case op if op in LIBM:
+                return w.library(LIBM[op], *args)
+            case op:
+                raise TraceError(f"the operation {op} has no machine code here")
+        return w.emit(text)
+
+    def _iterated(self, x: Expr) -> str:
+        """Write a loop as basic blocks; it ends when no lane wants another iteration."""
+        w, loop = self.writer, x.value
+        name = f"loop{x.index}"
+        starts = [self.name(a) for a in x.args[: len(loop.variables)]]
+        entry = f"br i1 {w.any(starts[0])}, label %{name}, label %{name}.done" if loop.guarded else f"br label %{name}"
+        before = w.label
+        w.lines += [f"  {entry}", f"{name}:"]
+        w.label, place = name, len(w.lines)  # the first lines need the names of the last
+        self._names |= {v.index: f"%{name}.{i}" for i, v in enumerate(loop.variables)}
+        self.write(loop.inside)
+        new, end = [self.name(y) for y in loop.new], w.label
+        kinds = [w.mask if v.boolean else w.vector for v in loop.variables]
+        w.lines[place:place] = [
+            f"  %{name}.k = phi i64 [0, %{before}], [%{name}.next, %{end}]",
+            *[
+                f"  %{name}.{i} = phi {kind} [{a}, %{before}], [{b}, %{end}]"
+                for i, (kind, a, b) in enumerate(zip(kinds, starts, new, strict=True))
+            ],
+        ]
+        w.lines.append(f"  %{name}.next = add i64 %{name}.k, 1")
+        fewer = w.emit(f"icmp slt i64 %{name}.next, {loop.limit}")
+        again = w.emit(f"and i1 {fewer}, {w.any(self.name(loop.again))}")
+        w.lines += [f"  br i1 {again}, label %{name}, label %{name}.done", f"{name}.done:"]
+        w.label = f"{name}.done"
+        if loop.guarded:
+            phis = zip(kinds, starts, new, strict=True)
+            new = [w.emit(f"phi {kind} [{a}, %{before}], [{b}, %{end}]") for kind, a, b in phis]
+        self._loops[x.index] = new
+        return ""
+
+    def _rotation(self, q: Expr, name: str) -> tuple[str, str]:
+        """Names of sin(r)/r and cos(r), computed together."""
+        if q.index not in self._pairs:
+            w = self.writer
+            define_rotation(w)
+            kind = struct_of(w, 2)
+            pair = w.emit(f"call {kind} @rotation({w.vector} {name})")
+            self._pairs[q.index] = (w.emit(f"extractvalue {kind} {pair}, 0"), w.emit(f"extractvalue {kind} {pair}, 1"))
+        return self._pairs[q.index]

@@ -1,0 +1,192 @@
+"""Loops in a traced step, and the step as the engines read it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Expr, Tape, TrajectoryConstant, needed
+
+# Loops in a traced step: each lane iterates until its own numbers no longer change.
+#
+# Operations that do not depend on the changing numbers are moved before the loop.
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Loop:
+    """A loop that replaces variables by new values, at least once and until no lane wants another iteration."""
+
+    variables: tuple[Expr, ...]
+    new: tuple[Expr, ...]
+    again: Expr  # boolean: whether a lane wants another iteration
+    inside: tuple[Expr, ...]  # operations of one iteration, in the order of the tape
+    limit: int  # the most iterations
+    guarded: bool = False  # no iteration if the first variable, a boolean, is false in all lanes
+
+    def __repr__(self) -> str:
+        # equal loops must print equally, and no others: the repr is part of the compile-cache key
+        rows = [(x.op, *[_printed(a) for a in x.args], x.value) for x in self.inside]
+        ends = [_printed(x) for x in (*self.variables, *self.new, self.again)]
+        return f"Loop({ends}, {rows}, {self.limit}{', guarded' if self.guarded else ''})"
+
+
+def _printed(x: Expr) -> int | tuple[str, Any]:
+    """The index of an expression; the value of a constant, which has no other place in the repr."""
+    return ("=", x.value) if x.constant else x.index
+
+
+def scalar_while_loop(
+    tape: Tape, start: Sequence[Expr], body: Callable[[list[Expr]], tuple[Sequence[Expr], Expr]], limit: int, *,
+    guarded: bool = False,
+) -> list[Expr]:  # fmt: skip
+    """Tracers of the variables after a loop.
+
+    A lane that has converged iterates along with the others; `body` must keep its numbers, by `Tape.select`.
+    """
+    first, calls, count = len(tape.recorded), tape.calls, len(start)
+    tape.calls = tape.zero
+    variables = [tape.variable((first, i), boolean=x.boolean) for i, x in enumerate(start)]
+    new, again = body(list(variables))
+    if tape.calls is not tape.zero:  # count the calls of psi in each lane's own iterations
+        start = [*start, tape.zero, tape.true]
+        total, wanted = (tape.variable((first, count + i), boolean=i == 1) for i in (0, 1))
+        new = [*new, total + tape.select(wanted, tape.calls, tape.zero), tape.both(wanted, again)]
+        variables += [total, wanted]
+    changing = {x.index for x in variables}
+    inside = []
+    for x in needed([*new, again]):
+        if x.index not in changing and any(a.index in changing for a in x.args):
+            changing.add(x.index)
+            inside.append(x)
+    read = [*new, again, *[a for x in inside for a in x.args]]
+    fixed = {x.index: x for x in read if x.index not in changing and not x.constant}
+    loop = Loop(tuple(variables), tuple(new), again, tuple(inside), limit, guarded)
+    after = tape.block("loop", [*start, *fixed.values()], len(start), loop)
+    tape.calls = calls + after[count] if len(after) > count else calls
+    return after[:count]
+
+
+def while_loop(
+    function: Callable[..., tuple[Sequence[Any], Any]], start: Sequence[Any], tape: Tape, limit: int, *,
+    guarded: bool = False,
+) -> list[Traced]:  # fmt: skip
+    """Traced arrays after a loop; `function` takes them to (their new values, whether to iterate again).
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, = while_loop(lambda x: ([x / 2], np.any(x > 1)), [Traced.inputs(tape, 0, 2)], tape, 10)
+    >>> x
+    <traced array of shape (2,)>
+    """
+    arrays = [Traced(tape, x) for x in start]
+    cuts = np.cumsum([x.size for x in arrays])[:-1]
+
+    def shaped(entries: Sequence[Expr]) -> list[Traced]:
+        flat = np.empty(len(entries), dtype=object)
+        flat[:] = entries
+        return [Traced(tape, e.reshape(x.shape)) for e, x in zip(np.split(flat, cuts), arrays, strict=True)]
+
+    def body(entries: list[Expr]) -> tuple[list[Expr], Expr]:
+        new, again = function(*shaped(entries))
+        return [e for x in new for e in Traced(tape, x).entries.flat], Traced(tape, again).entry
+
+    return shaped(scalar_while_loop(tape, [e for x in arrays for e in x.entries.flat], body, limit, guarded=guarded))
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Outputs of an adaptive traced step; input N + 1 of its graph is then the proposed size, without sign.
+
+    Attributes
+    ----------
+    tried : Expr
+        Size of the step that was tried, signed.
+    accepted : Expr
+        Boolean: whether the step is taken.
+    proposal : Expr
+        Size proposed for the next step, whether this one is taken or not.
+    """
+
+    tried: Expr
+    accepted: Expr
+    proposal: Expr
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class StepGraph:
+    """Graph of a traced step: inputs 0..N-1 are the point, N the time, N + 1 the step size, -1, -2, ... constants.
+
+    Attributes
+    ----------
+    point : list of Expr
+        Coordinates of the point after the step.
+    elapsed : Expr or None
+        Time that passes in the step; None if it is the step size.
+    ordinary : Expr or None
+        Boolean: whether the step is certainly an ordinary one, that is, its clock is increasing at an admissible rate
+        and its equations were solved. None if it always is.
+    largest, summed : dict of str to Expr
+        Numbers by name; the run records their largest value, which is -inf before the first step, or their sum, over
+        the steps taken. The name "-x" stands for the negative of a number x of which the smallest value is recorded.
+    constant_functions : tuple of callable
+        Inputs -1, -2, ...: numbers that are constant along a trajectory, as functions of the initial points (L, N).
+    clock : tuple of (int, Expr)
+        (k, c_k): the time h + c_2 h^2 + ... passes in a step of size h.
+    solved : Expr or None
+        Boolean: whether all equations of the step were solved (`ordinary` implies it); None if there are none.
+    sizes : Sizes or None
+        None if the step size is fixed.
+    calls : int or None
+        Calls of psi in a step. None if their number depends on values; `summed["calls"]` then counts them.
+    reached : Expr or None
+        Boolean: whether input N + 2, the time of the next stop, is within the step; the point is then that at the stop,
+        and `elapsed` the time that passes in the whole step. None if the graph knows of no stops.
+    tried : Expr or None
+        The signed size of the step, to the stop if it is reached.
+    first : Expr or None
+        Size of the first step, without sign, where none is proposed; a function of point and time.
+    guard : Expr or None
+        Boolean: whether a run may begin at the initial point, a function of it; None if it may.
+    """
+
+    point: list[Expr]
+    elapsed: Expr | None
+    ordinary: Expr | None
+    largest: dict[str, Expr]
+    summed: dict[str, Expr]
+    constant_functions: tuple[TrajectoryConstant, ...] = ()
+    clock: tuple[tuple[int, Expr], ...] = ()
+    solved: Expr | None = None
+    sizes: Sizes | None = None
+    calls: int | None = 0
+    reached: Expr | None = None
+    tried: Expr | None = None
+    first: Expr | None = None
+    guard: Expr | None = None
+
+    @property
+    def size(self) -> int:
+        """N, the number of coordinates."""
+        return len(self.point)
+
+    def constants(self, points: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
+        """Values of inputs -1, -2, ...: a list of arrays (L,), for initial points (L, N)."""
+        return [number(points) for number in self.constant_functions]
+
+    @property
+    def outputs(self) -> list[Expr]:
+        """All outputs: point, time, booleans, step sizes, recorded numbers, and last those of stops."""
+        sizes = self.sizes
+        adapted = () if sizes is None else (sizes.tried, sizes.accepted, sizes.proposal)
+        recorded = (*self.largest.values(), *self.summed.values())
+        outputs = (*self.point, self.elapsed, self.ordinary, *adapted, *recorded, self.tried, self.reached)
+        return [x for x in outputs if x is not None]

@@ -1,0 +1,229 @@
+"""Machine code on this processor: compilation, its cache, and the kernel of a run."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import hashlib
+import os
+import sys
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any, TypeAlias, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.base.disk import write_atomically
+from liehom.base.errors import LiehomError, TraceError
+from liehom.flow.tracing.array import Traced
+from liehom.flow.tracing.graph import Expr, LaneConstant, RunConstant, TrajectoryConstant
+from liehom.flow.tracing.llvm_text import LIBM
+from liehom.flow.tracing.loop import StepGraph
+from liehom.flow.tracing.run_text import FIELDS, Constant, run_module, state_names
+
+Engine: TypeAlias = Any
+"""An execution engine of llvmlite, which has no types."""
+
+TargetMachine: TypeAlias = Any
+"""A target machine of llvmlite."""
+
+_ENGINES: dict[str, Engine] = {}
+
+
+def lanes_per_register() -> int:
+    """Number of doubles in a vector register of this processor.
+
+    Examples
+    --------
+    >>> lanes_per_register() in (2, 4, 8)
+    True
+    """
+    features = _host()[2]
+    return 8 if features.get("avx512f") else 4 if features.get("avx") else 2
+
+
+@cache
+def _host() -> tuple[ModuleType, str, dict[str, bool]]:
+    """(llvmlite.binding, a string that stands for this processor, its features)."""
+    try:
+        import llvmlite.binding as llvm
+    except ImportError:
+        raise TraceError('engine="llvm" needs the extra: pip install "liehom[llvm]"') from None
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    _add_symbols(llvm)
+    name, features = llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
+    triple = llvm.get_process_triple()
+    return llvm, f"{llvm.llvm_version_info}{name}{features.flatten()}{triple}", dict(features)
+
+
+def _target_machine(llvm: ModuleType) -> TargetMachine:
+    """A target machine for this processor; an engine owns its own."""
+    features = llvm.get_host_cpu_features().flatten()
+    target = llvm.Target.from_triple(llvm.get_process_triple())
+    return target.create_target_machine(cpu=llvm.get_host_cpu_name(), features=features, opt=3, jit=True)
+
+
+def cache_directory() -> Path | None:
+    """Folder of the cached machine code, LIEHOM_CACHE_DIR or ~/.cache/liehom; None if that variable is empty."""
+    folder = os.environ.get("LIEHOM_CACHE_DIR")
+    if folder is not None:
+        return Path(folder) if folder else None
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return Path(home) / "liehom"
+
+
+def engine_of(text: str) -> tuple[Engine, bool]:
+    """(engine with the code of a module, whether the code was cached)."""
+    llvm, stamp, _ = _host()
+    key = hashlib.sha256((stamp + text).encode()).hexdigest()
+    if key in _ENGINES:
+        return _ENGINES[key], True
+    machine = _target_machine(llvm)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    cached = _read(key)
+    code = _compiled(llvm, machine, text) if cached is None else cached
+    if cached is None:
+        _write(key, code)
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    _ENGINES[key] = engine
+    return engine, cached is not None
+
+
+def _compiled(llvm: ModuleType, machine: TargetMachine, text: str) -> bytes:
+    module = llvm.parse_assembly(text)
+    module.verify()
+    options = llvm.PipelineTuningOptions(2)
+    options.slp_vectorization = options.loop_vectorization = options.loop_interleaving = options.loop_unrolling = False
+    builder = llvm.create_pass_builder(machine, options)
+    builder.getModulePassManager().run(module, builder)
+    return bytes(machine.emit_object(module))
+
+
+def _add_symbols(llvm: ModuleType) -> None:
+    """Tell LLVM where the functions of the C library are; on Windows they are in its universal runtime."""
+    library = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
+    for name in sorted({*LIBM.values(), "memset", "memcpy"}):
+        llvm.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
+
+
+def _read(key: str) -> bytes | None:
+    folder = cache_directory()
+    if folder is None:
+        return None
+    try:
+        content = (folder / f"{key}.o").read_bytes()
+    except OSError:
+        return None
+    digest, code = content[:32], content[32:]
+    return code if hashlib.sha256(code).digest() == digest else None
+
+
+def _write(key: str, code: bytes) -> None:
+    """Cache the code, by renaming a complete file; if that fails, it is compiled again next time."""
+    folder = cache_directory()
+    if folder is not None:
+        with contextlib.suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            write_atomically(folder / f"{key}.o", hashlib.sha256(code).digest() + code)
+
+
+PLACES = {name: place for place, name in enumerate(FIELDS)}
+
+
+@final
+class Kernel:
+    """Machine code of a whole run of a traced step, for blocks of `width` lanes.
+
+    Attributes
+    ----------
+    names : list of str
+        Rows of the state of a lane.
+    run_constants : list of str
+        Names of the numbers that a run gives, in their order.
+    lane_constants : list of callable
+        Functions of the initial points that did not run on tracers, and numbers that trajectories are given: numpy
+        computes their values.
+    cached : bool
+        Whether the code was found in the cache.
+    """
+
+    def __init__(self, graph: StepGraph, width: int) -> None:
+        self.graph, self.width = graph, width
+        self.names = state_names(graph)
+        self.run_constants: list[str] = []
+        self.lane_constants: list[TrajectoryConstant] = []
+        self.text = run_module(graph, [self._place(x) for x in graph.constant_functions], width)
+        self._engine, self.cached = engine_of(self.text)
+        self.run: Any = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(self._engine.get_function_address("run"))
+
+    def _place(self, function: TrajectoryConstant) -> Constant:
+        if isinstance(function, RunConstant):
+            self.run_constants.append(function.name)
+            return "run", len(self.run_constants) - 1
+        traced = None if isinstance(function, LaneConstant) else _on_tracers(function, self.graph)
+        if traced is not None:
+            return traced
+        self.lane_constants.append(function)
+        return "lane", len(self.lane_constants) - 1
+
+    def packed(self, lanes: int, given: Mapping[str, Any]) -> npt.NDArray[np.float64]:
+        """Rows (names, lanes in whole blocks) of the state: given values, with "x" for the points (N, L), and else 0.
+
+        The lanes that fill up the last block are at the first point, so that their numbers are not out of bounds.
+        """
+        state = np.zeros((len(self.names), padded(lanes, self.width)))
+        for name, value in given.items():
+            if name == "x":
+                state[: len(value), :lanes], state[: len(value), lanes:] = value, value[:, :1]
+            else:
+                state[self.names.index(name), :lanes] = value
+        return state
+
+    def __call__(self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None) -> None:
+        """Make steps of the lanes of a state (names, lanes), in place."""
+        argument = self.argument(state, **fields)  # must live as long as the machine code runs
+        self.run(argument.ctypes.data)
+
+    def argument(
+        self, state: npt.NDArray[np.float64], **fields: npt.NDArray[Any] | float | None
+    ) -> npt.NDArray[np.int64]:
+        """The argument of the machine code for a state and other fields, which must outlive it."""
+        argument = np.zeros(len(FIELDS), dtype=np.int64)
+        count = state.shape[1]
+        for name, value in {"state": state, "lanes": count, "last": count // self.width, **fields}.items():
+            if name == "origin":
+                argument.view(np.float64)[PLACES[name]] = value
+            elif value is not None:
+                argument[PLACES[name]] = value.ctypes.data if isinstance(value, np.ndarray) else value
+        return argument
+
+    def run_values(self, given: Mapping[str, float]) -> npt.NDArray[np.float64]:
+        """The numbers of a run as an array, from their values by name; 0 by default."""
+        return np.array([given.get(name, 0.0) for name in self.run_constants] or [0.0])
+
+
+def _on_tracers(function: TrajectoryConstant, graph: StepGraph) -> Expr | None:
+    """A trajectory constant as an expression of inputs 0..N-1; None if the function needs numbers."""
+    tape: Any = graph.point[0].tape
+    points = Traced(tape, Traced.inputs(tape, 0, graph.size)[None])
+    try:
+        constant = Traced(tape, function(points))
+        return constant.entries.reshape(-1)[0] if constant.size == 1 else None
+    except (LiehomError, TypeError, ValueError, AttributeError, IndexError):
+        return None
+
+
+def padded(count: int, width: int) -> int:
+    """Number of lanes, rounded up to whole blocks.
+
+    Examples
+    --------
+    >>> padded(10, 8)
+    16
+    """
+    return -(-count // width) * width

@@ -1,0 +1,416 @@
+"""A recorded graph as a function: on arrays, with derivatives, on JAX arrays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from math import ceil, log2
+from types import ModuleType, SimpleNamespace
+from typing import Any, TypeAlias, final
+
+import numpy as np
+import numpy.typing as npt
+
+from liehom.base.errors import TraceError
+from liehom.base.typing import Array
+from liehom.flow.tracing.graph import OPERATORS, Expr, Tape, needed
+from liehom.flow.tracing.llvm_text import SHORT_SERIES_REACH, rotation_series
+
+# Derivatives of a recorded graph in reverse mode: one pass backwards gives all partial derivatives as graphs, at a
+# few times the cost of the function; and the value of a graph by numpy's functions, on arrays, Jets and tracers.
+
+Number: TypeAlias = Any
+"""A number of a graph, or an array of such numbers."""
+Arithmetic: TypeAlias = Any
+"""A `Tape`, or an object with its methods add, sub, mul, ..., on other numbers."""
+
+SINQ_TERMS = 10
+"""Terms of the derivative of sin(r)/r by r^2, for |r| <= 1."""
+
+
+def gradient(output: Expr, inputs: Sequence[Expr]) -> list[Expr]:
+    """List of the partial derivatives of a number of a graph by its inputs, as numbers of the same graph."""
+    tape: Any = output.tape
+    wanted = {x.index for x in inputs}
+    order = needed([output])
+    moving = set(wanted)  # operations that depend on an input
+    for x in order:
+        if x.index not in moving and any(a.index in moving for a in x.args):
+            moving.add(x.index)
+    seeds = {output.index: tape.one}
+    for x in reversed(order):
+        seed = seeds.get(x.index)
+        if seed is None or x.index in wanted or x.index not in moving:
+            continue
+        slopes = partials(tape, x.op, x.args, x, fixed_exponent=x.op == "pow" and x.args[1].constant)
+        for argument, partial in zip(x.args, slopes, strict=True):
+            if argument.index in moving and not argument.boolean:
+                part = tape.mul(seed, partial)
+                known = seeds.get(argument.index)
+                seeds[argument.index] = part if known is None else tape.add(known, part)
+    return [seeds.get(x.index, tape.zero) for x in inputs]
+
+
+def evaluated(outputs: Sequence[Expr], inputs: Mapping[int, Any]) -> list[Any]:
+    """List of the outputs of a graph, computed by numpy on arrays of any precision, Jets or tracers."""
+    values: dict[int, Any] = {}
+    for x in needed(outputs):
+        if x.constant:
+            values[x.index] = x.value
+        elif x.op == "input":
+            values[x.index] = inputs[x.value]
+        else:
+            function = IN_NUMPY.get(x.op) or getattr(np, x.op, None)
+            if function is None:
+                raise TraceError(f"the operation {x.op} of a recorded function has no counterpart in numpy")
+            values[x.index] = function(*[values[a.index] for a in x.args])
+    return [values[x.index] for x in outputs]
+
+
+IN_NUMPY: dict[str, Callable[..., Any]] = {
+    **OPERATORS, "and": np.logical_and, "not": np.logical_not, "select": np.where, "abs": np.abs,
+    "sinq": lambda q: rotation(q, 1), "cosq": lambda q: rotation(q, 0),
+}  # fmt: skip
+
+
+def rotation(square: npt.ArrayLike, first: int) -> Array:
+    """sin(r)/r (first = 1) or cos(r) (first = 0) of r^2, hyperbolic for r^2 < 0."""
+    q: Array = np.asarray(square, dtype=np.float64)
+    r = np.sqrt(np.abs(q))
+    grown = np.where(q < 0, r, 0.0)
+    if not first:
+        return np.where(q < 0, np.cosh(grown), np.cos(r))
+    safe = np.where(r == 0, 1.0, r)
+    return np.where(r == 0, 1.0, np.where(q < 0, np.sinh(grown), np.sin(r)) / safe)
+
+
+def partials(
+    ops: Arithmetic, op: str, args: Sequence[Number], value: Number, *, fixed_exponent: bool = False
+) -> tuple[Number, ...]:
+    """The partial derivatives of an operation by its arguments, one for each."""
+    one = ops.one
+    match op:
+        case "add":
+            return one, one
+        case "sub":
+            return one, ops.neg(one)
+        case "neg":
+            return (ops.neg(one),)
+        case "mul":
+            return args[1], args[0]
+        case "div":
+            return ops.div(one, args[1]), ops.neg(ops.div(value, args[1]))
+        case "pow":
+            slope = ops.mul(args[1], ops.power(args[0], ops.sub(args[1], one)))
+            return slope, ops.zero if fixed_exponent else ops.mul(value, ops.call("log", args[0]))
+        case "select":
+            return ops.zero, ops.select(args[0], one, ops.zero), ops.select(args[0], ops.zero, one)
+        case "arctan2":
+            size = ops.add(ops.mul(args[0], args[0]), ops.mul(args[1], args[1]))
+            return ops.div(args[1], size), ops.neg(ops.div(args[0], size))
+    rule = _SLOPES.get(op)
+    if rule is None:
+        raise TraceError(f"the operation {op} of a recorded function is not differentiated")
+    return (rule(ops, args[0], value),)
+
+
+def _scaled(tape: Tape, factor: float, x: Expr) -> Expr:
+    return tape.mul(tape.constant(factor), x)
+
+
+def _one_minus(tape: Tape, x: Expr) -> Expr:
+    return tape.sub(tape.one, tape.mul(x, x))
+
+
+def _one_plus(tape: Tape, x: Expr) -> Expr:
+    return tape.add(tape.one, tape.mul(x, x))
+
+
+def _sinq_slope(tape: Tape, a: Expr, x: Expr) -> Expr:
+    """Derivative of sin(r)/r by q = r^2: (cos(r) - sin(r)/r) / 2q, and near q = 0 its series."""
+    near = tape.compare("lt", tape.call("abs", a), tape.one)
+    total: Any = tape.zero
+    for k in range(SINQ_TERMS, 0, -1):
+        total = tape.add(tape.mul(total, a), tape.constant(k * (-1) ** k / math.factorial(2 * k + 1)))
+    safe = tape.select(near, tape.one, a)
+    return tape.select(near, total, tape.div(_scaled(tape, 0.5, tape.sub(tape.call("cosq", a), x)), safe))
+
+
+# slope of a function of one number: (tape, argument, value) -> derivative
+_SLOPES: dict[str, Callable[[Tape, Expr, Expr], Expr]] = {
+    "sqrt": lambda tape, a, x: tape.div(tape.constant(0.5), x),
+    "cbrt": lambda tape, a, x: tape.div(tape.constant(1 / 3), tape.mul(x, x)),
+    "sin": lambda tape, a, x: tape.call("cos", a),
+    "cos": lambda tape, a, x: tape.neg(tape.call("sin", a)),
+    "tan": lambda tape, a, x: _one_plus(tape, x),
+    "exp": lambda tape, a, x: x,
+    "exp2": lambda tape, a, x: _scaled(tape, math.log(2), x),
+    "expm1": lambda tape, a, x: tape.add(x, tape.one),
+    "log": lambda tape, a, x: tape.div(tape.one, a),
+    "log2": lambda tape, a, x: tape.div(tape.constant(1 / math.log(2)), a),
+    "log10": lambda tape, a, x: tape.div(tape.constant(1 / math.log(10)), a),
+    "log1p": lambda tape, a, x: tape.div(tape.one, tape.add(tape.one, a)),
+    "sinh": lambda tape, a, x: tape.call("cosh", a),
+    "cosh": lambda tape, a, x: tape.call("sinh", a),
+    "tanh": lambda tape, a, x: _one_minus(tape, x),
+    "arcsin": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", _one_minus(tape, a))),
+    "arccos": lambda tape, a, x: tape.neg(tape.div(tape.one, tape.call("sqrt", _one_minus(tape, a)))),
+    "arctan": lambda tape, a, x: tape.div(tape.one, _one_plus(tape, a)),
+    "arcsinh": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", _one_plus(tape, a))),
+    "arccosh": lambda tape, a, x: tape.div(tape.one, tape.call("sqrt", tape.neg(_one_minus(tape, a)))),
+    "arctanh": lambda tape, a, x: tape.div(tape.one, _one_minus(tape, a)),
+    "sinq": _sinq_slope,
+    "cosq": lambda tape, a, x: _scaled(tape, -0.5, tape.call("sinq", a)),
+    "abs": lambda tape, a, x: tape.select(tape.compare("lt", a, tape.zero), tape.constant(-1.0), tape.one),
+}
+
+
+# A recorded graph on arrays of one entry per lane: its values in one forward sweep, and weights of the outputs times
+# the derivatives of the graph in one backward sweep, at a few times the cost.
+
+EXP_TERMS = 18
+"""Terms of exp(A) for |A| <= 1, to double precision."""
+
+
+@final
+class Sweeps:
+    """The values of a graph at given inputs, and its derivatives there."""
+
+    def __init__(self, outputs: Sequence[Expr], inputs: Mapping[int, Array | float], lanes: int) -> None:
+        self.lanes = lanes
+        self._outputs = list(outputs)
+        self._order = needed(outputs)
+        self._values: dict[int, Any] = {}
+        with np.errstate(all="ignore"):
+            for x in self._order:
+                self._values[x.index] = self._value(x, inputs)
+        self.values: list[Array] = [np.broadcast_to(self._values[x.index], (lanes,)) for x in outputs]
+
+    def _value(self, x: Expr, inputs: Mapping[int, Array | float]) -> Number:
+        if x.constant:
+            return x.value
+        if x.op == "input":
+            return inputs[x.value]
+        args = [self._values[a.index] for a in x.args]
+        if x.op == "get":
+            return args[0][x.value]
+        if x.op == "expv":  # exp(A) v, shape (n, L), of the entries of A and v
+            matrix, vector = self._parts(x.value, args)
+            return np.moveaxis((exponentials(matrix) @ vector[..., None])[..., 0], -1, 0)
+        function = _OPERATIONS.get(x.op) or getattr(np, x.op, None)
+        if function is None:
+            raise TraceError(
+                f"the derivative of a step with {'an iteration' if x.op == 'loop' else f'the operation {x.op}'} is "
+                "not known: take an explicit method, or differentiate with JAX (engine='jax')"
+            )
+        return function(*args)
+
+    def _parts(self, places: tuple[tuple[int, int], ...], args: list[Any]) -> tuple[Array, Array]:
+        n = len(args) - len(places)
+        matrix = np.zeros((self.lanes, n, n))
+        for (i, j), value in zip(places, args, strict=False):
+            matrix[:, i, j] = value
+        return matrix, np.stack([np.broadcast_to(v, (self.lanes,)) for v in args[len(places) :]], axis=-1)
+
+    def pulled(self, weights: Sequence[Array | float]) -> dict[int, Array]:
+        """The sums of weight times derivative over the outputs, by the index of the input; each of shape (L,)."""
+        seeds: dict[int, Any] = {}
+        sums: dict[int, Array] = {}
+        for output, weight in zip(self._outputs, weights, strict=True):
+            if np.any(weight):
+                seeds[output.index] = seeds.get(output.index, 0.0) + weight
+        blocks: dict[int, dict[int, Any]] = {}
+        with np.errstate(all="ignore"):
+            for x in reversed(self._order):
+                if x.index in blocks:
+                    parts = self._through_exponential(x, blocks.pop(x.index))
+                elif x.constant or x.index not in seeds:
+                    continue
+                elif x.op == "input":
+                    sums[x.value] = np.broadcast_to(seeds.pop(x.index), (self.lanes,))
+                    continue
+                elif x.op == "get":
+                    blocks.setdefault(x.args[0].index, {})[x.value] = seeds.pop(x.index)
+                    continue
+                else:
+                    parts = self._through(x, seeds.pop(x.index))
+                for argument, part in parts:
+                    seeds[argument.index] = seeds[argument.index] + part if argument.index in seeds else part
+        return sums
+
+    def _through(self, x: Expr, seed: Number) -> list[tuple[Expr, Any]]:
+        """The weights of the arguments of an operation, from the weight of its result."""
+        args = [self._values[a.index] for a in x.args]
+        if x.op == "select":
+            where = np.broadcast_to(args[0], (self.lanes,))
+            parts = [None, np.where(where, seed, 0.0), np.where(where, 0.0, seed)]
+        else:
+            fixed = x.op == "pow" and x.args[1].constant
+            slopes = partials(_NUMBERS, x.op, args, self._values[x.index], fixed_exponent=fixed)
+            parts = [np.where(seed == 0, 0.0, seed * p) for p in slopes]  # also where a branch not taken is infinite
+        return [(a, p) for a, p in zip(x.args, parts, strict=True) if not (a.constant or a.boolean)]
+
+    def _through_exponential(self, x: Expr, seeds: dict[int, Any]) -> list[tuple[Expr, Any]]:
+        """The weights of A and v, from the weights w of exp(A) v.
+
+        They are exp(A)^T w for v, and for A the block (1, 2) of exp of ((A^T, w v^T), (0, A^T)).
+        """
+        matrix, vector = self._parts(x.value, [self._values[a.index] for a in x.args])
+        n = vector.shape[-1]
+        weight = np.stack([np.broadcast_to(seeds.get(i, 0.0), (self.lanes,)) for i in range(n)], axis=-1)
+        double = np.zeros((self.lanes, 2 * n, 2 * n))
+        double[:, :n, :n] = double[:, n:, n:] = np.swapaxes(matrix, 1, 2)
+        double[:, :n, n:] = weight[:, :, None] * vector[:, None, :]
+        blocks = exponentials(double)
+        by_matrix, by_vector = blocks[:, :n, n:], (blocks[:, :n, :n] @ weight[..., None])[..., 0]
+        parts = [by_matrix[:, i, j] for i, j in x.value] + [by_vector[:, i] for i in range(n)]
+        return [(a, p) for a, p in zip(x.args, parts, strict=True) if not a.constant]
+
+
+def exponentials(matrices: Array) -> Array:
+    """exp of matrices (L, n, n), by its series after scaling, and squaring."""
+    norms = np.abs(matrices).sum(axis=-1).max(axis=-1, initial=0.0)
+    largest = float(np.max(norms, initial=0.0, where=np.isfinite(norms)))
+    squarings = max(0, ceil(log2(largest))) if largest > 0 else 0
+    scaled = matrices / 2**squarings
+    one = np.eye(matrices.shape[-1])
+    power: Array = one + scaled / EXP_TERMS
+    for k in range(EXP_TERMS - 1, 0, -1):
+        power = one + scaled @ power / k
+    for _ in range(squarings):
+        power = power @ power
+    return power
+
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {**IN_NUMPY, "pow": np.power}
+# the methods of `Tape` that derivatives use, on arrays
+_NUMBERS = SimpleNamespace(
+    **_OPERATIONS, one=1.0, zero=0.0, power=np.power, compare=lambda name, a, b: _OPERATIONS[name](a, b),
+    call=lambda name, a: (_OPERATIONS.get(name) or getattr(np, name))(a), constant=float,
+)  # fmt: skip
+
+
+# A graph as a function on JAX arrays, to be compiled by jax.jit; it can be differentiated and vmapped.
+
+JaxArray: TypeAlias = Any
+"""A JAX array or tracer, a numpy array or a number."""
+
+EXP_SUBSTEPS, JAX_EXP_TERMS = 4, 18
+"""Numbers of substeps and of terms in which exp(A) m is summed; enough for |A| <= 4, beyond that the result is NaN."""
+
+
+def evaluate_with_jax(
+    outputs: Sequence[Expr], inputs: Mapping[int, JaxArray], *, differentiable: bool = False
+) -> list[JaxArray]:
+    """List of the outputs of a graph, computed by jax.numpy."""
+    try:
+        import jax.numpy as jnp
+    except ImportError:
+        raise TraceError('engine="jax" needs the extra: pip install "liehom[jax]"') from None
+    values: dict[int, Any] = {}
+    for x in needed(outputs):
+        values[x.index] = _value(jnp, x, values, inputs, differentiable)
+    return [values[x.index] for x in outputs]
+
+
+def _known(x: Expr, values: Mapping[int, JaxArray]) -> Any:
+    return x.value if x.constant else values[x.index]
+
+
+def _value(
+    jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], inputs: Mapping[int, JaxArray], differentiable: bool
+) -> Any:
+    if x.constant:
+        return x.value
+    if x.op == "input":
+        return inputs[x.value]
+    args = [_known(a, values) for a in x.args]
+    if x.op == "get":
+        return args[0][x.value]
+    if x.op == "loop":
+        return _iterated(jnp, x, values, differentiable)
+    if x.op == "expv":
+        return _exponential(jnp, x.value, args)
+    if x.op in ("sinq", "cosq"):
+        return _rotation(jnp, args[0], int(x.op == "sinq"))
+    function = OPERATORS.get(x.op) or getattr(jnp, _NAMES.get(x.op, x.op), None)
+    if function is None:
+        raise TraceError(f"the operation {x.op} is not known to JAX")
+    return function(*args)
+
+
+# names in numpy of operations that have another one
+_NAMES = {"and": "logical_and", "not": "logical_not", "select": "where"}
+
+
+def _rotation(jnp: ModuleType, q: JaxArray, first: int) -> JaxArray:
+    """sin(r)/r (first = 1) or cos(r) (first = 0) with r^2 = q; neither value nor derivative of any branch overflows."""
+    near = jnp.abs(q) < SHORT_SERIES_REACH
+    total: Any = 0.0
+    for c in reversed(rotation_series(SHORT_SERIES_REACH, first)):
+        total = total * q + c
+    safe = jnp.where(near, 1.0, q)
+    r = jnp.sqrt(jnp.abs(safe))
+    grown = jnp.where(safe > 0, 0.0, r)
+    far = (
+        jnp.where(safe > 0, jnp.sin(r), jnp.sinh(grown)) / r
+        if first
+        else jnp.where(safe > 0, jnp.cos(r), jnp.cosh(grown))
+    )
+    return jnp.where(near, total, far)
+
+
+def _iterated(jnp: ModuleType, x: Expr, values: Mapping[int, JaxArray], differentiable: bool) -> list[JaxArray]:
+    """The values of the variables after a loop."""
+    from jax import lax
+
+    loop = x.value
+    before = [jnp.asarray(_known(a, values)) for a in x.args]
+    shape = jnp.broadcast_shapes(*[a.shape for a in before])
+    start = [
+        jnp.broadcast_to(jnp.asarray(a, dtype=bool if v.boolean else float), shape)
+        for a, v in zip(before, loop.variables, strict=False)
+    ]
+
+    def body(state: list[JaxArray]) -> tuple[list[JaxArray], JaxArray]:
+        known = dict(values) | {v.index: s for v, s in zip(loop.variables, state, strict=True)}
+        for y in loop.inside:
+            known[y.index] = _value(jnp, y, known, {}, differentiable)
+        new = [jnp.broadcast_to(_known(y, known), shape) for y in loop.new]
+        return new, jnp.any(_known(loop.again, known))
+
+    more = (start, jnp.any(start[0]) if loop.guarded else jnp.asarray(True))
+    if differentiable:  # a loop of a fixed length
+        return list(
+            lax.fori_loop(
+                0, loop.limit, lambda _, state: lax.cond(state[1], lambda s: body(s[0]), lambda s: s, state), more
+            )[0]
+        )
+    _, (state, _) = lax.while_loop(
+        lambda state: (state[0] < loop.limit) & state[1][1], lambda state: (state[0] + 1, body(state[1][0])), (0, more)
+    )
+    return list(state)
+
+
+def _exponential(jnp: ModuleType, places: tuple[tuple[int, int], ...], args: list[JaxArray]) -> list[JaxArray]:
+    from jax import lax
+
+    shape = jnp.broadcast_shapes(*[jnp.shape(a) for a in args])
+    args = [jnp.broadcast_to(jnp.asarray(a, dtype=float), shape) for a in args]
+    entries, m = args[: len(places)], jnp.stack(args[len(places) :])
+    n = len(m)
+    rows = [[jnp.zeros(shape) for _ in range(n)] for _ in range(n)]
+    for (i, j), a in zip(places, entries, strict=True):
+        rows[i][j] = a
+    matrix = jnp.stack([jnp.stack(row) for row in rows])
+    size = sum(a * a for a in entries)
+
+    def term(j: JaxArray, state: JaxArray) -> JaxArray:
+        last = jnp.einsum("ij...,j...->i...", matrix, state[0]) / (EXP_SUBSTEPS * (j + 1.0))
+        return last, state[1] + last
+
+    def substep(_: JaxArray, v: JaxArray) -> JaxArray:
+        return v + lax.fori_loop(0, JAX_EXP_TERMS, term, (v, jnp.zeros_like(v)))[1]
+
+    moved = lax.fori_loop(0, EXP_SUBSTEPS, substep, m)
+    return list(jnp.where(size <= EXP_SUBSTEPS**2, moved, jnp.nan))

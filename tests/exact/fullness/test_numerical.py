@@ -1,0 +1,192 @@
+"""Numerical verdicts: never wrong on the catalogue in floats, undecided if the error of the data is too large."""
+
+import json
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import pytest
+
+import liehom as lh
+from liehom.base.errors import UndecidedError
+from liehom.exact.fullness.numerical import least_singular_value, self_adjoint_position, transitive_group
+from tests import sampling
+from tests.exact.catalog.claims import CLAIMS
+from tests.exact.fullness.float_campaign import compared, wrong
+from tests.floats import constants_of, pair_of, rotated, rotation
+
+NAMES = [name for name, claim in CLAIMS.items() if 0 < claim.algebra_dimension <= 15]
+
+
+def table(n: int, *entries: tuple[int, int, int, float]) -> Any:
+    constants = np.zeros((n, n, n))
+    for i, j, k, value in entries:
+        constants[i, j, k] += value
+        constants[j, i, k] -= value
+    return constants
+
+
+def axes(n: int, *members: int) -> Any:
+    return np.eye(n)[list(members)]
+
+
+def verdict_of(constants: Any, rows: Any) -> Any:
+    return lh.decide_fullness(pair_of(constants, rows))
+
+
+def plane_turn(t: float) -> Any:
+    """h acts on R^2 by [[0, -t], [1, 0]]: full for t > 0, not full for t <= 0."""
+    return table(3, (0, 1, 2, 1.0), (0, 2, 1, -t))
+
+
+# -- the catalogue ------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_catalogue_in_random_orthogonal_bases_has_no_wrong_answer(scale: float) -> None:
+    rng = np.random.default_rng(int(np.log10(scale)) + 20)
+    counts: Counter[Any] = Counter()
+    for name in NAMES if sampling.whole else NAMES[:: 4 if scale == 1 else 9]:
+        constants, rows = constants_of(lh.pair(name))
+        verdict = verdict_of(*rotated(constants, rows, rotation(len(constants), rng), scale))
+        counts[verdict.full] += 1
+        assert verdict.full in (CLAIMS[name].full, None), f"{name}: {verdict}"
+    assert counts[None] == 0
+    assert min(counts[True], counts[False]) > 3
+
+
+@pytest.mark.parametrize("name", ["so(4)/so(3)", "sl(3)/P1", "affine(su(2))", "so(3,1)/P"])
+def test_a_full_pair_whose_basis_has_units_of_very_different_sizes_is_not_called_not_full(name: str) -> None:
+    constants, rows = constants_of(lh.pair(name))
+    rng = np.random.default_rng(8)
+    for _ in range(3):
+        units = 10.0 ** rng.uniform(-3, 3, len(constants))
+        scaled = constants * units[:, None, None] * units[:, None] / units
+        assert verdict_of(scaled, rows / units).full is not False
+
+
+def with_noise(name: str, size: float, rng: np.random.Generator) -> Any:
+    """The verdict of a pair in a random orthogonal basis, with noise of a size relative to the norm of the table."""
+    constants, rows = constants_of(lh.pair(name))
+    n = len(constants)
+    constants, rows = rotated(constants, rows, rotation(n, rng))
+    noise = rng.standard_normal(constants.shape) * (size * np.linalg.norm(constants) / n**1.5)
+    return verdict_of(constants + noise - noise.transpose(1, 0, 2), rows)
+
+
+def test_noise_of_the_size_of_rounding_changes_no_answer() -> None:
+    rng = np.random.default_rng(9)
+    for name in NAMES if sampling.whole else NAMES[::6]:
+        assert with_noise(name, 2e-13, rng).full is CLAIMS[name].full, name
+
+
+def test_noise_above_rounding_leaves_full_and_makes_not_full_undecided() -> None:
+    rng = np.random.default_rng(9)
+    for name in ("so(4)/so(3)", "affine(gl(2))", "sl(3)/P1"):
+        assert with_noise(name, 1e-10, rng).full is True
+    for name in ("so(2,2)/P", "sp(4,R)/P1", "affine(blocks(gl(1),gl(1)))"):
+        assert with_noise(name, 5e-10, rng).full is None
+    for _ in range(8):  # here rho(h) is noise only, with eigenvectors or without
+        assert with_noise("heisenberg(1)/R", 1e-10, rng).full is not True
+
+
+# -- families that degenerate -------------------------------------------------------------------------------
+def test_a_full_family_becomes_undecided_before_it_is_called_not_full() -> None:
+    turn = rotation(3, np.random.default_rng(4))
+    answers = []
+    for exponent in range(12):
+        verdict = verdict_of(*rotated(plane_turn(10.0**-exponent), axes(3, 0), turn))
+        answers.append(verdict.full)
+        assert verdict.gap == pytest.approx(verdict.smallest / verdict.tolerance)
+        assert (verdict.gap >= 100) == (verdict.full is True)
+    undecided = answers.index(None)
+    assert answers[:undecided] == [True] * undecided
+    assert 4 < undecided < 9
+    assert answers[undecided:] == [None] * (12 - undecided)
+
+
+@pytest.mark.parametrize("t", [0.0, -1e-8, -1e-4, -1.0])
+def test_a_family_that_is_not_full_is_not_full_at_every_parameter(t: float) -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(3):
+        assert verdict_of(*rotated(plane_turn(t), axes(3, 0), rotation(3, rng))).full is False
+
+
+def test_undecided_has_no_boolean_and_says_what_it_rests_on() -> None:
+    verdict = verdict_of(plane_turn(1e-8), axes(3, 0))
+    assert verdict.full is None
+    assert verdict.certificate is None
+    assert isinstance(verdict, lh.fullness.NumericallyUndecided)
+    assert f"{verdict.tolerance:.1e}" in str(verdict)
+    assert f"{verdict.gap:.1e}" in str(verdict)
+    assert str(verdict).startswith("undecided (numerical")
+    for question in (lambda: bool(verdict), verdict.verify):
+        with pytest.raises(UndecidedError, match=r"undecided.*rationalize|no certificate"):
+            question()
+    data = json.loads(json.dumps(verdict.to_json()))
+    assert (data["full"], data["proved"], data["certificate"]) == (None, False, None)
+    assert data["gap"] == verdict.gap < 100
+    assert data["tolerance"] == verdict.tolerance
+
+
+def test_a_coarse_field_has_a_coarse_answer() -> None:
+    coarse = lh.FloatField(rtol=1e-3)
+    for t, full in ((1.0, True), (1e-4, None)):
+        assert lh.decide_fullness(pair_of(plane_turn(t), axes(3, 0), coarse)).full is full
+
+
+# -- noise --------------------------------------------------------------------------------------------------
+def test_noise_in_place_of_an_isotropy_matrix_is_never_a_reason_for_full() -> None:
+    noisy = table(4, (0, 3, 2, 1.0), (1, 2, 3, 1e-17))
+    assert verdict_of(noisy, axes(4, 0, 1)).full is not True
+    rng = np.random.default_rng(6)
+    for _ in range(5):
+        assert verdict_of(*rotated(noisy, axes(4, 0, 1), rotation(4, rng))).full is not True
+
+
+@pytest.mark.parametrize(("constants", "members"), [
+    (table(4, (0, 3, 2, 1.0)), (0, 1)),  # a nilpotent element and an ineffective one
+    (table(5, (0, 3, 2, 1.0), (0, 4, 3, 1.0)), (0, 1)),
+    (table(5, (0, 1, 2, 1.0)), (0, 2)),  # heisenberg + R^2
+    (table(5, (0, 1, 0, 1.0)), (0, 1)),  # h acts trivially
+    (table(4), (0,)),
+])  # fmt: skip
+def test_nilpotent_and_ineffective_elements_in_random_bases_are_not_full(constants: Any, members: Any) -> None:
+    rng = np.random.default_rng(7)
+    n = len(constants)
+    for exponent in (-12, -3, 0, 5, 12):
+        turned = rotated(constants, axes(n, *members), rotation(n, rng), 10.0**exponent)
+        assert verdict_of(*turned).full is False
+
+
+# -- the parts ----------------------------------------------------------------------------------------------
+def test_the_span_of_a_conjugated_reductive_algebra_has_a_self_adjoint_position() -> None:
+    rng = np.random.default_rng(3)
+    skew = np.array([(a := rng.standard_normal((4, 4))) - a.T for _ in range(6)])
+    for condition in (10.0, 1e3):
+        change = np.diag(np.geomspace(1, condition, 4)) @ rotation(4, rng)
+        moved = np.linalg.inv(change) @ skew @ change
+        g = self_adjoint_position(moved / np.linalg.norm(moved, axis=(1, 2), keepdims=True))
+        assert np.linalg.cond(g @ np.linalg.inv(change)) == pytest.approx(1, rel=1e-6)
+        result = transitive_group(moved, 1e-12 * np.linalg.norm(moved))
+        assert result is not None
+        assert result.value == pytest.approx(0.5**0.5)
+
+
+def test_least_singular_value_reaches_rounding_at_simple_and_multiple_zeros() -> None:
+    for name in ("affine(S3(gl(2)))", "so(3,1)/so(2,1)", "sl(3)/B", "su(2,1)/P", "affine(strict(3))"):
+        pair = lh.pair(name)
+        matrices = np.array([np.eye(pair.dimension), *(a.to_numpy() for a in pair.isotropy_matrices())])
+        value, x = least_singular_value(matrices, starts=20, seed=1)
+        assert value < 1e-14
+        assert np.linalg.svd((matrices @ x).T, compute_uv=False)[-1] < 1e-14
+
+
+def test_random_pairs_have_no_wrong_answer_and_few_undecided_ones() -> None:
+    counts = compared(range(8 * (8 if sampling.whole else 1)))
+    assert wrong(counts) == 0
+    assert sum(n for (_, _, result), n in counts.items() if result is None) <= sum(counts.values()) // 8
+
+
+@pytest.mark.parametrize("question", [lh.failure_report, lh.orbits.failure_cone])
+def test_where_it_fails_is_not_answered_over_floats(question: Any) -> None:
+    with pytest.raises(UndecidedError, match="rationalize"):
+        question(pair_of(*constants_of(lh.pair("so(3,1)/so(2,1)"))))

@@ -1,0 +1,44 @@
+"""The weight of liehom/: lines, statements and files rise only together with a sentence that says for whom."""
+
+import ast
+from pathlib import Path
+
+import liehom
+
+PACKAGE = Path(liehom.__file__).resolve().parent
+
+WEIGHTS: tuple[tuple[int, int, int, str], ...] = (
+    (82473, 42777, 280, "two halves with one door, for everybody who reads the code"),
+)
+"""Lines, statements (of Python, without docstrings) and files of Python and stubs, the latest last, and for whom."""
+SLACK = 0.005  # what has become lighter by more than this share is written down
+
+
+def is_string(node: ast.AST) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+
+
+def statements(text: str) -> int:
+    return sum(isinstance(node, ast.stmt) and not is_string(node) for node in ast.walk(ast.parse(text)))
+
+
+def weight() -> tuple[int, int, int]:
+    paths = [path for path in PACKAGE.rglob("*.py*") if path.suffix in (".py", ".pyi")]
+    texts = [path.read_text(encoding="utf-8") for path in paths if PACKAGE / "examples" not in path.parents]
+    return sum(text.count("\n") for text in texts), sum(map(statements, texts)), len(texts)
+
+
+def test_weight_is_what_is_written_down() -> None:
+    *allowed, reason = WEIGHTS[-1]
+    assert len(reason.split()) >= 6, "say who needs what has been added"
+    for now, most, what in zip(weight(), allowed, ("lines", "statements", "files"), strict=True):
+        assert now <= most, f"{now} {what}, {most} written down: for whom? add a row to WEIGHTS"
+        assert now >= (1 - SLACK) * most - 1, f"{now} {what}, {most} written down: lower the last row of WEIGHTS"
+
+
+def test_docstrings_and_comments_are_not_counted() -> None:
+    """A control."""
+    assert (
+        statements('"""Doc."""\n# a comment\nx = 1\n"""What x is."""\n\n\ndef f():\n    """Doc."""\n    return x\n')
+        == 3
+    )
