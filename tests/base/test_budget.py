@@ -83,19 +83,19 @@ def test_every_limit_has_a_case_a_default_and_a_line_in_the_docs() -> None:
 
 # -- seconds ---------------------------------------------------------------------------------------------
 def test_a_deadline_ends_a_computation() -> None:
-    start = time.monotonic()
+    start = time.process_time()
     with lh.limits(seconds=0.2), pytest.raises(LimitError, match="seconds"):
         for _ in range(1000):
             lh.decide_fullness(lh.pair("so(6)/so(5)"))
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5
 
 
 def test_a_deadline_ends_an_integration() -> None:
     body = lh.RigidBody((1, 2, 4))
-    start = time.monotonic()
+    start = time.process_time()
     with lh.limits(seconds=0.3), pytest.raises(LimitError, match="seconds"):
         lh.integrate(body.field(), (0, 10**6), [0.6, 0, 0.8], dt=0.01)
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5
 
 
 def test_an_inner_block_does_not_extend_a_deadline() -> None:
@@ -181,10 +181,10 @@ def test_the_environment_changes_defaults() -> None:
     ],
 )
 def test_numbers_are_refused_where_they_become_too_long(text: str) -> None:
-    start = time.monotonic()
+    start = time.process_time()
     with pytest.raises(LimitError, match="digits"):
         number_field("sqrt(2)").convert(text)
-    assert time.monotonic() - start < 2
+    assert time.process_time() - start < 2
 
 
 def test_powers_are_those_of_python() -> None:
@@ -204,9 +204,9 @@ PRIMES = (2**89 - 1, 2**107 - 1, 2**127 - 1)
 def test_square_roots_of_numbers_that_are_hard_to_factor() -> None:
     """Fields are the right ones although the number under the root is not factored."""
     p, q, r = PRIMES
-    start = time.monotonic()
+    start = time.process_time()
     fields = [common_field([f"sqrt({p * q * k})"]) for k in range(1, 40)]
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5
     root = fields[0].convert(f"sqrt({p * q})")
     assert root * root == p * q
     assert common_field([f"sqrt({p * p * q * q})"]) == QQ

@@ -82,10 +82,10 @@ def test_a_generator_called_i_is_real() -> None:
 
 @pytest.mark.parametrize("text", ["(3+2i)**4096", "((3+2i)**300)**300", "(1/3+i/7)**-4000"])
 def test_huge_powers_are_computed_or_refused_at_once(text: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     with contextlib.suppress(LiehomError):
         complex_parts(text, QQ)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 @pytest.mark.parametrize("value", [1j, np.complex128(1), sympy.I])
